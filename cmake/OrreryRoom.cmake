@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+
+# orrery_room(<name> [DEPENDS <room>...] [LIBRARIES <foreign target>...] [FOREIGN <include prefix>...])
+#
+# One folder under src/ is one room, one target and one namespace. DEPENDS drives the linking and, written to
+# rooms.txt in the build folder, the test `layering`, which greps the includes: the rule stands in one place.
+# FOREIGN lists the include prefixes of the foreign libraries that this room, and no other, may include.
+function(orrery_room name)
+  cmake_parse_arguments(ROOM "" "" "DEPENDS;LIBRARIES;FOREIGN" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  set(target orrery_${name})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    set(scope PUBLIC)
+    target_compile_options(${target} PRIVATE ${ORRERY_WARNINGS} -ffp-contract=off)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(orrery::${name} ALIAS ${target})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>
+                                                $<INSTALL_INTERFACE:include/orrery>)
+  foreach(room IN LISTS ROOM_DEPENDS)
+    target_link_libraries(${target} ${scope} orrery::${room})
+  endforeach()
+  target_link_libraries(${target} ${scope} ${ROOM_LIBRARIES})
+  set_property(GLOBAL APPEND PROPERTY ORRERY_ROOMS "${name}")
+  string(REPLACE ";" " " depends "${ROOM_DEPENDS}")
+  string(REPLACE ";" " " foreign "${ROOM_FOREIGN}")
+  set_property(GLOBAL APPEND_STRING PROPERTY ORRERY_ROOM_TABLE "${name} | ${depends} | ${foreign}\n")
+endfunction()
+
+set(ORRERY_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+if(ORRERY_WERROR)
+  list(APPEND ORRERY_WARNINGS -Werror)
+endif()

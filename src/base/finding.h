@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace orrery::base {
+
+enum class Severity { kError, kWarning };
+
+/// One thing that is wrong (or doubtful) in a file or on the command line, with its place and its remedy.
+struct Finding {
+  Severity severity = Severity::kError;
+  std::string file;         ///< path as the user gave it; "--set" for an override on the command line
+  int line = 0;             ///< 1-based; 0 where there is no line (a binary file, a whole file)
+  int column = 0;           ///< 1-based, in bytes; 0 as above
+  int width = 1;            ///< bytes to underline from `column`
+  std::string text;         ///< what is wrong: names the key, the value and the allowed range
+  std::string source_line;  ///< the line it stands in, without its end; empty where there is none
+  std::string remedy;       ///< "did you mean `samples`?" and the like; may be empty
+};
+
+/// The finding as the user reads it: `file:line:column: error: text`, the source line, a caret, the remedy.
+///
+/// Result     several lines, each ended by a newline
+std::string formatted(const Finding& finding);
+
+}  // namespace orrery::base

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+namespace orrery::math {
+
+/// Three doubles: a point, a direction or a colour of the cold paths (scene, compile, tests).
+struct Vec3d {
+  double x = 0, y = 0, z = 0;
+
+  friend constexpr bool operator==(const Vec3d&, const Vec3d&) = default;
+  friend constexpr Vec3d operator+(Vec3d a, Vec3d b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend constexpr Vec3d operator-(Vec3d a, Vec3d b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend constexpr Vec3d operator-(Vec3d a) { return {-a.x, -a.y, -a.z}; }
+  friend constexpr Vec3d operator*(Vec3d a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend constexpr Vec3d operator*(double s, Vec3d a) { return a * s; }
+  friend constexpr Vec3d operator*(Vec3d a, Vec3d b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+  friend constexpr Vec3d operator/(Vec3d a, double s) { return {a.x / s, a.y / s, a.z / s}; }
+};
+
+constexpr double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr Vec3d cross(Vec3d a, Vec3d b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(Vec3d a) { return std::sqrt(dot(a, a)); }
+inline Vec3d normalized(Vec3d a) { return a / length(a); }
+inline bool is_finite(Vec3d a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+
+}  // namespace orrery::math

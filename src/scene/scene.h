@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "math/vec3.h"
+
+/// The scene as its author wrote it: named things, the author's units, nothing compiled.
+///
+/// The values given to members here are the documented defaults of docs/scene-format.md, and stand nowhere else.
+namespace orrery::scene {
+
+using math::Vec3d;
+
+struct Image {
+  int width = 1200;  ///< px
+  int height = 675;  ///< px
+};
+
+struct Camera {
+  Vec3d look_from{0, 0, 0};
+  Vec3d look_at{0, 0, -1};
+  Vec3d up{0, 1, 0};
+  double vfov = 90;                      ///< degrees, vertical
+  double defocus_angle = 0;              ///< degrees, apex angle of the cone at the focus plane; 0 = pinhole
+  std::optional<double> focus_distance;  ///< scene units; default: distance from look_from to look_at
+};
+
+enum class BackgroundType { kGradient, kConstant };
+
+struct Background {
+  BackgroundType type = BackgroundType::kGradient;
+  Vec3d bottom{1, 1, 1};    ///< gradient: looking straight down
+  Vec3d top{0.5, 0.7, 1};   ///< gradient: looking straight up
+  Vec3d color{1, 1, 1};     ///< constant
+};
+
+enum class Precision { kExact, kFast, kBook };
+enum class Shading { kPath, kNormal, kFlat };
+enum class Accelerator { kEmbree, kList };
+
+struct Render {
+  int samples = 100;     ///< per pixel
+  int max_depth = 50;    ///< scattering events
+  std::uint32_t seed = 1;
+  Precision precision = Precision::kExact;
+  Shading shading = Shading::kPath;
+  Accelerator accelerator = Accelerator::kEmbree;
+};
+
+struct Lambertian {
+  Vec3d albedo{0.5, 0.5, 0.5};
+};
+/// The book's first diffuse: directions uniform over the hemisphere, weighted by the albedo alone.
+struct Hemisphere {
+  Vec3d albedo{0.5, 0.5, 0.5};
+};
+struct Metal {
+  Vec3d albedo{0.5, 0.5, 0.5};
+  double fuzz = 0;  ///< 0..1, radius of the ball around the tip of the reflected direction
+};
+enum class Fresnel { kSchlick, kExact, kNone };
+struct Dielectric {
+  double ior = 1.5;
+  Fresnel fresnel = Fresnel::kSchlick;
+};
+
+using MaterialModel = std::variant<Lambertian, Hemisphere, Metal, Dielectric>;
+
+struct Material {
+  std::string name;
+  MaterialModel model;
+};
+
+struct Sphere {
+  Vec3d center;
+  double radius = 1;         ///< negative: inward normal (hollow glass)
+  std::uint32_t material = 0;  ///< index into Scene::materials
+  std::string name;          ///< optional, for mattes
+};
+
+/// Spheres from a data file: flat arrays, since there may be ten million. Filled by format::read.
+struct Points {
+  std::filesystem::path file;            ///< as written in the scene, relative to the scene file
+  std::uint32_t material = 0;            ///< index into Scene::materials; where the file has none of its own
+  std::optional<double> radius;          ///< for every point of a file that carries no radius
+  std::vector<Vec3d> centers;
+  std::vector<double> radii;             ///< as many as centers
+  std::vector<std::uint32_t> materials;  ///< as many as centers, or empty: `material` for all
+};
+
+/// Colours of the scene file, and of the picture made of it.
+struct Color {
+  std::string space = "lin_rec709";
+};
+
+struct Scene {
+  Image image;
+  Camera camera;
+  Background background;
+  Render render;
+  Color color;
+  std::vector<Material> materials;
+  std::vector<Sphere> spheres;
+  std::vector<Points> points;
+};
+
+}  // namespace orrery::scene
