@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "compile/world.h"
+#include "scene/scene.h"
+
+namespace orrery::compile {
+
+/// Turns the authored scene into flat arrays and finds out what it requires.
+///
+/// Authored meaning ends here: a negative radius becomes a positive one with the material turned inside out, degrees
+/// become vectors, and materials that no sphere uses are left out.
+///
+/// Domain     a scene that scene::validate finds no error in
+World compile(const scene::Scene& scene);
+
+}  // namespace orrery::compile

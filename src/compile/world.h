@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kernel/scene_view.h"
+#include "math/vec3.h"
+
+namespace orrery::compile {
+
+enum class Precision { kExact, kFast, kBook };
+enum class Accelerator { kEmbree, kList };
+
+/// The box around all spheres; meaningless where there is none.
+struct Bounds {
+  math::Vec3d lower;
+  math::Vec3d upper;
+};
+
+/// A scene ready to be rendered: flat arrays, camera basis, and what the scene requires.
+///
+/// Spheres keep the order of the scene file, [[sphere]] tables first, then each [[points]] file; their index is their
+/// id in every hit.
+struct World {
+  std::vector<kernel::Sphere> spheres;
+  std::vector<std::uint32_t> sphere_materials;  ///< one per sphere, index into `materials`
+  std::vector<kernel::Material> materials;
+  kernel::Camera camera;
+  kernel::Background background;
+  kernel::Features features;
+  kernel::Shading shading = kernel::Shading::kPath;
+  Precision precision = Precision::kExact;
+  Accelerator accelerator = Accelerator::kEmbree;
+  Bounds bounds;
+  int width = 0;            ///< px
+  int height = 0;           ///< px
+  int samples = 0;          ///< per pixel
+  std::uint32_t max_depth = 0;  ///< scattering events
+  std::uint32_t seed = 0;
+
+  /// The same for the inner loops; valid as long as this World is neither changed nor destroyed.
+  kernel::SceneView view() const noexcept;
+
+  /// Bytes of the arrays held here.
+  std::size_t bytes() const noexcept;
+};
+
+}  // namespace orrery::compile

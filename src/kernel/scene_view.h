@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kernel/camera.h"
+#include "kernel/material.h"
+#include "kernel/sphere.h"
+
+namespace orrery::kernel {
+
+/// What a ray that leaves the scene sees: bottom + (top - bottom) (y + 1) / 2 of its unit direction.
+struct Background {
+  double bottom[3] = {1, 1, 1};
+  double top[3] = {1, 1, 1};
+};
+
+enum class Shading : std::uint8_t { kPath, kNormal, kFlat };
+
+/// What this scene asks of the kernel. Everything that is false here is not computed.
+struct Features {
+  bool lens = false;        ///< the camera has an aperture
+  bool lambertian = false;  ///< some sphere's material is of this kind
+  bool hemisphere = false;
+  bool metal = false;
+  bool fuzz = false;  ///< some metal has fuzz > 0
+  bool dielectric = false;
+  bool sky = false;  ///< the background depends on the direction
+};
+
+/// The compiled scene as the inner loops see it: pointers into arrays that somebody else owns.
+struct SceneView {
+  const Sphere* spheres = nullptr;
+  const std::uint32_t* sphere_materials = nullptr;  ///< one per sphere, index into `materials`
+  const Material* materials = nullptr;
+  std::size_t sphere_count = 0;
+  Camera camera;
+  Background background;
+  Features features;
+  Shading shading = Shading::kPath;
+  std::uint32_t max_depth = 50;  ///< scattering events; a path that has not left the scene after them brings no light
+  std::uint32_t seed = 1;
+};
+
+}  // namespace orrery::kernel

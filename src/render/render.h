@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "compile/world.h"
+#include "film/picture.h"
+
+namespace orrery::render {
+
+struct Progress {
+  std::uint64_t samples_done = 0;
+  std::uint64_t samples_total = 0;
+  double seconds = 0;  ///< since rendering began, the acceleration structure's build left out
+};
+
+struct Settings {
+  int threads = 0;  ///< 0: as many as available_threads()
+  /// Called from one thread at a time, a few times a second at the most.
+  std::function<void(const Progress&)> on_progress;
+  const std::atomic<bool>* cancel = nullptr;  ///< looked at between tiles; true stops the render
+};
+
+/// What a render did.
+struct Statistics {
+  std::uint64_t paths = 0;
+  std::uint64_t rays = 0;
+  std::uint64_t bad_samples = 0;  ///< not finite; counted and left out of their pixel's mean
+  double build_s = 0;             ///< acceleration structure
+  double render_s = 0;
+  std::string isa;          ///< instruction set of the kernel, "AVX2"
+  std::string accelerator;  ///< "embree 3.13.5", "list"
+  int threads = 0;
+};
+
+struct Result {
+  film::Picture picture;  ///< planes R, G, B, A; empty when not completed
+  Statistics statistics;
+  bool completed = false;  ///< false: stopped by `cancel`
+};
+
+/// Threads this process may use: the processors in its affinity mask.
+int available_threads();
+
+/// Renders a whole picture.
+///
+/// The picture's bits depend on the world alone, not on threads, tiles or accelerator.
+///
+/// Result     completed == false where `cancel` stopped it
+/// Errors     base::Error(kInternal) where the acceleration structure cannot be built
+Result render(const compile::World& world, const Settings& settings);
+
+}  // namespace orrery::render
