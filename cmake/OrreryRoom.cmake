@@ -14,6 +14,9 @@ function(orrery_room name)
     add_library(${target} STATIC ${sources})
     set(scope PUBLIC)
     target_compile_options(${target} PRIVATE ${ORRERY_WARNINGS} -ffp-contract=off)
+    if("hwy/" IN_LIST ROOM_FOREIGN)
+      target_compile_options(${target} PRIVATE ${ORRERY_SIMD})
+    endif()
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -31,6 +34,14 @@ function(orrery_room name)
   string(REPLACE ";" " " foreign "${ROOM_FOREIGN}")
   set_property(GLOBAL APPEND_STRING PROPERTY ORRERY_ROOM_TABLE "${name} | ${depends} | ${foreign}\n")
 endfunction()
+
+# What every processor must have: rooms with per-instruction-set text start here, and dispatch upwards from it at run time.
+# AVX-512's later additions are left out: they bring nothing to this code and cost a compilation each.
+set(ORRERY_SIMD "")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(ORRERY_SIMD -march=x86-64-v2 -maes -mpclmul
+      "-DHWY_DISABLED_TARGETS=(HWY_AVX3_DL|HWY_AVX3_ZEN4|HWY_AVX3_SPR)")
+endif()
 
 set(ORRERY_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
 if(ORRERY_WERROR)
