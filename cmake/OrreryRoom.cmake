@@ -39,8 +39,12 @@ endfunction()
 # AVX-512's later additions are left out: they bring nothing to this code and cost a compilation each.
 set(ORRERY_SIMD "")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  set(ORRERY_SIMD -march=x86-64-v2 -maes -mpclmul
-      "-DHWY_DISABLED_TARGETS=(HWY_AVX3_DL|HWY_AVX3_ZEN4|HWY_AVX3_SPR)")
+  set(ORRERY_SIMD -march=x86-64-v2 -maes -mpclmul)
+  if(HWY_VERSION VERSION_LESS 1.1)
+    list(APPEND ORRERY_SIMD "-DHWY_DISABLED_TARGETS=HWY_AVX3_DL")
+  else()
+    list(APPEND ORRERY_SIMD "-DHWY_DISABLED_TARGETS=(HWY_AVX3_DL|HWY_AVX3_ZEN4|HWY_AVX3_SPR)")
+  endif()
 endif()
 
 set(ORRERY_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
