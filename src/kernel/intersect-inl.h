@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a ray meets a sphere. Compiled once per instruction set, for any number of lanes, in double or float.
+#if defined(ORRERY_KERNEL_INTERSECT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_INTERSECT_INL_H_
+#undef ORRERY_KERNEL_INTERSECT_INL_H_
+#else
+#define ORRERY_KERNEL_INTERSECT_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "kernel/precision.h"
+#include "kernel/ray_packet.h"
+#include "math/vec3-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): one room's lanes in another's text
+
+/// Unsigned lanes as wide as D's: ids and random bits beside the numbers they belong to.
+template <class D>
+using IdTag = hn::RebindToUnsigned<D>;
+
+/// One ray a lane; see RayPacketOf.
+template <class D>
+struct Rays {
+  using V = hn::Vec<D>;
+  Vec3<V> origin, origin_low, offset, direction;
+  V inverse_square;
+  hn::Vec<IdTag<D>> self;
+};
+
+/// Lanes `first` .. of a packet.
+template <class D, class Packet>
+HWY_INLINE Rays<D> load_rays(D d, const Packet& p, int first) {
+  const auto at = [&](const auto& component) {
+    return load3(d, component[0] + first, component[1] + first, component[2] + first);
+  };
+  return {at(p.origin),    at(p.origin_low),
+          at(p.offset),    at(p.direction),
+          hn::Load(d, p.inverse_square + first), hn::Load(IdTag<D>(), p.self + first)};
+}
+
+/// One sphere a lane, or the same in all.
+template <class D>
+struct Spheres {
+  Vec3<hn::Vec<D>> center;
+  hn::Vec<D> radius;
+};
+
+template <class D>
+HWY_INLINE Spheres<D> broadcast(D d, const Sphere& s) {
+  using T = hn::TFromD<D>;
+  return {{hn::Set(d, static_cast<T>(s.x)), hn::Set(d, static_cast<T>(s.y)), hn::Set(d, static_cast<T>(s.z))},
+          hn::Set(d, static_cast<T>(s.radius))};
+}
+
+/// The chord that a sphere cuts out of a ray's line, seen from the sphere's centre.
+template <class D>
+struct Chord {
+  using V = hn::Vec<D>;
+  V middle;         ///< distance of the chord's middle, in lengths of the direction
+  V discriminant;   ///< radius^2 - |to_center|^2; the line meets the sphere where this is >= 0
+  Vec3<V> to_center;  ///< from the middle to the sphere's centre; perpendicular to the direction
+};
+
+/// The perpendicular form: only differences are ever squared, so nothing large cancels.
+///
+/// Precision  test Extremes.HitPointError, against MPFR
+/// Reference  haines2019, ch. 7, extended by the low part of the difference and a second projection
+template <class D, bool kCompensated>
+HWY_INLINE Chord<D> chord(const Rays<D>& ray, const Spheres<D>& sphere) {
+  const auto to_sphere = sphere.center - ray.origin;
+  auto middle = dot(to_sphere, ray.direction) * ray.inverse_square;
+  auto to_center = neg_mul_add(ray.direction, middle, to_sphere);
+  if constexpr (kCompensated) {
+    to_center = to_center + (difference_error(sphere.center, ray.origin, to_sphere) - ray.origin_low);
+    // A far origin leaves a component along the ray in what should be perpendicular to it: take it out once more.
+    const auto rest = dot(to_center, ray.direction) * ray.inverse_square;
+    to_center = neg_mul_add(ray.direction, rest, to_center);
+    middle = middle + rest;
+  }
+  return {middle, hn::NegMulAdd(to_center.z, to_center.z,
+                                hn::NegMulAdd(to_center.y, to_center.y,
+                                              hn::NegMulAdd(to_center.x, to_center.x, sphere.radius * sphere.radius))),
+          to_center};
+}
+
+/// Distances along the ray, in lengths of its direction; only lanes in `mask` have one.
+template <class D>
+struct Distances {
+  hn::Vec<D> value;
+  hn::Mask<D> mask;
+};
+
+/// The nearest point beyond the origin where each ray meets its sphere.
+///
+/// A ray that starts on the sphere itself meets it again at one place only, the other end of the chord; its own
+/// start is divided out of the quadratic and can't come back as a rounding error. Every other sphere: strictly > 0.
+template <class D, Precision kPrecision>
+HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self) {
+  using T = hn::TFromD<D>;
+  const auto zero = hn::Zero(d);
+  if constexpr (kPrecision == Precision::kBook) {
+    const auto oc = ray.origin - sphere.center;
+    const auto a = dot(ray.direction, ray.direction);
+    const auto half_b = dot(oc, ray.direction);
+    const auto c = dot(oc, oc) - sphere.radius * sphere.radius;
+    const auto discriminant = half_b * half_b - a * c;
+    const auto root = hn::Sqrt(hn::Max(discriminant, zero));
+    const auto t_min = hn::Set(d, static_cast<T>(kBookShortestDistance));
+    const auto entry = (hn::Neg(half_b) - root) / a;
+    const auto exit = (root - half_b) / a;
+    const auto t = hn::IfThenElse(entry >= t_min, entry, exit);
+    return {t, hn::And(discriminant >= zero, t >= t_min)};
+  } else {
+    const auto c = chord<D, kPrecision == Precision::kExact>(ray, sphere);
+    const auto half = hn::Sqrt(hn::Max(c.discriminant, zero) * ray.inverse_square);
+    const auto entry = c.middle - half;
+    const auto exit = c.middle + half;
+    const auto other_end = dot(ray.direction, ray.offset) * ray.inverse_square * hn::Set(d, static_cast<T>(-2));
+    const auto t = hn::IfThenElse(is_self, other_end, hn::IfThenElse(entry > zero, entry, exit));
+    return {t, hn::And(hn::Or(is_self, c.discriminant >= zero), t > zero)};
+  }
+}
+
+/// From the centre to the point where the ray meets its sphere, with a length of exactly one radius (to rounding).
+///
+/// Domain     lanes where `nearest` found this sphere
+template <class D, Precision kPrecision>
+HWY_INLINE Vec3<hn::Vec<D>> hit_offset(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self,
+                                       hn::Vec<D> distance) {
+  const auto zero = hn::Zero(d);
+  if constexpr (kPrecision == Precision::kBook) {
+    return mul_add(ray.direction, distance, ray.origin) - sphere.center;
+  } else {
+    const auto c = chord<D, kPrecision == Precision::kExact>(ray, sphere);
+    const auto half = hn::Sqrt(hn::Max(c.discriminant, zero) * ray.inverse_square);
+    const auto along = hn::IfThenElse(c.middle - half > zero, hn::Neg(half), half);
+    const auto other = mul_add(ray.direction, along, negated(c.to_center));
+    const auto own = mul_add(ray.direction, distance, ray.offset);
+    const auto m = select(is_self, own, other);
+    return m * (sphere.radius / hn::Sqrt(dot(m, m)));
+  }
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counter-based random numbers. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_RANDOM_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_RANDOM_INL_H_
+#undef ORRERY_KERNEL_RANDOM_INL_H_
+#else
+#define ORRERY_KERNEL_RANDOM_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "math/functions-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The halves of a 64-bit product. In 64-bit lanes only the low 32 bits of each count.
+template <class V>
+struct Halves {
+  V high, low;
+};
+
+/// a * multiplier, 32 by 32 bits, lane by lane.
+template <class DU, class V = hn::Vec<DU>>
+HWY_INLINE Halves<V> multiply_wide(DU du, V a, std::uint32_t multiplier) {
+  if constexpr (sizeof(hn::TFromD<DU>) == 8) {
+    const hn::Repartition<std::uint32_t, DU> d32;
+    const V product = hn::BitCast(du, hn::MulEven(hn::BitCast(d32, a), hn::Set(d32, multiplier)));
+    return {hn::ShiftRight<32>(product), product};
+  } else {
+    const hn::Repartition<std::uint64_t, DU> d64;
+    const V m = hn::Set(du, multiplier);
+    const V even = hn::BitCast(du, hn::MulEven(a, m));
+    const V odd = hn::BitCast(du, hn::MulEven(hn::BitCast(du, hn::ShiftRight<32>(hn::BitCast(d64, a))), m));
+    return {hn::OddEven(odd, hn::BitCast(du, hn::ShiftRight<32>(hn::BitCast(d64, even)))), a * m};
+  }
+}
+
+template <class V>
+struct Four {
+  V v[4];
+};
+
+/// Philox4x32 with seven rounds: four 32-bit numbers for each counter, as good as independent.
+///
+/// Result     bits; in 64-bit lanes in the low halves, the high halves are not defined
+/// Reference  salmon2011
+template <class DU, class V = hn::Vec<DU>>
+HWY_INLINE Four<V> philox(DU du, Four<V> counter, std::uint32_t key0, std::uint32_t key1) {
+  V c0 = counter.v[0], c1 = counter.v[1], c2 = counter.v[2], c3 = counter.v[3];
+  HWY_UNROLL(7)
+  for (int round = 0; round < 7; ++round) {
+    const auto p0 = multiply_wide(du, c0, 0xD2511F53u);
+    const auto p1 = multiply_wide(du, c2, 0xCD9E8D57u);
+    c0 = hn::Xor(hn::Xor(p1.high, c1), hn::Set(du, key0));
+    c1 = p1.low;
+    c2 = hn::Xor(hn::Xor(p0.high, c3), hn::Set(du, key1));
+    c3 = p0.low;
+    key0 += 0x9E3779B9u;
+    key1 += 0xBB67AE85u;
+  }
+  return {{c0, c1, c2, c3}};
+}
+
+/// The middle of one of 2^32 (double) or 2^23 (float) equal parts of 0..1: never 0, never 1, symmetric about 1/2.
+template <class D>
+HWY_INLINE hn::Vec<D> to_unit(D d, hn::Vec<hn::RebindToUnsigned<D>> bits) {
+  const hn::RebindToUnsigned<D> du;
+  if constexpr (sizeof(hn::TFromD<D>) == 8) {
+    const auto low = hn::And(bits, hn::Set(du, 0xffffffffu));
+    return hn::MulAdd(math::HWY_NAMESPACE::to_real(d, low), hn::Set(d, 0x1p-32), hn::Set(d, 0x1p-33));
+  } else {
+    const auto whole = math::HWY_NAMESPACE::to_real(d, hn::ShiftRight<9>(bits));
+    return hn::MulAdd(whole, hn::Set(d, 0x1p-23f), hn::Set(d, 0x1p-24f));
+  }
+}
+
+/// The four numbers in 0..1 that one path takes at one of its vertices.
+///
+/// They are named by (seed, pixel, sample, vertex) alone, so that the picture does not depend on who asks, or when.
+template <class D>
+HWY_INLINE Four<hn::Vec<D>> random_at_vertex(D d, std::uint32_t seed, hn::Vec<hn::RebindToUnsigned<D>> pixel,
+                                             hn::Vec<hn::RebindToUnsigned<D>> sample, std::uint32_t vertex) {
+  const hn::RebindToUnsigned<D> du;
+  const auto bits = philox(du, Four<hn::Vec<decltype(du)>>{{pixel, sample, hn::Set(du, vertex), hn::Zero(du)}}, seed,
+                           0x6f727279u /* names this use of the seed */);
+  return {{to_unit(d, bits.v[0]), to_unit(d, bits.v[1]), to_unit(d, bits.v[2]), to_unit(d, bits.v[3])}};
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

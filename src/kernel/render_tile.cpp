@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/render_tile.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/render_tile.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
+#include <hwy/highway.h>
+
+#include "kernel/camera-inl.h"
+#include "kernel/shade-inl.h"
+#include "math/dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+template <class T>
+using IdFor = hwy::MakeUnsigned<T>;
+
+/// The pixels and samples of a tile in order: all samples of a pixel, then the next pixel, so that the rays of a
+/// packet lie close together.
+class PathCounter {
+ public:
+  explicit PathCounter(const Tile& tile) : tile_(tile), sample_(tile.sample_begin) {}
+
+  template <class Id>
+  void take(Id& pixel, Id& sample) {
+    pixel = static_cast<Id>((static_cast<std::uint32_t>(tile_.y + y_) << 16) | static_cast<std::uint32_t>(tile_.x + x_));
+    sample = static_cast<Id>(sample_);
+    if (++sample_ < tile_.sample_end) return;
+    sample_ = tile_.sample_begin;
+    if (++x_ < tile_.width) return;
+    x_ = 0;
+    ++y_;
+  }
+
+ private:
+  const Tile& tile_;
+  std::uint32_t sample_;
+  int x_ = 0, y_ = 0;
+};
+
+/// Fills the packet with the first rays of the next paths.
+template <class D, class Packet, class Carried>
+HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& counter, int count, Packet& packet,
+                                 Carried& carried) {
+  using T = hn::TFromD<D>;
+  using Id = IdFor<T>;
+  const IdTag<D> du;
+  for (int i = 0; i < count; ++i) counter.take(carried.pixel[i], carried.sample[i]);
+  for (int i = count; i < kPacketSize; ++i) {  // a whole vector is computed even where it is not in use
+    carried.pixel[i] = carried.pixel[0];
+    carried.sample[i] = carried.sample[0];
+  }
+  packet.count = count;
+  const auto camera_origin = set3(d, scene.camera.origin);
+  const auto one = hn::Set(d, T(1));
+  for (int v = 0; v < kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
+    const auto pixels = hn::Load(du, carried.pixel + v);
+    const auto samples = hn::Load(du, carried.sample + v);
+    const auto random = random_at_vertex(d, scene.seed, pixels, samples, 0);
+    const auto x = to_real(d, hn::And(pixels, hn::Set(du, Id{0xffff})));
+    const auto y = to_real(d, hn::template ShiftRight<16>(pixels));
+    const auto ray = camera_ray(d, scene.camera, scene.features.lens, x, y, random);
+    const auto origin = camera_origin + ray.offset;
+    const auto low = sum_error(camera_origin, ray.offset, origin);
+    const auto store = [&](const auto& value, auto& to) {
+      hn::Store(value.x, d, to[0] + v);
+      hn::Store(value.y, d, to[1] + v);
+      hn::Store(value.z, d, to[2] + v);
+    };
+    store(origin, packet.origin);
+    store(low, packet.origin_low);
+    store(ray.offset, packet.offset);
+    store(ray.direction, packet.direction);
+    store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
+    hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
+    hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
+  }
+}
+
+/// Fills the packet with the next rays of paths first .. first + count of the stream.
+template <class D, class Stream, class Carried>
+HWY_INLINE void load_bounced_rays(D d, Stream& stream, int first, int count, Carried& carried) {
+  using T = hn::TFromD<D>;
+  const IdTag<D> du;
+  auto& packet = stream.packet;
+  packet.count = count;
+  const auto one = hn::Set(d, T(1));
+  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
+    const int i = first + v;
+    const auto at = [&](const auto& component) {
+      return Vec3<hn::Vec<D>>{hn::LoadU(d, component[0] + i), hn::LoadU(d, component[1] + i),
+                              hn::LoadU(d, component[2] + i)};
+    };
+    const auto store = [&](const auto& value, auto& to) {
+      hn::Store(value.x, d, to[0] + v);
+      hn::Store(value.y, d, to[1] + v);
+      hn::Store(value.z, d, to[2] + v);
+    };
+    const auto base = at(stream.base), offset = at(stream.offset), direction = at(stream.direction);
+    const auto origin = base + offset;
+    store(origin, packet.origin);
+    store(sum_error(base, offset, origin), packet.origin_low);
+    store(offset, packet.offset);
+    store(direction, packet.direction);
+    store(at(stream.throughput), carried.throughput);
+    hn::Store(one / dot(direction, direction), d, packet.inverse_square + v);
+    hn::Store(hn::LoadU(du, stream.self + i), du, packet.self + v);
+    hn::Store(hn::LoadU(du, stream.pixel + i), du, carried.pixel + v);
+    hn::Store(hn::LoadU(du, stream.sample + i), du, carried.sample + v);
+  }
+}
+
+/// Nothing is hit yet, at any distance.
+template <class Packet>
+HWY_INLINE void forget_hits(Packet& packet) {
+  std::fill_n(packet.distance, kPacketSize, std::numeric_limits<std::remove_reference_t<decltype(packet.distance[0])>>::max());
+  std::fill_n(packet.hit, kPacketSize, kNoSphere);
+}
+
+HWY_INLINE void trace(const Tracer& tracer, RayPacket& packet) { tracer.trace(tracer.self, packet); }
+HWY_INLINE void trace(const Tracer& tracer, RayPacketFast& packet) { tracer.trace_fast(tracer.self, packet); }
+
+template <class D, Precision kPrecision, class Stream>
+TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, Stream& stream) {
+  const D d;
+  using T = hn::TFromD<D>;
+  Passengers<T, IdFor<T>> carried;
+  TileCounts counts;
+  const std::uint32_t samples = tile.sample_end - tile.sample_begin;
+  for (int y = 0; y < tile.height; ++y)
+    for (int x = 0; x < tile.width; ++x) tile.sums[y * tile.row_stride + x].samples += samples;
+
+  PathCounter counter(tile);
+  std::uint64_t to_start = std::uint64_t{samples} * static_cast<std::uint64_t>(tile.width) *
+                           static_cast<std::uint64_t>(tile.height);
+  const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
+    forget_hits(stream.packet);
+    counts.rays += static_cast<std::uint64_t>(stream.packet.count);
+    trace(tracer, stream.packet);
+    return shade<D, kPrecision>(d, scene, tile, depth, carried, stream, alive, counts);
+  };
+  while (to_start > 0) {
+    const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
+    to_start -= static_cast<std::uint64_t>(batch);
+    int alive = 0;
+    for (int i = 0; i < batch; i += kPacketSize) {
+      load_camera_rays(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet, carried);
+      alive = trace_and_shade(0, alive);
+    }
+    for (std::uint32_t depth = 1; alive > 0; ++depth) {
+      // Survivors are written over paths that were already read: a packet never grows.
+      int survivors = 0;
+      for (int i = 0; i < alive; i += kPacketSize) {
+        load_bounced_rays(d, stream, i, std::min(kPacketSize, alive - i), carried);
+        survivors = trace_and_shade(depth, survivors);
+      }
+      alive = survivors;
+    }
+  }
+  return counts;
+}
+
+using One = hn::FixedTag<double, 1>;
+using All = hn::ScalableTag<double>;
+using AllFast = hn::ScalableTag<float>;
+
+TileCounts render_exact_one(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
+  return render_tile<One, Precision::kExact>(v, r, t, s);
+}
+TileCounts render_exact_all(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
+  return render_tile<All, Precision::kExact>(v, r, t, s);
+}
+TileCounts render_book_one(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
+  return render_tile<One, Precision::kBook>(v, r, t, s);
+}
+TileCounts render_book_all(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
+  return render_tile<All, Precision::kBook>(v, r, t, s);
+}
+TileCounts render_fast(const SceneView& v, const Tracer& r, const Tile& t, PathStreamFast& s) {
+  return render_tile<AllFast, Precision::kFast>(v, r, t, s);
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orrery::kernel {
+
+HWY_EXPORT(render_exact_one);
+HWY_EXPORT(render_exact_all);
+HWY_EXPORT(render_book_one);
+HWY_EXPORT(render_book_all);
+HWY_EXPORT(render_fast);
+
+RenderTile render_tile_function(Precision precision, Lanes lanes) {
+  const bool one = lanes == Lanes::kOne;
+  if (precision == Precision::kBook)
+    return one ? ORRERY_BEST(render_book_one) : ORRERY_BEST(render_book_all);
+  return one ? ORRERY_BEST(render_exact_one) : ORRERY_BEST(render_exact_all);
+}
+
+RenderTileFast render_tile_fast_function() {
+  return ORRERY_BEST(render_fast);
+}
+
+const char* isa_name() {
+  const auto supported = hwy::SupportedTargets();
+  return hwy::TargetName(supported & -supported);  // the lowest bit is the best target
+}
+
+}  // namespace orrery::kernel
+#endif

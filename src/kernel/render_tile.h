@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "kernel/path_stream.h"
+#include "kernel/pixel_sum.h"
+#include "kernel/precision.h"
+#include "kernel/ray_packet.h"
+#include "kernel/scene_view.h"
+
+namespace orrery::kernel {
+
+/// The largest width and height of a picture: a pixel's name is y << 16 | x.
+inline constexpr int kLargestSide = 65536;
+
+/// A rectangle of pixels and the samples that each of them shall get.
+struct Tile {
+  int x = 0, y = 0;  ///< px, upper left corner
+  int width = 0, height = 0;
+  std::uint32_t sample_begin = 0, sample_end = 0;
+  PixelSum* sums = nullptr;    ///< of the upper left pixel
+  std::int64_t row_stride = 0;  ///< from a pixel's sum to the one below
+};
+
+struct TileCounts {
+  std::uint64_t rays = 0;
+  std::uint64_t bad_samples = 0;  ///< not finite or above kLargestSample; left out of the sums
+};
+
+/// Renders a tile into its sums.
+///
+/// Domain     the tracer finds hits in the view's spheres, in the precision that the function was chosen for
+using RenderTile = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathStream& stream);
+using RenderTileFast = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile,
+                                      PathStreamFast& stream);
+
+/// How many lanes the kernel's text is compiled for.
+enum class Lanes : std::uint8_t {
+  kOne,  ///< the oracle that the others are held against
+  kAll,  ///< as many as the processor has
+};
+
+/// The path loop for the best instruction set that is enabled on this processor.
+///
+/// Result     bit-identical pictures for both lane counts, and on every instruction set with fused multiply-add
+RenderTile render_tile_function(Precision precision, Lanes lanes = Lanes::kAll);
+RenderTileFast render_tile_fast_function();
+
+/// The instruction set that the functions above and the tracers use: "AVX2", "AVX3" (AVX-512), "SSE4".
+const char* isa_name();
+
+}  // namespace orrery::kernel

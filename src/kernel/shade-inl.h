@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happens to a traced packet: light is added to pixels, survivors go back into the stream. Compiled once per
+// instruction set.
+#if defined(ORRERY_KERNEL_SHADE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_SHADE_INL_H_
+#undef ORRERY_KERNEL_SHADE_INL_H_
+#else
+#define ORRERY_KERNEL_SHADE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cmath>
+
+#include "kernel/intersect-inl.h"
+#include "kernel/path_stream.h"
+#include "kernel/render_tile.h"
+#include "kernel/scatter-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+/// What a packet's rays carry beside their geometry; the packet's own lanes, in the same order.
+template <class T, class Id>
+struct alignas(64) Passengers {
+  T base[3][kPacketSize];
+  T throughput[3][kPacketSize];
+  Id pixel[kPacketSize];
+  Id sample[kPacketSize];
+};
+
+/// Adds finished paths to their pixels. A sample that is not a number never enters a sum: it is counted.
+template <class D>
+HWY_INLINE void add_light(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, hn::Vec<IdTag<D>> pixels,
+                          const Tile& tile, TileCounts& counts) {
+  using T = hn::TFromD<D>;
+  HWY_ALIGN T rgb[3][hn::MaxLanes(D())];
+  HWY_ALIGN hn::TFromD<IdTag<D>> pixel[hn::MaxLanes(D())];
+  HWY_ALIGN T in[hn::MaxLanes(D())];
+  hn::Store(light.x, d, rgb[0]);
+  hn::Store(light.y, d, rgb[1]);
+  hn::Store(light.z, d, rgb[2]);
+  hn::Store(pixels, IdTag<D>(), pixel);
+  hn::Store(hn::IfThenElseZero(lanes, hn::Set(d, T(1))), d, in);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    if (in[i] == T(0)) continue;
+    const auto x = static_cast<int>(pixel[i] & 0xffff), y = static_cast<int>(pixel[i] >> 16);
+    PixelSum& sum = tile.sums[(y - tile.y) * tile.row_stride + (x - tile.x)];
+    const auto r = static_cast<double>(rgb[0][i]), g = static_cast<double>(rgb[1][i]),
+               b = static_cast<double>(rgb[2][i]);
+    if (std::abs(r) <= kLargestSample && std::abs(g) <= kLargestSample && std::abs(b) <= kLargestSample) {
+      sum.rgb[0] += to_fixed_point(r);
+      sum.rgb[1] += to_fixed_point(g);
+      sum.rgb[2] += to_fixed_point(b);
+    } else {
+      --sum.samples;
+      ++counts.bad_samples;
+    }
+  }
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> background(D d, const Background& sky, bool has_gradient, const Vec3<V>& direction) {
+  using T = hn::TFromD<D>;
+  const auto bottom = set3(d, sky.bottom);
+  if (!has_gradient) return bottom;
+  const V half = hn::Set(d, static_cast<T>(0.5));
+  const V a = hn::MulAdd(direction.y, half, half);
+  const V one_minus_a = hn::Set(d, T(1)) - a;
+  return mul_add(set3(d, sky.top), a, bottom * one_minus_a);
+}
+
+/// A vector of hits, with everything that was looked up lane by lane.
+template <class D>
+struct Lookup {
+  Spheres<D> sphere;
+  Surface<D> surface;       ///< offset, normal and side still to be filled
+  Vec3<hn::Vec<D>> albedo;
+  hn::Vec<D> eta_outside, eta_inside, r0_outside, r0_inside;
+};
+
+/// Fetches spheres and materials of the lanes that hit something; the others get those of sphere 0.
+template <class D>
+HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits) {
+  using T = hn::TFromD<D>;
+  using Id = hn::TFromD<IdTag<D>>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  HWY_ALIGN T f[13][kMax];
+  HWY_ALIGN Id id[kMax], kind[kMax], fresnel[kMax];
+  hn::Store(hits, IdTag<D>(), id);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    const std::size_t sphere_id = id[i] == kNoSphere ? 0 : static_cast<std::size_t>(id[i]);
+    const Sphere& s = scene.spheres[sphere_id];
+    const Material& m = scene.materials[scene.sphere_materials[sphere_id]];
+    const double values[13] = {s.x,         s.y,    s.z,      s.radius, m.albedo[0], m.albedo[1], m.albedo[2],
+                               m.fuzz, m.eta[0], m.eta[1], m.r0[0],     m.r0[1], 0};
+    for (std::size_t k = 0; k < 12; ++k) f[k][i] = static_cast<T>(values[k]);
+    kind[i] = static_cast<Id>(m.kind);
+    fresnel[i] = static_cast<Id>(m.fresnel);
+  }
+  Lookup<D> out;
+  out.sphere = {load3(d, f[0], f[1], f[2]), hn::Load(d, f[3])};
+  out.albedo = load3(d, f[4], f[5], f[6]);
+  out.surface.fuzz = hn::Load(d, f[7]);
+  out.eta_outside = hn::Load(d, f[8]);
+  out.eta_inside = hn::Load(d, f[9]);
+  out.r0_outside = hn::Load(d, f[10]);
+  out.r0_inside = hn::Load(d, f[11]);
+  out.surface.kind = hn::Load(IdTag<D>(), kind);
+  out.surface.fresnel = hn::Load(IdTag<D>(), fresnel);
+  return out;
+}
+
+/// Finds point, normal and side of every hit, and the material's constants for that side.
+template <class D, Precision kPrecision>
+HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+                                   hn::Vec<D> distance) {
+  Lookup<D> at = look_up(d, scene, hits);
+  Surface<D>& surface = at.surface;
+  const auto is_self = hn::RebindMask(d, hits == ray.self);
+  surface.direction = ray.direction;
+  surface.offset = hit_offset<D, kPrecision>(d, ray, at.sphere, is_self, distance);
+  surface.from_outside = dot(ray.direction, surface.offset) < hn::Zero(d);
+  const auto outward = normalized(d, surface.offset);
+  surface.normal = select(surface.from_outside, outward, negated(outward));
+  surface.eta = hn::IfThenElse(surface.from_outside, at.eta_outside, at.eta_inside);
+  surface.r0 = hn::IfThenElse(surface.from_outside, at.r0_outside, at.r0_inside);
+  return at;
+}
+
+/// Writes the lanes in `mask` to `to`, closed up; may touch whole vectors there.
+template <class D>
+HWY_INLINE void append(D d, hn::Vec<D> v, hn::Mask<D> mask, hn::TFromD<D>* to) {
+  if constexpr (hn::MaxLanes(D()) == 1) {
+    hn::StoreU(v, d, to);
+    (void)mask;
+  } else {
+    hn::CompressStore(v, mask, d, to);
+  }
+}
+template <class D>
+HWY_INLINE void append3(D d, const Vec3<hn::Vec<D>>& v, hn::Mask<D> mask, hn::TFromD<D>* x, hn::TFromD<D>* y,
+                        hn::TFromD<D>* z) {
+  append(d, v.x, mask, x);
+  append(d, v.y, mask, y);
+  append(d, v.z, mask, z);
+}
+
+/// Shades a traced packet: what left the scene adds its light, what goes on is appended to the stream.
+///
+/// Result     number of paths in the stream, `alive` before the call
+template <class D, Precision kPrecision, class Stream, class Carried>
+HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_t depth, const Carried& carried,
+                     Stream& stream, int alive, TileCounts& counts) {
+  const IdTag<D> du;
+  using T = hn::TFromD<D>;
+  using Id = hn::TFromD<IdTag<D>>;
+  const auto& packet = stream.packet;
+  const int step = static_cast<int>(hn::Lanes(d));
+  for (int v = 0; v < packet.count; v += step) {
+    const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
+    const auto hits = hn::Load(du, packet.hit + v);
+    const auto hit = hn::AndNot(hn::RebindMask(d, hits == hn::Set(du, static_cast<Id>(kNoSphere))), active);
+    const auto missed = hn::AndNot(hit, active);
+    const auto ray = load_rays(d, packet, v);
+    const auto pixels = hn::Load(du, carried.pixel + v);
+    auto throughput = load3(d, carried.throughput[0] + v, carried.throughput[1] + v, carried.throughput[2] + v);
+    if (!hn::AllFalse(d, missed)) {
+      const auto sky = background(d, scene.background, scene.features.sky, ray.direction);
+      add_light(d, missed, {sky.x * throughput.x, sky.y * throughput.y, sky.z * throughput.z}, pixels, tile, counts);
+    }
+    if (hn::AllFalse(d, hit)) continue;
+
+    if (scene.shading == Shading::kPath && depth >= scene.max_depth) continue;
+    const auto at = reach_surface<D, kPrecision>(d, scene, ray, hits, hn::Load(d, packet.distance + v));
+    if (scene.shading == Shading::kFlat) {
+      add_light(d, hit, at.albedo, pixels, tile, counts);
+      continue;
+    }
+    if (scene.shading == Shading::kNormal) {
+      const auto half = hn::Set(d, static_cast<T>(0.5));
+      add_light(d, hit, mul_add(at.surface.normal, half, {half, half, half}), pixels, tile, counts);
+      continue;
+    }
+    const auto samples = hn::Load(du, carried.sample + v);
+    const auto random = random_at_vertex(d, scene.seed, pixels, samples, depth + 1);
+    const auto scattered = scatter(d, scene.features, at.surface, random);
+    throughput = {throughput.x * at.albedo.x, throughput.y * at.albedo.y, throughput.z * at.albedo.z};
+    const auto goes_on = hn::And(hit, scattered.alive);
+    const auto goes_on_id = hn::RebindMask(du, goes_on);
+    append3(d, at.sphere.center, goes_on, stream.base[0] + alive, stream.base[1] + alive, stream.base[2] + alive);
+    append3(d, at.surface.offset, goes_on, stream.offset[0] + alive, stream.offset[1] + alive,
+            stream.offset[2] + alive);
+    append3(d, scattered.direction, goes_on, stream.direction[0] + alive, stream.direction[1] + alive,
+            stream.direction[2] + alive);
+    append3(d, throughput, goes_on, stream.throughput[0] + alive, stream.throughput[1] + alive,
+            stream.throughput[2] + alive);
+    append(du, hits, goes_on_id, stream.self + alive);
+    append(du, pixels, goes_on_id, stream.pixel + alive);
+    append(du, samples, goes_on_id, stream.sample + alive);
+    alive += static_cast<int>(hn::CountTrue(d, goes_on));
+  }
+  return alive;
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

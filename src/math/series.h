@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+namespace orrery::math {
+
+/// pi / 2.
+inline constexpr double kHalfPi = 1.57079632679489661923;
+
+namespace detail {
+/// Taylor coefficients of sin (first = 1) or cos (first = 0) of (pi / 2) r in powers of r^2; the odd factor r of the
+/// sine is left to the caller.
+constexpr std::array<double, 9> quarter_series(int first) {
+  std::array<double, 9> c{};
+  double term = first == 1 ? kHalfPi : 1.0;
+  for (int i = 0; i < 9; ++i) {
+    c[static_cast<unsigned>(i)] = term;
+    const int n = 2 * i + first;
+    term = -term * kHalfPi * kHalfPi / ((n + 1) * (n + 2));
+  }
+  return c;
+}
+}  // namespace detail
+
+inline constexpr std::array<double, 9> kSinQuarter = detail::quarter_series(1);
+inline constexpr std::array<double, 9> kCosQuarter = detail::quarter_series(0);
+
+}  // namespace orrery::math

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vectors of lanes. This file is compiled once per instruction set: include it inside a foreach_target unit.
+#if defined(ORRERY_MATH_VEC3_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_MATH_VEC3_INL_H_
+#undef ORRERY_MATH_VEC3_INL_H_
+#else
+#define ORRERY_MATH_VEC3_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::math::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Three components of as many vectors as V has lanes.
+template <class V>
+struct Vec3 {
+  V x, y, z;
+};
+
+template <class V>
+HWY_INLINE Vec3<V> operator+(const Vec3<V>& a, const Vec3<V>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class V>
+HWY_INLINE Vec3<V> operator-(const Vec3<V>& a, const Vec3<V>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class V>
+HWY_INLINE Vec3<V> operator*(const Vec3<V>& a, V s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+template <class V>
+HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
+  return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, a.x * b.x));
+}
+/// a s + b, each component rounded once.
+template <class V>
+HWY_INLINE Vec3<V> mul_add(const Vec3<V>& a, V s, const Vec3<V>& b) {
+  return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};
+}
+/// b - a s, each component rounded once.
+template <class V>
+HWY_INLINE Vec3<V> neg_mul_add(const Vec3<V>& a, V s, const Vec3<V>& b) {
+  return {hn::NegMulAdd(a.x, s, b.x), hn::NegMulAdd(a.y, s, b.y), hn::NegMulAdd(a.z, s, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> negated(const Vec3<V>& a) {
+  return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)};
+}
+template <class M, class V>
+HWY_INLINE Vec3<V> select(M mask, const Vec3<V>& yes, const Vec3<V>& no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
+}
+/// Not a number in every lane whose vector is zero: callers compare afterwards, and a comparison with NaN is false.
+template <class D, class V>
+HWY_INLINE Vec3<V> normalized(D d, const Vec3<V>& a) {
+  return a * (hn::Set(d, static_cast<hn::TFromD<D>>(1)) / hn::Sqrt(dot(a, a)));
+}
+template <class D, class T>
+HWY_INLINE Vec3<hn::Vec<D>> load3(D d, const T* x, const T* y, const T* z) {
+  return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
+}
+template <class D, class T>
+HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const T* v) {
+  using F = hn::TFromD<D>;
+  return {hn::Set(d, static_cast<F>(v[0])), hn::Set(d, static_cast<F>(v[1])), hn::Set(d, static_cast<F>(v[2]))};
+}
+
+/// What a - b lost when it was rounded to `difference`: difference + result equals a - b exactly.
+///
+/// Reference  Knuth, two-sum
+template <class V>
+HWY_INLINE V difference_error(V a, V b, V difference) {
+  const V b_virtual = difference - a;
+  return (a - (difference - b_virtual)) - (b + b_virtual);
+}
+template <class V>
+HWY_INLINE Vec3<V> difference_error(const Vec3<V>& a, const Vec3<V>& b, const Vec3<V>& difference) {
+  return {difference_error(a.x, b.x, difference.x), difference_error(a.y, b.y, difference.y),
+          difference_error(a.z, b.z, difference.z)};
+}
+/// What a + b lost when it was rounded to `sum`.
+template <class V>
+HWY_INLINE Vec3<V> sum_error(const Vec3<V>& a, const Vec3<V>& b, const Vec3<V>& sum) {
+  return difference_error(a, negated(b), sum);
+}
+
+}  // namespace orrery::math::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
