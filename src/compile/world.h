@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/precision.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
 
 namespace orrery::compile {
 
-enum class Precision { kExact, kFast, kBook };
+using kernel::Precision;
 enum class Accelerator { kEmbree, kList };
 
 /// The box around all spheres; meaningless where there is none.

@@ -37,8 +37,8 @@ using RayPacketFast = RayPacketOf<float, std::uint32_t>;
 ///
 /// Hits do not depend on how they were found: the nearest distance wins, then the smaller id.
 struct Tracer {
-  void (*trace)(const void* self, RayPacket& packet) noexcept = nullptr;
-  void (*trace_fast)(const void* self, RayPacketFast& packet) noexcept = nullptr;
+  void (*trace)(const void* self, RayPacket& packet) = nullptr;
+  void (*trace_fast)(const void* self, RayPacketFast& packet) = nullptr;
   const void* self = nullptr;
 };
 

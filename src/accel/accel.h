@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "kernel/precision.h"
+#include "kernel/ray_packet.h"
+#include "kernel/scene_view.h"
+
+namespace orrery::accel {
+
+/// Finds the nearest hit of rays among a scene's spheres.
+///
+/// All ways of finding it give the same hits: nearest distance by the kernel's own arithmetic, then smaller id.
+class Accel {
+ public:
+  virtual ~Accel() = default;
+
+  /// What the kernel calls for each packet; valid as long as this Accel lives.
+  virtual kernel::Tracer tracer() const noexcept = 0;
+
+  /// "embree 3.13.5", "list".
+  virtual std::string name() const = 0;
+
+  /// Bytes that were allocated for it, as far as they are known.
+  virtual std::size_t bytes() const noexcept = 0;
+};
+
+/// The naive traversal: one ray after the other against one sphere after the other, one lane. For comparison.
+///
+/// Domain     the view's spheres outlive the result
+std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precision precision);
+
+/// Spheres as Embree user geometry.
+///
+/// Domain     the view's spheres outlive the result
+/// Errors     base::Error(kInternal) where Embree fails or would drop a sphere
+std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision);
+
+/// The version of Embree that is loaded, "3.13.5".
+std::string embree_version();
+
+}  // namespace orrery::accel

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "accel/box_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace orrery::accel {
+namespace {
+
+/// Share of the largest coordinate by which boxes grow. Derived worst case: 14 x 2^-24 for the rounding of origin,
+/// direction, reciprocal and box in Embree's slab test; 2^-20 is the next power of two.
+constexpr double kPadding = 0x1p-20;
+
+/// A ray starts at most this many `reach`es from the middle on every axis (box_ray): sqrt(2), rounded up.
+constexpr double kFarthestStart = 1.5;
+
+float rounded_down(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+float rounded_up(double x) { return -rounded_down(-x); }
+
+}  // namespace
+
+BoxFrame::BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids) {
+  double lower[3], upper[3];
+  std::fill_n(lower, 3, std::numeric_limits<double>::infinity());
+  std::fill_n(upper, 3, -std::numeric_limits<double>::infinity());
+  for (const std::uint32_t id : ids) {
+    const kernel::Sphere& s = spheres[id];
+    const double center[3] = {s.x, s.y, s.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], center[axis] - s.radius);
+      upper[axis] = std::max(upper[axis], center[axis] + s.radius);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) middle[axis] = lower[axis] / 2 + upper[axis] / 2;
+  // Measured from the rounded middle: far from the world's origin that is not where the corners said.
+  double half = 0;
+  for (const std::uint32_t id : ids) {
+    const kernel::Sphere& s = spheres[id];
+    half = std::max({half, std::abs(s.x - middle[0]) + s.radius, std::abs(s.y - middle[1]) + s.radius,
+                     std::abs(s.z - middle[2]) + s.radius});
+  }
+  scale = std::ldexp(1.0, -std::ilogb(half));
+  reach = half * scale * 1.8;  // sqrt(3) for the box's corners, and room for the padding
+  padding = kPadding * reach * kFarthestStart;
+}
+
+BoxFrame::Box BoxFrame::box(const kernel::Sphere& sphere) const noexcept {
+  const double center[3] = {sphere.x, sphere.y, sphere.z};
+  Box out;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = (center[axis] - middle[axis]) * scale, radius = sphere.radius * scale;
+    out.lower[axis] = rounded_down(at - radius - padding);
+    out.upper[axis] = rounded_up(at + radius + padding);
+  }
+  return out;
+}
+
+}  // namespace orrery::accel

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "accel/accel.h"
+#include "accel/embree_scene.h"
+#include "base/error.h"
+
+namespace orrery::accel {
+namespace {
+
+/// At most so many spheres stand apart: every ray tests each of them.
+constexpr std::size_t kMostApart = 4;
+
+/// A sphere stands apart when it is so many times larger than all that is smaller: a ground under a scene. Its box
+/// would hold every other sphere, and its size would decide the padding of theirs.
+constexpr double kApartRatio = 4;
+
+[[noreturn]] void fail(RTCDevice device, const std::string& what) {
+  const RTCError code = rtcGetDeviceError(device);
+  throw base::Error(base::ErrorKind::kInternal, what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
+}
+
+/// Ids, ascending, of spheres that dwarf the box around the rest.
+std::vector<std::uint32_t> find_apart(const kernel::Sphere* spheres, std::size_t count) {
+  std::vector<std::uint32_t> largest(count);
+  std::iota(largest.begin(), largest.end(), 0u);
+  const std::size_t candidates = std::min(count, kMostApart);
+  std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(candidates), largest.end(),
+                    [&](std::uint32_t a, std::uint32_t b) {
+                      return spheres[a].radius != spheres[b].radius ? spheres[a].radius > spheres[b].radius : a < b;
+                    });
+  // The more are set apart, the smaller the rest: take the most for which even the smallest of them dwarfs it.
+  std::size_t take = 0;
+  for (std::size_t n = candidates; n > 0 && take == 0; --n) {
+    const std::vector<std::uint32_t> rest(largest.begin() + static_cast<std::ptrdiff_t>(n), largest.end());
+    if (rest.empty()) continue;
+    const BoxFrame frame(spheres, rest);
+    if (spheres[largest[n - 1]].radius * frame.scale > kApartRatio * frame.reach) take = n;
+  }
+  std::vector<std::uint32_t> apart(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(take));
+  std::sort(apart.begin(), apart.end());
+  return apart;
+}
+
+std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& apart, std::size_t count) {
+  std::vector<std::uint32_t> rest;
+  rest.reserve(count);
+  for (std::uint32_t id = 0; id < count; ++id)
+    if (!std::binary_search(apart.begin(), apart.end(), id)) rest.push_back(id);
+  return rest;
+}
+
+struct BuildState {
+  const EmbreeScene* scene;
+  std::atomic<std::uint64_t> refused{0};  ///< boxes that Embree would drop without a word
+};
+
+void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
+  auto& state = *static_cast<BuildState*>(arguments->geometryUserPtr);
+  const auto& scene = *state.scene;
+  const BoxFrame::Box box = scene.frame.box(scene.spheres[scene.sphere_id(arguments->primID)]);
+  RTCBounds& out = *arguments->bounds_o;
+  out.lower_x = box.lower[0];
+  out.lower_y = box.lower[1];
+  out.lower_z = box.lower[2];
+  out.upper_x = box.upper[0];
+  out.upper_y = box.upper[1];
+  out.upper_z = box.upper[2];
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(box.lower[axis] < box.upper[axis] && std::isfinite(box.lower[axis]) && std::isfinite(box.upper[axis])))
+      state.refused.fetch_add(1, std::memory_order_relaxed);
+}
+
+class Embree final : public Accel {
+ public:
+  Embree(const kernel::SceneView& view, kernel::Precision precision)
+      : functions_(embree_functions(precision)), state_{make_scene(view), {}} {
+    const std::size_t primitives = view.sphere_count - state_.apart_count();
+    if (primitives == 0) return;
+    device_ = rtcNewDevice(nullptr);
+    if (device_ == nullptr) fail(nullptr, "Embree does not start");
+    rtcSetDeviceMemoryMonitorFunction(
+        device_,
+        [](void* self, ssize_t bytes, bool) {
+          static_cast<Embree*>(self)->bytes_.fetch_add(bytes, std::memory_order_relaxed);
+          return true;
+        },
+        this);
+    build(primitives);
+  }
+  ~Embree() override {
+    if (state_.scene.scene != nullptr) rtcReleaseScene(state_.scene.scene);
+    if (device_ != nullptr) rtcReleaseDevice(device_);
+  }
+  Embree(const Embree&) = delete;
+  Embree& operator=(const Embree&) = delete;
+
+  kernel::Tracer tracer() const noexcept override { return {functions_.trace, functions_.trace_fast, &state_.scene}; }
+  std::string name() const override { return "embree " + embree_version(); }
+  std::size_t bytes() const noexcept override { return static_cast<std::size_t>(std::max<std::int64_t>(0, bytes_)); }
+
+ private:
+  struct State {
+    EmbreeScene scene;
+    BuildState build;
+    std::size_t apart_count() const { return scene.apart.size(); }
+  };
+
+  static EmbreeScene make_scene(const kernel::SceneView& view) {
+    std::vector<std::uint32_t> apart = find_apart(view.spheres, view.sphere_count);
+    return {nullptr, view.spheres, BoxFrame(view.spheres, all_but(apart, view.sphere_count)), std::move(apart)};
+  }
+
+  void build(std::size_t primitives) {
+    RTCScene scene = rtcNewScene(device_);
+    state_.scene.scene = scene;
+    state_.build.scene = &state_.scene;
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
+    rtcSetGeometryUserData(geometry, &state_.build);
+    rtcSetGeometryBoundsFunction(
+        geometry, sphere_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, functions_.intersect);
+    rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+    if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) fail(device_, "Embree cannot build the scene");
+    if (state_.build.refused > 0)
+      throw base::Error(base::ErrorKind::kInternal,
+                        "Embree would drop " + std::to_string(state_.build.refused) + " spheres without a word");
+  }
+
+  EmbreeFunctions functions_;
+  State state_;
+  RTCDevice device_ = nullptr;
+  std::atomic<std::int64_t> bytes_{0};
+};
+
+}  // namespace
+
+std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision) {
+  if (scene.sphere_count == 0) return make_list(scene, precision);  // nothing to build a hierarchy of
+  return std::make_unique<Embree>(scene, precision);
+}
+
+std::string embree_version() { return RTC_VERSION_STRING; }
+
+}  // namespace orrery::accel

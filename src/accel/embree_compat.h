@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one place that knows that there are two Embrees: 3.13 (Debian 12) and 4 (Debian 13).
+#pragma once
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace orrery::accel {
+
+#if RTC_VERSION_MAJOR >= 4
+
+using EmbreeContext = RTCRayQueryContext;
+
+inline void init(EmbreeContext& context) { rtcInitRayQueryContext(&context); }
+
+/// Traces a packet of 4, 8 or 16 rays, by the type of `rays`.
+template <class Rays>
+inline void intersect(const int* valid, RTCScene scene, EmbreeContext& context, Rays& rays) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  if constexpr (sizeof(Rays) == sizeof(RTCRayHit16)) {
+    rtcIntersect16(valid, scene, &rays, &arguments);
+  } else if constexpr (sizeof(Rays) == sizeof(RTCRayHit8)) {
+    rtcIntersect8(valid, scene, &rays, &arguments);
+  } else {
+    rtcIntersect4(valid, scene, &rays, &arguments);
+  }
+}
+
+#else
+
+using EmbreeContext = RTCIntersectContext;
+
+inline void init(EmbreeContext& context) { rtcInitIntersectContext(&context); }
+
+template <class Rays>
+inline void intersect(const int* valid, RTCScene scene, EmbreeContext& context, Rays& rays) {
+  if constexpr (sizeof(Rays) == sizeof(RTCRayHit16)) {
+    rtcIntersect16(valid, scene, &context, &rays);
+  } else if constexpr (sizeof(Rays) == sizeof(RTCRayHit8)) {
+    rtcIntersect8(valid, scene, &context, &rays);
+  } else {
+    rtcIntersect4(valid, scene, &context, &rays);
+  }
+}
+
+#endif
+
+}  // namespace orrery::accel

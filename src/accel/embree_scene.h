@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/box_frame.h"
+#include "accel/embree_compat.h"
+#include "kernel/precision.h"
+#include "kernel/ray_packet.h"
+#include "kernel/sphere.h"
+
+namespace orrery::accel {
+
+/// What tracing a packet needs: Embree's scene, and the spheres that stand outside of it.
+struct EmbreeScene {
+  RTCScene scene = nullptr;  ///< null where every sphere stands apart
+  const kernel::Sphere* spheres = nullptr;
+  BoxFrame frame;
+  /// Spheres so much larger than the rest that a box around them would hold everything (a ground): ascending ids,
+  /// tested by every ray before the hierarchy is entered, which they shorten.
+  std::vector<std::uint32_t> apart;
+
+  /// The sphere behind a primitive: ids count all spheres, primitives those that do not stand apart.
+  std::uint32_t sphere_id(std::uint32_t primitive) const noexcept {
+    for (const std::uint32_t id : apart) primitive += primitive >= id ? 1u : 0u;
+    return primitive;
+  }
+};
+
+/// One call into Embree: some lanes of a packet. Embree hands the context back to the callback, which finds the packet
+/// behind it and writes the hit there, in the packet's own precision; Embree's own hit record is not used.
+template <class Packet>
+struct EmbreeQuery {
+  EmbreeContext context;  // first: Embree's pointer to it is a pointer to all
+  const EmbreeScene* scene;
+  Packet* packet;
+  int first;                            ///< lane of the packet that is Embree's lane 0
+  alignas(64) double start[kernel::kPacketSize];  ///< box space: distance that a far ray was moved on, by Embree's lane
+};
+
+/// The functions that were compiled for this processor and are right for a precision.
+struct EmbreeFunctions {
+  RTCIntersectFunctionN intersect = nullptr;
+  void (*trace)(const void* scene, kernel::RayPacket& packet) = nullptr;
+  void (*trace_fast)(const void* scene, kernel::RayPacketFast& packet) = nullptr;
+};
+EmbreeFunctions embree_functions(kernel::Precision precision);
+
+}  // namespace orrery::accel

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "accel/accel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "accel/list.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
+#include <hwy/highway.h>
+
+#include "kernel/intersect-inl.h"
+#include "math/dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::accel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class T, kernel::Precision kPrecision, class Packet>
+void trace_list(const void* self, Packet& packet) {
+  namespace k = kernel::HWY_NAMESPACE;
+  using D = hn::FixedTag<T, 1>;
+  const D d;
+  const auto& scene = *static_cast<const kernel::SceneView*>(self);
+  for (int i = 0; i < packet.count; ++i) {
+    const auto ray = k::load_rays(d, packet, i);
+    for (std::size_t id = 0; id < scene.sphere_count; ++id) {
+      const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
+      const auto found = k::nearest<D, kPrecision>(d, ray, k::broadcast(d, scene.spheres[id]), is_self);
+      if (hn::AllFalse(d, found.mask)) continue;
+      const T distance = hn::GetLane(found.value);
+      if (distance >= packet.distance[i]) continue;  // ids ascend: of two at the same place the smaller was first
+      packet.distance[i] = distance;
+      packet.hit[i] = static_cast<std::remove_reference_t<decltype(packet.hit[0])>>(id);
+    }
+  }
+}
+
+void list_exact(const void* self, kernel::RayPacket& packet) {
+  trace_list<double, kernel::Precision::kExact>(self, packet);
+}
+void list_book(const void* self, kernel::RayPacket& packet) {
+  trace_list<double, kernel::Precision::kBook>(self, packet);
+}
+void list_fast(const void* self, kernel::RayPacketFast& packet) {
+  trace_list<float, kernel::Precision::kFast>(self, packet);
+}
+
+}  // namespace orrery::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orrery::accel {
+namespace {
+
+HWY_EXPORT(list_exact);
+HWY_EXPORT(list_book);
+HWY_EXPORT(list_fast);
+
+class List final : public Accel {
+ public:
+  List(const kernel::SceneView& scene, kernel::Precision precision) : scene_(scene), precision_(precision) {}
+
+  kernel::Tracer tracer() const noexcept override {
+    kernel::Tracer t;
+    t.self = &scene_;
+    t.trace = precision_ == kernel::Precision::kBook ? ORRERY_BEST(list_book) : ORRERY_BEST(list_exact);
+    t.trace_fast = ORRERY_BEST(list_fast);
+    return t;
+  }
+  std::string name() const override { return "list"; }
+  std::size_t bytes() const noexcept override { return 0; }
+
+ private:
+  kernel::SceneView scene_;
+  kernel::Precision precision_;
+};
+
+}  // namespace
+
+std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precision precision) {
+  return std::make_unique<List>(scene, precision);
+}
+
+}  // namespace orrery::accel
+#endif

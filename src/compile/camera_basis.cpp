@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compile/camera_basis.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace orrery::compile {
+namespace {
+
+using math::Vec3d;
+
+double tangent_of_half(double angle_deg) {
+  return static_cast<double>(std::tan(static_cast<long double>(angle_deg) / 360 * std::numbers::pi_v<long double>));
+}
+
+void set(double (&to)[3], Vec3d from) {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
+}
+
+}  // namespace
+
+CameraAxes camera_axes(const scene::Camera& camera) {
+  const Vec3d z = math::normalized(camera.look_from - camera.look_at);
+  const Vec3d x = math::normalized(math::cross(math::normalized(camera.up), z));
+  return {x, math::cross(z, x), z};
+}
+
+double focus_distance(const scene::Camera& camera) {
+  return camera.focus_distance.value_or(math::length(camera.look_from - camera.look_at));
+}
+
+kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& image) {
+  const CameraAxes axes = camera_axes(camera);
+  const double focus = focus_distance(camera);
+  const double pixel = 2 * tangent_of_half(camera.vfov) * focus / image.height;
+  const double lens_radius = camera.defocus_angle > 0 ? tangent_of_half(camera.defocus_angle) * focus : 0;
+  kernel::Camera out;
+  set(out.origin, camera.look_from);
+  set(out.forward, axes.z * -focus);
+  set(out.right, axes.x * pixel);
+  set(out.down, axes.y * -pixel);
+  set(out.lens_u, axes.x * lens_radius);
+  set(out.lens_v, axes.y * lens_radius);
+  out.half_width = image.width / 2.0;
+  out.half_height = image.height / 2.0;
+  return out;
+}
+
+}  // namespace orrery::compile

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compile/compile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "compile/camera_basis.h"
+
+namespace orrery::compile {
+namespace {
+
+using math::Vec3d;
+
+void set(double (&to)[3], Vec3d from) {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
+}
+
+/// Schlick's constant for an index ratio.
+double normal_reflectance(double eta) {
+  const double r = (1 - eta) / (1 + eta);
+  return r * r;
+}
+
+kernel::Material compile_model(const scene::Lambertian& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kLambertian;
+  set(out.albedo, m.albedo);
+  return out;
+}
+kernel::Material compile_model(const scene::Hemisphere& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kHemisphere;
+  set(out.albedo, m.albedo);
+  return out;
+}
+kernel::Material compile_model(const scene::Metal& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kMetal;
+  set(out.albedo, m.albedo);
+  out.fuzz = m.fuzz;
+  return out;
+}
+kernel::Material compile_model(const scene::Dielectric& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kDielectric;
+  out.eta[0] = 1 / m.ior;
+  out.eta[1] = m.ior;
+  out.r0[0] = normal_reflectance(out.eta[0]);
+  out.r0[1] = normal_reflectance(out.eta[1]);
+  switch (m.fresnel) {
+    case scene::Fresnel::kSchlick: out.fresnel = kernel::FresnelKind::kSchlick; break;
+    case scene::Fresnel::kExact: out.fresnel = kernel::FresnelKind::kExact; break;
+    case scene::Fresnel::kNone: out.fresnel = kernel::FresnelKind::kNone; break;
+  }
+  return out;
+}
+
+/// The material of a sphere whose normal points inward: what met it from outside meets it from inside.
+kernel::Material turned_inside_out(kernel::Material m) {
+  std::swap(m.eta[0], m.eta[1]);
+  std::swap(m.r0[0], m.r0[1]);
+  return m;
+}
+
+/// Hands out compiled materials, only those that some sphere uses.
+class MaterialTable {
+ public:
+  MaterialTable(const scene::Scene& scene, World& world)
+      : scene_(scene), world_(world), compiled_(scene.materials.size(), {kNone, kNone}) {}
+
+  std::uint32_t index(std::uint32_t authored, bool inside_out) {
+    std::uint32_t& at = compiled_[authored][inside_out ? 1 : 0];
+    if (at != kNone) return at;
+    kernel::Material m =
+        std::visit([](const auto& model) { return compile_model(model); }, scene_.materials[authored].model);
+    // Only glass has two different sides; anything else is the same material both ways.
+    if (inside_out && m.kind != kernel::MaterialKind::kDielectric) return at = index(authored, false);
+    if (inside_out) m = turned_inside_out(m);
+    at = static_cast<std::uint32_t>(world_.materials.size());
+    world_.materials.push_back(m);
+    note_features(m);
+    return at;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  void note_features(const kernel::Material& m) {
+    kernel::Features& f = world_.features;
+    switch (m.kind) {
+      case kernel::MaterialKind::kLambertian: f.lambertian = true; break;
+      case kernel::MaterialKind::kHemisphere: f.hemisphere = true; break;
+      case kernel::MaterialKind::kMetal:
+        f.metal = true;
+        f.fuzz = f.fuzz || m.fuzz > 0;
+        break;
+      case kernel::MaterialKind::kDielectric: f.dielectric = true; break;
+    }
+  }
+
+  const scene::Scene& scene_;
+  World& world_;
+  std::vector<std::array<std::uint32_t, 2>> compiled_;
+};
+
+void add_sphere(World& world, MaterialTable& table, Vec3d center, double radius, std::uint32_t material) {
+  world.spheres.push_back({center.x, center.y, center.z, std::abs(radius)});
+  world.sphere_materials.push_back(table.index(material, radius < 0));
+}
+
+void add_spheres(const scene::Scene& scene, World& world) {
+  std::size_t count = scene.spheres.size();
+  for (const scene::Points& points : scene.points) count += points.centers.size();
+  world.spheres.reserve(count);
+  world.sphere_materials.reserve(count);
+  MaterialTable table(scene, world);
+  for (const scene::Sphere& s : scene.spheres) add_sphere(world, table, s.center, s.radius, s.material);
+  for (const scene::Points& points : scene.points) {
+    for (std::size_t i = 0; i < points.centers.size(); ++i) {
+      const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
+      add_sphere(world, table, points.centers[i], points.radii[i], material);
+    }
+  }
+}
+
+Bounds bounds_of(const std::vector<kernel::Sphere>& spheres) {
+  if (spheres.empty()) return {};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Bounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const kernel::Sphere& s : spheres) {
+    b.lower = {std::min(b.lower.x, s.x - s.radius), std::min(b.lower.y, s.y - s.radius),
+               std::min(b.lower.z, s.z - s.radius)};
+    b.upper = {std::max(b.upper.x, s.x + s.radius), std::max(b.upper.y, s.y + s.radius),
+               std::max(b.upper.z, s.z + s.radius)};
+  }
+  return b;
+}
+
+void set_background(const scene::Background& from, World& world) {
+  const bool gradient = from.type == scene::BackgroundType::kGradient;
+  set(world.background.bottom, gradient ? from.bottom : from.color);
+  set(world.background.top, gradient ? from.top : from.color);
+  world.features.sky = gradient && !(from.bottom == from.top);
+}
+
+}  // namespace
+
+kernel::SceneView World::view() const noexcept {
+  kernel::SceneView v;
+  v.spheres = spheres.data();
+  v.sphere_materials = sphere_materials.data();
+  v.materials = materials.data();
+  v.sphere_count = spheres.size();
+  v.camera = camera;
+  v.background = background;
+  v.features = features;
+  v.shading = shading;
+  v.max_depth = max_depth;
+  v.seed = seed;
+  return v;
+}
+
+std::size_t World::bytes() const noexcept {
+  return spheres.capacity() * sizeof(kernel::Sphere) + sphere_materials.capacity() * sizeof(std::uint32_t) +
+         materials.capacity() * sizeof(kernel::Material);
+}
+
+World compile(const scene::Scene& scene) {
+  World world;
+  world.width = scene.image.width;
+  world.height = scene.image.height;
+  world.samples = scene.render.samples;
+  world.max_depth = static_cast<std::uint32_t>(scene.render.max_depth);
+  world.seed = scene.render.seed;
+  switch (scene.render.precision) {
+    case scene::Precision::kExact: world.precision = Precision::kExact; break;
+    case scene::Precision::kFast: world.precision = Precision::kFast; break;
+    case scene::Precision::kBook: world.precision = Precision::kBook; break;
+  }
+  switch (scene.render.shading) {
+    case scene::Shading::kPath: world.shading = kernel::Shading::kPath; break;
+    case scene::Shading::kNormal: world.shading = kernel::Shading::kNormal; break;
+    case scene::Shading::kFlat: world.shading = kernel::Shading::kFlat; break;
+  }
+  switch (scene.render.accelerator) {
+    case scene::Accelerator::kEmbree: world.accelerator = Accelerator::kEmbree; break;
+    case scene::Accelerator::kList: world.accelerator = Accelerator::kList; break;
+  }
+  world.camera = compile_camera(scene.camera, scene.image);
+  world.features.lens = scene.camera.defocus_angle > 0;
+  set_background(scene.background, world);
+  add_spheres(scene, world);
+  world.bounds = bounds_of(world.spheres);
+  return world;
+}
+
+}  // namespace orrery::compile

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film/film.h"
+
+namespace orrery::film {
+
+Film::Film(int width_px, int height_px)
+    : width_(width_px), height_(height_px), sums_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)) {}
+
+kernel::PixelSum* Film::at(int x, int y) noexcept {
+  return sums_.data() + static_cast<std::ptrdiff_t>(y) * width_ + x;
+}
+
+Picture Film::picture() const {
+  Picture out;
+  out.width = width_;
+  out.height = height_;
+  const char* const names[3] = {"R", "G", "B"};
+  for (int c = 0; c < 3; ++c) {
+    Plane plane{names[c], std::vector<float>(sums_.size(), 0.0f)};
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const kernel::PixelSum& sum = sums_[i];
+      if (sum.samples > 0)
+        plane.values[i] =
+            static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.samples));
+    }
+    out.planes.push_back(std::move(plane));
+  }
+  out.planes.push_back({"A", std::vector<float>(sums_.size(), 1.0f)});
+  return out;
+}
+
+}  // namespace orrery::film

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "film/picture.h"
+#include "kernel/pixel_sum.h"
+
+namespace orrery::film {
+
+/// The sums of all samples of a picture, exact, in whatever order they came.
+class Film {
+ public:
+  Film(int width_px, int height_px);
+
+  int width() const noexcept { return width_; }
+  int height() const noexcept { return height_; }
+
+  /// The sum of a pixel; the one to the right is next, the one below is width() further on.
+  kernel::PixelSum* at(int x, int y) noexcept;
+
+  /// The mean of every pixel's samples as planes R, G, B, and A = 1; 0 where there is no sample.
+  film::Picture picture() const;
+
+ private:
+  int width_, height_;
+  std::vector<kernel::PixelSum> sums_;
+};
+
+}  // namespace orrery::film

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/render.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cfenv>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "accel/accel.h"
+#include "film/film.h"
+#include "kernel/render_tile.h"
+#include "render/tiles.h"
+
+namespace orrery::render {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Tells the caller how far the render is, from whichever thread comes by, at most a few times a second.
+class ProgressReporter {
+ public:
+  ProgressReporter(const Settings& settings, std::uint64_t total) : settings_(settings), total_(total) {}
+
+  void add(std::uint64_t samples) {
+    const std::uint64_t done = done_.fetch_add(samples, std::memory_order_relaxed) + samples;
+    if (!settings_.on_progress) return;
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock.owns_lock()) return;  // somebody else is just telling
+    const double now = seconds_since(start_);
+    if (now - last_ < kInterval && done < total_) return;
+    last_ = now;
+    settings_.on_progress({done, total_, now});
+  }
+  double seconds() const { return seconds_since(start_); }
+
+ private:
+  static constexpr double kInterval = 0.1;  // seconds
+  const Settings& settings_;
+  std::uint64_t total_;
+  std::atomic<std::uint64_t> done_{0};
+  std::mutex mutex_;
+  Clock::time_point start_ = Clock::now();
+  double last_ = 0;
+};
+
+/// One thread's own: nothing in the tile loop allocates.
+struct Worker {
+  std::unique_ptr<kernel::PathStream> stream;
+  std::unique_ptr<kernel::PathStreamFast> stream_fast;
+  kernel::TileCounts counts;
+};
+
+/// Runs one tile in the precision of the world.
+class TileRenderer {
+ public:
+  TileRenderer(const compile::World& world, const accel::Accel& accel)
+      : view_(world.view()), tracer_(accel.tracer()), fast_(world.precision == compile::Precision::kFast) {
+    if (fast_) {
+      render_fast_ = kernel::render_tile_fast_function();
+    } else {
+      render_ = kernel::render_tile_function(world.precision);
+    }
+  }
+
+  void operator()(const kernel::Tile& tile, Worker& worker) const {
+    // The picture must not depend on what a host program did to this thread's rounding.
+    std::fenv_t before;
+    std::fegetenv(&before);
+    std::fesetenv(FE_DFL_ENV);
+    kernel::TileCounts counts;
+    if (fast_) {
+      if (!worker.stream_fast) worker.stream_fast = std::make_unique<kernel::PathStreamFast>();
+      counts = render_fast_(view_, tracer_, tile, *worker.stream_fast);
+    } else {
+      if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
+      counts = render_(view_, tracer_, tile, *worker.stream);
+    }
+    std::fesetenv(&before);
+    worker.counts.rays += counts.rays;
+    worker.counts.bad_samples += counts.bad_samples;
+  }
+
+ private:
+  kernel::SceneView view_;
+  kernel::Tracer tracer_;
+  bool fast_;
+  kernel::RenderTile render_ = nullptr;
+  kernel::RenderTileFast render_fast_ = nullptr;
+};
+
+std::unique_ptr<accel::Accel> build(const compile::World& world) {
+  switch (world.accelerator) {
+    case compile::Accelerator::kList: return accel::make_list(world.view(), world.precision);
+    case compile::Accelerator::kEmbree: break;
+  }
+  return accel::make_embree(world.view(), world.precision);
+}
+
+}  // namespace
+
+int available_threads() { return tbb::this_task_arena::max_concurrency(); }
+
+Result render(const compile::World& world, const Settings& settings) {
+  const int threads = settings.threads > 0 ? settings.threads : available_threads();
+  // Without this TBB makes no more threads than there are processors, whatever is asked for.
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  Result result;
+  result.statistics.threads = threads;
+  result.statistics.isa = kernel::isa_name();
+
+  const auto build_start = Clock::now();
+  std::unique_ptr<accel::Accel> accel;
+  arena.execute([&] { accel = build(world); });
+  result.statistics.build_s = seconds_since(build_start);
+  result.statistics.accelerator = accel->name();
+
+  film::Film film(world.width, world.height);
+  const std::vector<kernel::Tile> tiles = make_tiles(world.width, world.height, world.samples, film);
+  const TileRenderer render_tile(world, *accel);
+  const auto total = static_cast<std::uint64_t>(world.width) * static_cast<std::uint64_t>(world.height) *
+                     static_cast<std::uint64_t>(world.samples);
+  ProgressReporter progress(settings, total);
+  tbb::enumerable_thread_specific<Worker> workers;
+  const auto cancelled = [&] { return settings.cancel != nullptr && settings.cancel->load(std::memory_order_relaxed); };
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            if (cancelled()) return;
+            const kernel::Tile& tile = tiles[i];
+            render_tile(tile, workers.local());
+            progress.add(std::uint64_t{tile.sample_end - tile.sample_begin} * static_cast<std::uint64_t>(tile.width) *
+                         static_cast<std::uint64_t>(tile.height));
+          }
+        },
+        tbb::simple_partitioner());
+  });
+  result.statistics.render_s = progress.seconds();
+  for (const Worker& worker : workers) {
+    result.statistics.rays += worker.counts.rays;
+    result.statistics.bad_samples += worker.counts.bad_samples;
+  }
+  result.completed = !cancelled();
+  if (!result.completed) return result;
+  result.statistics.paths = total;
+  result.picture = film.picture();
+  return result;
+}
+
+}  // namespace orrery::render
