@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "unit/kernel/random_test.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
+#include <hwy/highway.h>
+
+#include "kernel/random-inl.h"
+#include "math/dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+template <class U>
+void philox_all(const std::uint32_t* counter, const std::uint32_t* key, std::uint32_t* out) {
+  const hn::ScalableTag<U> du;
+  Four<hn::Vec<decltype(du)>> c;
+  for (int i = 0; i < 4; ++i) c.v[i] = hn::Set(du, static_cast<U>(counter[i]));
+  const auto r = philox(du, c, key[0], key[1]);
+  HWY_ALIGN U lanes[hn::MaxLanes(du)];
+  for (int i = 0; i < 4; ++i) {
+    hn::Store(r.v[i], du, lanes);
+    for (std::size_t k = 1; k < hn::Lanes(du); ++k)
+      if (static_cast<std::uint32_t>(lanes[k]) != static_cast<std::uint32_t>(lanes[0])) lanes[0] = ~lanes[0];
+    out[i] = static_cast<std::uint32_t>(lanes[0]);
+  }
+}
+void philox_64(const std::uint32_t* c, const std::uint32_t* k, std::uint32_t* out) {
+  philox_all<std::uint64_t>(c, k, out);
+}
+void philox_32(const std::uint32_t* c, const std::uint32_t* k, std::uint32_t* out) {
+  philox_all<std::uint32_t>(c, k, out);
+}
+
+/// Unit numbers made of the smallest and the largest bits, in double and float.
+void unit_ends(double* ends, float* ends_fast) {
+  const hn::ScalableTag<double> d;
+  const hn::ScalableTag<float> df;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const hn::RebindToUnsigned<decltype(df)> duf;
+  ends[0] = hn::GetLane(to_unit(d, hn::Set(du, 0u)));
+  ends[1] = hn::GetLane(to_unit(d, hn::Set(du, 0xffffffffffffffffu)));  // the high half must not count
+  ends_fast[0] = hn::GetLane(to_unit(df, hn::Set(duf, 0u)));
+  ends_fast[1] = hn::GetLane(to_unit(df, hn::Set(duf, 0xffffffffu)));
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orrery::kernel {
+namespace {
+
+HWY_EXPORT(philox_64);
+HWY_EXPORT(philox_32);
+HWY_EXPORT(unit_ends);
+
+struct KnownAnswer {
+  std::uint32_t counter[4], key[2], answer[4];
+};
+// The published known-answer vectors of Philox4x32 with seven rounds (salmon2011, kat_vectors).
+constexpr KnownAnswer kAnswers[] = {
+    {{0, 0, 0, 0}, {0, 0}, {0x5f6fb709, 0x0d893f64, 0x4f121f81, 0x4f730a48}},
+    {{0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff},
+     {0xffffffff, 0xffffffff},
+     {0x5207ddc2, 0x45165e59, 0x4d8ee751, 0x8c52f662}},
+    {{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344},
+     {0xa4093822, 0x299f31d0},
+     {0x4dfccaba, 0x190a87f0, 0xc47362ba, 0xb6b5242a}},
+};
+
+TEST(KernelRandom, GivesThePublishedAnswersInLanesOfBothWidths) {
+  for (const KnownAnswer& known : kAnswers) {
+    std::uint32_t wide[4], narrow[4];
+    ORRERY_BEST(philox_64)(known.counter, known.key, wide);
+    ORRERY_BEST(philox_32)(known.counter, known.key, narrow);
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_EQ(wide[i], known.answer[i]) << i;
+      EXPECT_EQ(narrow[i], known.answer[i]) << i;
+    }
+  }
+}
+
+TEST(KernelRandom, UnitNumbersStayInside) {
+  double ends[2];
+  float ends_fast[2];
+  ORRERY_BEST(unit_ends)(ends, ends_fast);
+  EXPECT_EQ(ends[0], 0x1p-33);
+  EXPECT_EQ(ends[1], 1 - 0x1p-33);
+  EXPECT_EQ(ends_fast[0], 0x1p-24f);
+  EXPECT_EQ(ends_fast[1], 1 - 0x1p-24f);
+}
+
+}  // namespace
+}  // namespace orrery::kernel
+#endif

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/render.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "compile/compile.h"
+
+namespace orrery::render {
+namespace {
+
+using math::Vec3d;
+
+/// A scene with every material, a lens, and spheres that touch.
+scene::Scene everything() {
+  scene::Scene s;
+  s.image = {61, 37};
+  s.camera.look_from = {3, 2, 4};
+  s.camera.look_at = {0, 0.3, 0};
+  s.camera.vfov = 40;
+  s.camera.defocus_angle = 2;
+  s.render.samples = 7;
+  s.materials = {{"ground", scene::Lambertian{{0.5, 0.6, 0.4}}},
+                 {"old", scene::Hemisphere{{0.7, 0.3, 0.3}}},
+                 {"mirror", scene::Metal{{0.9, 0.9, 0.9}, 0}},
+                 {"brushed", scene::Metal{{0.8, 0.6, 0.2}, 0.4}},
+                 {"glass", scene::Dielectric{1.5, scene::Fresnel::kSchlick}},
+                 {"crystal", scene::Dielectric{2.4, scene::Fresnel::kExact}}};
+  s.spheres = {{{0, -1000, 0}, 1000, 0, ""}, {{-1, 0.5, 0}, 0.5, 1, ""},   {{0, 0.5, 0}, 0.5, 2, ""},
+               {{1, 0.5, 0}, 0.5, 3, ""},    {{0, 0.5, 1}, 0.5, 4, ""},    {{0, 0.5, 1}, -0.45, 4, ""},
+               {{1, 0.5, 1.5}, 0.5, 5, ""},  {{-1, 0.4, 1.2}, 0.4, 0, ""}};
+  return s;
+}
+
+std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
+  const compile::World world = compile::compile(scene);
+  Settings settings;
+  settings.threads = threads;
+  const Result result = render(world, settings);
+  EXPECT_TRUE(result.completed);
+  EXPECT_EQ(result.statistics.bad_samples, 0u);
+  std::vector<float> all;
+  for (const film::Plane& plane : result.picture.planes) all.insert(all.end(), plane.values.begin(), plane.values.end());
+  return all;
+}
+
+TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+    scene::Scene s = everything();
+    s.render.precision = precision;
+    s.render.accelerator = scene::Accelerator::kEmbree;
+    const auto embree = pixels(s);
+    s.render.accelerator = scene::Accelerator::kList;
+    EXPECT_EQ(pixels(s), embree) << static_cast<int>(precision);
+  }
+}
+
+TEST(RenderRender, AnyNumberOfThreadsGivesTheSameBits) {
+  const scene::Scene s = everything();
+  const auto one = pixels(s, 1);
+  EXPECT_EQ(pixels(s, 2), one);
+  EXPECT_EQ(pixels(s, 5), one);
+}
+
+TEST(RenderRender, AnotherSeedGivesAnotherPicture) {
+  scene::Scene s = everything();
+  const auto first = pixels(s);
+  s.render.seed = 2;
+  EXPECT_NE(pixels(s), first);
+}
+
+/// Multiplies every length of a scene; a power of two leaves every ratio its bits.
+scene::Scene scaled(scene::Scene s, double factor) {
+  s.camera.look_from = s.camera.look_from * factor;
+  s.camera.look_at = s.camera.look_at * factor;
+  for (scene::Sphere& sphere : s.spheres) {
+    sphere.center = sphere.center * factor;
+    sphere.radius *= factor;
+  }
+  return s;
+}
+
+TEST(RenderRender, TheSizeOfTheWorldChangesNoBit) {
+  const scene::Scene s = everything();
+  const auto unit = pixels(s);
+  for (const int k : {-60, -17, 1, 30, 48}) EXPECT_EQ(pixels(scaled(s, std::ldexp(1.0, k))), unit) << "2^" << k;
+}
+
+TEST(RenderRender, TheBooksFixedDistanceFailsThatTest) {
+  scene::Scene s = everything();
+  s.render.precision = scene::Precision::kBook;
+  EXPECT_NE(pixels(scaled(s, 0x1p-8)), pixels(s));
+}
+
+TEST(RenderRender, NoSpheresIsTheSky) {
+  scene::Scene s;
+  s.image = {8, 8};
+  s.camera.vfov = 1;
+  s.camera.look_at = {0, 1, 0};
+  s.camera.up = {0, 0, 1};
+  s.render.samples = 4;
+  const auto p = pixels(s);
+  EXPECT_NEAR(p[0], 0.5, 1e-4);                       // red at the top of the gradient
+  EXPECT_NEAR(p[2 * 64], 1.0, 1e-4);                  // blue
+}
+
+/// One convex diffuse sphere of albedo 0.5 in a white sky: every path that meets it leaves it at once.
+TEST(RenderRender, AGreySphereInAWhiteSkyIsExactlyHalf) {
+  for (const double radius : {1e-12, 1e-3, 1.0, 1e6, 1e12}) {
+    scene::Scene s;
+    s.image = {40, 40};
+    s.camera.look_from = {0, 0, 3 * radius};
+    s.camera.look_at = {0, 0, 0};
+    s.camera.vfov = 20;  // the sphere fills the picture
+    s.background.bottom = s.background.top = {1, 1, 1};
+    s.render.samples = 60;
+    s.materials = {{"grey", scene::Lambertian{{0.5, 0.5, 0.5}}}};
+    s.spheres = {{{0, 0, 0}, radius, 0, ""}};
+    const auto p = pixels(s);
+    for (int i = 0; i < 3 * 1600; ++i) ASSERT_EQ(p[static_cast<std::size_t>(i)], 0.5f) << radius;
+  }
+}
+
+/// Nothing is absorbed, so every path that ends brings the sky's one: glass, mirror and white diffuse alike.
+TEST(RenderRender, AWhiteFurnaceIsExactlyOne) {
+  scene::Scene s = everything();
+  s.background.bottom = s.background.top = {1, 1, 1};
+  s.render.max_depth = 1000;
+  s.materials = {{"w", scene::Lambertian{{1, 1, 1}}},
+                 {"w", scene::Hemisphere{{1, 1, 1}}},
+                 {"w", scene::Metal{{1, 1, 1}, 0}},
+                 {"w", scene::Metal{{1, 1, 1}, 0}},
+                 {"w", scene::Dielectric{1.5, scene::Fresnel::kSchlick}},
+                 {"w", scene::Dielectric{2.4, scene::Fresnel::kExact}}};
+  for (const float value : pixels(s)) ASSERT_EQ(value, 1.0f);
+}
+
+TEST(RenderRender, AShellOfNegativeRadiusIsASphereOfTheInverseIndex) {
+  scene::Scene s = everything();
+  for (const auto fresnel : {scene::Fresnel::kSchlick, scene::Fresnel::kExact, scene::Fresnel::kNone}) {
+    s.materials[4] = {"glass", scene::Dielectric{1.5, fresnel}};
+    s.materials[5] = {"inverse", scene::Dielectric{1 / 1.5, fresnel}};
+    s.spheres[6] = {{1, 0.5, 1.5}, -0.5, 4, ""};
+    const auto negative = pixels(s);
+    s.spheres[6] = {{1, 0.5, 1.5}, 0.5, 5, ""};
+    EXPECT_EQ(pixels(s), negative);
+    s.spheres[6] = {{1, 0.5, 1.5}, 0.5, 4, ""};
+    EXPECT_NE(pixels(s), negative);
+  }
+}
+
+TEST(RenderRender, NoScatteringEventsMeansBlackSpheres) {
+  scene::Scene s = everything();
+  s.camera.vfov = 0.01;
+  s.camera.defocus_angle = 0;
+  s.render.max_depth = 0;
+  for (std::size_t i = 0; const float value : pixels(s)) ASSERT_EQ(value, i++ < 3u * 61 * 37 ? 0.0f : 1.0f);
+}
+
+TEST(RenderRender, NormalAndFlatShading) {
+  scene::Scene s;
+  s.image = {9, 9};
+  s.camera.look_from = {0, 0, 5};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 1e-6;
+  s.render.samples = 1;
+  s.materials = {{"red", scene::Lambertian{{1, 0.25, 0}}}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}};
+  s.render.shading = scene::Shading::kFlat;
+  auto p = pixels(s);
+  EXPECT_EQ(p[40], 1.0f);
+  EXPECT_EQ(p[81 + 40], 0.25f);
+  s.render.shading = scene::Shading::kNormal;
+  p = pixels(s);
+  EXPECT_NEAR(p[40], 0.5, 1e-6);
+  EXPECT_NEAR(p[2 * 81 + 40], 1.0, 1e-6);  // towards the camera
+}
+
+TEST(RenderRender, StopsWhenAsked) {
+  scene::Scene s = everything();
+  const std::atomic<bool> cancel{true};
+  Settings settings;
+  settings.cancel = &cancel;
+  const Result result = render(compile::compile(s), settings);
+  EXPECT_FALSE(result.completed);
+  EXPECT_TRUE(result.picture.planes.empty());
+}
+
+TEST(RenderRender, ReportsWhatItDid) {
+  const scene::Scene s = everything();
+  std::uint64_t last = 0;
+  Settings settings;
+  settings.on_progress = [&](const Progress& p) {
+    EXPECT_GE(p.samples_done, last);
+    last = p.samples_done;
+  };
+  const Result result = render(compile::compile(s), settings);
+  EXPECT_EQ(result.statistics.paths, 61u * 37 * 7);
+  EXPECT_GE(result.statistics.rays, result.statistics.paths);
+  EXPECT_LE(last, result.statistics.paths);
+}
+
+}  // namespace
+}  // namespace orrery::render
