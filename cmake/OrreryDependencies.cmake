@@ -11,17 +11,19 @@ find_package(CLI11 CONFIG REQUIRED)
 find_package(OpenColorIO CONFIG REQUIRED PATHS /usr/share/cmake)
 find_package(OpenImageIO CONFIG REQUIRED)
 
-# Debian 12 names a folder of headers in this target that its package does not bring; CMake stops at generate for it.
-get_target_property(oiio_include_dirs OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
-if(oiio_include_dirs)
-  set(oiio_existing_dirs)
-  foreach(dir IN LISTS oiio_include_dirs)
+# Debian's packages of these two name folders of headers that are not there; CMake stops at generate for it.
+function(orrery_drop_missing_includes target)
+  get_target_property(dirs ${target} INTERFACE_INCLUDE_DIRECTORIES)
+  set(existing)
+  foreach(dir IN LISTS dirs)
     if(EXISTS "${dir}")
-      list(APPEND oiio_existing_dirs "${dir}")
+      list(APPEND existing "${dir}")
     endif()
   endforeach()
-  set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_existing_dirs}")
-endif()
+  set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${existing}")
+endfunction()
+orrery_drop_missing_includes(OpenImageIO::OpenImageIO)
+orrery_drop_missing_includes(OpenColorIO::OpenColorIO)
 
 # Embree 4 where there is one, else Embree 3.13; src/accel/embree_compat.h bridges the two.
 find_package(embree 4 CONFIG QUIET)

@@ -48,6 +48,9 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
 endif()
 
 set(ORRERY_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  list(APPEND ORRERY_WARNINGS -Wno-restrict) # GCC 12 sees overlapping copies in std::string's operator+ that are not there
+endif()
 if(ORRERY_WERROR)
   list(APPEND ORRERY_WARNINGS -Werror)
 endif()

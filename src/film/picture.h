@@ -26,12 +26,15 @@ struct Picture {
   }
 };
 
+/// The largest finite half.
+inline constexpr float kLargestHalf = 65504.0f;
+
 /// Values that a display or a file cannot show as they are; counted before any display transform.
 struct BadValues {
   std::uint64_t nan = 0;
   std::uint64_t infinite = 0;
   std::uint64_t negative = 0;
-  std::uint64_t above_half = 0;  ///< finite but larger than the largest half, 65504
+  std::uint64_t above_half = 0;  ///< finite but beyond the largest half
 };
 
 /// Counts what is not fit to be shown in all planes of a picture.

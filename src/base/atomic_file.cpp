@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <cstring>
+#include <string>
+
+#include "base/error.h"
+
+namespace orrery::base {
+namespace {
+
+/// Names that a signal handler would have to unlink: fixed memory, since a handler may not allocate.
+struct Slot {
+  std::atomic<bool> taken{false}, armed{false};
+  char name[PATH_MAX];
+};
+std::array<Slot, 16> slots;
+
+int take_slot(const std::string& name) {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    bool expected = false;
+    if (name.size() >= sizeof(slots[i].name) || !slots[i].taken.compare_exchange_strong(expected, true)) continue;
+    std::memcpy(slots[i].name, name.c_str(), name.size() + 1);
+    slots[i].armed.store(true, std::memory_order_release);
+    return static_cast<int>(i);
+  }
+  return -1;  // more files at a time than anybody writes: this one is not cleaned up by a signal
+}
+
+void free_slot(int index) noexcept {
+  if (index < 0) return;
+  slots[static_cast<std::size_t>(index)].armed.store(false, std::memory_order_release);
+  slots[static_cast<std::size_t>(index)].taken.store(false, std::memory_order_release);
+}
+
+std::filesystem::path directory_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+[[noreturn]] void cannot_create(const std::filesystem::path& path, const std::string& reason) {
+  throw Error(ErrorKind::kCannotCreate, "cannot create " + path.string() + ": " + reason);
+}
+[[noreturn]] void io_failed(const std::filesystem::path& path, int error) {
+  throw Error(ErrorKind::kIo, "writing " + path.string() + " failed: " + std::strerror(error));
+}
+
+/// An open, empty file beside `path`.
+int create_beside(const std::filesystem::path& path, std::string& name) {
+  std::error_code ignored;
+  if (path.filename().empty() || std::filesystem::is_directory(path, ignored)) cannot_create(path, "it is a directory");
+  const std::filesystem::path directory = directory_of(path);
+  if (!std::filesystem::is_directory(directory, ignored)) cannot_create(path, "there is no directory " + directory.string());
+  name = (directory / std::string(".").append(path.filename().string()).append(".XXXXXX")).string();
+  const int file = ::mkstemp(name.data());
+  if (file < 0) cannot_create(path, std::strerror(errno));
+  return file;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
+  std::string name;
+  const int file = create_beside(path_, name);
+  // mkstemp makes private files; a picture is as readable as any other file of its user.
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  ::fchmod(file, 0666 & ~mask);
+  ::close(file);
+  temporary_ = name;
+  slot_ = take_slot(name);
+}
+
+AtomicFile::~AtomicFile() {
+  if (!committed_) ::unlink(temporary_.c_str());
+  free_slot(slot_);
+}
+
+void AtomicFile::commit() {
+  const int file = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) io_failed(path_, errno);
+  const int synced = ::fsync(file);
+  const int error = errno;
+  ::close(file);
+  if (synced != 0 && error != EINVAL) io_failed(path_, error);  // EINVAL: this file system has nothing to sync
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) io_failed(path_, errno);
+  committed_ = true;
+  const int directory = ::open(directory_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory >= 0) {
+    ::fsync(directory);  // the name itself; where that is not possible the file is still whole
+    ::close(directory);
+  }
+}
+
+void remove_unfinished_files() noexcept {
+  for (Slot& slot : slots)
+    if (slot.armed.load(std::memory_order_acquire)) ::unlink(slot.name);
+}
+
+void write_text_file(const std::filesystem::path& path, std::string_view text) {
+  AtomicFile file(path);
+  const int out = ::open(file.temporary().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
+  if (out < 0) io_failed(path, errno);
+  while (!text.empty()) {
+    const ssize_t written = ::write(out, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const int error = errno;
+      ::close(out);
+      io_failed(path, error);
+    }
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (::close(out) != 0) io_failed(path, errno);
+  file.commit();
+}
+
+void check_creatable(const std::filesystem::path& path) {
+  std::string name;
+  ::close(create_beside(path, name));
+  ::unlink(name.c_str());
+}
+
+}  // namespace orrery::base

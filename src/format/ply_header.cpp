@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/ply_header.h"
+
+#include <charconv>
+
+namespace orrery::format {
+namespace {
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  std::size_t i = 0;
+  while (i < line.size()) {
+    const std::size_t begin = line.find_first_not_of(" \t\r", i);
+    if (begin == std::string_view::npos) break;
+    const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    i = end;
+  }
+  return words;
+}
+
+bool parse_type(std::string_view word, PlyType& type) {
+  struct Name {
+    std::string_view name;
+    PlyType type;
+  };
+  static constexpr Name kNames[] = {
+      {"char", PlyType::kInt8},      {"int8", PlyType::kInt8},       {"uchar", PlyType::kUint8},
+      {"uint8", PlyType::kUint8},    {"short", PlyType::kInt16},     {"int16", PlyType::kInt16},
+      {"ushort", PlyType::kUint16},  {"uint16", PlyType::kUint16},   {"int", PlyType::kInt32},
+      {"int32", PlyType::kInt32},    {"uint", PlyType::kUint32},     {"uint32", PlyType::kUint32},
+      {"float", PlyType::kFloat32},  {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
+      {"float64", PlyType::kFloat64}};
+  for (const Name& known : kNames) {
+    if (known.name != word) continue;
+    type = known.type;
+    return true;
+  }
+  return false;
+}
+
+std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
+  if (words.size() != 3) return "a format line is `format ENCODING 1.0`";
+  if (words[1] == "ascii") {
+    header.encoding = PlyEncoding::kAscii;
+  } else if (words[1] == "binary_little_endian") {
+    header.encoding = PlyEncoding::kLittleEndian;
+  } else if (words[1] == "binary_big_endian") {
+    header.encoding = PlyEncoding::kBigEndian;
+  } else {
+    return "unknown encoding; known are ascii, binary_little_endian, binary_big_endian";
+  }
+  return {};
+}
+
+std::string parse_element(const std::vector<std::string_view>& words, PlyHeader& header) {
+  PlyElement element;
+  if (words.size() != 3) return "an element line is `element NAME COUNT`";
+  element.name = words[1];
+  const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
+  if (error != std::errc() || end != words[2].data() + words[2].size()) return "an element's count must be a whole number";
+  header.elements.push_back(element);
+  return {};
+}
+
+std::string parse_property(const std::vector<std::string_view>& words, PlyHeader& header) {
+  if (header.elements.empty()) return "a property before any element";
+  PlyProperty property;
+  property.is_list = words.size() == 5 && words[1] == "list";
+  if (!property.is_list && words.size() != 3) return "a property line is `property TYPE NAME`";
+  if (property.is_list && !parse_type(words[2], property.count_type)) return "unknown type of a list's length";
+  if (!parse_type(words[words.size() - 2], property.type)) return "unknown type; known are char .. double, int8 .. float64";
+  property.name = words.back();
+  header.elements.back().properties.push_back(property);
+  return {};
+}
+
+}  // namespace
+
+std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line) {
+  std::size_t at = 0;
+  bool has_format = false;
+  for (line = 1;; ++line) {
+    const std::size_t end = file.find('\n', at);
+    constexpr std::size_t kLongestHeader = 1 << 20;
+    if (end == std::string_view::npos || end > kLongestHeader) return line == 1 ? "this is no PLY file" : "the header has no end_header";
+    const auto words = words_of(file.substr(at, end - at));
+    at = end + 1;
+    std::string fault;
+    if (line == 1) {
+      if (words.size() != 1 || words[0] != "ply") return "this is no PLY file: it does not begin with `ply`";
+    } else if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
+      continue;
+    } else if (words[0] == "format") {
+      has_format = true;
+      fault = parse_format(words, header);
+    } else if (words[0] == "element") {
+      fault = parse_element(words, header);
+    } else if (words[0] == "property") {
+      fault = parse_property(words, header);
+    } else if (words[0] == "end_header") {
+      header.bytes = at;
+      header.lines = line;
+      return has_format ? "" : "the header has no format line";
+    } else {
+      fault = "unknown word in the header";
+    }
+    if (!fault.empty()) return fault;
+  }
+}
+
+}  // namespace orrery::format

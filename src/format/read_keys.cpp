@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/read_keys.h"
+
+#include <cmath>
+
+namespace orrery::format {
+namespace {
+
+using scene::Value;
+using scene::ValueType;
+
+std::string type_name(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table: return "a table";
+    case toml::node_type::array: return "a list";
+    case toml::node_type::string: return "a string";
+    case toml::node_type::integer: return "a whole number";
+    case toml::node_type::floating_point: return "a number";
+    case toml::node_type::boolean: return "true or false";
+    case toml::node_type::date: return "a date";
+    case toml::node_type::time: return "a time";
+    case toml::node_type::date_time: return "a date";
+    case toml::node_type::none: break;
+  }
+  return "nothing";
+}
+
+void wrong_type(Reading& reading, const toml::node& node, const std::string& name, const std::string& wanted) {
+  reading.error(place_of(node), name + " must be " + wanted + ", this is " + type_name(node));
+}
+
+std::optional<double> read_number(Reading& reading, const toml::node& node, const std::string& name,
+                                  const scene::Range& range) {
+  if (!node.is_number()) {
+    wrong_type(reading, node, name, "a number");
+    return {};
+  }
+  const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+  if (std::isnan(x) || !range.contains(x)) {
+    reading.error(place_of(node), name + " is " + scene::number_text(x) + "; allowed is " + range.text());
+    return {};
+  }
+  return x;
+}
+
+std::optional<Value> read_vector(Reading& reading, const toml::node& node, const std::string& name,
+                                 const scene::Range& range) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->size() != 3) {
+    reading.error(place_of(node), name + " must be three numbers like [0, 1, 0], this is " +
+                                      (array == nullptr ? type_name(node)
+                                                        : "a list of " + std::to_string(array->size())));
+    return {};
+  }
+  double v[3];
+  bool good = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto x = read_number(reading, *array->get(i), name + "[" + std::to_string(i) + "]", range);
+    good = good && x.has_value();
+    v[i] = x.value_or(0);
+  }
+  if (!good) return {};
+  return math::Vec3d{v[0], v[1], v[2]};
+}
+
+std::optional<Value> read_integer(Reading& reading, const toml::node& node, const std::string& name,
+                                  const scene::Range& range) {
+  if (!node.is_integer()) {
+    wrong_type(reading, node, name, "a whole number");
+    return {};
+  }
+  const std::int64_t x = node.as_integer()->get();
+  if (!range.contains(static_cast<double>(x))) {
+    const auto whole = [](double end) { return std::to_string(static_cast<std::int64_t>(end)); };
+    reading.error(place_of(node),
+                  name + " is " + std::to_string(x) + "; allowed is " + whole(range.from) + ".." + whole(range.to));
+    return {};
+  }
+  return x;
+}
+
+std::optional<Value> read_text(Reading& reading, const toml::node& node, const std::string& name,
+                               const std::vector<std::string>& choices) {
+  if (!node.is_string()) {
+    wrong_type(reading, node, name, choices.empty() ? "a string" : "one of \"" + base::joined(choices) + "\"");
+    return {};
+  }
+  const std::string& text = node.as_string()->get();
+  if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
+    reading.error(place_of(node), name + " is \"" + text + "\"; allowed is " + base::joined(choices),
+                  base::did_you_mean(text, choices));
+    return {};
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<Value> read_value(Reading& reading, const toml::node& node, const std::string& name, ValueType type,
+                                const scene::Range& range, const std::vector<std::string>& choices) {
+  switch (type) {
+    case ValueType::kInteger: return read_integer(reading, node, name, range);
+    case ValueType::kNumber: {
+      const auto x = read_number(reading, node, name, range);
+      return x ? std::optional<Value>(*x) : std::nullopt;
+    }
+    case ValueType::kVector: return read_vector(reading, node, name, range);
+    case ValueType::kText: return read_text(reading, node, name, {});
+    case ValueType::kChoice: return read_text(reading, node, name, choices);
+  }
+  return {};
+}
+
+void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
+                        const std::vector<std::string>& known, const std::string& hint) {
+  const std::string name(key.str());
+  std::string remedy = hint.empty() ? base::did_you_mean(name, known) : hint;
+  if (remedy.empty()) remedy = "known are " + base::joined(known);
+  reading.error(place_of(key), "unknown key `" + name + "` in " + table_name, remedy);
+}
+
+}  // namespace orrery::format

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "base/suggestion.h"
+#include "format/toml_tree.h"
+#include "scene/schema.h"
+
+namespace orrery::format {
+
+/// Collects what is wrong while a tree is read.
+struct Reading {
+  SourceText source;
+  std::vector<base::Finding> findings;
+
+  void error(const Place& place, std::string text, std::string remedy = {}) {
+    findings.push_back(source.finding(base::Severity::kError, place, std::move(text), std::move(remedy)));
+  }
+};
+
+/// The node as the type that a key wants, checked against the key's range; nothing, and a finding, where it is not.
+///
+/// `name` is the key's full name for messages.
+std::optional<scene::Value> read_value(Reading& reading, const toml::node& node, const std::string& name,
+                                       scene::ValueType type, const scene::Range& range,
+                                       const std::vector<std::string>& choices);
+
+/// Reports a key that the schema does not know.
+void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
+                        const std::vector<std::string>& known, const std::string& hint = {});
+
+/// Reads a table into a target by its keys. Keys in `also` are known, but read by the caller.
+template <class Target>
+void read_keys(Reading& reading, const toml::table& table, const std::string& table_name,
+               const std::vector<scene::Key<Target>>& keys, const std::vector<std::string>& also, Target& target) {
+  std::vector<std::string> known = also;
+  for (const auto& key : keys) known.push_back(key.name);
+  for (const auto& [key, node] : table)
+    if (std::find(known.begin(), known.end(), key.str()) == known.end())
+      report_unknown_key(reading, key, table_name, known);
+  for (const auto& key : keys) {
+    const toml::node* node = table.get(key.name);
+    if (node == nullptr) {
+      if (key.required) reading.error(place_of(table), table_name + " needs `" + key.name + "`");
+      continue;
+    }
+    const auto value =
+        read_value(reading, *node, table_name + "." + key.name, key.type, key.range, key.choices);
+    if (value) key.set(target, *value);
+  }
+}
+
+}  // namespace orrery::format

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/read_scene.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "base/error.h"
+#include "format/read_keys.h"
+#include "format/read_ply.h"
+#include "scene/validate.h"
+
+namespace orrery::format {
+namespace {
+
+/// A scene of a million [[sphere]] tables; whoever has more has a points file.
+constexpr std::uint64_t kLargestSceneFile = 256u << 20;
+
+/// Lists that are no list of tables are reported once, not per element.
+const toml::array* tables_under(Reading& reading, const toml::table& root, const char* name) {
+  const toml::node* node = root.get(name);
+  if (node == nullptr) return nullptr;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || (!array->empty() && !array->is_array_of_tables())) {
+    reading.error(place_of(*node), std::string("each ") + name + " is a table of its own", std::string("write [[") + name + "]]");
+    return nullptr;
+  }
+  return array;
+}
+
+void read_single_tables(Reading& reading, const toml::table& root, scene::Scene& scene) {
+  for (const scene::Table& table : scene::tables()) {
+    const toml::node* node = root.get(table.name);
+    if (node == nullptr) continue;
+    if (const toml::table* found = node->as_table()) {
+      read_keys(reading, *found, table.name, table.keys, {}, scene);
+    } else {
+      reading.error(place_of(*node), "`" + table.name + "` must be a table", "write [" + table.name + "]");
+    }
+  }
+}
+
+/// Where else a key of a material would be right: "`fuzz` belongs to metal".
+std::string other_type_with(const std::string& key) {
+  std::vector<std::string> owners;
+  for (const scene::MaterialType& type : scene::material_types())
+    for (const auto& known : type.keys)
+      if (known.name == key) owners.push_back(type.name);
+  return owners.empty() ? "" : "`" + key + "` belongs to " + base::joined(owners);
+}
+
+void read_material(Reading& reading, const std::string& name, const toml::table& table, scene::Scene& scene) {
+  const std::string full_name = "material." + name;
+  std::vector<std::string> type_names;
+  for (const scene::MaterialType& type : scene::material_types()) type_names.push_back(type.name);
+  // Also a material that is wrong has a name that spheres may use: one mistake is one finding.
+  scene.materials.push_back({name, scene::Lambertian{}});
+  const toml::node* type_node = table.get("type");
+  if (type_node == nullptr) {
+    reading.error(place_of(table), full_name + " needs `type`", "one of " + base::joined(type_names));
+    return;
+  }
+  const auto type_name = read_value(reading, *type_node, full_name + ".type", scene::ValueType::kChoice, {}, type_names);
+  if (!type_name) return;
+  for (const scene::MaterialType& type : scene::material_types()) {
+    if (type.name != std::get<std::string>(*type_name)) continue;
+    std::vector<std::string> known = {"type"};
+    for (const auto& key : type.keys) known.push_back(key.name);
+    toml::table own;  // what other types own is reported with their names, and not again
+    std::vector<std::string> also = {"type"};
+    for (const auto& [key, node] : table) {
+      const std::string word(key.str());
+      if (std::find(known.begin(), known.end(), word) != known.end() || other_type_with(word).empty()) continue;
+      report_unknown_key(reading, key, full_name + " of type " + type.name, known, other_type_with(word));
+      also.push_back(word);
+    }
+    scene.materials.back().model = type.model;
+    read_keys(reading, table, full_name, type.keys, also, scene.materials.back().model);
+  }
+}
+
+void read_materials(Reading& reading, const toml::table& root, scene::Scene& scene) {
+  const toml::node* node = root.get("material");
+  if (node == nullptr) return;
+  const toml::table* all = node->as_table();
+  if (all == nullptr) {
+    reading.error(place_of(*node), "`material` must hold tables", "write [material.NAME]");
+    return;
+  }
+  // The library sorts keys by name; data files count materials in the order of the file.
+  std::vector<std::pair<const toml::key*, const toml::node*>> in_order;
+  for (const auto& [key, value] : *all) in_order.emplace_back(&key, &value);
+  std::stable_sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) {
+    const Place p = place_of(*a.first), q = place_of(*b.first);
+    return std::pair(p.line, p.column) < std::pair(q.line, q.column);
+  });
+  for (const auto& [key, value] : in_order) {
+    if (const toml::table* table = value->as_table()) {
+      read_material(reading, std::string(key->str()), *table, scene);
+    } else {
+      reading.error(place_of(*value), "material." + std::string(key->str()) + " must be a table");
+    }
+  }
+}
+
+/// The index of the material that a sphere or a points file names; 0 and a finding where there is none.
+std::uint32_t read_material_name(Reading& reading, const toml::table& table, const std::string& full_name,
+                                 const scene::Scene& scene, const std::vector<std::string>& names) {
+  const toml::node* node = table.get("material");
+  if (node == nullptr) {
+    reading.error(place_of(table), full_name + " needs `material`");
+    return 0;
+  }
+  const auto value = read_value(reading, *node, full_name + ".material", scene::ValueType::kText, {}, {});
+  if (!value) return 0;
+  const auto& name = std::get<std::string>(*value);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    if (scene.materials[i].name == name) return static_cast<std::uint32_t>(i);
+  std::string remedy = base::did_you_mean(name, names);
+  if (remedy.empty() && names.size() <= 12) remedy = names.empty() ? "write [material." + name + "]" : "there are " + base::joined(names);
+  reading.error(place_of(*node), "there is no material \"" + name + "\"", remedy);
+  return 0;
+}
+
+void read_spheres(Reading& reading, const toml::table& root, const std::vector<std::string>& names, scene::Scene& scene) {
+  const toml::array* list = tables_under(reading, root, "sphere");
+  if (list == nullptr) return;
+  scene.spheres.reserve(list->size());
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const toml::table& table = *list->get(i)->as_table();
+    const std::string full_name = "sphere[" + std::to_string(i) + "]";
+    scene::Sphere sphere;
+    read_keys(reading, table, full_name, scene::sphere_keys(), {"material"}, sphere);
+    sphere.material = read_material_name(reading, table, full_name, scene, names);
+    scene.spheres.push_back(std::move(sphere));
+  }
+}
+
+void read_points(Reading& reading, const toml::table& root, const std::filesystem::path& folder,
+                 const std::vector<std::string>& names, scene::Scene& scene) {
+  const toml::array* list = tables_under(reading, root, "points");
+  if (list == nullptr) return;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const toml::table& table = *list->get(i)->as_table();
+    const std::string full_name = "points[" + std::to_string(i) + "]";
+    scene::Points points;
+    read_keys(reading, table, full_name, scene::points_keys(), {"material"}, points);
+    points.material = read_material_name(reading, table, full_name, scene, names);
+    if (!points.file.empty()) {
+      try {
+        read_ply(folder / points.file, scene.materials.size(), points);
+      } catch (const base::Error& error) {
+        // The place in the scene that names the file, then what the file itself has to say.
+        const toml::node* file = table.get("file");
+        reading.error(place_of(file != nullptr ? *file : static_cast<const toml::node&>(table)), error.what());
+        reading.findings.insert(reading.findings.end(), error.findings().begin(), error.findings().end());
+      }
+    }
+    scene.points.push_back(std::move(points));
+  }
+}
+
+/// The node that a problem's key names, or the nearest table around it.
+const toml::node* node_of(const toml::table& root, const std::string& key) {
+  const toml::node* at = &root;
+  std::size_t i = 0;
+  while (i < key.size()) {
+    const std::size_t end = std::min(key.find_first_of(".[", i + (key[i] == '[' ? 1u : 0u)), key.size());
+    const std::string step = key.substr(i, end - i);
+    const toml::node* next = nullptr;
+    if (step[0] == '[') {
+      if (const toml::array* array = at->as_array())
+        next = array->get(static_cast<std::size_t>(std::strtoull(step.c_str() + 1, nullptr, 10)));
+    } else if (const toml::table* table = at->as_table()) {
+      next = table->get(step);
+    }
+    if (next == nullptr) break;
+    at = next;
+    i = end < key.size() && key[end] == '.' ? end + 1 : end;
+  }
+  return at == &root ? nullptr : at;
+}
+
+void add_problems(Reading& reading, const toml::table& root, const scene::Scene& scene, const std::string& file) {
+  for (const scene::Problem& problem : scene::validate(scene)) {
+    const toml::node* node = node_of(root, problem.key);
+    Place place = node != nullptr ? place_of(*node) : Place{file, 0, 0, 1};
+    if (place.text_name.empty()) place.text_name = file;
+    reading.findings.push_back(reading.source.finding(problem.severity, place, problem.key + ": " + problem.text));
+  }
+}
+
+void report_unknown_tables(Reading& reading, const toml::table& root) {
+  std::vector<std::string> known;
+  for (const scene::Table& table : scene::tables()) known.push_back(table.name);
+  known.insert(known.end(), {"material", "sphere", "points"});
+  for (const auto& [key, node] : root)
+    if (std::find(known.begin(), known.end(), key.str()) == known.end())
+      report_unknown_key(reading, key, "the scene", known);
+}
+
+std::vector<Setting> settings_of(const toml::table& root, const scene::Scene& scene) {
+  std::vector<Setting> settings;
+  for (const scene::Table& table : scene::tables()) {
+    const toml::table* written = root.get(table.name) != nullptr ? root.get(table.name)->as_table() : nullptr;
+    for (const auto& key : table.keys) {
+      const toml::node* node = written != nullptr ? written->get(key.name) : nullptr;
+      std::string origin = "default";
+      if (node != nullptr) {
+        const Place place = place_of(*node);
+        origin = place.text_name == "--set" ? place.text_name : place.text_name + ":" + std::to_string(place.line);
+      }
+      settings.push_back({table.name + "." + key.name, key.text(scene), origin});
+    }
+  }
+  return settings;
+}
+
+bool is_error(const base::Finding& finding) { return finding.severity == base::Severity::kError; }
+
+void throw_errors(const std::filesystem::path& file, std::vector<base::Finding> findings) {
+  const auto errors = std::count_if(findings.begin(), findings.end(), is_error);
+  if (errors == 0) return;
+  std::stable_sort(findings.begin(), findings.end(), [](const base::Finding& a, const base::Finding& b) {
+    return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
+  });
+  throw base::Error(base::ErrorKind::kBadData,
+                    file.string() + ": " + std::to_string(errors) + (errors == 1 ? " error" : " errors"), std::move(findings));
+}
+
+}  // namespace
+
+ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const std::string text = read_file(file, kLargestSceneFile);
+  Reading reading;
+  const toml::table root = parse_tree(file.string(), text, overrides, reading.source, reading.findings);
+  if (root.empty()) throw_errors(file, reading.findings);
+
+  ReadResult result;
+  report_unknown_tables(reading, root);
+  read_single_tables(reading, root, result.scene);
+  read_materials(reading, root, result.scene);
+  std::vector<std::string> names;
+  for (const scene::Material& material : result.scene.materials) names.push_back(material.name);
+  read_spheres(reading, root, names, result.scene);
+  read_points(reading, root, file.parent_path(), names, result.scene);
+  // A value that could not be read stands at its default: what the whole makes of it would be a finding too many.
+  if (std::none_of(reading.findings.begin(), reading.findings.end(), is_error))
+    add_problems(reading, root, result.scene, file.string());
+  throw_errors(file, reading.findings);
+  result.warnings = std::move(reading.findings);
+  result.settings = settings_of(root, result.scene);
+  return result;
+}
+
+}  // namespace orrery::format

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/finding.h"
+
+namespace orrery::format {
+
+/// A stretch of one line of a text.
+struct Place {
+  std::string text_name;  ///< of the text it is in; empty: the scene file
+  int line = 0;           ///< from 1; 0 where there is none
+  int column = 0;         ///< from 1
+  int width = 1;
+};
+
+/// The texts that a scene is read from, the file and the overrides, to show their lines in findings.
+class SourceText {
+ public:
+  void add(const std::string& name, std::string_view text);
+
+  /// A finding at a place, with its source line.
+  base::Finding finding(base::Severity severity, const Place& place, std::string text, std::string remedy = {}) const;
+
+ private:
+  std::map<std::string, std::vector<std::string>> lines_;
+};
+
+/// A whole file as bytes.
+///
+/// Errors     base::Error(kMissingInput) where it cannot be opened, kBadData where it is larger than `largest_bytes`,
+///            kIo where reading fails
+std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes);
+
+}  // namespace orrery::format

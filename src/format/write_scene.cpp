@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/write_scene.h"
+
+#include <bit>
+#include <cstring>
+#include <sstream>
+
+#include "base/atomic_file.h"
+#include "scene/schema.h"
+
+namespace orrery::format {
+namespace {
+
+using scene::number_text;
+using scene::string_text;
+using scene::vector_text;
+
+bool is_bare_key(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
+}
+
+void add_comment(std::string& out, const std::string& comment) {
+  std::istringstream lines(comment);
+  for (std::string line; std::getline(lines, line);) out += line.empty() ? "#\n" : "# " + line + "\n";
+  if (!comment.empty()) out += '\n';
+}
+
+void add_tables(std::string& out, const scene::Scene& scene) {
+  const scene::Scene defaults;
+  for (const scene::Table& table : scene::tables()) {
+    std::string body;
+    for (const auto& key : table.keys)
+      if (key.text(scene) != key.text(defaults)) body += key.name + " = " + key.text(scene) + "\n";
+    if (!body.empty()) out += "[" + table.name + "]\n" + body + "\n";
+  }
+}
+
+void add_material(std::string& out, const scene::Material& material) {
+  const scene::MaterialType& type = scene::material_types()[material.model.index()];
+  out += "[material." + (is_bare_key(material.name) ? material.name : string_text(material.name)) + "]\ntype = " +
+         string_text(type.name) + "\n";
+  for (const auto& key : type.keys)
+    if (key.required || key.text(material.model) != key.text(type.model)) out += key.name + " = " + key.text(material.model) + "\n";
+  out += '\n';
+}
+
+template <class T>
+void append_bytes(std::string& out, T value) {
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, &value, sizeof(T));
+  if constexpr (std::endian::native == std::endian::big)
+    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
+  out.append(bytes, sizeof(T));
+}
+
+}  // namespace
+
+std::string scene_text(const scene::Scene& scene, const std::string& comment) {
+  std::string out;
+  add_comment(out, comment);
+  add_tables(out, scene);
+  for (const scene::Material& material : scene.materials) add_material(out, material);
+  for (const scene::Sphere& sphere : scene.spheres) {
+    out += "[[sphere]]\n";
+    if (!sphere.name.empty()) out += "name = " + string_text(sphere.name) + "\n";
+    out += "center = " + vector_text(sphere.center) + "\nradius = " + number_text(sphere.radius) + "\nmaterial = " +
+           string_text(scene.materials[sphere.material].name) + "\n\n";
+  }
+  for (const scene::Points& points : scene.points) {
+    out += "[[points]]\nfile = " + string_text(points.file.string()) + "\nmaterial = " +
+           string_text(scene.materials[points.material].name) + "\n";
+    if (points.radius) out += "radius = " + number_text(*points.radius) + "\n";
+    out += '\n';
+  }
+  if (!out.empty()) out.pop_back();  // the blank line behind the last block
+  return out;
+}
+
+void write_ply(const scene::Points& points, const std::filesystem::path& file) {
+  std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.centers.size()) +
+                    "\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n";
+  if (!points.materials.empty()) out += "property uint material\n";
+  out += "end_header\n";
+  out.reserve(out.size() + points.centers.size() * 36);
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    append_bytes(out, points.centers[i].x);
+    append_bytes(out, points.centers[i].y);
+    append_bytes(out, points.centers[i].z);
+    append_bytes(out, points.radii[i]);
+    if (!points.materials.empty()) append_bytes(out, points.materials[i]);
+  }
+  base::write_text_file(file, out);
+}
+
+void write_scene(const scene::Scene& scene, const std::string& comment, const std::filesystem::path& file) {
+  for (const scene::Points& points : scene.points) write_ply(points, file.parent_path() / points.file);
+  base::write_text_file(file, scene_text(scene, comment));
+}
+
+}  // namespace orrery::format

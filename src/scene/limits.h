@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace orrery::scene {
+
+/// Largest absolute coordinate and radius, scene units: its square and the square's products stay far inside a double.
+inline constexpr double kLargestLength = 1e18;
+
+/// Smallest absolute radius, scene units: its square keeps all its bits.
+inline constexpr double kSmallestRadius = 1e-30;
+
+/// A pixel's name is y << 16 | x.
+inline constexpr int kLargestSide = 65536;
+
+/// Keeps the sum of a pixel's samples inside its 128 bits whatever the background.
+inline constexpr double kBrightestBackground = 1e6;
+
+/// A path of more scattering events would only be a program that does not end.
+inline constexpr int kDeepestPath = 10000;
+
+}  // namespace orrery::scene

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace orrery::scene {
+
+/// What a key of the scene file can hold.
+using Value = std::variant<std::int64_t, double, Vec3d, std::string>;
+
+enum class ValueType { kInteger, kNumber, kVector, kText, kChoice };
+
+/// Numbers from..to, ends included unless `open` says otherwise; for a vector each component.
+struct Range {
+  double from = 0, to = 0;
+  bool from_open = false, to_open = false;
+
+  bool contains(double x) const { return (from_open ? x > from : x >= from) && (to_open ? x < to : x <= to); }
+  /// "0..1", "above 0, below 180".
+  std::string text() const;
+};
+
+/// One key of a table of the scene file: everything that reading, checking, `--set`, suggestions, `--settings` and
+/// the documentation need to know of it, in one place.
+template <class Target>
+struct Key {
+  std::string name;
+  ValueType type;
+  Range range;                       ///< numbers and vectors
+  std::vector<std::string> choices;  ///< kChoice
+  std::string unit;                  ///< may be empty
+  bool required;
+  std::function<void(Target&, const Value&)> set;
+  std::function<std::string(const Target&)> text;  ///< as it would stand in the file
+};
+
+/// Tables of which a scene has one; keys in the order of the documentation.
+struct Table {
+  std::string name;
+  std::vector<Key<Scene>> keys;
+};
+const std::vector<Table>& tables();
+
+/// Keys of [material.NAME] beside `type`, for one type.
+struct MaterialType {
+  std::string name;
+  MaterialModel model;  ///< with its defaults
+  std::vector<Key<MaterialModel>> keys;
+};
+const std::vector<MaterialType>& material_types();
+
+/// Keys of [[sphere]] and [[points]] beside `material`, which names one.
+const std::vector<Key<Sphere>>& sphere_keys();
+const std::vector<Key<Points>>& points_keys();
+
+/// A double as the shortest decimal that reads back to the same bits, always recognisable as TOML float or integer.
+std::string number_text(double value);
+std::string vector_text(Vec3d value);
+/// With quotes and escapes.
+std::string string_text(const std::string& value);
+
+}  // namespace orrery::scene
