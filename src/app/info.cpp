@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/info.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "app/scene_hash.h"
+#include "compile/compile.h"
+#include "format/read_scene.h"
+#include "kernel/pixel_sum.h"
+#include "kernel/render_tile.h"
+
+namespace orrery::app {
+namespace {
+
+/// Embree's user geometry, one primitive a sphere, on top of the sphere itself: measured on a cloud of a million
+/// (docs/benchmarks.md).
+constexpr std::uint64_t kAcceleratorBytesPerSphere = 80;
+
+std::vector<Feature> features_of(const compile::World& world) {
+  const kernel::Features& f = world.features;
+  return {{"thin lens", f.lens, f.lens ? "camera.defocus_angle is above 0" : "pinhole: no lens is sampled"},
+          {"lambertian", f.lambertian, f.lambertian ? "" : "no such sphere"},
+          {"hemisphere", f.hemisphere, f.hemisphere ? "" : "no such sphere"},
+          {"metal", f.metal, f.metal ? "" : "no such sphere"},
+          {"fuzz", f.fuzz, f.fuzz ? "" : "mirrors are sharp: no ball is sampled"},
+          {"dielectric", f.dielectric, f.dielectric ? "" : "no glass: no Fresnel term, no refraction"},
+          {"gradient sky", f.sky, f.sky ? "" : "one colour: no direction is looked at"},
+          {"light paths", world.shading == kernel::Shading::kPath,
+           world.shading == kernel::Shading::kPath ? "" : "render.shading asks for the first hit only"}};
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::World& world) {
+  static constexpr const char* kNames[] = {"lambertian", "hemisphere", "metal", "dielectric"};
+  std::array<std::uint64_t, 4> counts{};
+  for (const kernel::Material& m : world.materials) ++counts[static_cast<std::size_t>(m.kind)];
+  std::vector<std::pair<std::string, std::uint64_t>> out;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] > 0) out.emplace_back(kNames[i], counts[i]);
+  return out;
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+  char out[32];
+  const char* unit = "KiB";
+  double value = static_cast<double>(bytes) / 1024;
+  for (const char* larger : {"MiB", "GiB", "TiB"}) {
+    if (value < 1024) break;
+    value /= 1024;
+    unit = larger;
+  }
+  std::snprintf(out, sizeof(out), "%.1f %s", value, unit);
+  return out;
+}
+
+/// printf into a string.
+[[gnu::format(printf, 2, 3)]] void append(std::string& out, const char* format, ...) {
+  char line[512];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof(line), format, arguments);
+  va_end(arguments);
+  out += line;
+}
+
+}  // namespace
+
+SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
+  format::ReadResult read = format::read_scene(scene, overrides);
+  const compile::World world = compile::compile(read.scene);
+  SceneInfo info;
+  info.scene_hash = scene_hash(world);
+  info.width = world.width;
+  info.height = world.height;
+  info.samples = world.samples;
+  info.max_depth = static_cast<int>(world.max_depth);
+  info.spheres = world.spheres.size();
+  const math::Vec3d low = world.bounds.lower, high = world.bounds.upper;
+  std::copy_n(std::array{low.x, low.y, low.z}.begin(), 3, info.lower);
+  std::copy_n(std::array{high.x, high.y, high.z}.begin(), 3, info.upper);
+  if (!world.spheres.empty()) {
+    const auto [smallest, largest] =
+        std::minmax_element(world.spheres.begin(), world.spheres.end(),
+                            [](const kernel::Sphere& a, const kernel::Sphere& b) { return a.radius < b.radius; });
+    info.smallest_radius = smallest->radius;
+    info.largest_radius = largest->radius;
+  }
+  info.materials = count_materials(world);
+  info.features = features_of(world);
+  for (const format::Setting& s : read.settings) {
+    info.settings.push_back({s.key, s.value, s.origin});
+    const std::string bare = s.value.substr(s.value[0] == '"' ? 1 : 0, s.value.size() - (s.value[0] == '"' ? 2 : 0));
+    if (s.key == "render.precision") info.precision = bare;
+    if (s.key == "render.accelerator") info.accelerator = bare;
+  }
+  info.isa = kernel::isa_name();
+  info.film_bytes = std::uint64_t(world.width) * std::uint64_t(world.height) * sizeof(kernel::PixelSum);
+  info.sphere_bytes = world.bytes();
+  info.accelerator_bytes = info.accelerator == "embree" ? info.spheres * kAcceleratorBytesPerSphere : 0;
+  info.warnings = std::move(read.warnings);
+  return info;
+}
+
+std::string info_text(const SceneInfo& info) {
+  std::string out;
+  append(out, "scene       %s\n", info.scene_hash.c_str());
+  append(out, "picture     %d x %d, %d samples per pixel, at most %d scattering events\n", info.width, info.height, info.samples,
+         info.max_depth);
+  append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
+  if (info.spheres > 0)
+    append(out, ", radius %g .. %g, from (%g, %g, %g) to (%g, %g, %g)", info.smallest_radius, info.largest_radius, info.lower[0],
+           info.lower[1], info.lower[2], info.upper[0], info.upper[1], info.upper[2]);
+  out += "\nmaterials  ";
+  for (std::size_t i = 0; i < info.materials.size(); ++i)
+    append(out, "%s %llu %s", i == 0 ? "" : ",", static_cast<unsigned long long>(info.materials[i].second),
+           info.materials[i].first.c_str());
+  append(out, "\nkernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(), info.accelerator.c_str());
+  append(out, "memory      about %s: film %s, spheres %s, accelerator %s\n",
+         bytes_text(info.film_bytes + info.sphere_bytes + info.accelerator_bytes).c_str(), bytes_text(info.film_bytes).c_str(),
+         bytes_text(info.sphere_bytes).c_str(), bytes_text(info.accelerator_bytes).c_str());
+  for (const bool required : {true, false}) {
+    out += required ? "requires   " : "left out   ";
+    bool first = true;
+    for (const Feature& f : info.features) {
+      if (f.required != required) continue;
+      append(out, "%s %s", first ? "" : (required ? "," : ";"), f.name.c_str());
+      if (!required && !f.note.empty()) append(out, " (%s)", f.note.c_str());
+      first = false;
+    }
+    out += first ? " nothing\n" : "\n";
+  }
+  return out;
+}
+
+std::string settings_text(const SceneInfo& info) {
+  std::string out;
+  for (const auto& s : info.settings) append(out, "%-26s %-24s %s\n", s.key.c_str(), s.value.c_str(), s.origin.c_str());
+  return out;
+}
+
+std::string info_json(const SceneInfo& info) {
+  using nlohmann::json;
+  json features = json::array(), settings = json::array(), materials = json::object(), warnings = json::array();
+  for (const Feature& f : info.features) features.push_back({{"name", f.name}, {"required", f.required}, {"note", f.note}});
+  for (const auto& s : info.settings) settings.push_back({{"key", s.key}, {"value", s.value}, {"origin", s.origin}});
+  for (const auto& [name, count] : info.materials) materials[name] = count;
+  for (const base::Finding& w : info.warnings) warnings.push_back({{"file", w.file}, {"line", w.line}, {"text", w.text}});
+  const json out = {{"schema", "orrery.info/1"},
+                    {"scene_hash", info.scene_hash},
+                    {"width", info.width},
+                    {"height", info.height},
+                    {"samples", info.samples},
+                    {"max_depth", info.max_depth},
+                    {"spheres", info.spheres},
+                    {"bounds", {{"lower", info.lower}, {"upper", info.upper}}},
+                    {"radius", {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}}},
+                    {"materials", materials},
+                    {"features", features},
+                    {"precision", info.precision},
+                    {"accelerator", info.accelerator},
+                    {"isa", info.isa},
+                    {"memory_bytes",
+                     {{"film", info.film_bytes}, {"spheres", info.sphere_bytes}, {"accelerator", info.accelerator_bytes}}},
+                    {"settings", settings},
+                    {"warnings", warnings}};
+  return out.dump(2) + "\n";
+}
+
+}  // namespace orrery::app

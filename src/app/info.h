@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/finding.h"
+
+namespace orrery::app {
+
+/// One thing that a scene may ask of the renderer.
+struct Feature {
+  std::string name;  ///< "thin lens"
+  bool required;
+  std::string note;  ///< what requires it, or what is not computed without it
+};
+
+/// What a scene is, before it is rendered.
+struct SceneInfo {
+  std::string scene_hash;
+  int width = 0, height = 0, samples = 0, max_depth = 0;
+  std::uint64_t spheres = 0;
+  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units
+  double smallest_radius = 0, largest_radius = 0;
+  std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< compiled materials by type
+  std::vector<Feature> features;
+  std::string precision, accelerator, isa;
+  std::uint64_t film_bytes = 0, sphere_bytes = 0, accelerator_bytes = 0;  ///< estimates before a render
+  struct Setting {
+    std::string key, value, origin;
+  };
+  std::vector<Setting> settings;
+  std::vector<base::Finding> warnings;
+};
+
+/// Reads a scene and finds out what it requires; renders nothing.
+///
+/// Errors     as format::read_scene
+SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
+
+/// The same as text for people.
+std::string info_text(const SceneInfo& info);
+/// As JSON, "orrery.info/1".
+std::string info_json(const SceneInfo& info);
+/// Key, value and origin of each setting, in columns.
+std::string settings_text(const SceneInfo& info);
+
+}  // namespace orrery::app

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/picture_header.h"
+
+#include <ctime>
+
+#include "app/camera_matrices.h"
+#include "app/version.h"
+#include "scene/schema.h"
+
+namespace orrery::app {
+namespace {
+
+std::string local_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y:%m:%d %H:%M:%S", &local);
+  return text;
+}
+
+/// Primaries and white of the working spaces whose names we know; a config's own spaces are not guessed at.
+void add_color(const std::string& space, image::Header& header) {
+  if (space == "lin_rec709" || space == "scene_linear") {
+    header.chromaticities = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+    header.color_interop_id = "lin_rec709_scene";
+  } else if (space == "acescg" || space == "ACEScg") {
+    header.chromaticities = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+    header.color_interop_id = "lin_ap1_scene";
+  }
+}
+
+}  // namespace
+
+image::Header picture_header(const scene::Scene& scene, const compile::World& world, const JobReport& report,
+                             bool reproducible) {
+  image::Header header;
+  header.software = "orrery " + program_version();
+  const CameraMatrices matrices = camera_matrices(scene.camera, scene.image);
+  header.world_to_camera = matrices.world_to_camera;
+  header.world_to_ndc = matrices.world_to_ndc;
+  add_color(scene.color.space, header);
+  header.attributes = {{"orrery/version", program_version()},
+                       {"orrery/sceneHash", report.scene_hash},
+                       {"orrery/samples", world.samples},
+                       {"orrery/maxDepth", static_cast<int>(world.max_depth)},
+                       {"orrery/seed", std::to_string(world.seed)}};
+  for (const scene::Table& table : scene::tables())
+    if (table.name == "render")
+      for (const auto& key : table.keys)
+        if (key.name == "precision" || key.name == "shading")
+          header.attributes.push_back({"orrery/" + key.name, key.text(scene)});
+  if (reproducible) return header;
+  header.capture_date = local_time();
+  header.attributes.push_back({"orrery/renderSeconds", static_cast<float>(report.phases.render_s)});
+  header.attributes.push_back({"orrery/accelerator", report.render.accelerator});
+  header.attributes.push_back({"orrery/isa", report.render.isa});
+  return header;
+}
+
+}  // namespace orrery::app

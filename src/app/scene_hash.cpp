@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/scene_hash.h"
+
+#include <cstdio>
+#include <cstring>
+
+namespace orrery::app {
+namespace {
+
+/// FNV-1a over 64-bit words, with a final mix.
+class Hash {
+ public:
+  void add(double x) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &x, sizeof(bits));
+    add_bits(bits);
+  }
+  void add_bits(std::uint64_t bits) { state_ = (state_ ^ bits) * 0x100000001b3u ^ (state_ >> 29); }
+  std::string text() const {
+    char out[17];
+    std::snprintf(out, sizeof(out), "%016llx", static_cast<unsigned long long>(state_));
+    return out;
+  }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+template <std::size_t N>
+void add_all(Hash& hash, const double (&values)[N]) {
+  for (const double v : values) hash.add(v);
+}
+
+}  // namespace
+
+std::string scene_hash(const compile::World& world) {
+  Hash hash;
+  for (const kernel::Sphere& s : world.spheres)
+    for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
+  for (const std::uint32_t m : world.sphere_materials) hash.add_bits(m);
+  for (const kernel::Material& m : world.materials) {
+    add_all(hash, m.albedo);
+    add_all(hash, m.eta);
+    hash.add(m.fuzz);
+    hash.add_bits(static_cast<std::uint64_t>(m.kind) << 32 | static_cast<std::uint64_t>(m.fresnel));
+  }
+  const kernel::Camera& c = world.camera;
+  for (const auto* v : {&c.origin, &c.forward, &c.right, &c.down, &c.lens_u, &c.lens_v}) add_all(hash, *v);
+  add_all(hash, world.background.bottom);
+  add_all(hash, world.background.top);
+  for (const std::uint64_t v :
+       {std::uint64_t(world.width), std::uint64_t(world.height), std::uint64_t(world.samples), std::uint64_t{world.max_depth},
+        std::uint64_t{world.seed}, std::uint64_t(world.shading), std::uint64_t(world.precision)})
+    hash.add_bits(v);
+  return hash.text();
+}
+
+}  // namespace orrery::app
