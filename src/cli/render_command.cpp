@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+
+#include "app/job.h"
+#include "cli/commands.h"
+#include "cli/display_options.h"
+#include "cli/progress.h"
+#include "cli/scene_options.h"
+#include "cli/signals.h"
+
+namespace orrery::cli {
+namespace {
+
+struct RenderOptions {
+  app::Job job;
+  SceneOptions scene;
+  std::string type = "half", progress = "auto";
+  bool quiet = false, verbose = false;
+};
+
+ProgressStyle style_of(const RenderOptions& options) {
+  const auto& names = progress_style_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == options.progress && !(options.quiet && i == 0)) return static_cast<ProgressStyle>(i);
+  return ProgressStyle::kNone;
+}
+
+/// What somebody should know before trusting the picture.
+void print_bad_values(const app::JobReport& report) {
+  const auto tell = [](std::uint64_t count, const char* what) {
+    if (count > 0) std::fprintf(stderr, "warning: %llu %s\n", static_cast<unsigned long long>(count), what);
+  };
+  tell(report.render.bad_samples, "samples were not finite and were left out of their pixels");
+  tell(report.bad_values.nan, "values of the picture are not a number");
+  tell(report.bad_values.infinite, "values of the picture are infinite");
+  tell(report.written.not_finite, "values that are not finite were written as 0");
+  tell(report.written.clamped, "values beyond the largest half, 65504, were clamped; --type float keeps them");
+}
+
+void print_summary(const RenderOptions& options, const app::JobReport& report) {
+  std::string files;
+  for (const auto& output : options.job.outputs) {
+    if (!files.empty()) files += ", ";
+    files += output.string();
+  }
+  const double seconds = report.render.render_s;
+  std::fprintf(stderr, "wrote %s: %d x %d, %d samples per pixel in %.1f s, %.2f M samples/s\n", files.c_str(), report.width,
+               report.height, report.samples, seconds,
+               seconds > 0 ? static_cast<double>(report.render.paths) / seconds / 1e6 : 0.0);
+  if (!options.verbose) return;
+  std::fprintf(stderr, "%zu spheres, %s, %s, %d threads, %llu rays; scene %s\n", report.spheres, report.render.accelerator.c_str(),
+               report.render.isa.c_str(), report.render.threads, static_cast<unsigned long long>(report.render.rays),
+               report.scene_hash.c_str());
+  std::fprintf(stderr, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, write %.3f s\n", report.phases.read_s,
+               report.phases.compile_s, report.phases.build_s, report.phases.render_s, report.phases.write_s);
+  if (!report.display.display.empty())
+    std::fprintf(stderr, "display %s, view %s, OCIO config %s\n", report.display.display.c_str(), report.display.view.c_str(),
+                 report.display.config.c_str());
+}
+
+int render(RenderOptions& options) {
+  app::Job& job = options.job;
+  job.overrides = options.scene.overrides();
+  job.exr.as_float = options.type == "float";
+  job.cancel = &stop_on_signals();
+  ProgressPrinter printer(style_of(options), stderr);
+  job.on_progress = [&](const auto& p) { printer.update(p.samples_done, p.samples_total, p.seconds); };
+  job.on_warning = [&](const base::Finding& warning) {
+    if (!options.quiet) std::fputs(base::formatted(warning).c_str(), stderr);
+  };
+  const app::JobReport report = app::run_job(job);
+  printer.finish();
+  if (!options.quiet) {
+    print_bad_values(report);
+    print_summary(options, report);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<RenderOptions>();
+  CLI::App& command = *program.add_subcommand("render", "Render a scene into one or more picture files");
+  command.add_option("SCENE", options->job.scene, "Scene file")->required();
+  command.add_option("-o,--output", options->job.outputs, "File to write; its extension chooses EXR, HDR, PNG, TIFF, JPEG or PPM; can be repeated")
+      ->required()
+      ->type_name("FILE")
+      ->take_all()
+      ->expected(1);
+  options->scene.add_to(command);
+  command.add_option("-t,--threads", options->job.threads, "Threads; default: what this process may use")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  add_display_options(command, options->job.display, options->job.bits);
+  command.add_option("--type", options->type, "EXR channels: half or float")->check(CLI::IsMember({"half", "float"}))->type_name("TYPE");
+  command.add_option("--compression", options->job.exr.compression, "EXR compression: zips, zip, piz, dwaa:45, none")->type_name("NAME");
+  command.add_flag("--reproducible", options->job.reproducible, "Leave out of headers what changes between runs");
+  command.add_option("--progress", options->progress, "auto, bar, alf, openjd, arnold, json or none")
+      ->check(CLI::IsMember(progress_style_names()))
+      ->type_name("STYLE");
+  command.add_option("--stats", options->job.statistics, "Write what the render did as JSON")->type_name("FILE");
+  command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+  command.add_flag("-v,--verbose", options->verbose, "Say what was done and how long it took");
+  command.footer(
+      "Examples:\n"
+      "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"
+      "  orrery render scene.toml -o test.png --samples 20 --set camera.vfov=30\n"
+      "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");
+  command.callback([options, &action] { action = [options] { return render(*options); }; });
+}
+
+}  // namespace orrery::cli

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace orrery::cli {
+
+/// The whole program: reads argv, runs a command, prints what there is to say.
+///
+/// Result     the exit status; see base/exit_status.h
+int run(int argc, const char* const* argv);
+
+}  // namespace orrery::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/signals.h"
+
+#include <csignal>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+
+namespace orrery::cli {
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
+
+void on_signal(int signal) {
+  if (!stop.exchange(true)) return;
+  base::remove_unfinished_files();
+  _exit(128 + signal);  // as a shell reports a process that a signal ended
+}
+
+}  // namespace
+
+const std::atomic<bool>& stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  // A file-size limit is a full disk to us: the write fails and says so, instead of ending the process.
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &ignore, nullptr);
+  return stop;
+}
+
+}  // namespace orrery::cli
