@@ -13,6 +13,7 @@
 #include "format/read_scene.h"
 #include "kernel/pixel_sum.h"
 #include "kernel/render_tile.h"
+#include "scene/schema.h"
 
 namespace orrery::app {
 namespace {
@@ -93,9 +94,8 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
   info.features = features_of(world);
   for (const format::Setting& s : read.settings) {
     info.settings.push_back({s.key, s.value, s.origin});
-    const std::string bare = s.value.substr(s.value[0] == '"' ? 1 : 0, s.value.size() - (s.value[0] == '"' ? 2 : 0));
-    if (s.key == "render.precision") info.precision = bare;
-    if (s.key == "render.accelerator") info.accelerator = bare;
+    if (s.key == "render.precision") info.precision = scene::unquoted(s.value);
+    if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
   info.isa = kernel::isa_name();
   info.film_bytes = std::uint64_t(world.width) * std::uint64_t(world.height) * sizeof(kernel::PixelSum);

@@ -49,7 +49,7 @@ image::Header picture_header(const scene::Scene& scene, const compile::World& wo
     if (table.name == "render")
       for (const auto& key : table.keys)
         if (key.name == "precision" || key.name == "shading")
-          header.attributes.push_back({"orrery/" + key.name, key.text(scene)});
+          header.attributes.push_back({"orrery/" + key.name, scene::unquoted(key.text(scene))});
   if (reproducible) return header;
   header.capture_date = local_time();
   header.attributes.push_back({"orrery/renderSeconds", static_cast<float>(report.phases.render_s)});

@@ -19,7 +19,7 @@ namespace {
 std::string versions_text() {
   std::string out = "orrery " + app::program_version() + "\n";
   for (const auto& [name, version] : app::library_versions()) out += "  " + name + " " + version + "\n";
-  return out + "  CLI11 " CLI11_VERSION "\n";
+  return out + "  CLI11 " CLI11_VERSION;
 }
 
 /// The command that argv has got into: the last one that was named.

@@ -111,12 +111,14 @@ std::optional<Value> read_value(Reading& reading, const toml::node& node, const 
   return {};
 }
 
-void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
+void report_unknown_key(Reading& reading, const toml::key& key, const toml::node& node, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint) {
   const std::string name(key.str());
   std::string remedy = hint.empty() ? base::did_you_mean(name, known) : hint;
   if (remedy.empty()) remedy = "known are " + base::joined(known);
-  reading.error(place_of(key), "unknown key `" + name + "` in " + table_name, remedy);
+  // A key out of an override has no place of its own.
+  const Place place = place_of(key);
+  reading.error(place.line > 0 ? place : place_of(node), "unknown key `" + name + "` in " + table_name, remedy);
 }
 
 }  // namespace orrery::format

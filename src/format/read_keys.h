@@ -28,7 +28,7 @@ std::optional<scene::Value> read_value(Reading& reading, const toml::node& node,
                                        const std::vector<std::string>& choices);
 
 /// Reports a key that the schema does not know.
-void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
+void report_unknown_key(Reading& reading, const toml::key& key, const toml::node& node, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint = {});
 
 /// Reads a table into a target by its keys. Keys in `also` are known, but read by the caller.
@@ -39,7 +39,7 @@ void read_keys(Reading& reading, const toml::table& table, const std::string& ta
   for (const auto& key : keys) known.push_back(key.name);
   for (const auto& [key, node] : table)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(reading, key, table_name, known);
+      report_unknown_key(reading, key, node, table_name, known);
   for (const auto& key : keys) {
     const toml::node* node = table.get(key.name);
     if (node == nullptr) {

@@ -71,7 +71,7 @@ void read_material(Reading& reading, const std::string& name, const toml::table&
     for (const auto& [key, node] : table) {
       const std::string word(key.str());
       if (std::find(known.begin(), known.end(), word) != known.end() || other_type_with(word).empty()) continue;
-      report_unknown_key(reading, key, full_name + " of type " + type.name, known, other_type_with(word));
+      report_unknown_key(reading, key, node, full_name + " of type " + type.name, known, other_type_with(word));
       also.push_back(word);
     }
     scene.materials.back().model = type.model;
@@ -181,8 +181,18 @@ const toml::node* node_of(const toml::table& root, const std::string& key) {
   return at == &root ? nullptr : at;
 }
 
+bool is_error(const base::Finding& finding) { return finding.severity == base::Severity::kError; }
+
+/// Adds what is wrong with the whole. A value that could not be read stands at its default: what the whole makes of that
+/// would be a finding too many, so tables with an error are left alone, and nobody is warned of a scene that is wrong.
 void add_problems(Reading& reading, const toml::table& root, const scene::Scene& scene, const std::string& file) {
+  const bool has_errors = std::any_of(reading.findings.begin(), reading.findings.end(), is_error);
+  const auto table_of = [](const std::string& text) { return text.substr(0, text.find_first_of(". ")); };
+  std::vector<std::string> faulty;
+  for (const base::Finding& finding : reading.findings) faulty.push_back(table_of(finding.text));
   for (const scene::Problem& problem : scene::validate(scene)) {
+    if (has_errors && problem.severity == base::Severity::kWarning) continue;
+    if (std::find(faulty.begin(), faulty.end(), table_of(problem.key)) != faulty.end()) continue;
     const toml::node* node = node_of(root, problem.key);
     Place place = node != nullptr ? place_of(*node) : Place{file, 0, 0, 1};
     if (place.text_name.empty()) place.text_name = file;
@@ -196,7 +206,7 @@ void report_unknown_tables(Reading& reading, const toml::table& root) {
   known.insert(known.end(), {"material", "sphere", "points"});
   for (const auto& [key, node] : root)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(reading, key, "the scene", known);
+      report_unknown_key(reading, key, node, "the scene", known);
 }
 
 std::vector<Setting> settings_of(const toml::table& root, const scene::Scene& scene) {
@@ -208,15 +218,13 @@ std::vector<Setting> settings_of(const toml::table& root, const scene::Scene& sc
       std::string origin = "default";
       if (node != nullptr) {
         const Place place = place_of(*node);
-        origin = place.text_name == "--set" ? place.text_name : place.text_name + ":" + std::to_string(place.line);
+        origin = place.text_name == kOverrideName ? place.text_name : place.text_name + ":" + std::to_string(place.line);
       }
       settings.push_back({table.name + "." + key.name, key.text(scene), origin});
     }
   }
   return settings;
 }
-
-bool is_error(const base::Finding& finding) { return finding.severity == base::Severity::kError; }
 
 void throw_errors(const std::filesystem::path& file, std::vector<base::Finding> findings) {
   const auto errors = std::count_if(findings.begin(), findings.end(), is_error);
@@ -244,9 +252,7 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::
   for (const scene::Material& material : result.scene.materials) names.push_back(material.name);
   read_spheres(reading, root, names, result.scene);
   read_points(reading, root, file.parent_path(), names, result.scene);
-  // A value that could not be read stands at its default: what the whole makes of it would be a finding too many.
-  if (std::none_of(reading.findings.begin(), reading.findings.end(), is_error))
-    add_problems(reading, root, result.scene, file.string());
+  add_problems(reading, root, result.scene, file.string());
   throw_errors(file, reading.findings);
   result.warnings = std::move(reading.findings);
   result.settings = settings_of(root, result.scene);

@@ -79,8 +79,10 @@ std::string put(toml::table& root, const std::vector<Step>& steps, toml::node&& 
 }
 
 /// The value of an override with its place; spaces stand in for the key, so that columns are those of the override.
-toml::parse_result parse_value(const std::string& override_text, std::size_t equals, const std::string& name, bool quoted) {
-  std::string text = "v" + std::string(equals > 0 ? equals - 1 : 0, ' ') + "=";
+///
+/// `line` is the override's number: all of them together are one text, a line each.
+toml::table parse_value(const std::string& override_text, std::size_t equals, int line, bool quoted) {
+  std::string text = std::string(static_cast<std::size_t>(line) - 1, '\n') + "v" + std::string(equals - 1, ' ') + "=";
   const std::string value = override_text.substr(equals + 1);
   if (quoted) {
     text += '"';
@@ -89,20 +91,15 @@ toml::parse_result parse_value(const std::string& override_text, std::size_t equ
   } else {
     text += value;
   }
-#if TOML_EXCEPTIONS
-  return toml::parse(text, name);
-#else
-  return toml::parse(std::string_view(text), std::string_view(name));
-#endif
+  return toml::parse(std::string_view(text), std::string_view(kOverrideName));
 }
 
-void apply_override(toml::table& root, const std::string& text, SourceText& source,
+void apply_override(toml::table& root, const std::string& text, int line, SourceText& source,
                     std::vector<base::Finding>& findings) {
-  const std::string name = "--set";
-  source.add(name, text);
-  Place whole{name, 0, 0, 1};
+  source.add(kOverrideName, text);
+  const Place whole{kOverrideName, line, 1, static_cast<int>(text.size())};
   const auto fail = [&](const std::string& what, std::string remedy) {
-    findings.push_back(source.finding(base::Severity::kError, whole, "`" + text + "`: " + what, std::move(remedy)));
+    findings.push_back(source.finding(base::Severity::kError, whole, what, std::move(remedy)));
   };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) return fail("no key=value", "write it like camera.vfov=30");
@@ -110,10 +107,10 @@ void apply_override(toml::table& root, const std::string& text, SourceText& sour
   if (steps.empty()) return fail("this is no key", "write it like camera.vfov=30 or sphere[0].radius=2");
   toml::table parsed;
   try {
-    parsed = parse_value(text, equals, name, false);
+    parsed = parse_value(text, equals, line, false);
   } catch (const toml::parse_error&) {
     try {
-      parsed = parse_value(text, equals, name, true);  // a word without quotes
+      parsed = parse_value(text, equals, line, true);  // a word without quotes
     } catch (const toml::parse_error& error) {
       findings.push_back(parse_finding(error, source));
       return;
@@ -139,7 +136,8 @@ toml::table parse_tree(const std::string& file_name, const std::string& text, co
     findings.push_back(parse_finding(error, source));
     return root;
   }
-  for (const std::string& override_text : overrides) apply_override(root, override_text, source, findings);
+  int line = 0;
+  for (const std::string& override_text : overrides) apply_override(root, override_text, ++line, source, findings);
   return root;
 }
 

@@ -11,6 +11,9 @@
 
 namespace orrery::format {
 
+/// The name of the text that all overrides together are, in the place of a file's name.
+inline constexpr const char* kOverrideName = "--set";
+
 /// Where a node or a key stands.
 Place place_of(const toml::node& node);
 Place place_of(const toml::key& key);

@@ -35,12 +35,18 @@ void add_tables(std::string& out, const scene::Scene& scene) {
   }
 }
 
-void add_material(std::string& out, const scene::Material& material) {
-  const scene::MaterialType& type = scene::material_types()[material.model.index()];
-  out += "[material." + (is_bare_key(material.name) ? material.name : string_text(material.name)) + "]\ntype = " +
-         string_text(type.name) + "\n";
-  for (const auto& key : type.keys)
-    if (key.required || key.text(material.model) != key.text(type.model)) out += key.name + " = " + key.text(material.model) + "\n";
+/// One line each: a scene may have as many materials as spheres.
+void add_materials(std::string& out, const std::vector<scene::Material>& materials) {
+  if (materials.empty()) return;
+  out += "[material]\n";
+  for (const scene::Material& material : materials) {
+    const scene::MaterialType& type = scene::material_types()[material.model.index()];
+    out += (is_bare_key(material.name) ? material.name : string_text(material.name)) + " = { type = " + string_text(type.name);
+    for (const auto& key : type.keys)
+      if (key.required || key.text(material.model) != key.text(type.model))
+        out += ", " + key.name + " = " + key.text(material.model);
+    out += " }\n";
+  }
   out += '\n';
 }
 
@@ -59,7 +65,7 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   std::string out;
   add_comment(out, comment);
   add_tables(out, scene);
-  for (const scene::Material& material : scene.materials) add_material(out, material);
+  add_materials(out, scene.materials);
   for (const scene::Sphere& sphere : scene.spheres) {
     out += "[[sphere]]\n";
     if (!sphere.name.empty()) out += "name = " + string_text(sphere.name) + "\n";

@@ -186,4 +186,8 @@ std::string string_text(const std::string& value) {
   return out + '"';
 }
 
+std::string unquoted(const std::string& text) {
+  return text.size() >= 2 && text.front() == '"' ? text.substr(1, text.size() - 2) : text;
+}
+
 }  // namespace orrery::scene

@@ -64,5 +64,7 @@ std::string number_text(double value);
 std::string vector_text(Vec3d value);
 /// With quotes and escapes.
 std::string string_text(const std::string& value);
+/// A choice's word out of Key::text.
+std::string unquoted(const std::string& text);
 
 }  // namespace orrery::scene
