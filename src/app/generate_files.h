@@ -7,12 +7,13 @@
 
 namespace orrery::app {
 
-/// Writes a generated scene, with a comment that tells the command which makes it again.
+/// Writes a generated scene: TOML to `file`, bulk spheres beside it to the same name with .ply for an extension.
 ///
-/// Errors     base::Error: kUsage, kCannotCreate, kIo
+/// A comment at the head says what it shows and which command makes it again, the same byte for byte.
+///
+/// Errors     base::Error: kUsage for options outside their range and for a `file` that itself ends in .ply;
+///            kCannotCreate before anything is generated; kIo
 void generate_final(const FinalScene& options, const std::filesystem::path& file);
-
-/// The same; the spheres go to a PLY file beside it.
 void generate_cloud(const Cloud& options, const std::filesystem::path& file);
 
 }  // namespace orrery::app

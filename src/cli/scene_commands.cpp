@@ -91,10 +91,11 @@ void add_generate(CLI::App& program, Action& action) {
   final_scene.add_option("-o,--output", options->output, "Scene file to write")->required()->type_name("FILE");
   final_scene.add_option("--seed", options->final_scene.seed, "Another seed is another scene")->type_name("N");
   final_scene.add_option("--grid", options->final_scene.grid, "Cells from the middle to the edge; 11 is the book's")->type_name("N");
-  CLI::App& cloud = *command.add_subcommand("cloud", "A ball of small spheres: a scene file and a PLY file beside it");
+  CLI::App& cloud = *command.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY file beside it");
   cloud.add_option("-o,--output", options->output, "Scene file to write")->required()->type_name("FILE");
   cloud.add_option("--seed", options->cloud.seed, "Another seed is another scene")->type_name("N");
   cloud.add_option("--count", options->cloud.count, "Spheres")->type_name("N");
+  cloud.add_option("--radius", options->cloud.radius, "Of every sphere; by the count, and varied, where not given")->type_name("R");
   command.footer("Examples:\n  orrery generate final -o final.toml --seed 7\n  orrery generate cloud -o cloud.toml --count 1000000");
   final_scene.callback([options, &action] {
     action = [options] { return app::generate_final(options->final_scene, options->output), 0; };
