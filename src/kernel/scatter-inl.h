@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include "kernel/intersect-inl.h"
 #include "kernel/material.h"
 #include "kernel/random-inl.h"
 #include "kernel/sample-inl.h"

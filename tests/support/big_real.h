@@ -5,7 +5,7 @@
 
 namespace orrery::test {
 
-/// A real number of 512 bits: products of doubles from 1e-30 to 1e30 lose nothing that a test could see.
+/// A real number of 320 bits: products of doubles from 1e-30 to 1e30 lose nothing that a test could see.
 class BigReal {
  public:
   BigReal() : BigReal(0.0) {}
@@ -33,7 +33,7 @@ class BigReal {
   double to_double() const { return mpfr_get_d(value_, MPFR_RNDN); }
 
  private:
-  static constexpr mpfr_prec_t kBits = 512;
+  static constexpr mpfr_prec_t kBits = 320;
   template <class Function>
   static BigReal apply(Function function, const BigReal& a, const BigReal& b) {
     BigReal out;

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole renders against pictures that are known by formula.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "compile/compile.h"
+#include "render/render.h"
+#include "support/chi_square.h"
+
+namespace orrery::test {
+namespace {
+
+constexpr int kSide = 64;
+constexpr int kSeeds = 24;
+constexpr double kAlbedo[3] = {0.8, 0.5, 0.2};
+
+/// A diffuse sphere alone under the gradient sky, seen from far away so that every pixel is on it.
+scene::Scene diffuse_sphere(double albedo_factor) {
+  scene::Scene s;
+  s.image = {kSide, kSide};
+  s.camera.look_from = {300, 400, 1200};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 0.06;  // of 0.088 degrees: the corners are on the sphere too
+  s.render.samples = 64;
+  s.background.bottom = {1, 0.9, 0.8};
+  s.background.top = {0.2, 0.5, 1};
+  s.materials = {{"m", scene::Lambertian{{kAlbedo[0] * albedo_factor, kAlbedo[1] * albedo_factor, kAlbedo[2] * albedo_factor}}}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}};
+  return s;
+}
+
+/// What one channel of one pixel should be: the sky is linear in y, so its cosine-weighted mean over the hemisphere
+/// around n is the sky at height 2/3 n.y. Averaged over the pixel's area.
+double expected(const compile::World& world, int px, int py, int channel) {
+  constexpr int kGrid = 4;
+  double sum = 0;
+  const kernel::Camera& c = world.camera;
+  for (int i = 0; i < kGrid * kGrid; ++i) {
+    const double x = px + (i % kGrid + 0.5) / kGrid - c.half_width, y = py + (i / kGrid + 0.5) / kGrid - c.half_height;
+    double o[3], d[3], dd = 0, od = 0, oo = 0;
+    for (int k = 0; k < 3; ++k) {
+      o[k] = c.origin[k];
+      d[k] = c.forward[k] + x * c.right[k] + y * c.down[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+      dd += d[k] * d[k];
+      od += o[k] * d[k];
+      oo += o[k] * o[k];
+    }
+    const double t = (-od - std::sqrt(od * od - dd * (oo - 1))) / dd;
+    const double normal_y = o[1] + t * d[1];
+    const double a = (2.0 / 3.0 * normal_y + 1) / 2;
+    sum += kAlbedo[channel] * (world.background.bottom[channel] * (1 - a) + world.background.top[channel] * a);
+  }
+  return sum / (kGrid * kGrid);
+}
+
+/// Residuals of many seeds, summed up over the picture in several ways; each as a t-statistic over the seeds.
+std::vector<double> z_scores(double albedo_factor) {
+  constexpr int kTiles = 4;
+  constexpr int kSums = 2 + kTiles * kTiles;  // all, all weighted by height, each tile
+  std::vector<std::vector<double>> sums(kSums, std::vector<double>(kSeeds, 0.0));
+  const compile::World world = compile::compile(diffuse_sphere(albedo_factor));
+  std::vector<double> truth;
+  for (int c = 0; c < 3; ++c)
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) truth.push_back(expected(world, x, y, c));
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    compile::World seeded = world;
+    seeded.seed = static_cast<std::uint32_t>(seed + 1);
+    const render::Result result = render::render(seeded, {});
+    std::size_t i = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x, ++i) {
+          const double residual = static_cast<double>(result.picture.planes[c].values[i % (kSide * kSide)]) - truth[i];
+          const auto s = static_cast<std::size_t>(seed);
+          sums[0][s] += residual;
+          sums[1][s] += residual * (kSide / 2 - y);
+          sums[static_cast<std::size_t>(2 + y * kTiles / kSide * kTiles + x * kTiles / kSide)][s] += residual;
+        }
+  }
+  std::vector<double> z;
+  for (const auto& values : sums) {
+    double mean = 0, square = 0;
+    for (const double v : values) mean += v / kSeeds;
+    for (const double v : values) square += (v - mean) * (v - mean);
+    z.push_back(mean / std::sqrt(square / (kSeeds - 1) / kSeeds));
+  }
+  return z;
+}
+
+/// Twenty-three degrees of freedom: a right renderer is beyond this once in about a hundred thousand statistics.
+constexpr double kLargestT = 5.6;
+
+TEST(StatisticalClosedForm, ADiffuseSphereUnderAGradientSky) {
+  for (const double z : z_scores(1)) EXPECT_LT(std::abs(z), kLargestT);
+}
+
+TEST(StatisticalClosedForm, AnAlbedoWrongByAThousandthIsSeenAtSixSigma) {
+  EXPECT_GT(std::abs(z_scores(1.001)[0]), 6);
+}
+
+}  // namespace
+}  // namespace orrery::test
