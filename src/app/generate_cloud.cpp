@@ -34,6 +34,8 @@ constexpr std::array<Puff, 8> kPuffs{{{{-1.45, 0.00, 0.05}, 0.50},
 constexpr double kCrossSection = 12;
 /// So that a cloud of three spheres is not one ball.
 constexpr double kLargestDefaultRadius = 0.3;
+/// How far out the sum of two points of the unit ball goes, against one point of it.
+constexpr double kSpread = 0.65;
 /// A sphere's size, in units of the one that makes the cross-section right.
 constexpr double kSmallestShare = 0.5, kLargestShare = 1.4;
 
@@ -64,7 +66,7 @@ class PuffChoice {
 };
 
 /// Mostly white, a few spheres tinted, fewer of metal. The order is that of the scene's materials.
-std::uint32_t pick_material(double u) { return u < 0.72 ? 0 : u < 0.90 ? 1 : u < 0.97 ? 2 : 3; }
+std::uint32_t pick_material(double u) { return u < 0.75 ? 0 : u < 0.87 ? 1 : u < 0.95 ? 2 : 3; }
 
 void check(const Cloud& options) {
   if (options.count < 1 || options.count > kLargestCloud)
@@ -85,11 +87,12 @@ scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& point
   scene.camera.look_from = {0.3, 0.1, 9};
   scene.camera.look_at = {0.15, 0.3, 0};
   scene.camera.vfov = 20;
-  scene.background.bottom = {0.85, 0.9, 1};
-  scene.background.top = {0.25, 0.5, 1};
+  // Light from above: white tops and dark undersides before a middling blue, which is what is seen of the sky.
+  scene.background.bottom = {0, 0.05, 0.2};
+  scene.background.top = {0.8, 0.95, 1.2};
   scene.materials = {{"white", scene::Lambertian{{0.95, 0.95, 0.95}}},
-                     {"blue", scene::Lambertian{{0.35, 0.55, 0.85}}},
-                     {"amber", scene::Lambertian{{0.9, 0.6, 0.25}}},
+                     {"rose", scene::Lambertian{{0.9, 0.6, 0.55}}},
+                     {"blue", scene::Lambertian{{0.3, 0.45, 0.8}}},
                      {"silver", scene::Metal{{0.9, 0.9, 0.92}, 0.1}}};
 
   GenerateRandom random(options.seed);
@@ -103,7 +106,9 @@ scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& point
   points.materials.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Puff& puff = choose(random.unit());
-    points.centers.push_back(puff.center + puff.radius * random.in_ball());
+    // The sum of two points thins out towards the rim: from one alone the balls of the shape could be told apart.
+    const Vec3d a = random.in_ball(), b = random.in_ball();
+    points.centers.push_back(puff.center + kSpread * puff.radius * (a + b));
     const double share = random.between(kSmallestShare, kLargestShare);
     points.radii.push_back(options.radius ? *options.radius : mean * share);
     points.materials.push_back(pick_material(random.unit()));
