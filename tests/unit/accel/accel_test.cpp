@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Embree against the list, ray by ray: the same sphere, the same bits of distance.
+#include "accel/accel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "support/intersect_batch.h"
+
+namespace orrery::accel {
+namespace {
+
+using kernel::kNoSphere;
+using kernel::kPacketSize;
+using kernel::Sphere;
+
+struct Random {
+  std::mt19937_64 engine{11};
+  double uniform(double a, double b) { return a + (b - a) * static_cast<double>(engine() >> 11) * 0x1p-53; }
+  bool coin() { return (engine() & 1) != 0; }
+};
+
+long ray_count() {
+  const char* wanted = std::getenv("ORRERY_ACCEL_RAYS");
+  return wanted != nullptr ? static_cast<long>(std::atof(wanted)) : 200'000;
+}
+
+struct Scene {
+  const char* name;
+  std::vector<Sphere> spheres;
+  double camera_distance;  ///< from the first small sphere, scene units
+};
+
+std::vector<Sphere> scattered(Random& random, int count, double spread, double radius, double offset) {
+  std::vector<Sphere> out;
+  for (int i = 0; i < count; ++i)
+    out.push_back({offset + random.uniform(-spread, spread), random.uniform(-spread, spread), offset + random.uniform(-spread, spread),
+                   radius * random.uniform(0.1, 1)});
+  return out;
+}
+
+std::vector<Scene> scenes() {
+  Random random;
+  std::vector<Scene> list;
+  list.push_back({"one sphere", {{0, 0, 0, 1}}, 10});
+  list.push_back({"cloud", scattered(random, 200, 1, 0.2, 0), 5});
+  std::vector<Sphere> book = scattered(random, 150, 8, 0.2, 0);
+  book.push_back({0, -1000, 0, 1000});
+  list.push_back({"a ground of radius 1000", book, 15});
+  std::vector<Sphere> planet = scattered(random, 100, 2, 0.3, 0);
+  planet.insert(planet.begin() + 3, {0, -1e9, 0, 1e9});
+  list.push_back({"a ground of radius 1e9", planet, 6});
+  list.push_back({"offset 1e6", scattered(random, 100, 3, 0.5, 1e6), 10});
+  list.push_back({"tiny", scattered(random, 100, 1e-12, 2e-13, 0), 1e-11});
+  list.push_back({"seen from 1e9", scattered(random, 100, 1, 0.3, 0), 1e9});
+  std::vector<Sphere> mixed;
+  for (int i = 0; i < 60; ++i) mixed.push_back({random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5), std::exp(random.uniform(-12, 1))});
+  list.push_back({"radii over five decades", mixed, 20});
+  list.push_back({"coincident", std::vector<Sphere>(40, {1, 2, 3, 0.5}), 4});
+  return list;
+}
+
+void normalize(double (&d)[3]) {
+  const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (double& x : d) x /= length;
+}
+
+/// Half of the rays aim at places where boxes and spheres part: poles, rims, corners of boxes.
+void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
+  const auto pick = [&] { return static_cast<std::size_t>(random.uniform(0, static_cast<double>(scene.spheres.size()))); };
+  const Sphere& target = scene.spheres[pick()];
+  const double center[3] = {target.x, target.y, target.z};
+  double base[3], offset[3] = {0, 0, 0}, direction[3], point[3];
+  std::uint64_t self = kNoSphere;
+  if (random.coin()) {  // from a sphere
+    self = pick();
+    const Sphere& s = scene.spheres[self];
+    const double c[3] = {s.x, s.y, s.z};
+    double n[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    normalize(n);
+    for (int i = 0; i < 3; ++i) {
+      base[i] = c[i];
+      offset[i] = n[i] * s.radius;
+    }
+  } else {
+    double away[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    normalize(away);
+    for (int i = 0; i < 3; ++i) base[i] = center[i] + away[i] * scene.camera_distance;
+  }
+  double side[3] = {0, 0, 0};
+  const double kind = random.uniform(0, 1);
+  if (kind < 0.25) {  // a pole, where the sphere touches its box
+    side[static_cast<int>(random.uniform(0, 3))] = random.coin() ? 1 : -1;
+    for (double& x : side) x *= 1 + random.uniform(-1e-9, 1e-9);
+  } else if (kind < 0.5) {  // a rim or a corner
+    for (double& x : side) x = random.coin() ? 1 : -1;
+    if (random.coin()) normalize(side);
+  } else {
+    for (double& x : side) x = random.uniform(-1, 1);
+  }
+  for (int i = 0; i < 3; ++i) {
+    point[i] = center[i] + side[i] * target.radius;
+    direction[i] = (point[i] - base[i]) - offset[i];
+  }
+  normalize(direction);
+  if (!std::isfinite(direction[0])) direction[0] = 1, direction[1] = direction[2] = 0;
+  test::set_ray(packet, lane, base, offset, direction, self);
+}
+
+TEST(AccelAccel, EmbreeFindsExactlyWhatTheListFinds) {
+  for (const Scene& scene : scenes()) {
+    const std::vector<std::uint32_t> materials(scene.spheres.size(), 0);
+    kernel::SceneView view;
+    view.spheres = scene.spheres.data();
+    view.sphere_materials = materials.data();
+    view.sphere_count = scene.spheres.size();
+    const auto list = make_list(view, kernel::Precision::kExact), embree = make_embree(view, kernel::Precision::kExact);
+    Random random;
+    long hits = 0, rays = 0, lost = 0, different = 0;
+    for (; rays < ray_count() / 8; rays += kPacketSize) {
+      kernel::RayPacket a;
+      a.count = kPacketSize;
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        aim(random, scene, a, lane);
+        a.distance[lane] = std::numeric_limits<double>::max();
+        a.hit[lane] = kNoSphere;
+      }
+      kernel::RayPacket b = a;
+      list->tracer().trace(list->tracer().self, a);
+      embree->tracer().trace(embree->tracer().self, b);
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        hits += a.hit[lane] != kNoSphere;
+        lost += a.hit[lane] != kNoSphere && b.hit[lane] == kNoSphere;
+        different += a.hit[lane] != b.hit[lane] || (a.hit[lane] != kNoSphere && a.distance[lane] != b.distance[lane]);
+      }
+    }
+    EXPECT_EQ(different, 0) << scene.name << ": " << lost << " lost of " << hits << " hits";
+    EXPECT_GT(hits, rays / 10) << scene.name;
+  }
+}
+
+TEST(AccelAccel, APacketMayBePartlyFilled) {
+  const std::vector<Sphere> spheres = {{0, 0, -5, 1}, {0, 0, 5, 1}};
+  kernel::SceneView view;
+  view.spheres = spheres.data();
+  view.sphere_count = 2;
+  const auto embree = make_embree(view, kernel::Precision::kExact);
+  for (int count = 1; count <= kPacketSize; ++count) {
+    kernel::RayPacket p;
+    p.count = count;
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      test::set_ray(p, lane, {0, 0, 0}, {0, 0, 0}, {0, 0, -1}, kNoSphere);
+      p.distance[lane] = std::numeric_limits<double>::max();
+      p.hit[lane] = kNoSphere;
+    }
+    embree->tracer().trace(embree->tracer().self, p);
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      EXPECT_EQ(p.hit[lane], lane < count ? 0u : std::uint64_t{kNoSphere}) << count;
+      if (lane < count) {
+        EXPECT_EQ(p.distance[lane], 4);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orrery::accel

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compile/compile.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compile/camera_basis.h"
+
+namespace orrery::compile {
+namespace {
+
+scene::Scene one_of_each() {
+  scene::Scene s;
+  s.materials = {{"unused", scene::Metal{}}, {"grey", scene::Lambertian{}}, {"glass", scene::Dielectric{1.5, scene::Fresnel::kExact}}};
+  s.spheres = {{{0, 0, -1}, 0.5, 1, ""}, {{1, 0, -1}, 0.5, 2, ""}, {{1, 0, -1}, -0.4, 2, ""}, {{2, 0, 0}, -1, 1, ""}};
+  return s;
+}
+
+TEST(CompileCompile, LeavesOutWhatNoSphereUses) {
+  const World world = compile(one_of_each());
+  EXPECT_FALSE(world.features.metal);
+  EXPECT_FALSE(world.features.fuzz);
+  EXPECT_FALSE(world.features.hemisphere);
+  EXPECT_TRUE(world.features.lambertian);
+  EXPECT_TRUE(world.features.dielectric);
+  EXPECT_EQ(world.materials.size(), 3u);  // grey, glass, glass turned inside out
+}
+
+TEST(CompileCompile, ANegativeRadiusTurnsGlassInsideOut) {
+  const World world = compile(one_of_each());
+  for (const kernel::Sphere& s : world.spheres) EXPECT_GT(s.radius, 0);
+  const kernel::Material& outward = world.materials[world.sphere_materials[1]];
+  const kernel::Material& inward = world.materials[world.sphere_materials[2]];
+  EXPECT_EQ(outward.eta[0], 1 / 1.5);
+  EXPECT_EQ(outward.eta[1], 1.5);
+  EXPECT_EQ(inward.eta[0], outward.eta[1]);
+  EXPECT_EQ(inward.eta[1], outward.eta[0]);
+  EXPECT_EQ(inward.fresnel, kernel::FresnelKind::kExact);
+  EXPECT_EQ(world.sphere_materials[0], world.sphere_materials[3]) << "a diffuse sphere has no inside";
+}
+
+TEST(CompileCompile, PointsFollowSpheresInTheOrderOfTheirIds) {
+  scene::Scene s = one_of_each();
+  scene::Points points;
+  points.material = 0;
+  points.centers = {{9, 0, 0}, {8, 0, 0}};
+  points.radii = {1, 2};
+  points.materials = {1, 0};
+  s.points.push_back(points);
+  const World world = compile(s);
+  ASSERT_EQ(world.spheres.size(), 6u);
+  EXPECT_EQ(world.spheres[4].x, 9);
+  EXPECT_EQ(world.sphere_materials[4], world.sphere_materials[0]);
+  EXPECT_EQ(world.materials[world.sphere_materials[5]].kind, kernel::MaterialKind::kMetal);
+}
+
+TEST(CompileCompile, AConstantBackgroundNeedsNoDirection) {
+  scene::Scene s = one_of_each();
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0.25, 0.5, 0.75};
+  const World world = compile(s);
+  EXPECT_FALSE(world.features.sky);
+  EXPECT_EQ(world.background.bottom[2], 0.75);
+}
+
+TEST(CompileCameraBasis, SpansThePictureOnTheFocusPlane) {
+  scene::Camera camera;
+  camera.look_from = {0, 0, 10};
+  camera.look_at = {0, 0, 0};
+  camera.vfov = 90;
+  camera.defocus_angle = 90;
+  camera.focus_distance = 2;
+  const kernel::Camera c = compile_camera(camera, {200, 100});
+  EXPECT_DOUBLE_EQ(c.forward[2], -2);
+  EXPECT_DOUBLE_EQ(c.right[0] * 100, 4);  // twice the tangent of 45 degrees at distance 2, by the height in pixels
+  EXPECT_DOUBLE_EQ(c.down[1] * 100, -4);
+  EXPECT_DOUBLE_EQ(c.lens_u[0], 2);
+  EXPECT_EQ(c.half_width, 100);
+}
+
+TEST(CompileCameraBasis, FocusesOnWhatItLooksAtByDefault) {
+  scene::Camera camera;
+  camera.look_from = {3, 0, 4};
+  camera.look_at = {0, 0, 0};
+  EXPECT_EQ(focus_distance(camera), 5);
+}
+
+}  // namespace
+}  // namespace orrery::compile
