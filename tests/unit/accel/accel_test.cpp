@@ -70,10 +70,23 @@ void normalize(double (&d)[3]) {
   for (double& x : d) x /= length;
 }
 
+/// A ray that is tangent to a sphere at one of the six places where it touches its box, or a little inside.
+void graze_pole(Random& random, const Scene& scene, const Sphere& s, kernel::RayPacket& packet, int lane) {
+  const int axis = static_cast<int>(random.uniform(0, 3)), across = (axis + 1) % 3, other = (axis + 2) % 3;
+  const double turn = random.coin() ? 0 : random.uniform(0, 6.28);
+  double direction[3] = {0, 0, 0}, base[3] = {s.x, s.y, s.z};
+  direction[across] = std::cos(turn);
+  direction[other] = std::sin(turn);
+  base[axis] += (random.coin() ? 1 : -1) * s.radius * (1 - std::exp(random.uniform(-30, -10)));
+  for (int i = 0; i < 3; ++i) base[i] -= direction[i] * scene.camera_distance;
+  test::set_ray(packet, lane, base, {0, 0, 0}, direction, kNoSphere);
+}
+
 /// Half of the rays aim at places where boxes and spheres part: poles, rims, corners of boxes.
 void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
   const auto pick = [&] { return static_cast<std::size_t>(random.uniform(0, static_cast<double>(scene.spheres.size()))); };
   const Sphere& target = scene.spheres[pick()];
+  if (random.uniform(0, 1) < 0.4) return graze_pole(random, scene, target, packet, lane);
   const double center[3] = {target.x, target.y, target.z};
   double base[3], offset[3] = {0, 0, 0}, direction[3], point[3];
   std::uint64_t self = kNoSphere;
