@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "film/encoded_picture.h"
 #include "film/picture.h"
@@ -20,23 +21,30 @@ struct Settings {
 
 /// What was chosen, by name.
 struct Choice {
-  std::string config;  ///< "built-in", or the config's file
+  std::string config;                 ///< "built-in", or the config's file
+  std::string config_id;              ///< OCIO's own digest of the config: another text gives another id
   std::string display, view;
+  std::vector<std::string> warnings;  ///< what OCIO remarked about the config
 };
 
 /// Finds out what `settings` come to.
 ///
-/// Errors     base::Error: kMissingInput for a config that cannot be opened, kBadData for one that cannot be
-///            understood, kUsage for a display, view, look or colour space that it lacks, with near names
+/// Errors     base::Error: kMissingInput for a config (or a table that it names) that cannot be opened, kBadData for one
+///            that cannot be understood, kUsage for a display, view, look or colour space that it lacks, with near names,
+///            and for an exposure that is no finite number
 Choice choose(const Settings& settings);
 
 /// Develops planes R, G, B: exposure, look, the display's view; rounded to the nearest of 2^bits values.
 ///
-/// Alpha does not count: what is there is shown as over black. Values outside of the display are clamped.
+/// Alpha does not count: what is there is shown as over black. NaN and infinities, which whoever calls has counted,
+/// become 0 as in files; light beyond the largest half after exposure becomes that. Values outside of the display are
+/// clamped. With dither, the fraction that rounding would lose decides how often the higher value is taken, in a
+/// pattern that depends on the pixel alone.
 ///
 /// Domain     bits 8 or 16
 /// Errors     as choose; kBadData where a plane is missing
-film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits);
+/// Cost       40 ns a pixel in the built-in config, 160 through an ACES view
+film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither = false);
 
 /// The version of OpenColorIO that is loaded.
 std::string ocio_version();

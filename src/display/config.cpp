@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/config.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <sstream>
+
+#include "base/error.h"
+#include "display/builtin_config.h"
+
+namespace orrery::display {
+namespace {
+
+namespace ocio = OCIO_NAMESPACE;
+
+/// Collects what OCIO would print while this lives.
+class LogCapture {
+ public:
+  explicit LogCapture(std::vector<std::string>& lines) : lock_(mutex()) {
+    ocio::SetLoggingFunction([&lines](const char* text) {
+      std::string line(text);
+      while (!line.empty() && line.back() == '\n') line.pop_back();
+      if (!line.empty()) lines.push_back(line);
+    });
+  }
+  ~LogCapture() { ocio::ResetToDefaultLoggingFunction(); }
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;  // OCIO has one logging function a process
+    return one;
+  }
+  std::lock_guard<std::mutex> lock_;
+};
+
+/// Where newer versions of OCIO keep configs of their own: no file, the name says which.
+bool is_library_config(const std::string& name) { return name.rfind("ocio://", 0) == 0; }
+
+ocio::ConstConfigRcPtr load(const std::string& file) {
+  if (file.empty()) {
+    std::istringstream text(kBuiltinConfig);
+    return ocio::Config::CreateFromStream(text);
+  }
+  std::error_code ignored;
+  if (!is_library_config(file) && (!std::filesystem::is_regular_file(file, ignored) || !std::ifstream(file)))
+    throw base::Error(base::ErrorKind::kMissingInput,
+                      "cannot open the OCIO config " + file + "; it is named by --ocio, the scene or $OCIO");
+  try {
+    ocio::ConstConfigRcPtr config = ocio::Config::CreateFromFile(file.c_str());
+    config->validate();
+    return config;
+  } catch (const std::exception& error) {
+    throw base::Error(base::ErrorKind::kBadData, "the OCIO config " + file + " cannot be used: " + error.what());
+  }
+}
+
+}  // namespace
+
+Config load_config(const std::string& file) {
+  Config out;
+  std::string name = file;
+  if (const char* const environment = std::getenv("OCIO"); name.empty() && environment != nullptr) name = environment;
+  const LogCapture capture(out.warnings);
+  out.config = load(name);
+  out.source = name.empty() ? "built-in" : name;
+  return out;
+}
+
+}  // namespace orrery::display

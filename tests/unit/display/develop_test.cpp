@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/develop.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "base/error.h"
+
+namespace orrery::display {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+using Rgb = std::array<float, 3>;
+
+film::Picture flat(int width, int height, Rgb color) {
+  film::Picture picture{width, height, {}};
+  const auto pixels = static_cast<std::size_t>(width * height);
+  const char* const names[3] = {"R", "G", "B"};
+  for (std::size_t c = 0; c < 3; ++c) picture.planes.push_back({names[c], std::vector<float>(pixels, color[c])});
+  return picture;
+}
+
+std::vector<std::uint16_t> shown(Rgb color, const Settings& settings, int bits = 8) {
+  return develop(flat(1, 1, color), settings, bits).values;
+}
+
+std::vector<std::uint16_t> grey(int level) { return std::vector<std::uint16_t>(3, static_cast<std::uint16_t>(level)); }
+
+Settings on(const std::string& display, const std::string& view = "Un-tone-mapped") {
+  Settings settings;
+  settings.display = display;
+  settings.view = view;
+  return settings;
+}
+
+/// Every test looks at the built-in config, whatever the user's environment names.
+class DisplayDevelop : public testing::Test {
+ protected:
+  void SetUp() override { ::unsetenv("OCIO"); }
+};
+
+struct Level {
+  const char* display;
+  float linear;
+  double encoded;  ///< by the display's standard, 0..1
+};
+
+class DisplayDevelopCurve : public testing::TestWithParam<Level> {
+ protected:
+  void SetUp() override { ::unsetenv("OCIO"); }
+};
+
+TEST_P(DisplayDevelopCurve, EncodesGreyByTheDisplaysStandard) {
+  const auto [display, linear, encoded] = GetParam();
+  const auto values = shown({linear, linear, linear}, on(display), 16);
+  // The way there is through float matrices: a part in a million, times the slope of the curve.
+  for (const std::uint16_t v : values) EXPECT_NEAR(v, encoded * 65535, 1.5) << display << " " << linear;
+}
+
+/// IEC 61966-2-1.
+double srgb(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }
+
+INSTANTIATE_TEST_SUITE_P(
+    Displays, DisplayDevelopCurve,
+    testing::Values(Level{"sRGB", 0.5f, srgb(0.5)}, Level{"sRGB", 0.18f, srgb(0.18)}, Level{"sRGB", 0.002f, srgb(0.002)},
+                    Level{"sRGB", 1, 1}, Level{"Display P3", 0.5f, srgb(0.5)}, Level{"Display P3", 0.002f, srgb(0.002)},
+                    Level{"Display P3", 1, 1}, Level{"Rec.1886 Rec.709", 0.18f, std::pow(0.18, 1 / 2.4)},
+                    Level{"Rec.1886 Rec.709", 1, 1}, Level{"P3-D65 Cinema", 0.18f, std::pow(0.18, 1 / 2.6)},
+                    Level{"P3-D65 Cinema", 1, 1}, Level{"Gamma 2.0 Rec.709", 0.25f, 0.5},
+                    Level{"Gamma 2.0 Rec.709", 0.04f, 0.2}, Level{"Gamma 2.0 Rec.709", 1, 1}));
+
+TEST_F(DisplayDevelop, GivesTheLevelsThatPeopleKnowByHeart) {
+  EXPECT_EQ(shown({0.5f, 0.5f, 0.5f}, on("sRGB")), grey(188));
+  EXPECT_EQ(shown({0.18f, 0.18f, 0.18f}, on("sRGB")), grey(118));
+  EXPECT_EQ(shown({0.36f, 0.36f, 0.36f}, on("Gamma 2.0 Rec.709")), grey(153));
+}
+
+TEST_F(DisplayDevelop, ShowsRec709RedInsideOfTheWiderP3) {
+  // Rec.709 red in P3 is 0.82246, 0.03319, 0.01708.
+  EXPECT_EQ(shown({1, 0, 0}, on("sRGB")), (std::vector<std::uint16_t>{255, 0, 0}));
+  EXPECT_EQ(shown({1, 0, 0}, on("Display P3")), (std::vector<std::uint16_t>{234, 51, 35}));
+  EXPECT_EQ(shown({1, 0, 0}, on("P3-D65 Cinema")), (std::vector<std::uint16_t>{237, 69, 53}));
+}
+
+TEST_F(DisplayDevelop, AcesPutsMiddleGreyAtATenthOfWhite) {
+  // The output transform's own anchor: 18 % grey goes to 4.8 of 48 cd/m2 in a dark cinema, and for video in a dim room
+  // luminance is raised to 0.9811.
+  const auto values = shown({0.18f, 0.18f, 0.18f}, on("sRGB", "ACES 1.0 SDR Video"), 16);
+  for (const std::uint16_t v : values) EXPECT_NEAR(v, srgb(std::pow(0.1, 0.9811)) * 65535, 65535 * 0.001);
+  const auto bright = shown({8, 8, 8}, on("sRGB", "ACES 1.0 SDR Video"), 16);
+  for (const std::uint16_t v : bright) EXPECT_TRUE(v > 62000 && v < 65535) << v;  // rolls off, where a clamp is white
+}
+
+TEST_F(DisplayDevelop, RawChangesNothing) {
+  EXPECT_EQ(shown({0.2f, 0.4f, 0.6f}, on("sRGB", "Raw")), (std::vector<std::uint16_t>{51, 102, 153}));
+}
+
+TEST_F(DisplayDevelop, TakesTheConfigsFirstDisplayAndViewWhereNoneIsNamed) {
+  const Choice choice = choose({});
+  EXPECT_EQ(choice.config, "built-in");
+  EXPECT_EQ(choice.display, "sRGB");
+  EXPECT_EQ(choice.view, "Un-tone-mapped");
+  EXPECT_TRUE(choice.warnings.empty());
+}
+
+TEST_F(DisplayDevelop, ExposureIsInStops) {
+  Settings brighter = on("sRGB");
+  brighter.exposure = 2;
+  EXPECT_EQ(shown({0.1f, 0.02f, 0.2f}, brighter, 16), shown({0.4f, 0.08f, 0.8f}, on("sRGB"), 16));
+  brighter.exposure = 1000;  // overflows, and black is still black
+  EXPECT_EQ(shown({0.1f, 0, 0.1f}, brighter), (std::vector<std::uint16_t>{255, 0, 255}));
+  brighter.exposure = -1000;
+  EXPECT_EQ(shown({1000, 1000, 1000}, brighter), grey(0));
+}
+
+TEST_F(DisplayDevelop, ALookActsOnSaturatedColoursOnly) {
+  Settings settings = on("sRGB", "Raw");
+  settings.working_space = "acescg";
+  const Rgb saturated = {0.05f, 0.8f, -0.1f}, neutral = {0.3f, 0.3f, 0.3f};
+  const auto plain = shown(saturated, settings), plain_grey = shown(neutral, settings);
+  settings.look = "ACES 1.3 gamut compress";
+  EXPECT_EQ(plain[2], 0);
+  EXPECT_GT(shown(saturated, settings)[2], 0);  // brought back into the gamut
+  EXPECT_EQ(shown(neutral, settings), plain_grey);
+}
+
+TEST_F(DisplayDevelop, ReadsTheWorkingSpaceByNameRoleAndAlias) {
+  for (const char* space : {"lin_rec709", "scene_linear", "linear"}) {
+    Settings settings = on("sRGB");
+    settings.working_space = space;
+    EXPECT_EQ(shown({0.5f, 0.5f, 0.5f}, settings), grey(188)) << space;
+  }
+  Settings wide = on("sRGB");
+  wide.working_space = "acescg";
+  const auto red = shown({0.5f, 0, 0}, wide);
+  EXPECT_GT(red[0], 200);  // more red than Rec.709's own
+  EXPECT_EQ(red[1], 0);
+}
+
+TEST_F(DisplayDevelop, ClampsAtTheEndAndMakesNoColourOfBadValues) {
+  const Settings settings = on("sRGB");
+  EXPECT_EQ(shown({-1, -1, -1}, settings), grey(0));
+  EXPECT_EQ(shown({2, 2, 2}, settings), grey(255));
+  EXPECT_EQ(shown({3e38f, 3e38f, 3e38f}, settings), grey(255));
+  EXPECT_EQ(shown({kNan, kNan, kNan}, settings), grey(0));
+  EXPECT_EQ(shown({kInfinity, kInfinity, kInfinity}, settings), grey(0));
+  // One bad channel does not spoil its neighbours.
+  EXPECT_EQ(shown({kNan, 0.5f, kInfinity}, settings), shown({0, 0.5f, 0}, settings));
+  EXPECT_EQ(shown({kNan, 0.5f, -kInfinity}, on("sRGB", "ACES 1.0 SDR Video")),
+            shown({0, 0.5f, 0}, on("sRGB", "ACES 1.0 SDR Video")));
+}
+
+TEST_F(DisplayDevelop, FindsPlanesByNameAndLeavesAlphaOut) {
+  film::Picture picture = flat(2, 1, {0.2f, 0.4f, 0.6f});
+  const auto expected = develop(picture, {}, 8).values;
+  picture.planes.push_back({"A", {0, 0.5f}});
+  std::swap(picture.planes[0], picture.planes[3]);
+  std::swap(picture.planes[1], picture.planes[2]);
+  EXPECT_EQ(develop(picture, {}, 8).values, expected);
+}
+
+TEST_F(DisplayDevelop, PutsEveryPixelInItsPlace) {
+  // More pixels than are transformed at a time, and no multiple of it.
+  film::Picture picture{301, 107, {}};
+  const std::size_t pixels = 301 * 107;
+  std::vector<float> ramp(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) ramp[i] = static_cast<float>(i * 2) / 65535.0f;
+  picture.planes = {{"R", ramp}, {"G", std::vector<float>(pixels)}, {"B", ramp}};
+  const film::EncodedPicture out = develop(picture, on("sRGB", "Raw"), 16);
+  EXPECT_EQ(out.width, 301);
+  EXPECT_EQ(out.height, 107);
+  ASSERT_EQ(out.values.size(), pixels * 3);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    ASSERT_EQ(out.values[i * 3], i * 2);
+    ASSERT_EQ(out.values[i * 3 + 1], 0);
+    ASSERT_EQ(out.values[i * 3 + 2], i * 2);
+  }
+}
+
+TEST_F(DisplayDevelop, RoundsToTheNearestLevel) {
+  for (int level = 0; level < 255; ++level) {
+    const float below = (static_cast<float>(level) + 0.49f) / 255, above = (static_cast<float>(level) + 0.51f) / 255;
+    ASSERT_EQ(shown({below, below, below}, on("sRGB", "Raw")), grey(level));
+    ASSERT_EQ(shown({above, above, above}, on("sRGB", "Raw")), grey(level + 1));
+  }
+}
+
+TEST_F(DisplayDevelop, DitherKeepsTheMeanOfWhatRoundingLoses) {
+  const float level = 100.25f / 255;
+  const film::Picture picture = flat(200, 200, {level, level, level});
+  const film::EncodedPicture out = develop(picture, on("sRGB", "Raw"), 8, true);
+  double sum = 0;
+  for (const std::uint16_t v : out.values) {
+    ASSERT_TRUE(v == 100 || v == 101) << v;
+    sum += v;
+  }
+  // 120000 values, each 1 higher with probability 1/4: the mean's standard deviation is 0.00125; six of them.
+  EXPECT_NEAR(sum / static_cast<double>(out.values.size()), 100.25, 0.0075);
+  EXPECT_EQ(develop(picture, on("sRGB", "Raw"), 8, true).values, out.values);
+}
+
+TEST_F(DisplayDevelop, DitherLeavesBlackAndWhiteAlone) {
+  for (const float v : {0.0f, 1.0f, 7.0f, -1.0f}) {
+    const film::EncodedPicture out = develop(flat(100, 100, {v, v, v}), on("sRGB", "Raw"), 8, true);
+    for (const std::uint16_t level : out.values) ASSERT_EQ(level, v > 0 ? 255 : 0);
+  }
+}
+
+TEST_F(DisplayDevelop, SaysWhetherTheResultIsEncodedAsSrgb) {
+  const film::Picture picture = flat(1, 1, {1, 1, 1});
+  EXPECT_TRUE(develop(picture, on("sRGB"), 8).is_srgb);
+  EXPECT_TRUE(develop(picture, on("sRGB", "ACES 1.0 SDR Video"), 8).is_srgb);
+  EXPECT_FALSE(develop(picture, on("sRGB", "Raw"), 8).is_srgb);
+  EXPECT_FALSE(develop(picture, on("Gamma 2.0 Rec.709"), 8).is_srgb);
+  EXPECT_FALSE(develop(picture, on("Display P3"), 8).is_srgb);
+}
+
+TEST_F(DisplayDevelop, RefusesAPictureWithoutColour) {
+  const film::Picture picture{1, 1, {{"R", {1}}, {"B", {1}}}};
+  try {
+    develop(picture, {}, 8);
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+    EXPECT_STREQ(error.what(), "the picture has no channel G");
+  }
+}
+
+}  // namespace
+}  // namespace orrery::display

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+
+#include "base/error.h"
+#include "display/builtin_config.h"
+#include "display/develop.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::display {
+namespace {
+
+/// A small config with one display of that name.
+std::string config_text(const std::string& display, const std::string& more = "") {
+  return "ocio_profile_version: 2\nenvironment: {}\nsearch_path: tables\nstrictparsing: true\n"
+         "roles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+         "file_rules:\n  - !<Rule> {name: Default, colorspace: default}\n"
+         "displays:\n  " + display + ":\n    - !<View> {name: Plain, colorspace: out}\n"
+         "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
+         "  - !<ColorSpace>\n    name: out\n"
+         "    from_reference: !<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}\n" + more;
+}
+
+class DisplayView : public testing::Test {
+ protected:
+  void SetUp() override { ::unsetenv("OCIO"); }
+  void TearDown() override { ::unsetenv("OCIO"); }
+
+  std::string file(const std::string& name, const std::string& text) const {
+    support::write_bytes(folder_ / name, text);
+    return (folder_ / name).string();
+  }
+
+  static void expect_error(const Settings& settings, base::ErrorKind kind, const std::vector<std::string>& parts) {
+    try {
+      choose(settings);
+      FAIL() << "no error";
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), kind) << error.what();
+      for (const std::string& part : parts)
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what() << "\nlacks " << part;
+    }
+  }
+
+  support::ScratchFolder folder_;
+};
+
+TEST_F(DisplayView, TheNamedConfigBeatsTheEnvironmentWhichBeatsTheBuiltIn) {
+  EXPECT_EQ(choose({}).display, "sRGB");
+  const std::string from_environment = file("a.ocio", config_text("Environment"));
+  const std::string named = file("b.ocio", config_text("Named"));
+  ::setenv("OCIO", from_environment.c_str(), 1);
+  EXPECT_EQ(choose({}).display, "Environment");
+  EXPECT_EQ(choose({}).config, from_environment);
+  Settings settings;
+  settings.config = named;
+  EXPECT_EQ(choose(settings).display, "Named");
+  EXPECT_EQ(choose(settings).config, named);
+  ::setenv("OCIO", "", 1);
+  EXPECT_EQ(choose({}).config, "built-in");
+}
+
+TEST_F(DisplayView, AConfigsOwnTransformIsUsed) {
+  Settings settings;
+  settings.config = file("a.ocio", config_text("Root"));
+  const film::Picture picture{1, 1, {{"R", {0.04f}}, {"G", {0.36f}}, {"B", {1}}}};
+  EXPECT_EQ(develop(picture, settings, 8).values, (std::vector<std::uint16_t>{51, 153, 255}));
+}
+
+TEST_F(DisplayView, PrintsNothing) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  choose({});
+  Settings settings;
+  settings.config = file("a.ocio", config_text("Root"));
+  choose(settings);
+  settings.config = file("random.ocio", "\x01\x02\xff{{{");
+  EXPECT_THROW(choose(settings), base::Error);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST_F(DisplayView, HandsOnWhatOcioRemarks) {
+  Settings settings;
+  settings.config = file("a.ocio", config_text("Root", "no_such_key: 3\n"));
+  testing::internal::CaptureStderr();
+  const Choice choice = choose(settings);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  ASSERT_EQ(choice.warnings.size(), 1u);
+  EXPECT_NE(choice.warnings[0].find("no_such_key"), std::string::npos) << choice.warnings[0];
+}
+
+TEST_F(DisplayView, TheConfigsIdTellsConfigsApart) {
+  Settings a, b;
+  a.config = file("a.ocio", config_text("One"));
+  b.config = file("b.ocio", config_text("Two"));
+  EXPECT_NE(choose(a).config_id, choose(b).config_id);
+  EXPECT_EQ(choose(a).config_id, choose(a).config_id);
+}
+
+TEST_F(DisplayView, UnknownNamesAreUsageErrorsThatListWhatThereIs) {
+  Settings settings;
+  settings.display = "sRBG";
+  expect_error(settings, base::ErrorKind::kUsage, {"no display `sRBG`", "did you mean `sRGB`?", "Gamma 2.0 Rec.709", "built-in"});
+  settings = {};
+  settings.view = "Un-tonemapped";
+  expect_error(settings, base::ErrorKind::kUsage, {"did you mean `Un-tone-mapped`?", "ACES 1.0 SDR Video", "on display `sRGB`"});
+  settings = {};
+  settings.display = "Gamma 2.0 Rec.709";
+  settings.view = "ACES 1.0 SDR Video";  // the config has it, this display has not
+  expect_error(settings, base::ErrorKind::kUsage, {"it has Un-tone-mapped, Raw"});
+  settings = {};
+  settings.look = "ACES 1.3 gamut compres";
+  expect_error(settings, base::ErrorKind::kUsage, {"no look", "did you mean `ACES 1.3 gamut compress`?"});
+  settings = {};
+  settings.working_space = "lin_rec2020x";
+  expect_error(settings, base::ErrorKind::kUsage, {"no colour space `lin_rec2020x`", "lin_rec709", "acescg"});
+  settings.config = file("a.ocio", config_text("Root"));
+  settings.working_space = "lin_rec709";
+  settings.look = "any";
+  expect_error(settings, base::ErrorKind::kUsage, {"it has none"});
+}
+
+TEST_F(DisplayView, AnExposureMustBeANumber) {
+  Settings settings;
+  settings.exposure = std::numeric_limits<double>::quiet_NaN();
+  expect_error(settings, base::ErrorKind::kUsage, {"exposure"});
+  settings.exposure = std::numeric_limits<double>::infinity();
+  expect_error(settings, base::ErrorKind::kUsage, {"exposure"});
+}
+
+TEST_F(DisplayView, AMissingConfigIsAMissingInput) {
+  Settings settings;
+  settings.config = (folder_ / "none.ocio").string();
+  expect_error(settings, base::ErrorKind::kMissingInput, {settings.config});
+  settings.config = folder_.path().string();
+  expect_error(settings, base::ErrorKind::kMissingInput, {settings.config});
+  ::setenv("OCIO", (folder_ / "gone.ocio").c_str(), 1);
+  expect_error({}, base::ErrorKind::kMissingInput, {"gone.ocio", "$OCIO"});
+}
+
+TEST_F(DisplayView, AConfigThatMakesNoSenseIsBadData) {
+  Settings settings;
+  for (const std::string text : {"", "\x01\x02\xff", "not a config", "ocio_profile_version: 99\n", "a: [1, 2\n"}) {
+    settings.config = file("bad.ocio", text);
+    expect_error(settings, base::ErrorKind::kBadData, {settings.config});
+  }
+  std::string cut = kBuiltinConfig;
+  settings.config = file("cut.ocio", cut.substr(0, cut.size() / 2));
+  expect_error(settings, base::ErrorKind::kBadData, {settings.config});
+}
+
+TEST_F(DisplayView, ATableThatAConfigNamesAndLacksIsAMissingInput) {
+  Settings settings;
+  std::string text = config_text("Root");
+  const std::string power = "!<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}";
+  text.replace(text.find(power), power.size(), "!<FileTransform> {src: curve.spi1d, interpolation: linear}");
+  settings.config = file("a.ocio", text);
+  expect_error(settings, base::ErrorKind::kMissingInput, {"curve.spi1d"});
+}
+
+}  // namespace
+}  // namespace orrery::display
