@@ -30,9 +30,11 @@ Format format_of(const std::filesystem::path& file) {
     if (extension == e.name) return e.format;
     known.emplace_back(e.name);
   }
+  const std::string near = base::did_you_mean(extension, known);
   throw base::Error(base::ErrorKind::kUsage, (extension.empty() ? file.string() + " has no extension"
-                                                                : "cannot write ." + extension + " files") +
-                                                 "; known are " + base::joined(known));
+                                                                : "." + extension + " is no picture format known here") +
+                                                 "; " + (near.empty() ? "" : near + " ") + "known are " +
+                                                 base::joined(known));
 }
 
 bool is_display_format(Format format) { return format != Format::kExr && format != Format::kHdr; }

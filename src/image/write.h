@@ -11,6 +11,7 @@
 
 #include "film/encoded_picture.h"
 #include "film/picture.h"
+#include "image/library.h"
 
 namespace orrery::image {
 
@@ -20,10 +21,12 @@ struct Attribute {
   std::variant<std::string, int, float> value;
 };
 
-/// What stands in a picture's header beside its pixels. What is empty is left out.
+/// What stands in a picture's header beside its pixels. What is empty is left out; with a header that does not change
+/// between runs, two writes give the same bytes.
 struct Header {
   std::string software;
   std::string capture_date;  ///< "YYYY:MM:DD hh:mm:ss", local time
+  std::optional<std::array<int, 2>> frames_per_second;  ///< numerator, denominator
   /// 4x4, row vectors times matrix as OpenEXR has it; see docs/output.md.
   std::optional<std::array<float, 16>> world_to_camera, world_to_ndc;
   std::optional<std::array<float, 8>> chromaticities;  ///< x, y of red, green, blue, white
@@ -33,31 +36,38 @@ struct Header {
 
 struct ExrOptions {
   bool as_float = false;            ///< half otherwise
-  std::string compression = "zips";  ///< none, zip, zips, piz, dwaa:LEVEL
+  std::string compression = "zips";  ///< as check_compression takes it
 };
 
 /// What had to be changed to fit into the file.
 struct WriteReport {
-  std::uint64_t clamped = 0;     ///< finite values beyond the largest half, now that
-  std::uint64_t not_finite = 0;  ///< now 0
+  std::uint64_t clamped = 0;     ///< finite values that the file's numbers cannot hold, now the nearest that they can
+  std::uint64_t not_finite = 0;  ///< NaN and infinities, now 0
 };
+
+/// Finds out whether a name is a compression of EXR, before there is anything to write.
+///
+/// Domain     none, rle, zip, zips, piz, dwaa or dwab, the last two with ":LEVEL" if wanted, as in dwaa:45
+/// Errors     base::Error(kUsage) listing the known ones
+void check_compression(const std::string& name);
 
 /// Writes scene-linear planes as EXR: one part, scanlines, display window and data window the whole frame.
 ///
 /// Result     the file stands under its name whole and synced, or an error is thrown and nothing has changed
-/// Errors     base::Error: kUsage for an unknown compression, kCannotCreate, kIo
+/// Errors     base::Error: kUsage for an unknown compression, kCannotCreate, kIo, kInternal for planes that do not fit
 WriteReport write_exr(const std::filesystem::path& file, const film::Picture& picture, const Header& header,
                       const ExrOptions& options);
 
-/// Writes planes R, G, B as Radiance HDR.
+/// Writes planes R, G, B as Radiance HDR, which has no negative values and shares one exponent in a pixel.
+///
+/// Result     as write_exr
+/// Errors     base::Error: kBadData where a plane is missing, kCannotCreate, kIo
 WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& picture);
 
-/// Writes a picture for a display, in the format of the file's extension.
+/// Writes a picture for a display, in the format of the file's extension; always the same bytes for the same picture.
 ///
-/// Errors     as write_exr; kUsage where the format does not hold so many bits
+/// Result     as write_exr
+/// Errors     base::Error: kUsage where the format does not hold so many bits, kCannotCreate, kIo
 void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software);
-
-/// The version of OpenImageIO that is loaded.
-std::string oiio_version();
 
 }  // namespace orrery::image

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <OpenImageIO/imageio.h>
+
+#include "base/error.h"
+#include "image/format.h"
+#include "image/whole_file.h"
+#include "image/write.h"
+
+namespace orrery::image {
+namespace {
+
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+/// Sets what is particular to a format.
+///
+/// Result     OpenImageIO's name of the format
+const char* add_format(Format format, ImageSpec& spec) {
+  switch (format) {
+    case Format::kPng: return "png";
+    case Format::kTiff:
+      spec.attribute("compression", "zip");
+      // For a table of EXIF values OpenImageIO reads what it has written, cannot, and loses the picture's own table.
+      spec.attribute("tiff:write_exif", 0);
+      leave_out_date(spec);
+      return "tiff";
+    case Format::kJpeg:
+      spec.attribute("compression", "jpeg:95");
+      spec.attribute("jpeg:subsampling", "4:4:4");
+      return "jpeg";
+    case Format::kPpm: return "pnm";
+    case Format::kExr:
+    case Format::kHdr: break;
+  }
+  throw base::Error(base::ErrorKind::kInternal, "EXR and HDR hold scene-linear light");
+}
+
+}  // namespace
+
+void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software) {
+  const Format format = format_of(file);
+  if (picture.bits > most_bits(format))
+    throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits in a channel; PNG and TIFF hold 16");
+  constexpr int kChannels = 3;
+  if (picture.values.size() !=
+      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * kChannels)
+    throw base::Error(base::ErrorKind::kInternal, "the values of " + file.string() + " are not of the picture's size");
+  ImageSpec spec(picture.width, picture.height, kChannels, picture.bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
+  if (!software.empty()) spec.attribute("Software", software);
+  if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  const char* const name = add_format(format, spec);
+  if (picture.bits == 8) {
+    const std::vector<std::uint8_t> bytes(picture.values.begin(), picture.values.end());
+    write_whole(file, name, spec, TypeDesc::UINT8, bytes.data());
+  } else {
+    write_whole(file, name, spec, TypeDesc::UINT16, picture.values.data());
+  }
+}
+
+}  // namespace orrery::image
