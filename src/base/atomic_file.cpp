@@ -52,13 +52,27 @@ std::filesystem::path directory_of(const std::filesystem::path& path) {
   throw Error(ErrorKind::kIo, "writing " + path.string() + " failed: " + std::strerror(error));
 }
 
-/// An open, empty file beside `path`.
-int create_beside(const std::filesystem::path& path, std::string& name) {
+/// What a rename would replace: a link stays, and the file it leads to is written. Devices and pipes are refused, since
+/// a rename would put a plain file in the place of /dev/null.
+std::filesystem::path renamed_onto(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (path.filename().empty() || std::filesystem::is_directory(path, ignored)) cannot_create(path, "it is a directory");
-  const std::filesystem::path directory = directory_of(path);
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (path.filename().empty() || std::filesystem::is_directory(status)) cannot_create(path, "it is a directory");
+  if (!std::filesystem::exists(status)) return path;
+  if (!std::filesystem::is_regular_file(status)) cannot_create(path, "it is no regular file");
+  if (!std::filesystem::is_symlink(path, ignored)) return path;
+  std::filesystem::path target = std::filesystem::canonical(path, ignored);
+  return target.empty() ? path : target;
+}
+
+/// An open, empty file beside `target`; `path` is what the user calls it.
+int create_beside(const std::filesystem::path& path, const std::filesystem::path& target, std::string& name) {
+  std::error_code ignored;
+  const std::filesystem::path directory = directory_of(target);
   if (!std::filesystem::is_directory(directory, ignored)) cannot_create(path, "there is no directory " + directory.string());
-  name = (directory / std::string(".").append(path.filename().string()).append(".XXXXXX")).string();
+  // A name of the greatest length must not fail because its temporary name is longer.
+  constexpr std::size_t kLongestStem = 200;
+  name = (directory / ("." + target.filename().string().substr(0, kLongestStem) + ".XXXXXX")).string();
   const int file = ::mkstemp(name.data());
   if (file < 0) cannot_create(path, std::strerror(errno));
   return file;
@@ -66,9 +80,9 @@ int create_beside(const std::filesystem::path& path, std::string& name) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), target_(renamed_onto(path_)) {
   std::string name;
-  const int file = create_beside(path_, name);
+  const int file = create_beside(path_, target_, name);
   // mkstemp makes private files; a picture is as readable as any other file of its user.
   const mode_t mask = ::umask(0);
   ::umask(mask);
@@ -90,9 +104,9 @@ void AtomicFile::commit() {
   const int error = errno;
   ::close(file);
   if (synced != 0 && error != EINVAL) io_failed(path_, error);  // EINVAL: this file system has nothing to sync
-  if (::rename(temporary_.c_str(), path_.c_str()) != 0) io_failed(path_, errno);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) io_failed(path_, errno);
   committed_ = true;
-  const int directory = ::open(directory_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
     ::fsync(directory);  // the name itself; where that is not possible the file is still whole
     ::close(directory);
@@ -124,7 +138,7 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
 
 void check_creatable(const std::filesystem::path& path) {
   std::string name;
-  ::close(create_beside(path, name));
+  ::close(create_beside(path, renamed_onto(path), name));
   ::unlink(name.c_str());
 }
 

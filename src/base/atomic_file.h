@@ -12,7 +12,10 @@ namespace orrery::base {
 /// committed is removed, also when an exception passes by or the process is told to stop (remove_unfinished_files).
 class AtomicFile {
  public:
-  /// Errors     base::Error(kCannotCreate) naming the reason, where the directory cannot take a new file
+  /// A link stays a link: the file that it leads to is written.
+  ///
+  /// Errors     base::Error(kCannotCreate) naming the reason, where the directory cannot take a new file, or where the
+  ///            name belongs to a directory, a device or a pipe
   explicit AtomicFile(std::filesystem::path path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -27,7 +30,7 @@ class AtomicFile {
   void commit();
 
  private:
-  std::filesystem::path path_, temporary_;
+  std::filesystem::path path_, target_, temporary_;
   int slot_;
   bool committed_ = false;
 };

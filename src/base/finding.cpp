@@ -1,34 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/finding.h"
 
+#include <algorithm>
+#include <string_view>
+
 namespace orrery::base {
 namespace {
 
+/// Text out of a file goes to a terminal: bytes that would command it become question marks.
+std::string printable(std::string_view text) {
+  std::string out(text);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(out[i]);
+    if ((byte < 0x20 && out[i] != '\t') || byte == 0x7f) out[i] = '?';
+    // U+0080..U+009F in UTF-8: control characters as well.
+    if (byte >= 0x80 && byte < 0xA0 && i > 0 && out[i - 1] == '\xC2') out[i - 1] = out[i] = '?';
+  }
+  return out;
+}
+
+/// The second and later bytes of a UTF-8 character take no room of their own.
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
+
 /// A tab must stay a tab under a tab, or the caret does not stand under its column.
 std::string caret_line(const Finding& finding) {
+  const std::string& source = finding.source_line;
+  const std::size_t begin = std::min(static_cast<std::size_t>(finding.column) - 1, source.size());
+  const std::size_t end = std::min(begin + static_cast<std::size_t>(std::max(finding.width, 1)), source.size());
   std::string line;
-  for (int i = 1; i < finding.column; ++i) {
-    const auto at = static_cast<std::size_t>(i) - 1;
-    line += at < finding.source_line.size() && finding.source_line[at] == '\t' ? '\t' : ' ';
-  }
+  for (std::size_t i = 0; i < begin; ++i)
+    if (!continues_character(source[i])) line += source[i] == '\t' ? '\t' : ' ';
   line += '^';
-  line.append(finding.width > 1 ? static_cast<std::size_t>(finding.width) - 1 : 0, '~');
+  for (std::size_t i = begin + 1; i < end; ++i)
+    if (!continues_character(source[i])) line += '~';
   return line;
 }
 
 }  // namespace
 
 std::string formatted(const Finding& finding) {
-  std::string out = finding.file;
+  std::string out = printable(finding.file);
   if (finding.line > 0) out += ':' + std::to_string(finding.line);
   if (finding.column > 0) out += ':' + std::to_string(finding.column);
   if (!out.empty()) out += ": ";
   out += finding.severity == Severity::kError ? "error: " : "warning: ";
-  out += finding.text;
-  if (!finding.remedy.empty()) out += "; " + finding.remedy;
+  out += printable(finding.text);
+  if (!finding.remedy.empty()) out += "; " + printable(finding.remedy);
   out += '\n';
   if (!finding.source_line.empty() && finding.column > 0) {
-    out += "    " + finding.source_line + "\n    " + caret_line(finding) + '\n';
+    out += "    " + printable(finding.source_line) + "\n    " + caret_line(finding) + '\n';
   }
   return out;
 }

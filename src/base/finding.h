@@ -21,7 +21,7 @@ struct Finding {
 
 /// The finding as the user reads it: `file:line:column: error: text`, the source line, a caret, the remedy.
 ///
-/// Result     several lines, each ended by a newline
+/// Result     several lines, each ended by a newline; bytes that would command a terminal are shown as question marks
 std::string formatted(const Finding& finding);
 
 }  // namespace orrery::base

@@ -44,7 +44,8 @@ std::string closest(std::string_view wrong, const std::vector<std::string>& cand
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongestName) continue;
     const std::size_t distance = edit_distance(lower(wrong), lower(candidate));
-    const std::size_t allowed = std::max<std::size_t>(1, std::max(wrong.size(), candidate.size()) / 3);
+    const std::size_t letters = std::max(wrong.size(), candidate.size());
+    const std::size_t allowed = letters < 2 ? 0 : std::max<std::size_t>(1, letters / 3);
     if (distance > allowed) continue;
     if (best.empty() || distance < best_distance) {
       best = candidate;

@@ -9,7 +9,8 @@ namespace orrery::base {
 
 /// The candidate that somebody who typed `wrong` most likely meant.
 ///
-/// Result     empty where none is near: more than a third of the letters would have to change
+/// Result     empty where none is near: more than a third of the letters, or the only one, would have to change; of
+///            equally near ones the first
 /// Cost       candidates x letters^2
 std::string closest(std::string_view wrong, const std::vector<std::string>& candidates);
 

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::base {
+namespace {
+
+using support::file_bytes;
+using support::ScratchFolder;
+using support::write_bytes;
+
+/// The error that `act` throws; fails the test where there is none.
+template <class Act>
+Error error_of(Act act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "no error";
+  return {ErrorKind::kInternal, "no error"};
+}
+
+TEST(BaseAtomicFile, AppearsWholeOnCommitAndNotBefore) {
+  const ScratchFolder folder;
+  write_bytes(folder / "a.txt", "old");
+  {
+    AtomicFile file(folder / "a.txt");
+    EXPECT_EQ(file.temporary().parent_path(), folder.path()) << "a rename works within one file system only";
+    write_bytes(file.temporary(), "new");
+    EXPECT_EQ(file_bytes(folder / "a.txt"), "old");
+    file.commit();
+    EXPECT_EQ(file_bytes(folder / "a.txt"), "new");
+  }
+  EXPECT_EQ(file_bytes(folder / "a.txt"), "new");
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(BaseAtomicFile, LeavesNothingWithoutCommit) {
+  const ScratchFolder folder;
+  { AtomicFile file(folder / "a.txt"); }
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(BaseAtomicFile, LeavesNothingWhenAnExceptionPasses) {
+  const ScratchFolder folder;
+  EXPECT_THROW(
+      {
+        AtomicFile file(folder / "a.txt");
+        write_bytes(file.temporary(), "half");
+        throw std::runtime_error("stop");
+      },
+      std::runtime_error);
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(BaseAtomicFile, IsAsReadableAsTheUmaskSays) {
+  const ScratchFolder folder;
+  const mode_t before = ::umask(0027);
+  write_text_file(folder / "a.txt", "x");
+  ::umask(before);
+  struct stat status {};
+  ASSERT_EQ(::stat((folder / "a.txt").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777u, 0640u);
+}
+
+TEST(BaseAtomicFile, FolderThatIsNotThereIsNamed) {
+  const ScratchFolder folder;
+  const Error error = error_of([&] { AtomicFile file(folder / "none" / "a.txt"); });
+  EXPECT_EQ(error.kind(), ErrorKind::kCannotCreate);
+  EXPECT_NE(std::string(error.what()).find("there is no directory " + (folder / "none").string()), std::string::npos)
+      << error.what();
+}
+
+TEST(BaseAtomicFile, ADirectoryIsNotReplaced) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "a");
+  EXPECT_EQ(error_of([&] { AtomicFile file(folder / "a"); }).kind(), ErrorKind::kCannotCreate);
+  EXPECT_EQ(error_of([&] { AtomicFile file((folder / "a").string() + "/"); }).kind(), ErrorKind::kCannotCreate);
+}
+
+TEST(BaseAtomicFile, APipeOrDeviceIsNotReplaced) {
+  const ScratchFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(error_of([&] { AtomicFile file(folder / "pipe"); }).kind(), ErrorKind::kCannotCreate);
+  EXPECT_EQ(error_of([&] { check_creatable(folder / "pipe"); }).kind(), ErrorKind::kCannotCreate);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+}
+
+TEST(BaseAtomicFile, ALinkStaysALink) {
+  const ScratchFolder folder;
+  write_bytes(folder / "target.txt", "old");
+  std::filesystem::create_symlink("target.txt", folder / "link.txt");
+  write_text_file(folder / "link.txt", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(file_bytes(folder / "target.txt"), "new");
+}
+
+TEST(BaseAtomicFile, TakesANameOfTheGreatestLength) {
+  const ScratchFolder folder;
+  const std::string name(255, 'n');
+  write_text_file(folder / name, "x");
+  EXPECT_EQ(file_bytes(folder / name), "x");
+}
+
+TEST(BaseAtomicFile, FullDiskIsAnIoErrorThatLeavesNothing) {
+  // A limit on the size of files stands in for a full disk: write fails midway in the same manner.
+  const ScratchFolder folder;
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  struct rlimit small = before;
+  small.rlim_cur = 4096;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  ErrorKind kind = ErrorKind::kInternal;
+  try {
+    write_text_file(folder / "a.txt", std::string(10000, 'x'));
+  } catch (const Error& error) {
+    kind = error.kind();
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(kind, ErrorKind::kIo);
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(BaseAtomicFile, TemporaryThatVanishedIsAnIoError) {
+  const ScratchFolder folder;
+  AtomicFile file(folder / "a.txt");
+  std::filesystem::remove(file.temporary());
+  EXPECT_EQ(error_of([&] { file.commit(); }).kind(), ErrorKind::kIo);
+}
+
+TEST(BaseAtomicFile, CheckLeavesNoTrace) {
+  const ScratchFolder folder;
+  write_bytes(folder / "a.txt", "old");
+  check_creatable(folder / "a.txt");
+  check_creatable(folder / "b.txt");
+  EXPECT_EQ(file_bytes(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(BaseAtomicFile, ASignalHandlerCanRemoveWhatIsUnfinished) {
+  const ScratchFolder folder;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    AtomicFile done(folder / "done.txt"), unfinished(folder / "unfinished.txt");
+    done.commit();
+    remove_unfinished_files();
+    ::_exit(0);  // as a handler would: no destructor runs
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_EQ(folder.count(), 1u);
+  EXPECT_TRUE(std::filesystem::exists(folder / "done.txt"));
+}
+
+TEST(BaseAtomicFile, TextIsWrittenByteForByte) {
+  const ScratchFolder folder;
+  const std::string text("a\0b\r\n", 5);
+  write_text_file(folder / "a.txt", text);
+  EXPECT_EQ(file_bytes(folder / "a.txt"), text);
+}
+
+}  // namespace
+}  // namespace orrery::base

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/suggestion.h"
+
+#include <gtest/gtest.h>
+
+namespace orrery::base {
+namespace {
+
+const std::vector<std::string> kKeys = {"samples", "max_depth", "seed", "precision", "shading", "accelerator"};
+
+TEST(BaseSuggestion, FindsALetterTooMuchTooFewReplacedOrSwapped) {
+  EXPECT_EQ(closest("sampless", kKeys), "samples");
+  EXPECT_EQ(closest("sampes", kKeys), "samples");
+  EXPECT_EQ(closest("sanples", kKeys), "samples");
+  EXPECT_EQ(closest("smaples", kKeys), "samples");
+}
+
+TEST(BaseSuggestion, ASwapIsOneMistakeAndNotTwo) {
+  // Four letters allow one mistake: as two this would be too far.
+  EXPECT_EQ(closest("sede", {"seed"}), "seed");
+}
+
+TEST(BaseSuggestion, CaseDoesNotCount) { EXPECT_EQ(closest("Max_Depth", kKeys), "max_depth"); }
+
+TEST(BaseSuggestion, NothingWhenTooFar) {
+  EXPECT_EQ(closest("gamma", kKeys), "");
+  EXPECT_EQ(closest("", kKeys), "");
+  EXPECT_EQ(closest("seed", {}), "");
+  EXPECT_EQ(closest("r", {"x", "y", "z"}), "") << "a single letter shares nothing with another one";
+}
+
+TEST(BaseSuggestion, OfTwoTheNearer) {
+  EXPECT_EQ(closest("material", {"materials", "material_"}), "materials") << "the first of equally near ones";
+  EXPECT_EQ(closest("shadin", {"shadow", "shading"}), "shading");
+}
+
+TEST(BaseSuggestion, EndlessNamesAreNotCompared) {
+  EXPECT_EQ(closest(std::string(100000, 'a'), {std::string(100000, 'a')}), "");
+}
+
+TEST(BaseSuggestion, AsksOnlyWhereThereIsSomethingToAsk) {
+  EXPECT_EQ(did_you_mean("sampels", kKeys), "did you mean `samples`?");
+  EXPECT_EQ(did_you_mean("gamma", kKeys), "");
+}
+
+TEST(BaseSuggestion, JoinsWithCommas) {
+  EXPECT_EQ(joined({"a", "b", "c"}), "a, b, c");
+  EXPECT_EQ(joined({}), "");
+}
+
+}  // namespace
+}  // namespace orrery::base
