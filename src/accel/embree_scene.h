@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "accel/box_frame.h"
@@ -36,7 +37,8 @@ struct EmbreeQuery {
   const EmbreeScene* scene;
   Packet* packet;
   int first;                            ///< lane of the packet that is Embree's lane 0
-  alignas(64) double start[kernel::kPacketSize];  ///< box space: distance that a far ray was moved on, by Embree's lane
+  /// Box space: distance that a far ray was moved on, by Embree's lane.
+  alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
 };
 
 /// The functions that were compiled for this processor and are right for a precision.

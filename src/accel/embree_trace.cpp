@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Packets through Embree, and the callback that Embree makes for each sphere. Compiled once per instruction set.
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -47,11 +48,35 @@ HWY_INLINE hn::Mask<D> keep_nearest(D d, const kernel::Sphere& sphere, std::uint
   return nearer;
 }
 
-/// A distance along a ray as Embree's far limit: never below what the double says, so that boxes of other spheres at
-/// the same place are still entered.
-HWY_INLINE float far_limit(double distance, double scale, double start) {
-  const double at = distance * scale;
-  return static_cast<float>((at * (1 + 0x1p-50) - start) * (1 + 0x1p-20)) + std::numeric_limits<float>::min();
+/// Distances along rays as Embree's far limits: never below what the numbers say, so that boxes of other spheres at the
+/// same place are still entered. What is beyond all floats becomes infinite.
+template <class D>
+HWY_INLINE hn::Vec<D> far_limits(D d, hn::Vec<D> distance, double scale, hn::Vec<D> start) {
+  using T = hn::TFromD<D>;
+  constexpr T kUlp = sizeof(T) == 8 ? T(0x1p-50) : T(0x1p-21);
+  const auto at = distance * hn::Set(d, static_cast<T>(scale));
+  return (hn::MulAdd(at, hn::Set(d, kUlp), at) - start) * hn::Set(d, static_cast<T>(1 + 0x1p-20)) +
+         hn::Set(d, static_cast<T>(std::numeric_limits<float>::min()));
+}
+
+/// Stores lanes as floats.
+template <class D>
+HWY_INLINE void store_float(D d, hn::Vec<D> value, float* to) {
+  const hn::Rebind<float, D> df;
+  if constexpr (sizeof(hn::TFromD<D>) == 8) {
+    hn::StoreU(hn::DemoteTo(df, value), df, to);
+  } else {
+    hn::StoreU(value, df, to);
+  }
+  (void)d;
+}
+
+/// A bit a lane.
+template <class D>
+HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
 }
 
 /// Embree's callback: some rays of the query against one sphere.
@@ -66,7 +91,7 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
   Packet& packet = *query.packet;
   const std::uint32_t id = scene.sphere_id(arguments->primID);
   const int n = static_cast<int>(arguments->N), step = static_cast<int>(hn::Lanes(d));
-  float* const far_limits = &RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0);
+  float* const to_limit = &RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0);
   for (int v = 0; v < n; v += step) {
     const auto valid_int = hn::LoadU(di, arguments->valid + v);
     if (hn::AllFalse(di, valid_int < hn::Zero(di))) continue;
@@ -78,14 +103,17 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
       valid = hn::RebindMask(d, valid_int < hn::Zero(di));
     }
     const int first = query.first + v;
-    const auto hit =
-        keep_nearest<D, kPrecision>(d, scene.spheres[id], id, valid, packet, first);
-    HWY_ALIGN T is_hit[hn::MaxLanes(d)];
-    hn::Store(hn::IfThenElseZero(hit, hn::Set(d, T(1))), d, is_hit);
+    const auto hit = keep_nearest<D, kPrecision>(d, scene.spheres[id], id, valid, packet, first);
+    if (hn::AllFalse(d, hit)) {
+      hn::StoreU(hn::Zero(di), di, arguments->valid + v);
+      continue;
+    }
+    alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
+    store_float(d, far_limits(d, hn::Load(d, packet.distance + first), scene.frame.scale, hn::Load(d, query.start + v)), limits);
+    const unsigned hits = bits_of(d, hit);
     for (int i = 0; i < step; ++i) {
-      const bool lane_hit = is_hit[i] != T(0);
-      if (lane_hit)
-        far_limits[v + i] = far_limit(static_cast<double>(packet.distance[first + i]), scene.frame.scale, query.start[v + i]);
+      const bool lane_hit = (hits >> i & 1) != 0;
+      if (lane_hit) to_limit[v + i] = limits[i];
       arguments->valid[v + i] = lane_hit ? -1 : 0;
     }
   }
@@ -97,7 +125,6 @@ void trace(const void* self, Packet& packet) {
   using T = DistanceOf<Packet>;
   using D = hn::ScalableTag<T>;
   const D d;
-  const hn::Rebind<float, D> df;
   const int step = static_cast<int>(hn::Lanes(d));
   const auto& scene = *static_cast<const EmbreeScene*>(self);
   for (const std::uint32_t id : scene.apart)
@@ -111,46 +138,34 @@ void trace(const void* self, Packet& packet) {
   query.scene = &scene;
   query.packet = &packet;
   EmbreeRays rays;
+  for (int i = 0; i < kWidth; ++i) {
+    rays.ray.tnear[i] = 0;
+    rays.ray.time[i] = 0;
+    rays.ray.mask[i] = ~0u;
+    rays.ray.id[i] = static_cast<unsigned>(i);
+    rays.ray.flags[i] = 0;
+    rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
   alignas(64) int valid[kWidth];
   for (int first = 0; first < packet.count; first += kWidth) {
     query.first = first;
     for (int v = 0; v < kWidth; v += step) {
       const auto ray = k::load_rays(d, packet, first + v);
       const auto box = to_box_space(d, ray, scene.frame);
-      const auto store = [&](hn::Vec<D> value, float* to) {
-        if constexpr (sizeof(T) == 8) {
-          hn::StoreU(hn::DemoteTo(df, value), df, to + v);
-        } else {
-          hn::StoreU(value, df, to + v);
-        }
-      };
-      store(box.origin.x, rays.ray.org_x);
-      store(box.origin.y, rays.ray.org_y);
-      store(box.origin.z, rays.ray.org_z);
-      store(ray.direction.x, rays.ray.dir_x);
-      store(ray.direction.y, rays.ray.dir_y);
-      store(ray.direction.z, rays.ray.dir_z);
-      HWY_ALIGN T start[hn::MaxLanes(d)];
-      HWY_ALIGN T reaches[hn::MaxLanes(d)];
-      hn::Store(box.start, d, start);
-      hn::Store(hn::IfThenElseZero(box.reaches, hn::Set(d, T(1))), d, reaches);
-      for (int i = 0; i < step; ++i) {
-        const int lane = v + i;
-        query.start[lane] = static_cast<double>(start[i]);
-        const auto known = packet.distance[first + lane];
-        const bool none = packet.hit[first + lane] == kernel::kNoSphere;
-        rays.ray.tnear[lane] = 0;
-        rays.ray.tfar[lane] = none ? std::numeric_limits<float>::infinity()
-                                   : far_limit(static_cast<double>(known), scene.frame.scale, query.start[lane]);
-        rays.ray.time[lane] = 0;
-        rays.ray.mask[lane] = ~0u;
-        rays.ray.id[lane] = static_cast<unsigned>(lane);
-        rays.ray.flags[lane] = 0;
-        rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-        rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
-        // A known hit before the boxes begin leaves nothing to look for (and Embree wants no negative limit).
-        valid[lane] = first + lane < packet.count && reaches[i] != T(0) && rays.ray.tfar[lane] > 0 ? -1 : 0;
-      }
+      const auto limit = far_limits(d, hn::Load(d, packet.distance + first + v), scene.frame.scale, box.start);
+      store_float(d, box.origin.x, rays.ray.org_x + v);
+      store_float(d, box.origin.y, rays.ray.org_y + v);
+      store_float(d, box.origin.z, rays.ray.org_z + v);
+      store_float(d, ray.direction.x, rays.ray.dir_x + v);
+      store_float(d, ray.direction.y, rays.ray.dir_y + v);
+      store_float(d, ray.direction.z, rays.ray.dir_z + v);
+      store_float(d, limit, rays.ray.tfar + v);
+      hn::Store(box.start, d, query.start + v);
+      // A known hit before the boxes begin leaves nothing to look for (and Embree wants no negative limit).
+      const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first - v)));
+      const unsigned lanes = bits_of(d, hn::And(hn::And(active, box.reaches), limit > hn::Zero(d)));
+      for (int i = 0; i < step; ++i) valid[v + i] = (lanes >> i & 1) != 0 ? -1 : 0;
     }
     accel::intersect(valid, scene.scene, query.context, rays);
   }

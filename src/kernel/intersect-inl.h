@@ -126,15 +126,23 @@ HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& spher
   }
 }
 
-/// From the centre to the point where the ray meets its sphere, with a length of exactly one radius (to rounding).
+/// Where a ray meets its sphere, seen from the sphere's centre.
+template <class V>
+struct HitPoint {
+  Vec3<V> offset;   ///< to the point; its length is one radius (to rounding)
+  Vec3<V> outward;  ///< the same as a unit vector
+};
+
+/// The point that belongs to a distance of `nearest`.
 ///
 /// Domain     lanes where `nearest` found this sphere
 template <class D, Precision kPrecision>
-HWY_INLINE Vec3<hn::Vec<D>> hit_offset(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self,
-                                       hn::Vec<D> distance) {
-  const auto zero = hn::Zero(d);
+HWY_INLINE HitPoint<hn::Vec<D>> hit_point(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self,
+                                          hn::Vec<D> distance) {
+  const auto zero = hn::Zero(d), one = hn::Set(d, static_cast<hn::TFromD<D>>(1));
   if constexpr (kPrecision == Precision::kBook) {
-    return mul_add(ray.direction, distance, ray.origin) - sphere.center;
+    const auto m = mul_add(ray.direction, distance, ray.origin) - sphere.center;
+    return {m, m * (one / sphere.radius)};
   } else {
     const auto c = chord<D, kPrecision == Precision::kExact>(ray, sphere);
     const auto half = hn::Sqrt(hn::Max(c.discriminant, zero) * ray.inverse_square);
@@ -142,7 +150,8 @@ HWY_INLINE Vec3<hn::Vec<D>> hit_offset(D d, const Rays<D>& ray, const Spheres<D>
     const auto other = mul_add(ray.direction, along, negated(c.to_center));
     const auto own = mul_add(ray.direction, distance, ray.offset);
     const auto m = select(is_self, own, other);
-    return m * (sphere.radius / hn::Sqrt(dot(m, m)));
+    const auto length = hn::Sqrt(dot(m, m));
+    return {m * (sphere.radius / length), m * (one / length)};
   }
 }
 

@@ -136,9 +136,11 @@ HWY_INLINE Scattered<D> scatter(D d, const Features& features, const Surface<D>&
     out.direction = select(among(MaterialKind::kHemisphere), scatter_hemisphere(d, at, on_sphere), out.direction);
   if (features.metal) {
     const auto metal = among(MaterialKind::kMetal);
-    const auto scattered = scatter_metal(d, at, on_sphere, random.v[2], features.fuzz);
-    out.direction = select(metal, scattered.direction, out.direction);
-    out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, scattered.alive));
+    if (!hn::AllFalse(d, metal)) {
+      const auto scattered = scatter_metal(d, at, on_sphere, random.v[2], features.fuzz);
+      out.direction = select(metal, scattered.direction, out.direction);
+      out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, scattered.alive));
+    }
   }
   if (features.dielectric) {
     const auto glass = among(MaterialKind::kDielectric);

@@ -120,10 +120,10 @@ HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& r
   Surface<D>& surface = at.surface;
   const auto is_self = hn::RebindMask(d, hits == ray.self);
   surface.direction = ray.direction;
-  surface.offset = hit_offset<D, kPrecision>(d, ray, at.sphere, is_self, distance);
+  const auto point = hit_point<D, kPrecision>(d, ray, at.sphere, is_self, distance);
+  surface.offset = point.offset;
   surface.from_outside = dot(ray.direction, surface.offset) < hn::Zero(d);
-  const auto outward = normalized(d, surface.offset);
-  surface.normal = select(surface.from_outside, outward, negated(outward));
+  surface.normal = select(surface.from_outside, point.outward, negated(point.outward));
   surface.eta = hn::IfThenElse(surface.from_outside, at.eta_outside, at.eta_inside);
   surface.r0 = hn::IfThenElse(surface.from_outside, at.r0_outside, at.r0_inside);
   return at;
