@@ -61,7 +61,7 @@ void add_header(ImageSpec& spec, const Header& header) {
   } else {
     spec.attribute("DateTime", header.capture_date);  // capDate, once it is in the file
   }
-  if (header.frames_per_second) spec.attribute("FramesPerSecond", rational, header.frames_per_second->data());
+  if (header.frames_per_second) spec.attribute("framesPerSecond", rational, header.frames_per_second->data());
   // OpenImageIO translates some lower-case names into OpenEXR's own, but not that of the second.
   if (header.world_to_camera) spec.attribute("worldtocamera", matrix, header.world_to_camera->data());
   if (header.world_to_ndc) spec.attribute("worldToNDC", matrix, header.world_to_ndc->data());

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/read.h"
+
+#include <OpenImageIO/imageio.h>
+#include <sys/stat.h>
+
+#include <random>
+#include <sstream>
+
+#include "image/write.h"
+#include "support/scratch_folder.h"
+#include "unit/image/test_pictures.h"
+
+namespace orrery::image {
+namespace {
+
+using base::ErrorKind;
+
+/// Writes a picture that this program does not write, with values 0, 1, 2, ... in reading order.
+void write_foreign(const std::filesystem::path& file, OIIO::ImageSpec spec) {
+  const auto out = OIIO::ImageOutput::create("openexr");
+  ASSERT_TRUE(out->open(file.string(), spec)) << out->geterror();
+  std::vector<std::uint32_t> whole(static_cast<std::size_t>(spec.width * spec.height * spec.nchannels));
+  for (std::size_t i = 0; i < whole.size(); ++i) whole[i] = static_cast<std::uint32_t>(i);
+  const std::vector<float> real(whole.begin(), whole.end());
+  if (spec.format == OIIO::TypeDesc::UINT) {
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT, whole.data())) << out->geterror();
+  } else {
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, real.data())) << out->geterror();
+  }
+  ASSERT_TRUE(out->close());
+}
+
+OIIO::ImageSpec grey(int width, int height, OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT) {
+  OIIO::ImageSpec spec(width, height, 1, type);
+  spec.channelnames = {"Y"};
+  return spec;
+}
+
+class ImageRead : public testing::Test {
+ protected:
+  support::ScratchFolder folder_;
+};
+
+TEST_F(ImageRead, AMissingFileIsAMissingInput) {
+  expect_error(ErrorKind::kMissingInput, {"none.exr", "No such file"}, [&] { read(folder_ / "none.exr"); });
+  std::filesystem::create_directory(folder_ / "d.exr");
+  expect_error(ErrorKind::kMissingInput, {"d.exr", "it is a directory"}, [&] { read(folder_ / "d.exr"); });
+  ASSERT_EQ(::mkfifo((folder_ / "p.exr").c_str(), 0600), 0);
+  expect_error(ErrorKind::kMissingInput, {"p.exr", "not a plain file"}, [&] { read(folder_ / "p.exr"); });
+  expect_error(ErrorKind::kUsage, {"known are"}, [&] { read(folder_ / "none.txt"); });
+}
+
+TEST_F(ImageRead, ADataWindowInsideOfTheFrameStandsInZeros) {
+  OIIO::ImageSpec spec = grey(2, 2);
+  spec.x = 11, spec.y = 21;
+  spec.full_x = 10, spec.full_y = 20, spec.full_width = 4, spec.full_height = 5;
+  write_foreign(folder_ / "a.exr", spec);
+  const film::Picture picture = read(folder_ / "a.exr");
+  EXPECT_EQ(picture.width, 4);
+  EXPECT_EQ(picture.height, 5);
+  EXPECT_EQ(picture.planes[0].values, (std::vector<float>{0, 0, 0, 0,  //
+                                                          0, 0, 1, 0,  //
+                                                          0, 2, 3, 0,  //
+                                                          0, 0, 0, 0,  //
+                                                          0, 0, 0, 0}));
+}
+
+TEST_F(ImageRead, ADataWindowBeyondTheFrameIsCut) {
+  OIIO::ImageSpec spec = grey(4, 3);
+  spec.x = -1, spec.y = -1;
+  spec.full_x = 0, spec.full_y = 0, spec.full_width = 2, spec.full_height = 1;
+  write_foreign(folder_ / "a.exr", spec);
+  EXPECT_EQ(read(folder_ / "a.exr").planes[0].values, (std::vector<float>{5, 6}));
+}
+
+TEST_F(ImageRead, ADataWindowThatMissesTheFrameGivesAnEmptyOne) {
+  for (const int y : {-50, 50}) {
+    OIIO::ImageSpec spec = grey(4, 3);
+    spec.y = y;
+    spec.full_x = 0, spec.full_y = 0, spec.full_width = 2, spec.full_height = 2;
+    write_foreign(folder_ / "a.exr", spec);
+    EXPECT_EQ(read(folder_ / "a.exr").planes[0].values, (std::vector<float>{0, 0, 0, 0})) << y;
+  }
+}
+
+TEST_F(ImageRead, TilesGiveTheSamePicture) {
+  OIIO::ImageSpec spec = grey(75, 150);
+  write_foreign(folder_ / "rows.exr", spec);
+  spec.tile_width = 32, spec.tile_height = 16;
+  write_foreign(folder_ / "tiles.exr", spec);
+  const film::Picture rows = read(folder_ / "rows.exr");
+  EXPECT_EQ(rows.planes[0].values.back(), 75 * 150 - 1);
+  EXPECT_EQ(read(folder_ / "tiles.exr").planes[0].values, rows.planes[0].values);
+}
+
+TEST_F(ImageRead, WholeNumbersStayWhatTheyAre) {
+  write_foreign(folder_ / "a.exr", grey(150, 2, OIIO::TypeDesc::UINT));
+  const film::Picture picture = read(folder_ / "a.exr");
+  for (std::size_t i = 0; i < 300; ++i) ASSERT_EQ(picture.planes[0].values[i], static_cast<float>(i));
+}
+
+TEST_F(ImageRead, ValuesThatAreNotFiniteArriveForTheCallerToCount) {
+  film::Picture picture = test_picture(3, 1, {"R"});
+  ExrOptions options;
+  options.as_float = true;
+  options.compression = "none";
+  write_exr(folder_ / "a.exr", picture, {}, options);
+  std::string bytes = support::file_bytes(folder_ / "a.exr");
+  bytes.replace(bytes.size() - 8, 8, std::string("\0\0\xc0\x7f\0\0\x80\x7f", 8));  // NaN, infinity
+  support::write_bytes(folder_ / "a.exr", bytes);
+  const film::BadValues bad = film::count_bad_values(read(folder_ / "a.exr"));
+  EXPECT_EQ(bad.nan, 1u);
+  EXPECT_EQ(bad.infinite, 1u);
+}
+
+/// One file of every format that is written here.
+std::vector<std::filesystem::path> write_all(const support::ScratchFolder& folder, int width, int height) {
+  std::vector<std::filesystem::path> out;
+  for (const char* compression : {"zips", "zip", "piz", "none", "dwaa"}) {
+    out.push_back(folder / (std::string(compression) + ".exr"));
+    ExrOptions options;
+    options.compression = compression;
+    write_exr(out.back(), test_picture(width, height), {}, options);
+  }
+  out.push_back(folder / "a.hdr");
+  write_hdr(out.back(), test_picture(width, height));
+  for (const char* name : {"a.png", "a.tif", "a.jpg", "a.ppm"}) {
+    out.push_back(folder / name);
+    write_encoded(out.back(), test_encoded(width, height, 8), "orrery");
+  }
+  return out;
+}
+
+TEST_F(ImageRead, ATruncatedFileIsBadData) {
+  for (const auto& file : write_all(folder_, 100, 80)) {
+    if (file.extension() == ".jpg") continue;  // its decoder fills the rest with grey and calls that a picture
+    const std::string bytes = support::file_bytes(file);
+    for (const std::size_t size : {std::size_t{0}, std::size_t{3}, std::size_t{40}, bytes.size() / 2, bytes.size() - 50}) {
+      SCOPED_TRACE(file.filename().string() + " cut to " + std::to_string(size) + " of " + std::to_string(bytes.size()));
+      support::write_bytes(file, bytes.substr(0, size));
+      expect_error(ErrorKind::kBadData, {file.filename().string()}, [&] { read(file); });
+    }
+  }
+}
+
+TEST_F(ImageRead, AFileOfAnotherKindIsBadData) {
+  for (const char* name : {"a.exr", "a.hdr", "a.png", "a.tif", "a.jpg", "a.ppm"}) {
+    support::write_bytes(folder_ / name, "[image]\nwidth = 1200\n" + std::string(2000, '#'));
+    expect_error(ErrorKind::kBadData, {name}, [&] { read(folder_ / name); });
+  }
+}
+
+TEST_F(ImageRead, AHeaderThatClaimsTooMuchIsBadData) {
+  write_exr(folder_ / "a.exr", test_picture(4, 4), {}, {});
+  std::string bytes = support::file_bytes(folder_ / "a.exr");
+  for (const char* window : {"dataWindow", "displayWindow"}) {
+    const std::size_t at = bytes.find(window) + std::string(window).size() + 1 + 6 + 4 + 8;
+    bytes.replace(at, 8, std::string("\xff\xff\x01\0\xff\xff\x01\0", 8));  // 131072 x 131072
+  }
+  support::write_bytes(folder_ / "a.exr", bytes);
+  expect_error(ErrorKind::kBadData, {"a.exr"}, [&] { read(folder_ / "a.exr"); });
+  support::write_bytes(folder_ / "a.ppm", "P6\n1000000 1000000\n255\nabc");
+  expect_error(ErrorKind::kBadData, {"a.ppm"}, [&] { read(folder_ / "a.ppm"); });
+}
+
+TEST_F(ImageRead, DamagedBytesNeverCrashAndPrintNothing) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  std::mt19937 random(1);
+  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  for (const auto& file : write_all(folder_, 24, 20)) {
+    const std::string bytes = support::file_bytes(file);
+    for (int round = 0; round < 60; ++round) {
+      std::string damaged = bytes;
+      const std::size_t first = round % 2 == 0 ? std::min<std::size_t>(bytes.size(), 400) : bytes.size();
+      for (std::size_t n = 1 + below(4); n > 0; --n) damaged[below(first)] = static_cast<char>(below(256));
+      support::write_bytes(file, damaged);
+      try {
+        const film::Picture picture = read(file);
+        for (const film::Plane& plane : picture.planes)
+          ASSERT_EQ(plane.values.size(), static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
+      } catch (const base::Error& error) {
+        EXPECT_EQ(static_cast<int>(error.kind()), static_cast<int>(ErrorKind::kBadData)) << error.what();
+      }
+    }
+  }
+  std::string printed = testing::internal::GetCapturedStdout(), line;
+  std::istringstream lines(testing::internal::GetCapturedStderr());
+  // libpng's own last words, which OpenImageIO does not catch.
+  while (std::getline(lines, line))
+    if (line.rfind("libpng ", 0) != 0) printed += line + "\n";
+  EXPECT_EQ(printed, "");
+}
+
+}  // namespace
+}  // namespace orrery::image
