@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "app/generate_files.h"
+#include "base/error.h"
+#include "format/read_scene.h"
+
+namespace orrery {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kScenes = ORRERY_SCENES;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  EXPECT_TRUE(in) << file;
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<fs::path> scene_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  return files;
+}
+
+TEST(ImageBookFiles, EverySceneReadsWithoutFindings) {
+  const auto files = scene_files(kScenes);
+  EXPECT_GE(files.size(), 22u);
+  for (const fs::path& file : files) {
+    try {
+      EXPECT_TRUE(format::read_scene(file).warnings.empty()) << file;
+    } catch (const base::Error& error) {
+      ADD_FAILURE() << error.what();
+      for (const base::Finding& finding : error.findings()) ADD_FAILURE() << base::formatted(finding);
+    }
+  }
+}
+
+TEST(ImageBookFiles, EverySceneSaysWhichSectionItIs) {
+  for (const fs::path& file : scene_files(kScenes / "book"))
+    EXPECT_EQ(text_of(file).rfind("# Ray Tracing in One Weekend, \"", 0), 0u) << file;
+}
+
+TEST(ImageBookFiles, EverySceneNamesACommandThatRendersIt) {
+  for (const fs::path& file : scene_files(kScenes / "book"))
+    EXPECT_NE(text_of(file).find("orrery render " + file.filename().string() + " -o "), std::string::npos) << file;
+}
+
+TEST(ImageBookFiles, EverySceneIsShownInTheReadme) {
+  const std::string readme = text_of(kScenes / "README.md");
+  for (const fs::path& file : scene_files(kScenes / "book")) {
+    EXPECT_NE(readme.find("(book/" + file.filename().string() + ")"), std::string::npos) << file;
+    const std::string picture = "thumbnails/" + file.stem().string() + ".png";
+    EXPECT_NE(readme.find("(" + picture + ")"), std::string::npos) << picture;
+    EXPECT_TRUE(fs::exists(kScenes / picture)) << picture;
+  }
+}
+
+TEST(ImageBookFiles, FinalIsWhatGenerateWrites) {
+  const fs::path folder = fs::path(testing::TempDir()) / "orrery-book-files";
+  fs::create_directories(folder);
+  app::generate_final({}, folder / "final.toml");
+  EXPECT_TRUE(text_of(folder / "final.toml") == text_of(kScenes / "book/final.toml"))
+      << "write it anew: orrery generate final -o scenes/book/final.toml";
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace orrery
