@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "image/read.h"
+
+namespace orrery {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DeterminismProgram : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              (std::string("orrery-determinism-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// Renders the scene with more arguments; 32-bit EXR without what changes between runs.
+  fs::path render(const std::string& name, const std::string& arguments) {
+    const fs::path file = folder_ / (name + ".exr");
+    const std::string command = std::string("\"") + ORRERY_PROGRAM + "\" render \"" + ORRERY_SCENE + "\" -o \"" +
+                                file.string() + "\" --type float --reproducible -q " + arguments;
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    return file;
+  }
+
+  fs::path folder_;
+};
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  EXPECT_TRUE(in) << file;
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Headers may tell how a picture was made; its values may not.
+bool same_values(const fs::path& a, const fs::path& b) {
+  const film::Picture p = image::read(a), q = image::read(b);
+  EXPECT_EQ(p.planes.size(), 4u);
+  if (p.width != q.width || p.height != q.height || p.planes.size() != q.planes.size()) return false;
+  for (std::size_t i = 0; i < p.planes.size(); ++i) {
+    if (p.planes[i].name != q.planes[i].name || p.planes[i].values.size() != q.planes[i].values.size()) return false;
+    if (std::memcmp(p.planes[i].values.data(), q.planes[i].values.data(), p.planes[i].values.size() * sizeof(float)) != 0)
+      return false;
+  }
+  return true;
+}
+
+TEST_F(DeterminismProgram, TwoRunsGiveTheSameFile) { EXPECT_EQ(bytes_of(render("a", "")), bytes_of(render("b", ""))); }
+
+TEST_F(DeterminismProgram, OneTwoAndFiveThreadsGiveTheSameFile) {
+  const std::string one = bytes_of(render("one", "--threads 1"));
+  EXPECT_TRUE(bytes_of(render("two", "--threads 2")) == one);
+  EXPECT_TRUE(bytes_of(render("five", "--threads 5")) == one);
+}
+
+TEST_F(DeterminismProgram, EmbreeAndListGiveTheSameValuesInEveryPrecision) {
+  for (const std::string precision : {"exact", "fast", "book"}) {
+    const auto embree = render("embree-" + precision, "--accelerator embree --precision " + precision);
+    const auto list = render("list-" + precision, "--accelerator list --threads 3 --precision " + precision);
+    EXPECT_TRUE(same_values(embree, list)) << precision;
+  }
+}
+
+TEST_F(DeterminismProgram, EverythingInTheSceneThatMattersShows) {
+  // The tests above would be blind if the program rendered the same whatever it is told.
+  const auto plain = render("plain", "");
+  EXPECT_FALSE(same_values(plain, render("seed", "--seed 18")));
+  EXPECT_FALSE(same_values(plain, render("depth", "--max-depth 2")));
+  EXPECT_FALSE(same_values(plain, render("fast", "--precision fast")));
+}
+
+}  // namespace
+}  // namespace orrery
