@@ -1,0 +1,46 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# Renders scenes/thumbnails/, the pictures that scenes/README.md shows. Three or four minutes on two cores.
+#   tools/thumbnails.sh [PROGRAM]     default: build/src/orrery, which ./run.sh builds
+set -eu
+cd "$(dirname "$0")/.."
+program=${1:-build/src/orrery}
+if ! command -v "$program" > /dev/null; then
+  echo "thumbnails: there is no program $program; build it by ./run.sh --version, or name another" >&2
+  exit 66
+fi
+out=scenes/thumbnails
+mkdir -p "$out"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# picture SCENE NAME ARGUMENTS...
+picture() {
+  scene=$1
+  name=$2
+  shift 2
+  echo "$name"
+  "$program" render "$scene" -o "$out/$name.png" --width 240 --height 135 --quiet "$@"
+}
+# As the book shows a scene before it knows of gamma, and after.
+linear() { name=$1; shift; picture "scenes/book/$name.toml" "$name" --view Raw "$@"; }
+gamma() { name=$1; shift; picture "scenes/book/$name.toml" "$name" --display "Gamma 2.0 Rec.709" --samples 1000 "$@"; }
+
+for name in 01-gradient-sky 02-red-sphere 03-normals-one-sphere 04-normals-with-ground 05-antialiased; do
+  linear $name
+done
+for name in 06-hemisphere-diffuse 07-child-ray-limit 08-shadow-acne 09-shadow-acne-fixed 10-lambertian; do
+  linear $name --samples 400
+done
+picture scenes/book/07-child-ray-limit.toml 07-child-ray-limit-one --view Raw --max-depth 1 --samples 400
+picture scenes/book/08-shadow-acne.toml 08-shadow-acne-exact --view Raw --precision exact --samples 400
+picture scenes/book/11-gamma.toml 11-gamma-linear --view Raw --samples 1000
+for name in 11-gamma 12-metal 13-fuzzy-metal 14-glass-always-refracts 15-glass-total-internal-reflection \
+            16-glass-schlick 17-hollow-glass 18-wide-angle-two-spheres 19-far-view 20-zoomed-view 21-defocus-blur final; do
+  gamma $name
+done
+for count in 30 1000 100000; do
+  "$program" generate cloud --count $count -o "$work/cloud-$count.toml"
+  picture "$work/cloud-$count.toml" cloud-$count --samples 300
+done
+du -ch "$out"/*.png | tail -1
