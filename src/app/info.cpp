@@ -12,6 +12,7 @@
 #include "compile/compile.h"
 #include "format/read_scene.h"
 #include "kernel/pixel_sum.h"
+#include "kernel/isa.h"
 #include "kernel/render_tile.h"
 #include "scene/schema.h"
 

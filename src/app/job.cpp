@@ -9,9 +9,11 @@
 #include "app/threads.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/suggestion.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
 #include "image/format.h"
+#include "kernel/isa.h"
 
 namespace orrery::app {
 namespace {
@@ -75,6 +77,9 @@ JobReport run_job(const Job& job) {
   JobReport report;
   Stopwatch watch;
   check_outputs(job);
+  if (!job.isa.empty() && !kernel::limit_isa(job.isa))
+    throw base::Error(base::ErrorKind::kUsage, "no instruction set " + job.isa + " here; this processor and program have " +
+                                                   base::joined(kernel::available_isas()));
 
   const format::ReadResult read = format::read_scene(job.scene, job.overrides);
   if (job.on_warning)

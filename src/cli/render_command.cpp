@@ -93,6 +93,7 @@ void add_render(CLI::App& program, Action& action) {
   command.add_option("-t,--threads", options->job.threads, "Threads; default: what this process may use")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
+  command.add_option("--isa", options->job.isa, "Use no better instruction set: sse4, avx2 or avx512")->type_name("NAME");
   add_display_options(command, options->job.display, options->job.bits);
   command.add_option("--type", options->type, "EXR channels: half or float")->check(CLI::IsMember({"half", "float"}))->type_name("TYPE");
   command.add_option("--compression", options->job.exr.compression, "EXR compression: zips, zip, piz, dwaa:45, none")->type_name("NAME");

@@ -209,10 +209,5 @@ RenderTileFast render_tile_fast_function() {
   return ORRERY_BEST(render_fast);
 }
 
-const char* isa_name() {
-  const auto supported = hwy::SupportedTargets();
-  return hwy::TargetName(supported & -supported);  // the lowest bit is the best target
-}
-
 }  // namespace orrery::kernel
 #endif

@@ -47,7 +47,4 @@ enum class Lanes : std::uint8_t {
 RenderTile render_tile_function(Precision precision, Lanes lanes = Lanes::kAll);
 RenderTileFast render_tile_fast_function();
 
-/// The instruction set that the functions above and the tracers use: "AVX2", "AVX3" (AVX-512), "SSE4".
-const char* isa_name();
-
 }  // namespace orrery::kernel

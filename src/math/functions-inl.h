@@ -33,13 +33,13 @@ HWY_INLINE SinCos<V> sin_cos_turn(D d, V u) {
   const V q = hn::Round(quarters);
   const V r = quarters - q;
   const V r2 = r * r;
-  constexpr int kTerms = sizeof(T) == 8 ? 9 : 5;
+  constexpr std::size_t kTerms = sizeof(T) == 8 ? 9 : 5;
   V s = hn::Set(d, static_cast<T>(kSinQuarter[kTerms - 1]));
   V c = hn::Set(d, static_cast<T>(kCosQuarter[kTerms - 1]));
   HWY_UNROLL(8)
-  for (int i = kTerms - 2; i >= 0; --i) {
-    s = hn::MulAdd(s, r2, hn::Set(d, static_cast<T>(kSinQuarter[i])));
-    c = hn::MulAdd(c, r2, hn::Set(d, static_cast<T>(kCosQuarter[i])));
+  for (std::size_t i = 1; i < kTerms; ++i) {
+    s = hn::MulAdd(s, r2, hn::Set(d, static_cast<T>(kSinQuarter[kTerms - 1 - i])));
+    c = hn::MulAdd(c, r2, hn::Set(d, static_cast<T>(kCosQuarter[kTerms - 1 - i])));
   }
   s = s * r;
   const auto is1 = q == hn::Set(d, T(1)), is2 = q == hn::Set(d, T(2)), is3 = q == hn::Set(d, T(3));

@@ -16,6 +16,7 @@
 
 #include "accel/accel.h"
 #include "film/film.h"
+#include "kernel/isa.h"
 #include "kernel/render_tile.h"
 #include "render/tiles.h"
 
