@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/precision_advice.h"
 #include "app/scene_hash.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
@@ -103,6 +104,13 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
   info.sphere_bytes = world.bytes();
   info.accelerator_bytes = info.accelerator == "embree" ? info.spheres * kAcceleratorBytesPerSphere : 0;
   info.warnings = std::move(read.warnings);
+  for (const std::string& advice : precision_advice(world)) {
+    base::Finding warning;
+    warning.severity = base::Severity::kWarning;
+    warning.file = scene.string();
+    warning.text = advice;
+    info.warnings.push_back(std::move(warning));
+  }
   return info;
 }
 

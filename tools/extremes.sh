@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Renders scenes/extremes with each precision, side by side into one picture: exact, fast, book; a row a scene.
+#
+#   tools/extremes.sh [out/extremes.png]
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+output=${1:-$root/out/extremes.png}
+orrery=${ORRERY:-$root/build/src/orrery}
+command -v oiiotool >/dev/null || { echo "oiiotool is missing; it is in the package openimageio-tools" >&2; exit 1; }
+mkdir -p "$(dirname "$output")"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+pictures=()
+rows=0
+for scene in "$root"/scenes/extremes/*.toml; do
+  for precision in exact fast book; do
+    picture="$work/$(basename "$scene" .toml)-$precision.png"
+    "$orrery" render "$scene" -o "$picture" --precision "$precision" -q
+    pictures+=("$picture")
+  done
+  rows=$((rows + 1))
+done
+oiiotool "${pictures[@]}" --mosaic:pad=4 "3x$rows" -o "$output"
+echo "$output"
