@@ -6,8 +6,11 @@ namespace orrery::scene {
 /// Largest absolute coordinate and radius, scene units: its square and the square's products stay far inside a double.
 inline constexpr double kLargestLength = 1e18;
 
-/// Smallest absolute radius, scene units: its square keeps all its bits.
+/// Smallest absolute radius, and smallest distance that has a direction, scene units: its square keeps all its bits.
 inline constexpr double kSmallestRadius = 1e-30;
+
+/// Smallest sine of the angle between the view and `up`: below this the picture's roll would be rounding.
+inline constexpr double kSmallestUpSine = 1e-9;
 
 /// A pixel's name is y << 16 | x.
 inline constexpr int kLargestSide = 65536;

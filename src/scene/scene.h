@@ -88,7 +88,7 @@ struct Sphere {
 struct Points {
   std::filesystem::path file;            ///< as written in the scene, relative to the scene file
   std::uint32_t material = 0;            ///< index into Scene::materials; where the file has none of its own
-  std::optional<double> radius;          ///< for every point of a file that carries no radius
+  std::optional<double> radius;          ///< of every point, whatever the file says; default: the file's
   std::vector<Vec3d> centers;
   std::vector<double> radii;             ///< as many as centers
   std::vector<std::uint32_t> materials;  ///< as many as centers, or empty: `material` for all

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/schema.h"
 
-#include <charconv>
-#include <cstdio>
 #include <limits>
+#include <type_traits>
 
 #include "scene/limits.h"
 
@@ -11,41 +10,66 @@ namespace orrery::scene {
 namespace {
 
 constexpr Range kAnyLength{-kLargestLength, kLargestLength};
+constexpr Range kLength{kSmallestRadius, kLargestLength};
 constexpr Range kUnit{0, 1};
 constexpr Range kLight{0, kBrightestBackground};
 
-/// A key for a member that `at` finds in its target.
-template <class Target, class At>
-Key<Target> integer(const char* name, Range range, const char* unit, At at) {
-  return {name, ValueType::kInteger, range, {}, unit, false,
+/// What people read about a key.
+struct About {
+  const char* unit;
+  const char* doc;
+  const char* cost = "";
+};
+
+/// A key for the member that `at` finds in its target; `at` changes nothing, it only gives a reference.
+template <class Target, class At, class Text>
+Key<Target> key_of(const char* name, ValueType type, Range range, const About& about, At at, Text text) {
+  return {name,  type,
+          range, {},
+          about.unit, about.doc,
+          about.cost, false,
           [at](Target& t, const Value& v) {
             using Member = std::remove_reference_t<decltype(at(t))>;
-            at(t) = static_cast<Member>(std::get<std::int64_t>(v));
+            if constexpr (std::is_integral_v<Member>) {
+              at(t) = static_cast<Member>(std::get<std::int64_t>(v));
+            } else if constexpr (std::is_constructible_v<Member, std::string>) {
+              at(t) = std::get<std::string>(v);
+            } else {
+              at(t) = std::get<Member>(v);
+            }
           },
-          [at](const Target& t) { return std::to_string(at(const_cast<Target&>(t))); }};
+          [at, text](const Target& t) { return text(at(const_cast<Target&>(t))); }};
 }
 template <class Target, class At>
-Key<Target> number(const char* name, Range range, const char* unit, At at, bool required = false) {
-  return {name, ValueType::kNumber, range, {}, unit, required,
+Key<Target> integer(const char* name, Range range, const About& about, At at) {
+  return key_of<Target>(name, ValueType::kInteger, range, about, at, [](auto x) { return std::to_string(x); });
+}
+template <class Target, class At>
+Key<Target> number(const char* name, Range range, const About& about, At at) {
+  return key_of<Target>(name, ValueType::kNumber, range, about, at, number_text);
+}
+template <class Target, class At>
+Key<Target> vector(const char* name, Range range, const About& about, At at) {
+  return key_of<Target>(name, ValueType::kVector, range, about, at, vector_text);
+}
+template <class Target, class At>
+Key<Target> text(const char* name, const About& about, At at) {
+  return key_of<Target>(name, ValueType::kText, {}, about, at, string_text);
+}
+/// A number that may be left out, and then is what `otherwise` says.
+template <class Target, class At>
+Key<Target> optional_number(const char* name, Range range, const About& about, const char* otherwise, At at) {
+  return {name, ValueType::kNumber, range, {}, about.unit, about.doc, about.cost, false,
           [at](Target& t, const Value& v) { at(t) = std::get<double>(v); },
-          [at](const Target& t) { return number_text(at(const_cast<Target&>(t))); }};
-}
-template <class Target, class At>
-Key<Target> vector(const char* name, Range range, const char* unit, At at, bool required = false) {
-  return {name, ValueType::kVector, range, {}, unit, required,
-          [at](Target& t, const Value& v) { at(t) = std::get<Vec3d>(v); },
-          [at](const Target& t) { return vector_text(at(const_cast<Target&>(t))); }};
-}
-template <class Target, class At>
-Key<Target> text(const char* name, At at, bool required = false) {
-  return {name, ValueType::kText, {}, {}, "", required,
-          [at](Target& t, const Value& v) { at(t) = std::get<std::string>(v); },
-          [at](const Target& t) { return string_text(at(const_cast<Target&>(t))); }};
+          [at, otherwise](const Target& t) -> std::string {
+            const std::optional<double>& x = at(const_cast<Target&>(t));
+            return x ? number_text(*x) : otherwise;
+          }};
 }
 /// Choices stand in the order of the enumerators.
 template <class Target, class At>
-Key<Target> choice(const char* name, std::vector<std::string> choices, At at) {
-  return {name, ValueType::kChoice, {}, choices, "", false,
+Key<Target> choice(const char* name, std::vector<std::string> choices, const About& about, At at) {
+  return {name, ValueType::kChoice, {}, choices, about.unit, about.doc, about.cost, false,
           [at, choices](Target& t, const Value& v) {
             using Enum = std::remove_reference_t<decltype(at(t))>;
             for (std::size_t i = 0; i < choices.size(); ++i)
@@ -55,64 +79,100 @@ Key<Target> choice(const char* name, std::vector<std::string> choices, At at) {
             return string_text(choices[static_cast<std::size_t>(at(const_cast<Target&>(t)))]);
           }};
 }
-
-/// focus_distance has a default that depends on the camera.
-Key<Scene> focus_distance_key() {
-  Key<Scene> key = number<Scene>("focus_distance", {0, kLargestLength, true, false}, "scene units",
-                                 [](Scene& s) -> double& { return s.camera.focus_distance.emplace(); });
-  key.set = [](Scene& s, const Value& v) { s.camera.focus_distance = std::get<double>(v); };
-  key.text = [](const Scene& s) {
-    return s.camera.focus_distance ? number_text(*s.camera.focus_distance) : "distance to look_at";
-  };
+template <class Target>
+Key<Target> required(Key<Target> key) {
+  key.required = true;
   return key;
 }
 
-std::vector<Table> make_tables() {
-  using S = Scene;
-  const double int_max = std::numeric_limits<std::int32_t>::max();
+using S = Scene;
+
+Table image_table() {
+  const char* const cost = "time and memory in proportion";
+  return {"image",
+          {integer<S>("width", {1, kLargestSide}, {"px", "pixels in a row", cost},
+                      [](S& s) -> int& { return s.image.width; }),
+           integer<S>("height", {1, kLargestSide}, {"px", "rows", cost}, [](S& s) -> int& { return s.image.height; })}};
+}
+
+Table camera_table() {
+  return {"camera",
+          {vector<S>("look_from", kAnyLength, {"scene units", "where the camera stands; may be inside of a sphere"},
+                     [](S& s) -> Vec3d& { return s.camera.look_from; }),
+           vector<S>("look_at", kAnyLength, {"scene units", "the point in the middle of the picture"},
+                     [](S& s) -> Vec3d& { return s.camera.look_at; }),
+           vector<S>("up", kAnyLength, {"any length", "what is up in the picture; not parallel to the view"},
+                     [](S& s) -> Vec3d& { return s.camera.up; }),
+           number<S>("vfov", {0, 180, true, true}, {"degrees", "angle of view from the lower edge to the upper one"},
+                     [](S& s) -> double& { return s.camera.vfov; }),
+           number<S>("defocus_angle", {0, 180, false, true},
+                     {"degrees", "apex angle of the cone from a point in focus to the rim of the lens; 0 is a pinhole",
+                      "above 0 one lens sample for each path"},
+                     [](S& s) -> double& { return s.camera.defocus_angle; }),
+           optional_number<S>("focus_distance", kLength, {"scene units", "distance of the plane that is in focus"},
+                              "distance to look_at",
+                              [](S& s) -> std::optional<double>& { return s.camera.focus_distance; })}};
+}
+
+Table background_table() {
+  const char* const unit = "scene-linear";
+  return {"background",
+          {choice<S>("type", {"gradient", "constant"},
+                     {"", "`gradient`: from `bottom` to `top`, linear in the height of the direction; `constant`: `color`"},
+                     [](S& s) -> BackgroundType& { return s.background.type; }),
+           vector<S>("bottom", kLight, {unit, "gradient: light from straight below"},
+                     [](S& s) -> Vec3d& { return s.background.bottom; }),
+           vector<S>("top", kLight, {unit, "gradient: light from straight above"},
+                     [](S& s) -> Vec3d& { return s.background.top; }),
+           vector<S>("color", kLight, {unit, "constant: light from everywhere"},
+                     [](S& s) -> Vec3d& { return s.background.color; })}};
+}
+
+Table render_table() {
   return {
-      {"image",
-       {integer<S>("width", {1, kLargestSide}, "px", [](S& s) -> int& { return s.image.width; }),
-        integer<S>("height", {1, kLargestSide}, "px", [](S& s) -> int& { return s.image.height; })}},
-      {"camera",
-       {vector<S>("look_from", kAnyLength, "scene units", [](S& s) -> Vec3d& { return s.camera.look_from; }),
-        vector<S>("look_at", kAnyLength, "scene units", [](S& s) -> Vec3d& { return s.camera.look_at; }),
-        vector<S>("up", kAnyLength, "any length", [](S& s) -> Vec3d& { return s.camera.up; }),
-        number<S>("vfov", {0, 180, true, true}, "degrees", [](S& s) -> double& { return s.camera.vfov; }),
-        number<S>("defocus_angle", {0, 180, false, true}, "degrees",
-                  [](S& s) -> double& { return s.camera.defocus_angle; }),
-        focus_distance_key()}},
-      {"background",
-       {choice<S>("type", {"gradient", "constant"}, [](S& s) -> BackgroundType& { return s.background.type; }),
-        vector<S>("bottom", kLight, "scene-linear", [](S& s) -> Vec3d& { return s.background.bottom; }),
-        vector<S>("top", kLight, "scene-linear", [](S& s) -> Vec3d& { return s.background.top; }),
-        vector<S>("color", kLight, "scene-linear", [](S& s) -> Vec3d& { return s.background.color; })}},
-      {"render",
-       {integer<S>("samples", {1, int_max}, "per pixel", [](S& s) -> int& { return s.render.samples; }),
-        integer<S>("max_depth", {0, kDeepestPath}, "scattering events",
-                   [](S& s) -> int& { return s.render.max_depth; }),
-        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()}, "",
-                   [](S& s) -> std::uint32_t& { return s.render.seed; }),
-        choice<S>("precision", {"exact", "fast", "book"}, [](S& s) -> Precision& { return s.render.precision; }),
-        choice<S>("shading", {"path", "normal", "flat"}, [](S& s) -> Shading& { return s.render.shading; }),
-        choice<S>("accelerator", {"embree", "list"}, [](S& s) -> Accelerator& { return s.render.accelerator; })}},
-      {"color", {text<S>("space", [](S& s) -> std::string& { return s.color.space; })}},
-  };
+      "render",
+      {integer<S>("samples", {1, std::numeric_limits<std::int32_t>::max()},
+                  {"per pixel", "paths for each pixel", "time in proportion; four times as many halve the noise"},
+                  [](S& s) -> int& { return s.render.samples; }),
+       integer<S>("max_depth", {0, kDeepestPath},
+                  {"scattering events", "a path that has been scattered more often than this brings no light",
+                   "a bound only: most paths leave the scene earlier"},
+                  [](S& s) -> int& { return s.render.max_depth; }),
+       integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},
+                  {"", "chooses the random numbers; the same seed gives the same picture, bit for bit"},
+                  [](S& s) -> std::uint32_t& { return s.render.seed; }),
+       choice<S>("precision", {"exact", "fast", "book"},
+                 {"", "`exact`: double without any epsilon; `fast`: float; `book`: the book's formula with its smallest t",
+                  "`fast` and `book` trade accuracy for time"},
+                 [](S& s) -> Precision& { return s.render.precision; }),
+       choice<S>("shading", {"path", "normal", "flat"},
+                 {"", "`path`: light; `normal`: normals as colour; `flat`: the albedo, without light",
+                  "`normal` and `flat` follow no light, one ray for each sample"},
+                 [](S& s) -> Shading& { return s.render.shading; }),
+       choice<S>("accelerator", {"embree", "list"},
+                 {"", "`list`: each ray tries each sphere, for comparison; the picture is the same, bit for bit",
+                  "`list`: time in proportion to the number of spheres"},
+                 [](S& s) -> Accelerator& { return s.render.accelerator; })}};
 }
 
 std::vector<MaterialType> make_material_types() {
   using M = MaterialModel;
+  const About albedo{"scene-linear", "share of the light that is scattered, by colour"};
   return {
-      {"lambertian", Lambertian{}, {vector<M>("albedo", kUnit, "scene-linear", [](M& m) -> Vec3d& { return std::get<Lambertian>(m).albedo; }, true)}},
-      {"hemisphere", Hemisphere{}, {vector<M>("albedo", kUnit, "scene-linear", [](M& m) -> Vec3d& { return std::get<Hemisphere>(m).albedo; }, true)}},
-      {"metal",
-       Metal{},
-       {vector<M>("albedo", kUnit, "scene-linear", [](M& m) -> Vec3d& { return std::get<Metal>(m).albedo; }, true),
-        number<M>("fuzz", kUnit, "", [](M& m) -> double& { return std::get<Metal>(m).fuzz; })}},
-      {"dielectric",
-       Dielectric{},
-       {number<M>("ior", {1e-6, 1e6}, "relative to what is around", [](M& m) -> double& { return std::get<Dielectric>(m).ior; }),
+      {"lambertian", "diffuse: light leaves by the cosine law", Lambertian{},
+       {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Lambertian>(m).albedo; }))}},
+      {"hemisphere", "the book's first diffuse: light leaves evenly over the hemisphere", Hemisphere{},
+       {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Hemisphere>(m).albedo; }))}},
+      {"metal", "mirror, sharp or fuzzy", Metal{},
+       {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Metal>(m).albedo; })),
+        number<M>("fuzz", kUnit, {"", "radius of the ball around the tip of the reflected direction; 0 is a sharp mirror"},
+                  [](M& m) -> double& { return std::get<Metal>(m).fuzz; })}},
+      {"dielectric", "clear glass, water, air in water", Dielectric{},
+       {number<M>("ior", {1e-6, 1e6}, {"", "refractive index of the inside, relative to what is around"},
+                  [](M& m) -> double& { return std::get<Dielectric>(m).ior; }),
         choice<M>("fresnel", {"schlick", "exact", "none"},
+                  {"", "share of the light that is reflected: `schlick`, as in the book; `exact`; `none`: all is refracted "
+                       "unless reflected totally"},
                   [](M& m) -> Fresnel& { return std::get<Dielectric>(m).fresnel; })}},
   };
 }
@@ -126,7 +186,10 @@ std::string Range::text() const {
 }
 
 const std::vector<Table>& tables() {
-  static const std::vector<Table> all = make_tables();
+  static const std::vector<Table> all = {
+      image_table(), camera_table(), background_table(), render_table(),
+      {"color", {text<S>("space", {"", "name of the colour space of all colours here, and of the EXR"},
+                         [](S& s) -> std::string& { return s.color.space; })}}};
   return all;
 }
 
@@ -137,57 +200,25 @@ const std::vector<MaterialType>& material_types() {
 
 const std::vector<Key<Sphere>>& sphere_keys() {
   static const std::vector<Key<Sphere>> keys = {
-      vector<Sphere>("center", kAnyLength, "scene units", [](Sphere& s) -> Vec3d& { return s.center; }, true),
-      number<Sphere>("radius", kAnyLength, "scene units", [](Sphere& s) -> double& { return s.radius; }, true),
-      text<Sphere>("name", [](Sphere& s) -> std::string& { return s.name; })};
+      required(vector<Sphere>("center", kAnyLength, {"scene units", "where it is"},
+                              [](Sphere& s) -> Vec3d& { return s.center; })),
+      required(number<Sphere>("radius", kAnyLength,
+                              {"scene units", "its size; not 0; below 0 the normal points inward: hollow glass"},
+                              [](Sphere& s) -> double& { return s.radius; })),
+      text<Sphere>("name", {"", "for mattes"}, [](Sphere& s) -> std::string& { return s.name; })};
   return keys;
 }
 
 const std::vector<Key<Points>>& points_keys() {
   static const std::vector<Key<Points>> keys = [] {
-    Key<Points> file = text<Points>("file", [](Points& p) -> std::filesystem::path& { return p.file; }, true);
-    file.text = [](const Points& p) { return string_text(p.file.string()); };
-    Key<Points> radius = number<Points>("radius", {kSmallestRadius, kLargestLength}, "scene units",
-                                        [](Points& p) -> double& { return p.radius.emplace(); });
-    radius.set = [](Points& p, const Value& v) { p.radius = std::get<double>(v); };
-    radius.text = [](const Points& p) { return p.radius ? number_text(*p.radius) : "as in the file"; };
-    return std::vector<Key<Points>>{file, radius};
+    auto file = required(text<Points>("file", {"", "PLY file, relative to the scene file", "one read; 32 bytes a sphere, 36 with materials"},
+                                      [](Points& p) -> std::filesystem::path& { return p.file; }));
+    return std::vector<Key<Points>>{
+        file, optional_number<Points>("radius", kLength, {"scene units", "radius of every sphere, whatever the file says"},
+                                      "as in the file",
+                                      [](Points& p) -> std::optional<double>& { return p.radius; })};
   }();
   return keys;
-}
-
-std::string number_text(double value) {
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof(buffer), value).ptr;
-  return {buffer, end};
-}
-
-std::string vector_text(Vec3d v) {
-  std::string out = "[";
-  out.append(number_text(v.x)).append(", ").append(number_text(v.y)).append(", ").append(number_text(v.z));
-  return out.append("]");
-}
-
-std::string string_text(const std::string& value) {
-  std::string out = "\"";
-  for (const char c : value) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (byte < 0x20 || byte == 0x7f) {
-      char escape[8];
-      std::snprintf(escape, sizeof(escape), "\\u%04x", byte);
-      out += escape;
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
-std::string unquoted(const std::string& text) {
-  return text.size() >= 2 && text.front() == '"' ? text.substr(1, text.size() - 2) : text;
 }
 
 }  // namespace orrery::scene

@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "scene/value_text.h"
 
+/// Everything that reading, checking, `--set`, suggestions, `--settings` and the documentation know of the keys of a
+/// scene file, in one place. Defaults are not here: they are the values of the members of scene/scene.h.
 namespace orrery::scene {
 
 /// What a key of the scene file can hold.
@@ -26,8 +29,7 @@ struct Range {
   std::string text() const;
 };
 
-/// One key of a table of the scene file: everything that reading, checking, `--set`, suggestions, `--settings` and
-/// the documentation need to know of it, in one place.
+/// One key of a table of the scene file.
 template <class Target>
 struct Key {
   std::string name;
@@ -35,6 +37,8 @@ struct Key {
   Range range;                       ///< numbers and vectors
   std::vector<std::string> choices;  ///< kChoice
   std::string unit;                  ///< may be empty
+  std::string doc;                   ///< what it is, one line of Markdown
+  std::string cost;                  ///< what it costs in time or memory; may be empty
   bool required;
   std::function<void(Target&, const Value&)> set;
   std::function<std::string(const Target&)> text;  ///< as it would stand in the file
@@ -50,6 +54,7 @@ const std::vector<Table>& tables();
 /// Keys of [material.NAME] beside `type`, for one type.
 struct MaterialType {
   std::string name;
+  std::string doc;
   MaterialModel model;  ///< with its defaults
   std::vector<Key<MaterialModel>> keys;
 };
@@ -58,13 +63,5 @@ const std::vector<MaterialType>& material_types();
 /// Keys of [[sphere]] and [[points]] beside `material`, which names one.
 const std::vector<Key<Sphere>>& sphere_keys();
 const std::vector<Key<Points>>& points_keys();
-
-/// A double as the shortest decimal that reads back to the same bits, always recognisable as TOML float or integer.
-std::string number_text(double value);
-std::string vector_text(Vec3d value);
-/// With quotes and escapes.
-std::string string_text(const std::string& value);
-/// A choice's word out of Key::text.
-std::string unquoted(const std::string& text);
 
 }  // namespace orrery::scene

@@ -1,133 +1,137 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/validate.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <functional>
-#include <unordered_map>
+#include <cstdint>
+#include <numbers>
+#include <utility>
 
+#include "scene/coincident.h"
 #include "scene/limits.h"
-#include "scene/schema.h"
+#include "scene/value_text.h"
 
 namespace orrery::scene {
 namespace {
 
-/// Findings of one kind that are told one by one before only their number is told.
-constexpr std::size_t kMostTold = 10;
-
 class Problems {
  public:
-  void add(base::Severity severity, std::string key, std::string text) {
-    std::size_t& told = severity == base::Severity::kError ? errors_ : warnings_;
-    if (++told <= kMostTold || key.rfind("points", 0) != 0) list_.push_back({severity, std::move(key), std::move(text)});
+  void error(std::string key, std::string text) {
+    list_.push_back({base::Severity::kError, std::move(key), std::move(text)});
   }
-  std::vector<Problem> take(const std::string& rest_key) {
-    for (const auto& [count, severity] : {std::pair{errors_, base::Severity::kError}, {warnings_, base::Severity::kWarning}}) {
-      const auto shown = static_cast<std::size_t>(
-          std::count_if(list_.begin(), list_.end(), [s = severity](const Problem& p) { return p.severity == s; }));
-      if (count > shown)
-        list_.push_back({severity, rest_key, "and " + std::to_string(count - shown) + " more of this kind (" +
-                                                 std::to_string(count) + " in all)"});
-    }
-    return std::move(list_);
+  void warning(std::string key, std::string text) {
+    list_.push_back({base::Severity::kWarning, std::move(key), std::move(text)});
   }
+  std::vector<Problem> take() { return std::move(list_); }
 
  private:
   std::vector<Problem> list_;
-  std::size_t errors_ = 0, warnings_ = 0;
 };
+
+std::string length_range() { return number_text(kSmallestRadius) + ".." + number_text(kLargestLength); }
+
+bool in_domain(Vec3d c) {
+  // Written so that a NaN is outside.
+  return std::abs(c.x) <= kLargestLength && std::abs(c.y) <= kLargestLength && std::abs(c.z) <= kLargestLength;
+}
+bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
+
+void check_camera(const Camera& camera, Problems& problems) {
+  bool usable = true;
+  for (const auto& [name, v] : {std::pair{"look_from", camera.look_from}, {"look_at", camera.look_at}, {"up", camera.up}}) {
+    if (in_domain(v)) continue;
+    problems.error(std::string("camera.") + name, vector_text(v) + " is not finite or beyond " + number_text(kLargestLength));
+    usable = false;
+  }
+  if (!usable) return;  // what they make together would be a finding too many
+  const Vec3d view = camera.look_at - camera.look_from;
+  if (!has_direction(view)) {
+    problems.error("camera.look_at", view == Vec3d{} ? "look_at is the same point as look_from, so the camera has no direction"
+                                                     : "look_at is closer to look_from than " + number_text(kSmallestRadius) +
+                                                           ", so the camera has no direction");
+  } else if (!has_direction(camera.up)) {
+    problems.error("camera.up", camera.up == Vec3d{} ? "up is zero; any direction that is not the view's will do"
+                                                     : "up is shorter than " + number_text(kSmallestRadius) +
+                                                           "; any direction that is not the view's will do");
+  } else if (math::length(math::cross(math::normalized(view), math::normalized(camera.up))) < kSmallestUpSine) {
+    problems.error("camera.up", "up is parallel to the view, so the picture has no upright; choose another direction");
+  }
+}
+
+/// Where the rays start is a coordinate like any other.
+void check_lens(const Camera& camera, Problems& problems) {
+  if (!(camera.defocus_angle > 0)) return;
+  const double focus = camera.focus_distance.value_or(math::length(camera.look_at - camera.look_from));
+  const double radius = std::tan(camera.defocus_angle / 360 * std::numbers::pi) * focus;
+  if (radius <= kLargestLength) return;
+  problems.error("camera.defocus_angle", "the lens would have a radius of " + number_text(radius) + "; allowed is up to " +
+                                             number_text(kLargestLength) + ": choose a smaller angle or focus_distance");
+}
 
 /// What is wrong with a radius by itself; empty where nothing is.
 std::string radius_fault(double radius) {
-  if (!std::isfinite(radius)) return "radius is not finite";
-  if (radius == 0) return "radius is 0; allowed is " + number_text(kSmallestRadius) + ".." + number_text(kLargestLength) +
-                          ", or the same below 0 for an inward normal";
+  if (!std::isfinite(radius)) return "radius is not finite; allowed is " + length_range();
+  if (radius == 0) return "radius is 0; allowed is " + length_range() + ", or the same below 0 for an inward normal";
   if (std::abs(radius) < kSmallestRadius || std::abs(radius) > kLargestLength)
-    return "radius " + number_text(radius) + " is outside of " + number_text(kSmallestRadius) + ".." +
-           number_text(kLargestLength);
+    return "radius " + number_text(radius) + " is outside of " + length_range();
   return {};
 }
 
-void check_camera(const Camera& camera, Problems& problems) {
-  if (camera.look_from == camera.look_at) {
-    problems.add(base::Severity::kError, "camera.look_at",
-                 "look_at is the same point as look_from, so the camera has no direction");
-    return;
-  }
-  if (camera.up == Vec3d{0, 0, 0}) {
-    problems.add(base::Severity::kError, "camera.up", "up is zero; any direction that is not the view's will do");
-    return;
-  }
-  // Compared as unit vectors: the sine of the angle between them, whatever their lengths.
-  const Vec3d view = math::normalized(camera.look_at - camera.look_from), up = math::normalized(camera.up);
-  constexpr double kSmallestSine = 1e-9;  // below this the picture's roll would be rounding
-  if (math::length(math::cross(view, up)) < kSmallestSine)
-    problems.add(base::Severity::kError, "camera.up",
-                 "up is parallel to the view, so the picture has no upright; choose another direction");
+std::string material_fault(std::uint32_t material, const Scene& scene) {
+  if (material < scene.materials.size()) return {};
+  return "there is no material number " + std::to_string(material) + "; the scene has " +
+         std::to_string(scene.materials.size()) + ", counted from 0";
 }
 
-struct PlaceHash {
-  static std::uint64_t bits(double x) {
-    x += 0.0;  // -0 is 0
-    std::uint64_t b;
-    std::memcpy(&b, &x, sizeof(b));
-    return b;
-  }
-  std::size_t operator()(const std::pair<Vec3d, double>& p) const {
-    std::uint64_t h = 0x9E3779B97F4A7C15u;
-    for (const double x : {p.first.x, p.first.y, p.first.z, p.second}) h = (h ^ bits(x)) * 0xD6E8FEB86659FD93u, h ^= h >> 32;
-    return static_cast<std::size_t>(h);
-  }
-};
-
-/// Calls `visit(key, name, center, radius)` for every sphere of the scene.
-template <class Visit>
-void for_each_sphere(const Scene& scene, Visit visit) {
-  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
-    visit([i] { return "sphere[" + std::to_string(i) + "]"; }, scene.spheres[i].center, scene.spheres[i].radius);
-  for (std::size_t p = 0; p < scene.points.size(); ++p)
-    for (std::size_t i = 0; i < scene.points[p].centers.size(); ++i)
-      visit([p, i] { return "points[" + std::to_string(p) + "][" + std::to_string(i) + "]"; }, scene.points[p].centers[i],
-            scene.points[p].radii[i]);
-}
-
-bool in_domain(Vec3d c) {
-  return std::abs(c.x) <= kLargestLength && std::abs(c.y) <= kLargestLength && std::abs(c.z) <= kLargestLength;
+/// Calls `tell(part of the key, text)` for each thing that is wrong with a sphere.
+template <class Tell>
+void check_sphere(Vec3d center, double radius, std::uint32_t material, const Scene& scene, Tell tell) {
+  if (!in_domain(center))
+    tell(".center", "center " + vector_text(center) + " is not finite or beyond " + number_text(kLargestLength));
+  if (const std::string fault = radius_fault(radius); !fault.empty()) tell(".radius", fault);
+  if (const std::string fault = material_fault(material, scene); !fault.empty()) tell(".material", fault);
 }
 
 void check_spheres(const Scene& scene, Problems& problems) {
-  for_each_sphere(scene, [&](auto key, Vec3d center, double radius) {
-    if (!in_domain(center))
-      problems.add(base::Severity::kError, key() + ".center",
-                   "center " + vector_text(center) + " is not finite or beyond " + number_text(kLargestLength));
-    if (const std::string fault = radius_fault(radius); !fault.empty())
-      problems.add(base::Severity::kError, key() + ".radius", fault);
-  });
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
+    const Sphere& s = scene.spheres[i];
+    check_sphere(s.center, s.radius, s.material, scene, [&](const char* part, std::string text) {
+      problems.error("sphere[" + std::to_string(i) + "]" + part, std::move(text));
+    });
+  }
+}
+
+void check_points(const Points& points, const std::string& key, const Scene& scene, Problems& problems) {
+  if (points.radii.size() != points.centers.size() ||
+      (!points.materials.empty() && points.materials.size() != points.centers.size())) {
+    problems.error(key, "has " + std::to_string(points.centers.size()) + " centres, " + std::to_string(points.radii.size()) +
+                            " radii and " + std::to_string(points.materials.size()) + " materials");
+    return;
+  }
+  if (points.materials.empty())
+    if (const std::string fault = material_fault(points.material, scene); !fault.empty())
+      problems.error(key + ".material", fault);
+  std::size_t faults = 0;
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    const std::uint32_t material = points.materials.empty() ? 0 : points.materials[i];
+    check_sphere(points.centers[i], points.radii[i], material, scene, [&](const std::string& part, std::string text) {
+      if (points.materials.empty() && part == ".material") return;  // told above, once
+      if (++faults <= kMostTold) problems.error(key + "[" + std::to_string(i) + "]" + part, std::move(text));
+    });
+  }
+  if (faults > kMostTold)
+    problems.error(key, "and " + std::to_string(faults - kMostTold) + " more (" + std::to_string(faults) + " in all)");
 }
 
 /// Two surfaces in exactly the same place: which of them a ray meets is decided by their order alone.
 void check_coincident(const Scene& scene, Problems& problems) {
-  std::size_t count = scene.spheres.size();
-  for (const Points& p : scene.points) count += p.centers.size();
-  std::unordered_map<std::pair<Vec3d, double>, std::string, PlaceHash> seen;
-  // Ten million names would be the largest thing in memory; hashes of places are enough to find candidates.
-  std::vector<std::uint64_t> hashes;
-  hashes.reserve(count);
-  const PlaceHash hash;
-  for_each_sphere(scene, [&](auto, Vec3d c, double r) { hashes.push_back(hash({c, std::abs(r)})); });
-  std::vector<std::uint64_t> sorted = hashes;
-  std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return;
-  std::size_t index = 0;
-  for_each_sphere(scene, [&](auto key, Vec3d c, double r) {
-    const auto range = std::equal_range(sorted.begin(), sorted.end(), hashes[index++]);
-    if (range.second - range.first < 2) return;
-    const auto [at, inserted] = seen.try_emplace({c, std::abs(r)}, key());
-    if (!inserted)
-      problems.add(base::Severity::kWarning, key(),
-                   "has exactly the same place and size as " + at->second + "; rays meet the first of them only");
-  });
+  for (const Points& p : scene.points)
+    if (p.radii.size() != p.centers.size()) return;  // told above, and not to be walked through
+  const Coincidents found = coincident_spheres(scene, kMostTold);
+  for (const Coincident& c : found.told)
+    problems.warning(c.key, "has exactly the same place and size as " + c.first + "; rays meet the first of them only");
+  if (found.count > kMostTold)
+    problems.warning("", "and " + std::to_string(found.count - kMostTold) + " more spheres in the place of another (" +
+                             std::to_string(found.count) + " in all)");
 }
 
 }  // namespace
@@ -135,9 +139,12 @@ void check_coincident(const Scene& scene, Problems& problems) {
 std::vector<Problem> validate(const Scene& scene) {
   Problems problems;
   check_camera(scene.camera, problems);
+  check_lens(scene.camera, problems);
   check_spheres(scene, problems);
+  for (std::size_t p = 0; p < scene.points.size(); ++p)
+    check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, problems);
   check_coincident(scene, problems);
-  return problems.take(scene.points.empty() ? "sphere" : "points");
+  return problems.take();
 }
 
 }  // namespace orrery::scene

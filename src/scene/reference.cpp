@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/reference.h"
+
+#include <cstdint>
+
+#include "base/suggestion.h"
+#include "scene/schema.h"
+
+namespace orrery::scene {
+namespace {
+
+const char* type_name(ValueType type) {
+  switch (type) {
+    case ValueType::kInteger: return "whole number";
+    case ValueType::kNumber: return "number";
+    case ValueType::kVector: return "[x, y, z]";
+    case ValueType::kText: return "string";
+    case ValueType::kChoice: return "one of";
+  }
+  return "";
+}
+
+template <class Target>
+std::string range_text(const Key<Target>& key) {
+  switch (key.type) {
+    case ValueType::kInteger:
+      return std::to_string(static_cast<std::int64_t>(key.range.from)) + ".." +
+             std::to_string(static_cast<std::int64_t>(key.range.to));
+    case ValueType::kNumber: return key.range.text();
+    case ValueType::kVector: return "each " + key.range.text();
+    case ValueType::kText: return "any";
+    case ValueType::kChoice: return "`" + base::joined(key.choices) + "`";
+  }
+  return "";
+}
+
+std::string header() {
+  return "| key | type | range | unit | default | what it is | cost |\n|---|---|---|---|---|---|---|\n";
+}
+
+template <class Target>
+std::string row(const Key<Target>& key, const Target& defaults) {
+  const auto or_dash = [](const std::string& text) { return text.empty() ? std::string("-") : text; };
+  std::string standard = key.required ? "**required**" : key.text(defaults);
+  if (standard == "\"\"") standard = "none";
+  std::string out = "| `" + key.name + "` | " + type_name(key.type) + " | " + range_text(key) + " | " + or_dash(key.unit);
+  return out + " | " + standard + " | " + key.doc + " | " + or_dash(key.cost) + " |\n";
+}
+
+std::string material_row() {
+  return "| `material` | string | the name of a material | - | **required** | what it is made of | - |\n";
+}
+
+std::string material_section() {
+  std::string out = "### [material.NAME]\n\n| `type` | what it is |\n|---|---|\n";
+  for (const MaterialType& type : material_types()) out += "| `\"" + type.name + "\"` | " + type.doc + " |\n";
+  for (const MaterialType& type : material_types()) {
+    out += "\nBeside `type = \"" + type.name + "\"`:\n\n" + header();
+    for (const auto& key : type.keys) out += row(key, type.model);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string reference_markdown() {
+  std::string out;
+  const Scene defaults;
+  for (const Table& table : tables()) {
+    out += "### [" + table.name + "]\n\n" + header();
+    for (const auto& key : table.keys) out += row(key, defaults);
+    out += '\n';
+  }
+  out += material_section() + "\n### [[sphere]]\n\n" + header();
+  for (const auto& key : sphere_keys()) out += row(key, Sphere{});
+  out += material_row() + "\n### [[points]]\n\n" + header();
+  for (const auto& key : points_keys()) out += row(key, Points{});
+  return out + material_row();
+}
+
+}  // namespace orrery::scene

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/coincident.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace orrery::scene {
+namespace {
+
+Sphere sphere(Vec3d center, double radius) { return {center, radius, 0, ""}; }
+
+TEST(SceneCoincident, NamesBoth) {
+  Scene scene;
+  scene.spheres = {sphere({0, 0, 0}, 1), sphere({1, 0, 0}, 1), sphere({0, 0, 0}, 1)};
+  const auto found = coincident_spheres(scene, 10);
+  ASSERT_EQ(found.count, 1u);
+  EXPECT_EQ(found.told[0].key, "sphere[2]");
+  EXPECT_EQ(found.told[0].first, "sphere[0]");
+}
+
+TEST(SceneCoincident, TheSignsOfRadiusAndZeroDoNotMatter) {
+  Scene scene;
+  scene.spheres = {sphere({0.0, 0, 0}, 1), sphere({-0.0, 0, 0}, -1)};
+  EXPECT_EQ(coincident_spheres(scene, 10).count, 1u);
+}
+
+TEST(SceneCoincident, OneBitApartIsNotCoincident) {
+  Scene scene;
+  const double next = std::nextafter(1.0, 2.0);
+  scene.spheres = {sphere({1, 2, 3}, 1), sphere({next, 2, 3}, 1), sphere({1, 2, 3}, next), sphere({2, 1, 3}, 1)};
+  EXPECT_EQ(coincident_spheres(scene, 10).count, 0u);
+}
+
+TEST(SceneCoincident, FindsThemAcrossSpheresAndPointsFiles) {
+  Scene scene;
+  scene.spheres = {sphere({1, 0, 0}, 2)};
+  scene.points.resize(3);
+  scene.points[0].centers = {{5, 0, 0}};
+  scene.points[0].radii = {2};
+  scene.points[2].centers = {{1, 0, 0}, {6, 0, 0}, {5, 0, 0}};
+  scene.points[2].radii = {2, 2, 2};
+  const auto found = coincident_spheres(scene, 10);
+  ASSERT_EQ(found.told.size(), 2u);
+  EXPECT_EQ(found.told[0].key, "points[2][0]");
+  EXPECT_EQ(found.told[0].first, "sphere[0]");
+  EXPECT_EQ(found.told[1].key, "points[2][2]");
+  EXPECT_EQ(found.told[1].first, "points[0][0]");
+}
+
+TEST(SceneCoincident, CountsAllAndTellsTheFirst) {
+  Scene scene;
+  scene.points.resize(1);
+  scene.points[0].centers.assign(200000, Vec3d{1, 2, 3});
+  scene.points[0].radii.assign(200000, 1);
+  const auto found = coincident_spheres(scene, 3);
+  EXPECT_EQ(found.count, 199999u);
+  EXPECT_EQ(found.told.size(), 3u);
+}
+
+TEST(SceneCoincident, ThreeInOnePlaceAreTwoTooMany) {
+  Scene scene;
+  scene.spheres = {sphere({}, 1), sphere({}, 1), sphere({}, 1)};
+  EXPECT_EQ(coincident_spheres(scene, 10).count, 2u);
+}
+
+TEST(SceneCoincident, NotANumberIsInNoPlace) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Scene scene;
+  scene.spheres = {sphere({nan, 0, 0}, 1), sphere({nan, 0, 0}, 1)};
+  EXPECT_EQ(coincident_spheres(scene, 10).count, 0u);
+}
+
+}  // namespace
+}  // namespace orrery::scene

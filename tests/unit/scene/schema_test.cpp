@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/schema.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace orrery::scene {
+namespace {
+
+const Key<Scene>& key_of(const std::string& table_name, const std::string& name) {
+  for (const Table& table : tables())
+    for (const auto& key : table.keys)
+      if (table.name == table_name && key.name == name) return key;
+  throw std::out_of_range(table_name + "." + name);
+}
+
+bool has_range(ValueType type) {
+  return type == ValueType::kInteger || type == ValueType::kNumber || type == ValueType::kVector;
+}
+
+/// A value of a key's type inside its range that is not the default of any key.
+template <class Target>
+Value other_value(const Key<Target>& key) {
+  switch (key.type) {
+    case ValueType::kInteger: return std::int64_t{7};
+    case ValueType::kNumber: return 0.375;
+    case ValueType::kVector: return Vec3d{0.125, 0.375, 0.625};
+    case ValueType::kText: return std::string("other");
+    case ValueType::kChoice: return key.choices.back();
+  }
+  return {};
+}
+
+// Two keys that share a member by a slip of the pen, or a setter that sets nothing, are found here.
+TEST(SceneSchema, EachKeySetsItsOwnMemberAndNoOther) {
+  for (const Table& table : tables()) {
+    for (const auto& key : table.keys) {
+      Scene scene;
+      key.set(scene, other_value(key));
+      const Scene defaults;
+      for (const Table& other_table : tables())
+        for (const auto& other : other_table.keys)
+          EXPECT_EQ(other.text(scene) == other.text(defaults), &other != &key)
+              << table.name << "." << key.name << " and " << other_table.name << "." << other.name;
+    }
+  }
+}
+
+TEST(SceneSchema, EachMaterialKeySetsItsOwnMember) {
+  for (const MaterialType& type : material_types()) {
+    for (const auto& key : type.keys) {
+      MaterialModel model = type.model;
+      key.set(model, other_value(key));
+      for (const auto& other : type.keys)
+        EXPECT_EQ(other.text(model) == other.text(type.model), &other != &key) << type.name << "." << key.name;
+    }
+  }
+}
+
+TEST(SceneSchema, MaterialTypesStandInTheOrderOfTheVariant) {
+  ASSERT_EQ(material_types().size(), std::variant_size_v<MaterialModel>);
+  for (std::size_t i = 0; i < material_types().size(); ++i) EXPECT_EQ(material_types()[i].model.index(), i);
+}
+
+TEST(SceneSchema, DefaultsAreInsideTheirOwnRange) {
+  const auto inside = [](const Range& range, std::string text) {
+    std::replace_if(text.begin(), text.end(), [](char c) { return c == '[' || c == ',' || c == ']'; }, ' ');
+    std::istringstream numbers(text);
+    for (double x = 0; numbers >> x;)
+      if (!range.contains(x)) return false;
+    return true;
+  };
+  const Scene scene;
+  for (const Table& table : tables())
+    for (const auto& key : table.keys)
+      EXPECT_TRUE(!has_range(key.type) || inside(key.range, key.text(scene))) << key.name << " = " << key.text(scene);
+  for (const MaterialType& type : material_types())
+    for (const auto& key : type.keys)
+      EXPECT_TRUE(!has_range(key.type) || inside(key.range, key.text(type.model))) << type.name << "." << key.name;
+}
+
+TEST(SceneSchema, EachKeyIsExplained) {
+  for (const Table& table : tables())
+    for (const auto& key : table.keys) EXPECT_FALSE(key.doc.empty()) << table.name << "." << key.name;
+}
+
+TEST(SceneSchema, RangesOfTheIssue) {
+  EXPECT_FALSE(key_of("camera", "vfov").range.contains(0));
+  EXPECT_FALSE(key_of("camera", "vfov").range.contains(180));
+  EXPECT_TRUE(key_of("camera", "vfov").range.contains(179.99));
+  EXPECT_TRUE(key_of("camera", "defocus_angle").range.contains(0));
+  EXPECT_FALSE(key_of("camera", "defocus_angle").range.contains(180));
+  EXPECT_FALSE(key_of("camera", "focus_distance").range.contains(0));
+  EXPECT_FALSE(key_of("image", "width").range.contains(0));
+  EXPECT_TRUE(key_of("image", "height").range.contains(65536));
+  EXPECT_FALSE(key_of("image", "height").range.contains(65537));
+  EXPECT_FALSE(key_of("render", "samples").range.contains(0));
+  EXPECT_TRUE(key_of("render", "max_depth").range.contains(0));
+  EXPECT_FALSE(key_of("render", "max_depth").range.contains(10001));
+  EXPECT_TRUE(key_of("render", "seed").range.contains(4294967295.0));
+  EXPECT_FALSE(key_of("render", "seed").range.contains(4294967296.0));
+  EXPECT_FALSE(key_of("background", "top").range.contains(-1e-9));
+}
+
+TEST(SceneSchema, NotANumberIsInNoRange) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Table& table : tables())
+    for (const auto& key : table.keys)
+      EXPECT_FALSE(has_range(key.type) && key.range.contains(nan)) << key.name;
+}
+
+TEST(SceneSchema, RangesAsText) {
+  EXPECT_EQ((Range{0, 1}).text(), "0..1");
+  EXPECT_EQ((Range{0, 180, true, true}).text(), "above 0, below 180");
+  EXPECT_EQ((Range{0, 180, false, true}).text(), "from 0, below 180");
+  EXPECT_EQ((Range{0, 5, true, false}).text(), "above 0, up to 5");
+}
+
+TEST(SceneSchema, FocusDistanceIsTheDistanceUntilItIsSet) {
+  Scene scene;
+  const auto& key = key_of("camera", "focus_distance");
+  EXPECT_EQ(key.text(scene), "distance to look_at");
+  EXPECT_FALSE(scene.camera.focus_distance.has_value()) << "asking must not set it";
+  key.set(scene, Value(10.0));
+  EXPECT_EQ(scene.camera.focus_distance, 10.0);
+}
+
+TEST(SceneSchema, ChoicesAreTheEnumeratorsInTheirOrder) {
+  Scene scene;
+  key_of("render", "precision").set(scene, Value(std::string("book")));
+  key_of("render", "shading").set(scene, Value(std::string("normal")));
+  key_of("render", "accelerator").set(scene, Value(std::string("list")));
+  key_of("background", "type").set(scene, Value(std::string("constant")));
+  EXPECT_EQ(scene.render.precision, Precision::kBook);
+  EXPECT_EQ(scene.render.shading, Shading::kNormal);
+  EXPECT_EQ(scene.render.accelerator, Accelerator::kList);
+  EXPECT_EQ(scene.background.type, BackgroundType::kConstant);
+  MaterialModel glass = Dielectric{};
+  for (const auto& key : material_types()[3].keys)
+    if (key.name == "fresnel") key.set(glass, Value(std::string("none")));
+  EXPECT_EQ(std::get<Dielectric>(glass).fresnel, Fresnel::kNone);
+}
+
+}  // namespace
+}  // namespace orrery::scene

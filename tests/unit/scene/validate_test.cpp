@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/validate.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace orrery::scene {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Scene with_sphere(Vec3d center, double radius) {
+  Scene scene;
+  scene.materials = {{"grey", Lambertian{}}};
+  scene.spheres = {{center, radius, 0, ""}};
+  return scene;
+}
+
+/// "key: text" of each problem, warnings in brackets.
+std::vector<std::string> told(const Scene& scene) {
+  std::vector<std::string> out;
+  for (const Problem& p : validate(scene)) {
+    const std::string line = p.key + ": " + p.text;
+    out.push_back(p.severity == base::Severity::kError ? line : "(" + line + ")");
+  }
+  return out;
+}
+using Told = std::vector<std::string>;
+
+TEST(SceneValidate, ASceneWithoutAnythingIsAllRight) { EXPECT_EQ(told({}), Told{}); }
+
+TEST(SceneValidate, CameraThatLooksNowhere) {
+  Scene scene;
+  scene.camera.look_at = scene.camera.look_from;
+  EXPECT_EQ(told(scene), Told{"camera.look_at: look_at is the same point as look_from, so the camera has no direction"});
+  // Its length would be 0, or its square would: both end in a direction that is not a number.
+  scene.camera.look_at = scene.camera.look_from + Vec3d{0, 0, 1e-200};
+  EXPECT_EQ(told(scene),
+            Told{"camera.look_at: look_at is closer to look_from than 1e-30, so the camera has no direction"});
+  scene.camera.look_at = {0, 0, 1e-29};
+  EXPECT_EQ(told(scene), Told{});
+}
+
+TEST(SceneValidate, UpThatIsZeroTinyOrParallel) {
+  Scene scene;
+  scene.camera.up = {0, 0, 0};
+  EXPECT_EQ(told(scene), Told{"camera.up: up is zero; any direction that is not the view's will do"});
+  scene.camera.up = {0, 1e-200, 0};
+  EXPECT_EQ(told(scene), Told{"camera.up: up is shorter than 1e-30; any direction that is not the view's will do"});
+  const Told parallel{"camera.up: up is parallel to the view, so the picture has no upright; choose another direction"};
+  scene.camera.up = {0, 0, -5};
+  EXPECT_EQ(told(scene), parallel);
+  scene.camera.up = {0, 0, 1e18};
+  EXPECT_EQ(told(scene), parallel);
+  scene.camera.up = {0, 1e-10, 1};
+  EXPECT_EQ(told(scene), parallel);
+  scene.camera.up = {0, 1e-8, 1};
+  EXPECT_EQ(told(scene), Told{});
+}
+
+TEST(SceneValidate, CameraPointsThatAreNotFinite) {
+  Scene scene;
+  scene.camera.look_from = {kNan, 0, 0};
+  scene.camera.up = {0, kInfinity, 0};
+  EXPECT_EQ(told(scene), (Told{"camera.look_from: [nan, 0, 0] is not finite or beyond 1e+18",
+                               "camera.up: [0, inf, 0] is not finite or beyond 1e+18"}));
+}
+
+TEST(SceneValidate, LensLargerThanTheDomain) {
+  Scene scene;
+  scene.camera.defocus_angle = 179;
+  scene.camera.focus_distance = 1e18;
+  ASSERT_EQ(told(scene).size(), 1u);
+  EXPECT_EQ(told(scene)[0].rfind("camera.defocus_angle: the lens would have a radius of 1.14", 0), 0u) << told(scene)[0];
+  scene.camera.focus_distance = 1e10;
+  EXPECT_EQ(told(scene), Told{});
+  scene.camera.defocus_angle = kInfinity;
+  EXPECT_EQ(told(scene).size(), 1u);
+}
+
+TEST(SceneValidate, RadiusOutsideTheDomain) {
+  EXPECT_EQ(told(with_sphere({}, 0)),
+            Told{"sphere[0].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 for an inward normal"});
+  EXPECT_EQ(told(with_sphere({}, 1e-31)), Told{"sphere[0].radius: radius 1e-31 is outside of 1e-30..1e+18"});
+  EXPECT_EQ(told(with_sphere({}, -2e18)), Told{"sphere[0].radius: radius -2e+18 is outside of 1e-30..1e+18"});
+  EXPECT_EQ(told(with_sphere({}, kNan)), Told{"sphere[0].radius: radius is not finite; allowed is 1e-30..1e+18"});
+  EXPECT_EQ(told(with_sphere({}, -kInfinity)), Told{"sphere[0].radius: radius is not finite; allowed is 1e-30..1e+18"});
+  EXPECT_EQ(told(with_sphere({}, 1e-30)), Told{});
+  EXPECT_EQ(told(with_sphere({}, -1e18)), Told{});
+}
+
+TEST(SceneValidate, CenterOutsideTheDomain) {
+  EXPECT_EQ(told(with_sphere({0, 2e18, 0}, 1)), Told{"sphere[0].center: center [0, 2e+18, 0] is not finite or beyond 1e+18"});
+  EXPECT_EQ(told(with_sphere({0, 0, kNan}, 1)), Told{"sphere[0].center: center [0, 0, nan] is not finite or beyond 1e+18"});
+  EXPECT_EQ(told(with_sphere({-1e18, 1e18, 1e18}, 1)), Told{});
+}
+
+TEST(SceneValidate, MaterialThatIsNotThere) {
+  Scene scene = with_sphere({}, 1);
+  scene.spheres[0].material = 1;
+  EXPECT_EQ(told(scene), Told{"sphere[0].material: there is no material number 1; the scene has 1, counted from 0"});
+  scene = with_sphere({}, 1);
+  scene.points.resize(2);
+  scene.points[0].material = 9;
+  scene.points[0].centers = {{5, 0, 0}, {6, 0, 0}};
+  scene.points[0].radii = {1, 1};
+  scene.points[1] = scene.points[0];
+  scene.points[1].centers = {{7, 0, 0}, {8, 0, 0}};
+  scene.points[1].materials = {0, 3};
+  EXPECT_EQ(told(scene), (Told{"points[0].material: there is no material number 9; the scene has 1, counted from 0",
+                               "points[1][1].material: there is no material number 3; the scene has 1, counted from 0"}));
+}
+
+TEST(SceneValidate, MaterialOfAWholePointsFileIsToldOnce) {
+  Scene scene;
+  scene.points.resize(1);
+  scene.points[0].centers = {{5, 0, 0}, {6, 0, 0}};
+  scene.points[0].radii = {1, 1};
+  EXPECT_EQ(told(scene),
+            Told{"points[0].material: there is no material number 0; the scene has 0, counted from 0"});
+}
+
+TEST(SceneValidate, EverySphereOfItsOwnIsTold) {
+  Scene scene = with_sphere({}, 0);
+  for (int i = 1; i < 25; ++i) scene.spheres.push_back({{0.0 + i, 0, 0}, 0, 0, ""});
+  EXPECT_EQ(validate(scene).size(), 25u);
+}
+
+TEST(SceneValidate, OfBulkPointsTenAreToldAndAllAreCounted) {
+  Scene scene;
+  scene.materials = {{"grey", Lambertian{}}};
+  scene.points.resize(2);
+  for (Points& points : scene.points) {
+    for (int i = 0; i < 100; ++i) points.centers.push_back({i + (&points == &scene.points[0] ? 0.0 : 1000.0), 0, 0});
+    points.radii.assign(100, 1);
+  }
+  for (std::size_t i = 20; i < 50; ++i) scene.points[1].radii[i] = 0;
+  const Told lines = told(scene);
+  ASSERT_EQ(lines.size(), 11u);
+  EXPECT_EQ(lines[0].rfind("points[1][20].radius: radius is 0", 0), 0u) << lines[0];
+  EXPECT_EQ(lines[10], "points[1]: and 20 more (30 in all)");
+}
+
+TEST(SceneValidate, ArraysOfDifferentLengthAreNotWalkedThrough) {
+  Scene scene;
+  scene.materials = {{"grey", Lambertian{}}};
+  scene.points.resize(1);
+  scene.points[0].centers.resize(3);  // all in one place: whoever walks through them warns of it
+  scene.points[0].radii = {1, 1};
+  EXPECT_EQ(told(scene), Told{"points[0]: has 3 centres, 2 radii and 0 materials"});
+}
+
+TEST(SceneValidate, SpheresInTheSamePlaceAreAWarningThatNamesBoth) {
+  Scene scene = with_sphere({1, 2, 3}, 2);
+  scene.spheres.push_back({{1, 2, 3}, -2, 0, ""});
+  EXPECT_EQ(told(scene),
+            Told{"(sphere[1]: has exactly the same place and size as sphere[0]; rays meet the first of them only)"});
+}
+
+TEST(SceneValidate, OfManyInOnePlaceTenAreTold) {
+  Scene scene = with_sphere({1, 2, 3}, 2);
+  scene.spheres.assign(32, scene.spheres[0]);
+  const Told lines = told(scene);
+  ASSERT_EQ(lines.size(), 11u);
+  EXPECT_EQ(lines[10], "(: and 21 more spheres in the place of another (31 in all))");
+}
+
+}  // namespace
+}  // namespace orrery::scene
