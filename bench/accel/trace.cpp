@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nearest hits, rays a second: Embree, the list and the book's own program, on the rays that a render traces.
+#include <benchmark/benchmark.h>
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "baseline/program.h"
+#include "support/workload.h"
+
+namespace orrery::bench {
+namespace {
+
+using kernel::Precision;
+
+enum class Rays { kCamera, kBounced };
+enum class Traversal { kEmbree, kList };
+
+template <class Packet>
+std::vector<Packet>& choose(RecordedRays<Packet>& rays, Rays which) {
+  return which == Rays::kCamera ? rays.camera : rays.bounced;
+}
+
+void trace_packet(const kernel::Tracer& tracer, kernel::RayPacket& packet) { tracer.trace(tracer.self, packet); }
+void trace_packet(const kernel::Tracer& tracer, kernel::RayPacketFast& packet) {
+  tracer.trace_fast(tracer.self, packet);
+}
+
+/// One packet an iteration.
+template <class Packet>
+void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, Rays which, Traversal traversal) {
+  auto& work = workload<Packet>(spheres, precision);
+  auto& packets = choose(work.rays, which);
+  const kernel::Tracer tracer = (traversal == Traversal::kEmbree ? work.embree : work.list)->tracer();
+  std::int64_t rays = 0;
+  std::size_t next = 0;
+  for (auto _ : state) {
+    Packet& packet = packets[next];
+    forget_hits(packet);
+    trace_packet(tracer, packet);
+    rays += packet.count;
+    next = next + 1 == packets.size() ? 0 : next + 1;
+  }
+  state.SetItemsProcessed(rays);
+}
+
+/// The rays of recorded packets, one by one.
+std::vector<baseline::Ray> single_rays(const std::vector<kernel::RayPacket>& packets) {
+  std::vector<baseline::Ray> rays;
+  for (const kernel::RayPacket& p : packets) {
+    for (int i = 0; i < p.count; ++i)
+      rays.push_back({{p.origin[0][i], p.origin[1][i], p.origin[2][i]},
+                      {p.direction[0][i], p.direction[1][i], p.direction[2][i]}});
+  }
+  return rays;
+}
+
+/// One ray an iteration, through the book's list of virtual objects.
+void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which) {
+  auto& work = workload<kernel::RayPacket>(spheres, Precision::kExact);
+  const baseline::Program program(work.scene);
+  const std::vector<baseline::Ray> rays = single_rays(choose(work.rays, which));
+  std::size_t next = 0;
+  for (auto _ : state) {
+    baseline::HitRecord record;
+    const bool hit = program.world().hit(rays[next], {0.001, std::numeric_limits<double>::infinity()}, record);
+    benchmark::DoNotOptimize(hit);
+    benchmark::DoNotOptimize(record);
+    next = next + 1 == rays.size() ? 0 : next + 1;
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+void register_trace(const std::string& name, std::uint64_t spheres, Precision precision, Rays which,
+                    Traversal traversal) {
+  const auto run = precision == Precision::kFast ? trace<kernel::RayPacketFast> : trace<kernel::RayPacket>;
+  benchmark::RegisterBenchmark(name.c_str(), run, spheres, precision, which, traversal);
+}
+
+/// Beyond this a packet takes the list longer than anybody cares to wait.
+constexpr std::uint64_t kLongestList = 10'000;
+
+[[maybe_unused]] const bool kRegistered = [] {
+  for (const Rays which : {Rays::kCamera, Rays::kBounced}) {
+    const std::string rays = which == Rays::kCamera ? "camera" : "bounced";
+    const auto name = [&](const std::string& scene, const std::string& how, const std::string& size) {
+      return "accel/trace/" + scene + "/" + rays + "/" + how + size;
+    };
+    for (const Precision precision : {Precision::kExact, Precision::kFast, Precision::kBook}) {
+      const std::string mode = name_of(precision);
+      register_trace(name("final", "embree/" + mode, ""), 0, precision, which, Traversal::kEmbree);
+      register_trace(name("final", "list/" + mode, ""), 0, precision, which, Traversal::kList);
+    }
+    benchmark::RegisterBenchmark(name("final", "baseline", "").c_str(), trace_baseline, 0u, which);
+    for (std::uint64_t n = 10; n <= 1'000'000; n *= 10) {
+      const std::string size = "/" + std::to_string(n);
+      for (const Precision precision : {Precision::kExact, Precision::kFast}) {
+        const std::string mode = name_of(precision);
+        register_trace(name("cloud", "embree/" + mode, size), n, precision, which, Traversal::kEmbree);
+        if (n <= kLongestList)
+          register_trace(name("cloud", "list/" + mode, size), n, precision, which, Traversal::kList);
+      }
+      if (n <= kLongestList)
+        benchmark::RegisterBenchmark(name("cloud", "baseline", size).c_str(), trace_baseline, n, which);
+    }
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace orrery::bench

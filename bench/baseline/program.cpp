@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "baseline/program.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <variant>
+
+#include "base/error.h"
+
+namespace orrery::bench::baseline {
+namespace {
+
+/// The book's answer to rays that meet the sphere they leave, scene units.
+constexpr double kShortestDistance = 0.001;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw base::Error(base::ErrorKind::kUsage,
+                    "the baseline has no " + what + "; benchmark scenes use what the book's last program has");
+}
+
+struct MakeMaterial {
+  std::unique_ptr<const Material> operator()(const scene::Lambertian& m) const {
+    return std::make_unique<Lambertian>(m.albedo);
+  }
+  std::unique_ptr<const Material> operator()(const scene::Hemisphere&) const { refuse("hemisphere material"); }
+  std::unique_ptr<const Material> operator()(const scene::Metal& m) const {
+    return std::make_unique<Metal>(m.albedo, m.fuzz);
+  }
+  std::unique_ptr<const Material> operator()(const scene::Dielectric& m) const {
+    if (m.fresnel != scene::Fresnel::kSchlick) refuse("reflectance but Schlick's");
+    return std::make_unique<Dielectric>(m.ior);
+  }
+};
+
+double tangent_of_half(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 360); }
+
+}  // namespace
+
+Program::Program(const scene::Scene& scene)
+    : background_(scene.background),
+      width_(scene.image.width),
+      height_(scene.image.height),
+      samples_(scene.render.samples),
+      max_depth_(scene.render.max_depth),
+      has_lens_(scene.camera.defocus_angle > 0) {
+  if (scene.render.shading != scene::Shading::kPath) refuse("shading but of paths");
+  if (background_.type == scene::BackgroundType::kConstant) background_.bottom = background_.top = background_.color;
+
+  for (const scene::Material& m : scene.materials) materials_.push_back(std::visit(MakeMaterial(), m.model));
+  for (const scene::Sphere& s : scene.spheres)
+    world_.add(std::make_unique<Sphere>(s.center, s.radius, materials_[s.material].get()));
+  for (const scene::Points& p : scene.points) {
+    for (std::size_t i = 0; i < p.centers.size(); ++i) {
+      const std::uint32_t material = p.materials.empty() ? p.material : p.materials[i];
+      world_.add(std::make_unique<Sphere>(p.centers[i], p.radii[i], materials_[material].get()));
+    }
+  }
+
+  const scene::Camera& c = scene.camera;
+  const double focus = c.focus_distance.value_or(math::length(c.look_from - c.look_at));
+  const double viewport_height = 2 * tangent_of_half(c.vfov) * focus;
+  const double viewport_width = viewport_height * width_ / height_;
+  const Vec3d w = math::normalized(c.look_from - c.look_at);
+  const Vec3d u = math::normalized(math::cross(c.up, w));
+  const Vec3d v = math::cross(w, u);
+  origin_ = c.look_from;
+  right_ = u * (viewport_width / width_);
+  down_ = -v * (viewport_height / height_);
+  first_pixel_ = origin_ - focus * w - u * (viewport_width / 2) + v * (viewport_height / 2) + 0.5 * (right_ + down_);
+  lens_u_ = u * (focus * tangent_of_half(c.defocus_angle));
+  lens_v_ = v * (focus * tangent_of_half(c.defocus_angle));
+}
+
+Ray Program::camera_ray(int x, int y, Random& random) const {
+  const Vec3d to = first_pixel_ + (x + random.unit() - 0.5) * right_ + (y + random.unit() - 0.5) * down_;
+  if (!has_lens_) return {origin_, to - origin_};
+  const Vec3d p = random.in_disc();
+  const Vec3d from = origin_ + p.x * lens_u_ + p.y * lens_v_;
+  return {from, to - from};
+}
+
+Vec3d Program::ray_color(const Ray& ray, int depth, Random& random) {
+  ++rays_;
+  HitRecord hit;
+  if (!world_.hit(ray, {kShortestDistance, std::numeric_limits<double>::infinity()}, hit)) {
+    const double up = 0.5 * (math::normalized(ray.direction).y + 1);
+    return (1 - up) * background_.bottom + up * background_.top;
+  }
+  Scattered next;
+  if (depth <= 0 || !hit.material->scatter(ray, hit, random, next)) return {0, 0, 0};
+  return next.attenuation * ray_color(next.ray, depth - 1, random);
+}
+
+std::vector<Vec3d> Program::render(std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Vec3d> pixels;
+  pixels.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      Vec3d sum;
+      for (int i = 0; i < samples_; ++i) sum = sum + ray_color(camera_ray(x, y, random), max_depth_, random);
+      pixels.push_back(sum / samples_);
+    }
+  }
+  return pixels;
+}
+
+}  // namespace orrery::bench::baseline

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Holds the baseline's picture of the final scene against orrery's: a ratio of speeds counts only between equals.
+#include <cmath>
+#include <cstdio>
+#include <exception>
+
+#include "app/generate.h"
+#include "baseline/program.h"
+#include "compile/compile.h"
+#include "render/render.h"
+
+namespace orrery::bench {
+namespace {
+
+constexpr int kWidth = 48, kHeight = 27, kSamples = 256;
+
+/// The mean of many thousand independent differences is normal; 5 sigma is one false alarm in a million runs of a
+/// seed, and the seeds are fixed.
+constexpr double kSigmas = 5;
+
+/// Pixel by pixel, red, green and blue: is the mean of the differences zero?
+bool holds(const std::vector<math::Vec3d>& baseline, const film::Picture& picture) {
+  bool same = true;
+  const char* const names[3] = {"R", "G", "B"};
+  double math::Vec3d::*const components[3] = {&math::Vec3d::x, &math::Vec3d::y, &math::Vec3d::z};
+  for (int c = 0; c < 3; ++c) {
+    const film::Plane& plane = *picture.find(names[c]);
+    double sum = 0, squares = 0, level = 0;
+    for (std::size_t i = 0; i < baseline.size(); ++i) {
+      const double difference = baseline[i].*components[c] - static_cast<double>(plane.values[i]);
+      sum += difference;
+      squares += difference * difference;
+      level += static_cast<double>(plane.values[i]);
+    }
+    const auto n = static_cast<double>(baseline.size());
+    const double mean = sum / n, error = std::sqrt(squares) / n;
+    std::printf("%s: mean %.4f, baseline differs by %+.5f +- %.5f\n", names[c], level / n, mean, error);
+    same = same && std::abs(mean) < kSigmas * error;
+  }
+  return same;
+}
+
+int run() {
+  scene::Scene scene = app::make_final_scene({});
+  scene.image = {kWidth, kHeight};
+  scene.render.samples = kSamples;
+  const render::Result result = render::render(compile::compile(scene), {});
+  baseline::Program program(scene);
+  const std::vector<math::Vec3d> pixels = program.render(1);
+  if (holds(pixels, result.picture)) return 0;
+  std::fprintf(stderr, "the baseline computes another picture: ratios to it mean nothing\n");
+  return 1;
+}
+
+}  // namespace
+}  // namespace orrery::bench
+
+int main() try { return orrery::bench::run(); } catch (const std::exception& error) {
+  std::fprintf(stderr, "bench_same_picture: error: %s\n", error.what());
+  return 1;
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// The intersection alone: rays against one sphere, tests a second, and the point that a ray has reached.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "kernel/intersect_lanes.h"
+#include "support/workload.h"
+
+namespace orrery::bench {
+namespace {
+
+using kernel::Lanes;
+using kernel::Precision;
+
+/// As many spheres as a packet is tested against in one iteration; they and the packet stay in the first cache.
+constexpr std::size_t kSpheres = 64;
+/// As many packets as points are computed for in turn.
+constexpr std::size_t kPackets = 16;
+
+template <class Packet>
+using ScalarOf = std::remove_cvref_t<decltype(Packet::distance[0])>;
+
+IntersectFunctions<kernel::RayPacket, double> functions_for(const kernel::RayPacket*, Precision p, Lanes l) {
+  return intersect_double(p, l);
+}
+IntersectFunctions<kernel::RayPacketFast, float> functions_for(const kernel::RayPacketFast*, Precision, Lanes l) {
+  return intersect_float(l);
+}
+
+/// Bounced rays of the book's final scene, sixteen in each packet.
+template <class Packet>
+std::vector<Packet> full_packets(const Workload<Packet>& work) {
+  std::vector<Packet> full;
+  for (const Packet& packet : work.rays.bounced) {
+    if (packet.count == kernel::kPacketSize) full.push_back(packet);
+    if (full.size() == kPackets) break;
+  }
+  return full;
+}
+
+/// The sphere that each ray has hit; where there is none any other does.
+template <class Packet, class T = ScalarOf<Packet>>
+SphereLanes<T> spheres_of(const compile::World& world, const Packet& packet) {
+  SphereLanes<T> out;
+  for (int i = 0; i < kernel::kPacketSize; ++i) {
+    const bool none = packet.hit[i] == kernel::kNoSphere;
+    const kernel::Sphere& s = world.spheres[none ? 0 : static_cast<std::size_t>(packet.hit[i])];
+    out.center[0][i] = static_cast<T>(s.x);
+    out.center[1][i] = static_cast<T>(s.y);
+    out.center[2][i] = static_cast<T>(s.z);
+    out.radius[i] = static_cast<T>(s.radius);
+  }
+  return out;
+}
+
+template <class Packet>
+void nearest(benchmark::State& state, Precision precision, Lanes lanes) {
+  auto& work = workload<Packet>(0, precision);
+  const auto functions = functions_for(static_cast<const Packet*>(nullptr), precision, lanes);
+  Packet packet = full_packets(work).front();
+  for (auto _ : state) {
+    forget_hits(packet);
+    functions.nearest(packet, work.world.spheres.data(), kSpheres);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSpheres) * kernel::kPacketSize);
+}
+
+template <class Packet>
+void hit_point(benchmark::State& state, Precision precision, Lanes lanes) {
+  auto& work = workload<Packet>(0, precision);
+  const auto functions = functions_for(static_cast<const Packet*>(nullptr), precision, lanes);
+  const std::vector<Packet> packets = full_packets(work);
+  std::vector<SphereLanes<ScalarOf<Packet>>> spheres;
+  for (const Packet& packet : packets) spheres.push_back(spheres_of(work.world, packet));
+  PointLanes<ScalarOf<Packet>> out;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+      functions.hit_point(packets[i], spheres[i], out);
+      benchmark::DoNotOptimize(out);
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(packets.size()) * kernel::kPacketSize);
+}
+
+[[maybe_unused]] const bool kRegistered = [] {
+  for (const Precision precision : {Precision::kExact, Precision::kFast, Precision::kBook}) {
+    for (const Lanes lanes : {Lanes::kOne, Lanes::kAll}) {
+      const bool fast = precision == Precision::kFast;
+      const std::string end = "/" + name_of(precision) + (lanes == Lanes::kOne ? "/one_lane" : "/all_lanes");
+      benchmark::RegisterBenchmark(("kernel/intersect/nearest" + end).c_str(),
+                                   fast ? nearest<kernel::RayPacketFast> : nearest<kernel::RayPacket>, precision,
+                                   lanes);
+      benchmark::RegisterBenchmark(("kernel/intersect/hit_point" + end).c_str(),
+                                   fast ? hit_point<kernel::RayPacketFast> : hit_point<kernel::RayPacket>, precision,
+                                   lanes);
+    }
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace orrery::bench

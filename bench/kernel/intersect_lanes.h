@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "kernel/precision.h"
+#include "kernel/ray_packet.h"
+#include "kernel/render_tile.h"
+#include "kernel/sphere.h"
+
+namespace orrery::bench {
+
+/// One sphere for each ray of a packet.
+template <class T>
+struct alignas(64) SphereLanes {
+  T center[3][kernel::kPacketSize];
+  T radius[kernel::kPacketSize];
+};
+
+template <class T>
+struct alignas(64) PointLanes {
+  T offset[3][kernel::kPacketSize];
+  T outward[3][kernel::kPacketSize];
+};
+
+/// The kernel's text, instantiated alone: no traversal, no shading. A full packet each time.
+template <class Packet, class T>
+struct IntersectFunctions {
+  /// All rays against one sphere after the other; distance and hit as a traversal leaves them.
+  void (*nearest)(Packet& packet, const kernel::Sphere* spheres, std::size_t count);
+
+  /// The point that each ray has reached on its own sphere, packet.hit at packet.distance.
+  void (*hit_point)(const Packet& packet, const SphereLanes<T>& spheres, PointLanes<T>& out);
+};
+
+using IntersectDouble = IntersectFunctions<kernel::RayPacket, double>;
+using IntersectFloat = IntersectFunctions<kernel::RayPacketFast, float>;
+
+/// Domain     kExact or kBook
+IntersectDouble intersect_double(kernel::Precision precision, kernel::Lanes lanes);
+
+/// The precision `fast`.
+IntersectFloat intersect_float(kernel::Lanes lanes);
+
+}  // namespace orrery::bench

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The book's final scene from compiled world to picture, paths a second.
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "baseline/program.h"
+#include "render/render.h"
+#include "support/scenes.h"
+
+namespace orrery::bench {
+namespace {
+
+using kernel::Precision;
+
+struct Size {
+  int width, height, samples;
+
+  std::int64_t paths() const { return std::int64_t{width} * height * samples; }
+};
+constexpr Size kLarge{480, 270, 4};
+/// For what is slow. Paths a second depend little on the size; that they do is measured too.
+constexpr Size kSmall{96, 54, 2};
+
+void render(benchmark::State& state, Size size, compile::Accelerator accelerator, Precision precision, int threads) {
+  compile::World world = compile_for(final_scene(size.width, size.height, size.samples), precision);
+  world.accelerator = accelerator;
+  render::Settings settings;
+  settings.threads = threads;
+  double rays = 0;
+  for (auto _ : state) {
+    const render::Result result = render::render(world, settings);
+    benchmark::DoNotOptimize(result.picture.planes.data());
+    rays += static_cast<double>(result.statistics.rays);
+  }
+  const std::int64_t paths = state.iterations() * size.paths();
+  state.SetItemsProcessed(paths);
+  state.counters["rays_per_path"] = rays / static_cast<double>(paths);
+}
+
+void render_baseline(benchmark::State& state, Size size) {
+  baseline::Program program(final_scene(size.width, size.height, size.samples));
+  std::uint64_t seed = 0;
+  for (auto _ : state) {
+    const auto pixels = program.render(++seed);
+    benchmark::DoNotOptimize(pixels.data());
+  }
+  const std::int64_t paths = state.iterations() * size.paths();
+  state.SetItemsProcessed(paths);
+  state.counters["rays_per_path"] = static_cast<double>(program.rays()) / static_cast<double>(paths);
+}
+
+void register_render(const std::string& name, Size size, compile::Accelerator accelerator, Precision precision,
+                     int threads) {
+  auto* const registered = benchmark::RegisterBenchmark(("render/final_scene/" + name).c_str(), render, size,
+                                                        accelerator, precision, threads);
+  registered->Unit(benchmark::kMillisecond);
+  // One thread is the calling one, and its processor time does not count what others do on this machine.
+  if (threads != 1) registered->UseRealTime();
+}
+
+[[maybe_unused]] const bool kRegistered = [] {
+  using compile::Accelerator;
+  for (const Precision precision : {Precision::kExact, Precision::kFast, Precision::kBook}) {
+    const std::string mode = name_of(precision);
+    register_render("embree/" + mode + "/one_thread", kLarge, Accelerator::kEmbree, precision, 1);
+    register_render("embree/" + mode + "/all_threads", kLarge, Accelerator::kEmbree, precision, 0);
+    register_render("embree/" + mode + "/one_thread/small", kSmall, Accelerator::kEmbree, precision, 1);
+    register_render("list/" + mode + "/one_thread/small", kSmall, Accelerator::kList, precision, 1);
+  }
+  benchmark::RegisterBenchmark("render/final_scene/baseline/one_thread/small", render_baseline, kSmall)
+      ->Unit(benchmark::kMillisecond);
+  return true;
+}();
+
+}  // namespace
+}  // namespace orrery::bench

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/scenes.h"
+
+#include "app/generate.h"
+#include "compile/compile.h"
+
+namespace orrery::bench {
+namespace {
+
+scene::Precision authored(kernel::Precision precision) {
+  switch (precision) {
+    case kernel::Precision::kFast: return scene::Precision::kFast;
+    case kernel::Precision::kBook: return scene::Precision::kBook;
+    case kernel::Precision::kExact: break;
+  }
+  return scene::Precision::kExact;
+}
+
+scene::Scene sized(scene::Scene scene, int width_px, int height_px, int samples) {
+  scene.image = {width_px, height_px};
+  scene.render.samples = samples;
+  return scene;
+}
+
+}  // namespace
+
+scene::Scene final_scene(int width_px, int height_px, int samples) {
+  return sized(app::make_final_scene({}), width_px, height_px, samples);
+}
+
+scene::Scene cloud_scene(std::uint64_t count, int width_px, int height_px, int samples) {
+  app::Cloud cloud;
+  cloud.count = count;
+  return sized(app::make_cloud(cloud), width_px, height_px, samples);
+}
+
+compile::World compile_for(scene::Scene scene, kernel::Precision precision) {
+  scene.render.precision = authored(precision);
+  return compile::compile(scene);
+}
+
+std::string name_of(kernel::Precision precision) {
+  switch (precision) {
+    case kernel::Precision::kFast: return "fast";
+    case kernel::Precision::kBook: return "book";
+    case kernel::Precision::kExact: break;
+  }
+  return "exact";
+}
+
+}  // namespace orrery::bench

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "accel/accel.h"
+#include "support/recorded_rays.h"
+#include "support/scenes.h"
+
+namespace orrery::bench {
+
+/// A scene with everything that is made before the clock starts.
+template <class Packet>
+struct Workload {
+  scene::Scene scene;
+  compile::World world;
+  std::unique_ptr<accel::Accel> embree, list;
+  RecordedRays<Packet> rays;
+
+  Workload(scene::Scene authored, kernel::Precision precision)
+      : scene(std::move(authored)),
+        world(compile_for(scene, precision)),
+        embree(accel::make_embree(world.view(), precision)),
+        list(accel::make_list(world.view(), precision)) {
+    if constexpr (std::is_same_v<Packet, kernel::RayPacketFast>) {
+      rays = record_rays_fast(world.view(), *embree);
+    } else {
+      rays = record_rays(world.view(), *embree, precision);
+    }
+  }
+};
+
+/// The book's final scene (`spheres` = 0) or a cloud, made when it is first asked for and kept: repetitions that
+/// alternate with others come back to it many times.
+template <class Packet>
+Workload<Packet>& workload(std::uint64_t spheres, kernel::Precision precision) {
+  static std::map<std::pair<std::uint64_t, kernel::Precision>, std::unique_ptr<Workload<Packet>>> known;
+  auto& entry = known[{spheres, precision}];
+  if (!entry) {
+    entry = std::make_unique<Workload<Packet>>(
+        spheres == 0 ? final_scene(kRecordedWidth, kRecordedHeight, kRecordedSamples)
+                     : cloud_scene(spheres, kRecordedWidth, kRecordedHeight, kRecordedSamples),
+        precision);
+  }
+  return *entry;
+}
+
+}  // namespace orrery::bench
