@@ -1,30 +1,50 @@
 # SPDX-License-Identifier: Apache-2.0
-# The program, the libraries as a CMake package (find_package(orrery) gives orrery::<room>), and a Debian package.
-include(GNUInstallDirs)
+# What `cmake --install` puts where, the package that find_package(orrery) finds, and the Debian packages of
+# `cpack -G DEB`: orrery, the program, and orrery-dev, the rooms as static libraries with their headers.
 include(CMakePackageConfigHelpers)
 
-get_property(rooms GLOBAL PROPERTY ORRERY_ROOMS)
-set(targets)
-foreach(room IN LISTS rooms)
-  list(APPEND targets orrery_${room})
-  set_target_properties(orrery_${room} PROPERTIES EXPORT_NAME ${room})
-endforeach()
-install(TARGETS ${targets} EXPORT orreryTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS orrery RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/orrery FILES_MATCHING PATTERN "*.h" PATTERN config EXCLUDE)
-install(EXPORT orreryTargets NAMESPACE orrery:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/orrery)
+if(TARGET orrery)
+  install(TARGETS orrery RUNTIME COMPONENT runtime)
+endif()
+if(EXISTS ${PROJECT_SOURCE_DIR}/docs/orrery.1)
+  install(FILES docs/orrery.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+endif()
+# scenes/ are examples that a reader may copy; Debian asks for the licence under the name `copyright`.
+install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT runtime FILES_MATCHING PATTERN "*.toml")
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime RENAME copyright)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev COMPONENT development RENAME copyright)
+
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/orrery)
+install(EXPORT orrery NAMESPACE orrery:: FILE orreryTargets.cmake DESTINATION ${config_dir} COMPONENT development)
 configure_package_config_file(cmake/orreryConfig.cmake.in ${PROJECT_BINARY_DIR}/orreryConfig.cmake
-                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/orrery)
+                              INSTALL_DESTINATION ${config_dir} NO_SET_AND_CHECK_MACRO)
+# Before 1.0 a minor version may change what headers say.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/orreryConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/orreryConfig.cmake ${PROJECT_BINARY_DIR}/orreryConfigVersion.cmake
               cmake/OrreryDependencies.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/orrery)
-install(FILES docs/orrery.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
+        DESTINATION ${config_dir} COMPONENT development)
 
-set(CPACK_PACKAGE_CONTACT "the orrery project <orrery@localhost>")
+# A build below /usr/local is for one machine; a package goes to /usr.
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_VENDOR "The orrery authors")
+set(CPACK_PACKAGE_CONTACT "The orrery authors <noreply@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL runtime development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME orrery)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
+    "Path tracing of spheres, from thousands to millions, on Embree:\n scene files in TOML, pictures as EXR, PNG, JPEG, TIFF and PPM.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME orrery-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+    "The rooms of orrery as static libraries, their headers, and the package\n that find_package(orrery) of CMake finds.")
+# Whoever links the rooms links what they link: the -dev packages that this was built with.
+file(STRINGS tools/packages-build.txt build_packages REGEX "-dev$")
+list(JOIN build_packages ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 include(CPack)
