@@ -1,17 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds, and runs orrery with the given arguments; without any it renders the book's final
-# scene into out/.
+# Installs what is missing, builds, and hands its arguments to orrery; without any it renders the book's final scene into
+# out/.
+#
+#   ./run.sh
+#   ./run.sh render scenes/book/17-hollow-glass.toml -o glass.png
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$root/tools/setup.sh"
 
 install_missing "$root/tools/packages-build.txt"
-[ -f "$root/build/.configured-with" ] || configure -DBUILD_TESTING=OFF
-build orrery
+# However it was configured before, by test.sh for one, is fine.
+if [ ! -f "$root/build/.configured-with" ]; then configure -DBUILD_TESTING=OFF; fi
+build 4 orrery
 
 orrery="$root/build/src/orrery"
 if [ $# -gt 0 ]; then exec "$orrery" "$@"; fi
+
 mkdir -p "$root/out"
+say "Rendering scenes/book/final.toml ..."
 "$orrery" render "$root/scenes/book/final.toml" -o "$root/out/final.exr" -o "$root/out/final.png"
-say "The pictures are out/final.png, to look at, and out/final.exr, to go on with."
+say "The picture to look at:       $root/out/final.png"
+say "The same, scene-linear, EXR:  $root/out/final.exr"

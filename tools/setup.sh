@@ -1,55 +1,90 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by run.sh and test.sh: installs what is missing, configures, builds. Quiet about what succeeds.
+# Sourced by run.sh and test.sh, which set `root` first: installs what is missing, configures, builds. Quiet about what
+# succeeds; where something fails it shows the log and says what to do.
 
 say() { printf '%s\n' "$*" >&2; }
-die() { say "error: $*"; exit 1; }
+die() {
+  say "error: $*"
+  exit 1
+}
 
-# Installs the packages listed in the given files; does nothing where nothing is missing.
+# The last lines of a log, where a failure shows.
+show_log() {
+  tail -n 60 "$1" >&2
+  say "(the last lines of $1)"
+}
+
+# missing_packages LIST...: those packages of the lists that are not installed, one a line.
+missing_packages() {
+  local wanted
+  # One question for all packages, so that an up-to-date machine loses no time. Unknown ones make its status 1.
+  wanted=$(sed 's/#.*//' "$@")
+  # shellcheck disable=SC2086  # a word is a package
+  { dpkg-query -W -f '${Package} ${db:Status-Status}\n' $wanted 2>/dev/null || true; } |
+    awk -v wanted="$wanted" '$2 == "installed" { have[$1] = 1 }
+      END { n = split(wanted, names); for (i = 1; i <= n; ++i) if (!(names[i] in have)) print names[i] }'
+}
+
+# install_missing LIST...: installs them; does nothing where nothing is missing.
 install_missing() {
-  command -v dpkg-query >/dev/null || die "this script installs Debian packages; elsewhere install what tools/packages-*.txt lists, then use CMake"
-  local wanted missing=()
-  # The status of every wanted package in one question, so that an up-to-date machine loses no time.
-  wanted=$(cat "$@")
-  local have
-  have=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' $wanted 2>/dev/null | awk '$2 == "installed" {print $1}')
-  for package in $wanted; do
-    grep -qx -- "$package" <<<"$have" || missing+=("$package")
-  done
-  [ ${#missing[@]} -eq 0 ] && return
+  if ! command -v dpkg-query >/dev/null; then
+    say "This is no Debian or Ubuntu: taking for granted that what tools/packages-*.txt list is there."
+    return 0
+  fi
+  local missing
+  missing=$(missing_packages "$@" | tr '\n' ' ')
+  if [ -z "$missing" ]; then return 0; fi
+
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || die "missing packages: ${missing[*]}; run this as root, or install sudo"
+    command -v sudo >/dev/null || die "these packages are missing: $missing
+Install them as root (apt-get install --no-install-recommends $missing), or install sudo, then start this again."
     as_root=(sudo)
   fi
-  say "Installing ${#missing[@]} packages: ${missing[*]}"
+  say "Installing the packages that are missing: $missing"
   local log
   log=$(mktemp)
-  if ! { "${as_root[@]}" apt-get update -qq &&
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 </dev/null; then
-    cat "$log" >&2
-    die "apt-get could not install the packages above"
+  # An index that cannot be refreshed does not matter if the packages are found all the same.
+  "${as_root[@]}" apt-get update -qq >"$log" 2>&1 </dev/null || true
+  # shellcheck disable=SC2086  # a word is a package
+  if ! "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 install -y -qq \
+    --no-install-recommends $missing >>"$log" 2>&1 </dev/null; then
+    show_log "$log"
+    die "apt-get could not install: $missing"
   fi
   rm -f "$log"
 }
 
-# Configures build/ with the given CMake options, where that has not been done with the same ones.
+# configure OPTION...: configures build/ with these CMake options, where that has not been done with the same ones.
 configure() {
-  local stamp="$root/build/.configured-with" options="$*"
-  [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$options" ] && return
+  local stamp="$root/build/.configured-with"
+  set -- "-DORRERY_WERROR=${ORRERY_WERROR:-OFF}" "$@"
+  if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$*" ]; then return 0; fi
   mkdir -p "$root/build"
   if ! cmake -S "$root" -B "$root/build" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$root/build/configure.log" 2>&1; then
-    cat "$root/build/configure.log" >&2
-    die "CMake could not configure; the log is above and in build/configure.log"
+    show_log "$root/build/configure.log"
+    die "CMake could not configure; where $root/build is left from something else, remove it and start this again"
   fi
-  printf '%s' "$options" >"$stamp"
+  printf '%s' "$*" >"$stamp"
 }
 
-# Builds the given targets.
+# build MINUTES TARGET: builds a target in build/. MINUTES is what that takes one core the first time, for the message.
 build() {
-  if [ ! -f "$root/build/.built-once" ]; then say "Building orrery; the first time takes some minutes"; fi
-  if ! cmake --build "$root/build" --target "$@" >"$root/build/build.log" 2>&1; then
-    cat "$root/build/build.log" >&2
-    die "the build failed; the log is above and in build/build.log"
+  local cpu_minutes=$1 target=$2
+  local stamp="$root/build/.built-$target" cores
+  cores=$(nproc)
+  if [ ! -f "$stamp" ]; then
+    say "Building orrery (first time: about $(((cpu_minutes + cores - 1) / cores)) minutes) ..."
+  elif [ -n "$(find "$root/src" "$root/tests" "$root/cmake" "$root/CMakeLists.txt" -newer "$stamp" -print -quit)" ]; then
+    say "Building what has changed ..."
   fi
-  touch "$root/build/.built-once"
+  # Two that start at once, of one checkout, take turns.
+  exec 9>"$root/build/.lock"
+  flock 9
+  if ! cmake --build "$root/build" --target "$target" >"$root/build/build.log" 2>&1 9>&-; then
+    show_log "$root/build/build.log"
+    die "orrery could not be built; where memory was short, CMAKE_BUILD_PARALLEL_LEVEL=1 before the command helps"
+  fi
+  exec 9>&-
+  touch "$stamp"
 }
