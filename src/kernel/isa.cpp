@@ -34,6 +34,7 @@ bool limit_isa(std::string_view name) {
     if (isa.name != name) continue;
     if ((supported() & isa.target) == 0) return false;
     hwy::DisableTargets(isa.target - 1);  // Highway gives better targets lower bits
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     return true;
   }
   return false;

@@ -35,7 +35,6 @@ awk -v src="$2" '
       opened = 0
       while ((getline line < file) > 0) {
         if (match(line, /^#include [<"][^>"]+/)) check_include(room, substr(line, RSTART + 10, RLENGTH - 10))
-        if (line ~ /^#define ORRERY_/) opened = 1  # a macro lives in no namespace
         if (line ~ /^namespace orrery/) {
           opened = 1
           if (line !~ "^namespace orrery::" room "[: {]") complain("opens a namespace that is not its room: " line)

@@ -43,12 +43,4 @@ class BigReal {
   mpfr_t value_;
 };
 
-struct BigVec3 {
-  BigReal x, y, z;
-  friend BigVec3 operator+(const BigVec3& a, const BigVec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend BigVec3 operator-(const BigVec3& a, const BigVec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend BigVec3 operator*(const BigVec3& a, const BigReal& s) { return {a.x * s, a.y * s, a.z * s}; }
-  friend BigReal dot(const BigVec3& a, const BigVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-};
-
 }  // namespace orrery::test

@@ -27,7 +27,7 @@ struct Random {
 
 long ray_count() {
   const char* wanted = std::getenv("ORRERY_ACCEL_RAYS");
-  return wanted != nullptr ? static_cast<long>(std::atof(wanted)) : 200'000;
+  return wanted != nullptr ? static_cast<long>(std::atof(wanted)) : 1'000'000;
 }
 
 struct Scene {
