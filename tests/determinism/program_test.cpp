@@ -9,6 +9,7 @@
 #include <string>
 
 #include "image/read.h"
+#include "kernel/isa.h"
 
 namespace orrery {
 namespace {
@@ -70,6 +71,12 @@ TEST_F(DeterminismProgram, EmbreeAndListGiveTheSameValuesInEveryPrecision) {
     const auto list = render("list-" + precision, "--accelerator list --threads 3 --precision " + precision);
     EXPECT_TRUE(same_values(embree, list)) << precision;
   }
+}
+
+TEST_F(DeterminismProgram, EveryInstructionSetGivesTheSameValues) {
+  const auto best = render("best", "");
+  for (const std::string& isa : kernel::available_isas())
+    EXPECT_TRUE(same_values(best, render(isa, "--isa " + isa))) << isa;
 }
 
 TEST_F(DeterminismProgram, EverythingInTheSceneThatMattersShows) {
