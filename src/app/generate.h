@@ -13,7 +13,8 @@ namespace orrery::app {
 inline constexpr int kLargestFinalGrid = 1000;
 
 /// Largest grid whose small spheres are written one by one, each with a material of its own. Beyond it the scene file
-/// would be larger than an editor likes: spheres go to a points file and share a palette of kFinalPaletteSize materials.
+/// would be larger than an editor likes: spheres go to a points file and share a palette of kFinalPaletteSize
+/// materials.
 inline constexpr int kLargestWrittenGrid = 32;
 inline constexpr std::uint32_t kFinalPaletteSize = 1024;
 
@@ -28,8 +29,8 @@ struct FinalScene {
 /// four decimals, which a person can read.
 ///
 /// Units      scene units, degrees
-/// Result     `spheres`: the ground, the small ones up to kLargestWrittenGrid, the three large ones; beyond that grid the
-///            small ones are `points[0]`
+/// Result     `spheres`: the ground, the small ones up to kLargestWrittenGrid, the three large ones; beyond that grid
+///            the small ones are `points[0]`
 /// Errors     base::Error(kUsage) for a grid outside 0..kLargestFinalGrid
 /// Reference  shirley2024, "A Final Render"
 scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::path& points_file = "final.ply");

@@ -14,7 +14,8 @@ namespace {
 std::string comment(const FinalScene& options, const std::string& name) {
   return "Ray Tracing in One Weekend, \"A Final Render\".\n"
          "\n"
-         "Three large balls, glass before brown and metal in front, among many small ones on a huge grey ground, under\n"
+         "Three large balls, glass before brown and metal in front, among many small ones on a huge grey ground, "
+         "under\n"
          "the sky of all the book's pictures. The lens is open a little: what is far behind the focus plane blurs.\n"
          "\n"
          "Made by\n"
@@ -36,12 +37,15 @@ std::string comment(const Cloud& options, const std::string& name) {
 }
 
 /// Where the points go: two scenes in one folder must not share them.
-std::filesystem::path points_file_of(const std::filesystem::path& file) { return file.filename().replace_extension(".ply"); }
+std::filesystem::path points_file_of(const std::filesystem::path& file) {
+  return file.filename().replace_extension(".ply");
+}
 
 /// What would only fail after a long time of generating, or overwrite the scene by its own points.
 void check(const std::filesystem::path& file) {
   if (file.extension() == ".ply")
-    throw base::Error(base::ErrorKind::kUsage, file.string() + ": .ply is where the spheres go; name the scene, as in " +
+    throw base::Error(base::ErrorKind::kUsage, file.string() +
+                                                   ": .ply is where the spheres go; name the scene, as in " +
                                                    std::filesystem::path(file).replace_extension(".toml").string());
   base::check_creatable(file);
 }
@@ -50,7 +54,8 @@ void check(const std::filesystem::path& file) {
 
 void generate_final(const FinalScene& options, const std::filesystem::path& file) {
   check(file);
-  format::write_scene(make_final_scene(options, points_file_of(file)), comment(options, file.filename().string()), file);
+  format::write_scene(make_final_scene(options, points_file_of(file)), comment(options, file.filename().string()),
+                      file);
 }
 
 void generate_cloud(const Cloud& options, const std::filesystem::path& file) {

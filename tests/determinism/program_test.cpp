@@ -51,7 +51,8 @@ bool same_values(const fs::path& a, const fs::path& b) {
   if (p.width != q.width || p.height != q.height || p.planes.size() != q.planes.size()) return false;
   for (std::size_t i = 0; i < p.planes.size(); ++i) {
     if (p.planes[i].name != q.planes[i].name || p.planes[i].values.size() != q.planes[i].values.size()) return false;
-    if (std::memcmp(p.planes[i].values.data(), q.planes[i].values.data(), p.planes[i].values.size() * sizeof(float)) != 0)
+    if (std::memcmp(p.planes[i].values.data(), q.planes[i].values.data(), p.planes[i].values.size() * sizeof(float)) !=
+        0)
       return false;
   }
   return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the book says is to be seen in its figures, asked of small pictures of the scenes. Places are shares of width and
-// height from the upper left.
+// What the book says is to be seen in its figures, asked of small pictures of the scenes. Places are shares of width
+// and height from the upper left.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,8 +24,7 @@ constexpr int kWidth = 160, kHeight = 90;
 film::Picture picture_of(const std::string& name, std::vector<std::string> overrides = {}) {
   overrides.push_back("image.width=" + std::to_string(kWidth));
   overrides.push_back("image.height=" + std::to_string(kHeight));
-  const auto read =
-      format::read_scene(std::filesystem::path(ORRERY_SCENES) / "book" / (name + ".toml"), overrides);
+  const auto read = format::read_scene(std::filesystem::path(ORRERY_SCENES) / "book" / (name + ".toml"), overrides);
   render::Result result = render::render(compile::compile(read.scene), {});
   EXPECT_TRUE(result.completed);
   EXPECT_EQ(result.statistics.bad_samples, 0u);
@@ -107,8 +106,8 @@ TEST(ImageBookPictures, ManySamplesMixTheEdge) {
 TEST(ImageBookPictures, ALowLimitIsDarkUnderTheBall) {
   const auto fifty = picture_of("07-child-ray-limit"), one = picture_of("07-child-ray-limit", {"render.max_depth=1"});
   EXPECT_LT(brightness(color_at(one, 0.5, 0.8)), 0.7 * brightness(color_at(fifty, 0.5, 0.8)));
-  EXPECT_NEAR(brightness(color_at(picture_of("06-hemisphere-diffuse"), 0.5, 0.5)), brightness(color_at(fifty, 0.5, 0.5)),
-              1e-6);
+  EXPECT_NEAR(brightness(color_at(picture_of("06-hemisphere-diffuse"), 0.5, 0.5)),
+              brightness(color_at(fifty, 0.5, 0.5)), 1e-6);
 }
 
 TEST(ImageBookPictures, AcneDarkensAndExactHasNone) {

@@ -49,7 +49,8 @@ TEST_F(AppGenerateFiles, FinalReadsBackAsTheSameScene) {
 
 TEST_F(AppGenerateFiles, FinalNamesTheCommandThatMakesItAgain) {
   generate_final({5, 3}, folder_ / "a.toml");
-  EXPECT_NE(bytes_of(folder_ / "a.toml").find("orrery generate final --seed 5 --grid 3 -o a.toml\n"), std::string::npos);
+  EXPECT_NE(bytes_of(folder_ / "a.toml").find("orrery generate final --seed 5 --grid 3 -o a.toml\n"),
+            std::string::npos);
 }
 
 TEST_F(AppGenerateFiles, LargeFinalHasItsSpheresBesideIt) {

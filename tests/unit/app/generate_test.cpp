@@ -61,7 +61,8 @@ TEST(AppGenerateRandom, BallIsUniformByVolume) {
     sum = sum + p;
   }
   expect_near_mean(sum_cube / kCount, 0.5, 1.0 / 12, kCount, "cube of the radius");
-  for (const double component : {sum.x, sum.y, sum.z}) expect_near_mean(component / kCount, 0, 0.2, kCount, "component");
+  for (const double component : {sum.x, sum.y, sum.z})
+    expect_near_mean(component / kCount, 0, 0.2, kCount, "component");
 }
 
 TEST(AppGenerateFinal, TheSameSeedGivesTheSameScene) {
