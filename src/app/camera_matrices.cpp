@@ -31,8 +31,22 @@ std::array<float, 16> as_float(const Matrix& m) {
 CameraMatrices camera_matrices(const scene::Camera& camera, const scene::Image& image) {
   const compile::CameraAxes axes = compile::camera_axes(camera);
   const math::Vec3d x = axes.x, y = axes.y, z = -axes.z, from = camera.look_from;
-  const Matrix view = {x.x, y.x, z.x, 0, x.y, y.y, z.y, 0, x.z, y.z, z.z, 0,
-                       -math::dot(from, x), -math::dot(from, y), -math::dot(from, z), 1};
+  const Matrix view = {x.x,
+                       y.x,
+                       z.x,
+                       0,
+                       x.y,
+                       y.y,
+                       z.y,
+                       0,
+                       x.z,
+                       y.z,
+                       z.z,
+                       0,
+                       -math::dot(from, x),
+                       -math::dot(from, y),
+                       -math::dot(from, z),
+                       1};
   const double tangent = std::tan(camera.vfov / 360 * std::numbers::pi);
   const double aspect = static_cast<double>(image.width) / image.height;
   // x / w = (X / (Z tangent aspect) + 1) / 2, y / w = (1 - Y / (Z tangent)) / 2, z / w = 1: depth stands in layers.

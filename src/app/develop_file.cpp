@@ -1,25 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/develop_file.h"
 
+#include "app/output_files.h"
 #include "app/version.h"
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/format.h"
 #include "image/read.h"
 #include "image/write.h"
 
 namespace orrery::app {
+namespace {
 
-void develop_file(const std::filesystem::path& input, const std::vector<std::filesystem::path>& outputs,
-                  const display::Settings& settings, int bits) {
-  for (const auto& output : outputs) {
+void check_kinds(const Development& development) {
+  for (const auto& output : development.outputs)
     if (!image::is_display_format(image::format_of(output)))
-      throw base::Error(base::ErrorKind::kUsage, output.string() + " would hold scene-linear light; a developed picture is "
-                                                                   "for png, tiff, jpg or ppm");
-    base::check_creatable(output);
-  }
-  const film::EncodedPicture picture = display::develop(image::read(input), settings, bits);
-  for (const auto& output : outputs) image::write_encoded(output, picture, "orrery " + program_version());
+      throw base::Error(base::ErrorKind::kUsage, output.string() + " would hold scene-linear light; a developed " +
+                                                     "picture is for png, tiff, jpg or ppm");
+  if (image::is_display_format(image::format_of(development.input)))
+    throw base::Error(base::ErrorKind::kUsage,
+                      development.input.string() + " is developed already; scene-linear light is in exr and hdr");
+}
+
+}  // namespace
+
+DevelopReport develop_file(const Development& development) {
+  check_kinds(development);
+  check_output_files(development.outputs, development.bits, {}, development.input);
+  DevelopReport report;
+  report.display = display::choose(development.display);
+  const film::Picture picture = image::read(development.input);
+  report.bad_values = film::count_bad_values(picture);
+  const film::EncodedPicture developed =
+      display::develop(picture, development.display, development.bits == 0 ? 8 : development.bits);
+  for (const auto& output : development.outputs) image::write_encoded(output, developed, "orrery " + program_version());
+  return report;
 }
 
 }  // namespace orrery::app

@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdarg>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
 #include "app/precision_advice.h"
 #include "app/scene_hash.h"
+#include "app/text.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
-#include "kernel/pixel_sum.h"
 #include "kernel/isa.h"
-#include "kernel/render_tile.h"
+#include "kernel/pixel_sum.h"
 #include "scene/schema.h"
 
 namespace orrery::app {
@@ -45,29 +43,6 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] > 0) out.emplace_back(kNames[i], counts[i]);
   return out;
-}
-
-std::string bytes_text(std::uint64_t bytes) {
-  char out[32];
-  const char* unit = "KiB";
-  double value = static_cast<double>(bytes) / 1024;
-  for (const char* larger : {"MiB", "GiB", "TiB"}) {
-    if (value < 1024) break;
-    value /= 1024;
-    unit = larger;
-  }
-  std::snprintf(out, sizeof(out), "%.1f %s", value, unit);
-  return out;
-}
-
-/// printf into a string.
-[[gnu::format(printf, 2, 3)]] void append(std::string& out, const char* format, ...) {
-  char line[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof(line), format, arguments);
-  va_end(arguments);
-  out += line;
 }
 
 }  // namespace
@@ -117,20 +92,22 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
 std::string info_text(const SceneInfo& info) {
   std::string out;
   append(out, "scene       %s\n", info.scene_hash.c_str());
-  append(out, "picture     %d x %d, %d samples per pixel, at most %d scattering events\n", info.width, info.height, info.samples,
-         info.max_depth);
+  append(out, "picture     %d x %d, %d samples per pixel, at most %d scattering events\n", info.width, info.height,
+         info.samples, info.max_depth);
   append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
   if (info.spheres > 0)
-    append(out, ", radius %g .. %g, from (%g, %g, %g) to (%g, %g, %g)", info.smallest_radius, info.largest_radius, info.lower[0],
-           info.lower[1], info.lower[2], info.upper[0], info.upper[1], info.upper[2]);
-  out += "\nmaterials  ";
+    append(out, ", radius %g .. %g, from (%g, %g, %g) to (%g, %g, %g)", info.smallest_radius, info.largest_radius,
+           info.lower[0], info.lower[1], info.lower[2], info.upper[0], info.upper[1], info.upper[2]);
+  out += info.materials.empty() ? "\nmaterials   none" : "\nmaterials  ";
   for (std::size_t i = 0; i < info.materials.size(); ++i)
     append(out, "%s %llu %s", i == 0 ? "" : ",", static_cast<unsigned long long>(info.materials[i].second),
            info.materials[i].first.c_str());
-  append(out, "\nkernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(), info.accelerator.c_str());
+  append(out, "\nkernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
+         info.accelerator.c_str());
   append(out, "memory      about %s: film %s, spheres %s, accelerator %s\n",
-         bytes_text(info.film_bytes + info.sphere_bytes + info.accelerator_bytes).c_str(), bytes_text(info.film_bytes).c_str(),
-         bytes_text(info.sphere_bytes).c_str(), bytes_text(info.accelerator_bytes).c_str());
+         bytes_text(info.film_bytes + info.sphere_bytes + info.accelerator_bytes).c_str(),
+         bytes_text(info.film_bytes).c_str(), bytes_text(info.sphere_bytes).c_str(),
+         bytes_text(info.accelerator_bytes).c_str());
   for (const bool required : {true, false}) {
     out += required ? "requires   " : "left out   ";
     bool first = true;
@@ -154,29 +131,35 @@ std::string settings_text(const SceneInfo& info) {
 std::string info_json(const SceneInfo& info) {
   using nlohmann::json;
   json features = json::array(), settings = json::array(), materials = json::object(), warnings = json::array();
-  for (const Feature& f : info.features) features.push_back({{"name", f.name}, {"required", f.required}, {"note", f.note}});
+  for (const Feature& f : info.features)
+    features.push_back({{"name", f.name}, {"required", f.required}, {"note", f.note}});
   for (const auto& s : info.settings) settings.push_back({{"key", s.key}, {"value", s.value}, {"origin", s.origin}});
   for (const auto& [name, count] : info.materials) materials[name] = count;
-  for (const base::Finding& w : info.warnings) warnings.push_back({{"file", w.file}, {"line", w.line}, {"text", w.text}});
-  const json out = {{"schema", "orrery.info/1"},
-                    {"scene_hash", info.scene_hash},
-                    {"width", info.width},
-                    {"height", info.height},
-                    {"samples", info.samples},
-                    {"max_depth", info.max_depth},
-                    {"spheres", info.spheres},
-                    {"bounds", {{"lower", info.lower}, {"upper", info.upper}}},
-                    {"radius", {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}}},
-                    {"materials", materials},
-                    {"features", features},
-                    {"precision", info.precision},
-                    {"accelerator", info.accelerator},
-                    {"isa", info.isa},
-                    {"memory_bytes",
-                     {{"film", info.film_bytes}, {"spheres", info.sphere_bytes}, {"accelerator", info.accelerator_bytes}}},
-                    {"settings", settings},
-                    {"warnings", warnings}};
-  return out.dump(2) + "\n";
+  for (const base::Finding& w : info.warnings)
+    warnings.push_back({{"file", w.file}, {"line", w.line}, {"column", w.column}, {"text", w.text}});
+  json out = {{"schema", "orrery.info/1"},
+              {"scene_hash", info.scene_hash},
+              {"width", info.width},
+              {"height", info.height},
+              {"samples", info.samples},
+              {"max_depth", info.max_depth},
+              {"spheres", info.spheres},
+              {"bounds", nullptr},
+              {"radius", nullptr},
+              {"materials", materials},
+              {"features", features},
+              {"precision", info.precision},
+              {"accelerator", info.accelerator},
+              {"isa", info.isa},
+              {"memory_bytes",
+               {{"film", info.film_bytes}, {"spheres", info.sphere_bytes}, {"accelerator", info.accelerator_bytes}}},
+              {"settings", settings},
+              {"warnings", warnings}};
+  if (info.spheres > 0) {
+    out["bounds"] = {{"lower", info.lower}, {"upper", info.upper}};
+    out["radius"] = {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}};
+  }
+  return json_text(out);
 }
 
 }  // namespace orrery::app

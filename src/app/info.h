@@ -22,7 +22,7 @@ struct SceneInfo {
   std::string scene_hash;
   int width = 0, height = 0, samples = 0, max_depth = 0;
   std::uint64_t spheres = 0;
-  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units
+  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; mean something where spheres > 0
   double smallest_radius = 0, largest_radius = 0;
   std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< compiled materials by type
   std::vector<Feature> features;
@@ -42,7 +42,7 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
 
 /// The same as text for people.
 std::string info_text(const SceneInfo& info);
-/// As JSON, "orrery.info/1".
+/// As JSON, "orrery.info/1"; without spheres, bounds and radius are null.
 std::string info_json(const SceneInfo& info);
 /// Key, value and origin of each setting, in columns.
 std::string settings_text(const SceneInfo& info);

@@ -2,13 +2,15 @@
 #include "app/job.h"
 
 #include <chrono>
+#include <optional>
 
+#include "app/output_files.h"
 #include "app/picture_header.h"
 #include "app/scene_hash.h"
 #include "app/statistics.h"
 #include "app/threads.h"
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/exit_status.h"
 #include "base/suggestion.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
@@ -38,56 +40,73 @@ bool wants_display(const Job& job) {
   return false;
 }
 
-/// Everything that can be known to fail before hours are spent.
-void check_outputs(const Job& job) {
-  for (const auto& output : job.outputs) {
-    const image::Format format = image::format_of(output);
-    if (image::is_display_format(format) && job.bits > image::most_bits(format))
-      throw base::Error(base::ErrorKind::kUsage, output.string() + " holds 8 bits in a channel; PNG and TIFF hold 16");
-    base::check_creatable(output);
-  }
-  if (!job.statistics.empty()) base::check_creatable(job.statistics);
+/// Everything that can be known to fail before hours are spent, but for the scene.
+void check_request(const Job& job) {
+  std::vector<std::filesystem::path> others;
+  if (!job.statistics.empty()) others.push_back(job.statistics);
+  check_output_files(job.outputs, job.bits, others, job.scene);
+  image::check_compression(job.exr.compression);
+  if (!job.isa.empty() && !kernel::limit_isa(job.isa))
+    throw base::Error(base::ErrorKind::kUsage, "no instruction set " + job.isa +
+                                                   " here; this processor and program have " +
+                                                   base::joined(kernel::available_isas()));
 }
 
-void add(image::WriteReport& sum, const image::WriteReport& one) {
-  sum.clamped += one.clamped;
-  sum.not_finite += one.not_finite;
+void stop_if_asked(const Job& job) {
+  if (job.cancel != nullptr && job.cancel->load(std::memory_order_relaxed))
+    throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written");
+}
+
+void warn(const Job& job, const base::Finding& finding) {
+  if (job.on_warning) job.on_warning(finding);
+}
+
+/// The display that display formats are developed for; nothing is looked up where there is none.
+display::Settings choose_display(const Job& job, const scene::Scene& scene, JobReport& report) {
+  display::Settings display = job.display;
+  display.working_space = scene.color.space;
+  if (!wants_display(job)) return display;
+  report.display = display::choose(display);
+  for (const std::string& text : report.display.warnings) {
+    base::Finding finding;
+    finding.severity = base::Severity::kWarning;
+    finding.file = report.display.config;
+    finding.text = text;
+    warn(job, finding);
+  }
+  return display;
 }
 
 void write_outputs(const Job& job, const display::Settings& display, const film::Picture& picture,
                    const image::Header& header, JobReport& report) {
+  std::optional<film::EncodedPicture> developed;  // once for all display formats
+  const auto add = [&](const image::WriteReport& one) {
+    report.written.clamped += one.clamped;
+    report.written.not_finite += one.not_finite;
+  };
   for (const auto& output : job.outputs) {
     switch (image::format_of(output)) {
-      case image::Format::kExr: add(report.written, image::write_exr(output, picture, header, job.exr)); break;
-      case image::Format::kHdr: add(report.written, image::write_hdr(output, picture)); break;
+      case image::Format::kExr: add(image::write_exr(output, picture, header, job.exr)); break;
+      case image::Format::kHdr: add(image::write_hdr(output, picture)); break;
       case image::Format::kPng:
       case image::Format::kTiff:
       case image::Format::kJpeg:
       case image::Format::kPpm:
-        image::write_encoded(output, display::develop(picture, display, job.bits == 0 ? 8 : job.bits),
-                             job.reproducible ? "" : header.software);
+        if (!developed) developed = display::develop(picture, display, job.bits == 0 ? 8 : job.bits);
+        image::write_encoded(output, *developed, header.software);
         break;
     }
   }
 }
 
-}  // namespace
-
-JobReport run_job(const Job& job) {
-  JobReport report;
+/// The way data takes.
+void run_phases(const Job& job, JobReport& report) {
   Stopwatch watch;
-  check_outputs(job);
-  if (!job.isa.empty() && !kernel::limit_isa(job.isa))
-    throw base::Error(base::ErrorKind::kUsage, "no instruction set " + job.isa + " here; this processor and program have " +
-                                                   base::joined(kernel::available_isas()));
-
   const format::ReadResult read = format::read_scene(job.scene, job.overrides);
-  if (job.on_warning)
-    for (const base::Finding& warning : read.warnings) job.on_warning(warning);
-  display::Settings display = job.display;
-  display.working_space = read.scene.color.space;
-  if (wants_display(job)) report.display = display::choose(display);
+  for (const base::Finding& warning : read.warnings) warn(job, warning);
+  const display::Settings display = choose_display(job, read.scene, report);
   report.phases.read_s = watch.lap();
+  stop_if_asked(job);
 
   const compile::World world = compile::compile(read.scene);
   report.scene_hash = scene_hash(world);
@@ -96,6 +115,7 @@ JobReport run_job(const Job& job) {
   report.samples = world.samples;
   report.spheres = world.spheres.size();
   report.phases.compile_s = watch.lap();
+  stop_if_asked(job);
 
   render::Settings settings;
   settings.threads = job.threads > 0 ? job.threads : default_threads();
@@ -106,16 +126,38 @@ JobReport run_job(const Job& job) {
   report.phases.build_s = result.statistics.build_s;
   report.phases.render_s = result.statistics.render_s;
   watch.lap();
-  if (!result.completed) {
-    if (!job.statistics.empty()) write_statistics(job.statistics, report, "stopped");
-    throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written");
-  }
+  if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written");
 
   report.bad_values = film::count_bad_values(result.picture);
-  const image::Header header = picture_header(read.scene, world, report, job.reproducible);
+  const image::Header header = picture_header(read, world, report, job.reproducible);
+  image::set_threads(settings.threads);
   write_outputs(job, display, result.picture, header, report);
   report.phases.write_s = watch.lap();
-  if (!job.statistics.empty()) write_statistics(job.statistics, report, "completed");
+}
+
+/// What went wrong is written down as far as that still works; the error itself is what the caller shall hear.
+void write_failure(const Job& job, const JobReport& report, const base::Error& error) {
+  if (job.statistics.empty()) return;
+  const bool stopped = error.kind() == base::ErrorKind::kStopped;
+  try {
+    write_statistics(job.statistics, report,
+                     {stopped ? "stopped" : "failed", base::exit_status(error.kind()), error.what()});
+  } catch (const base::Error&) {
+  }
+}
+
+}  // namespace
+
+JobReport run_job(const Job& job) {
+  check_request(job);
+  JobReport report;
+  try {
+    run_phases(job, report);
+  } catch (const base::Error& error) {
+    write_failure(job, report, error);
+    throw;
+  }
+  if (!job.statistics.empty()) write_statistics(job.statistics, report, {});
   return report;
 }
 

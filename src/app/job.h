@@ -18,15 +18,15 @@ namespace orrery::app {
 /// What `orrery render` was asked for.
 struct Job {
   std::filesystem::path scene;
-  std::vector<std::string> overrides;            ///< "camera.vfov=30"
-  std::vector<std::filesystem::path> outputs;    ///< the extension chooses the format
-  display::Settings display;                     ///< for display formats; the working space is the scene's
-  int bits = 0;                                  ///< of display formats; 0: 8
+  std::vector<std::string> overrides;          ///< "camera.vfov=30"
+  std::vector<std::filesystem::path> outputs;  ///< the extension chooses the format
+  display::Settings display;                   ///< for display formats; the working space is the scene's
+  int bits = 0;                                ///< of display formats; 0: 8
   image::ExrOptions exr;
-  bool reproducible = false;                     ///< leave out of headers what changes between runs
-  std::filesystem::path statistics;              ///< empty: none
-  int threads = 0;                               ///< 0: default_threads()
-  std::string isa;                               ///< "avx2": no better instruction set; empty: the processor's best
+  bool reproducible = false;         ///< leave out of headers what changes between runs
+  std::filesystem::path statistics;  ///< empty: none
+  int threads = 0;                   ///< 0: default_threads()
+  std::string isa;                   ///< "avx2": no better instruction set; empty: the processor's best
   std::function<void(const render::Progress&)> on_progress;
   std::function<void(const base::Finding&)> on_warning;
   const std::atomic<bool>* cancel = nullptr;
@@ -41,19 +41,20 @@ struct Phases {
 struct JobReport {
   render::Statistics render;
   Phases phases;
-  film::BadValues bad_values;     ///< of the picture, before any display transform
-  image::WriteReport written;     ///< changed so that it fits into the files
+  film::BadValues bad_values;  ///< of the picture, before any display transform
+  image::WriteReport written;  ///< changed so that it fits into the files
   int width = 0, height = 0, samples = 0;
   std::size_t spheres = 0;
   std::string scene_hash;
-  display::Choice display;        ///< where a display format was written
+  display::Choice display;  ///< where a display format was written
 };
 
 /// Renders a scene into files: read, check, compile, render, develop, write.
 ///
-/// That the files can be written, and that formats, display and view exist, is known before rendering starts.
+/// That the files can be written, and that formats, compression, display and view exist, is known before rendering
+/// starts. A statistics file is written also where it was stopped or failed later.
 ///
-/// Errors     base::Error of every kind; kStopped where `cancel` stopped it, and then nothing was written
+/// Errors     base::Error of every kind; kStopped where `cancel` stopped it, and then no picture was written
 JobReport run_job(const Job& job);
 
 }  // namespace orrery::app

@@ -5,7 +5,7 @@
 
 #include "app/camera_matrices.h"
 #include "app/version.h"
-#include "scene/schema.h"
+#include "scene/value_text.h"
 
 namespace orrery::app {
 namespace {
@@ -30,26 +30,33 @@ void add_color(const std::string& space, image::Header& header) {
   }
 }
 
+/// All settings as lines of a scene file: "camera.vfov = 20".
+std::string settings_lines(const std::vector<format::Setting>& settings, bool reproducible) {
+  std::string lines;
+  for (const format::Setting& setting : settings)
+    if (!reproducible || setting.key != "render.accelerator") lines += setting.key + " = " + setting.value + "\n";
+  return lines;
+}
+
 }  // namespace
 
-image::Header picture_header(const scene::Scene& scene, const compile::World& world, const JobReport& report,
+image::Header picture_header(const format::ReadResult& read, const compile::World& world, const JobReport& report,
                              bool reproducible) {
   image::Header header;
   header.software = "orrery " + program_version();
-  const CameraMatrices matrices = camera_matrices(scene.camera, scene.image);
+  const CameraMatrices matrices = camera_matrices(read.scene.camera, read.scene.image);
   header.world_to_camera = matrices.world_to_camera;
   header.world_to_ndc = matrices.world_to_ndc;
-  add_color(scene.color.space, header);
+  add_color(read.scene.color.space, header);
   header.attributes = {{"orrery/version", program_version()},
                        {"orrery/sceneHash", report.scene_hash},
                        {"orrery/samples", world.samples},
                        {"orrery/maxDepth", static_cast<int>(world.max_depth)},
                        {"orrery/seed", std::to_string(world.seed)}};
-  for (const scene::Table& table : scene::tables())
-    if (table.name == "render")
-      for (const auto& key : table.keys)
-        if (key.name == "precision" || key.name == "shading")
-          header.attributes.push_back({"orrery/" + key.name, scene::unquoted(key.text(scene))});
+  for (const format::Setting& setting : read.settings)
+    if (setting.key == "render.precision" || setting.key == "render.shading")
+      header.attributes.push_back({"orrery/" + setting.key.substr(7), scene::unquoted(setting.value)});
+  header.attributes.push_back({"orrery/settings", settings_lines(read.settings, reproducible)});
   if (reproducible) return header;
   header.capture_date = local_time();
   header.attributes.push_back({"orrery/renderSeconds", static_cast<float>(report.phases.render_s)});

@@ -3,12 +3,14 @@
 
 #include "app/job.h"
 #include "compile/world.h"
-#include "scene/scene.h"
+#include "format/read_scene.h"
 
 namespace orrery::app {
 
 /// What a compositor, and whoever wonders a year later, finds in the header of a picture.
-image::Header picture_header(const scene::Scene& scene, const compile::World& world, const JobReport& report,
+///
+/// With `reproducible`, two renders of one scene have the same header, whatever the machine, threads and accelerator.
+image::Header picture_header(const format::ReadResult& read, const compile::World& world, const JobReport& report,
                              bool reproducible);
 
 }  // namespace orrery::app

@@ -7,7 +7,7 @@
 namespace orrery::app {
 namespace {
 
-/// FNV-1a over 64-bit words, with a final mix.
+/// As FNV-1a, but over 64-bit words, whose high bits are folded down: a product carries only upwards.
 class Hash {
  public:
   void add(double x) {
@@ -15,7 +15,10 @@ class Hash {
     std::memcpy(&bits, &x, sizeof(bits));
     add_bits(bits);
   }
-  void add_bits(std::uint64_t bits) { state_ = (state_ ^ bits) * 0x100000001b3u ^ (state_ >> 29); }
+  void add_bits(std::uint64_t bits) {
+    state_ = (state_ ^ bits) * 0x100000001b3u;
+    state_ ^= state_ >> 29;
+  }
   std::string text() const {
     char out[17];
     std::snprintf(out, sizeof(out), "%016llx", static_cast<unsigned long long>(state_));
@@ -35,9 +38,11 @@ void add_all(Hash& hash, const double (&values)[N]) {
 
 std::string scene_hash(const compile::World& world) {
   Hash hash;
+  hash.add_bits(world.spheres.size());
   for (const kernel::Sphere& s : world.spheres)
     for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
   for (const std::uint32_t m : world.sphere_materials) hash.add_bits(m);
+  hash.add_bits(world.materials.size());
   for (const kernel::Material& m : world.materials) {
     add_all(hash, m.albedo);
     add_all(hash, m.eta);
@@ -48,9 +53,9 @@ std::string scene_hash(const compile::World& world) {
   for (const auto* v : {&c.origin, &c.forward, &c.right, &c.down, &c.lens_u, &c.lens_v}) add_all(hash, *v);
   add_all(hash, world.background.bottom);
   add_all(hash, world.background.top);
-  for (const std::uint64_t v :
-       {std::uint64_t(world.width), std::uint64_t(world.height), std::uint64_t(world.samples), std::uint64_t{world.max_depth},
-        std::uint64_t{world.seed}, std::uint64_t(world.shading), std::uint64_t(world.precision)})
+  for (const std::uint64_t v : {std::uint64_t(world.width), std::uint64_t(world.height), std::uint64_t(world.samples),
+                                std::uint64_t{world.max_depth}, std::uint64_t{world.seed}, std::uint64_t(world.shading),
+                                std::uint64_t(world.precision)})
     hash.add_bits(v);
   return hash.text();
 }

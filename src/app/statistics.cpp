@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/text.h"
 #include "app/version.h"
 #include "base/atomic_file.h"
 
@@ -16,42 +17,48 @@ std::size_t peak_memory() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
 }
 
-void write_statistics(const std::filesystem::path& file, const JobReport& report, const std::string& exit_reason) {
+std::string statistics_json(const JobReport& report, const Outcome& outcome) {
   using nlohmann::json;
   const render::Statistics& r = report.render;
   const auto per_second = [&](std::uint64_t n) { return r.render_s > 0 ? static_cast<double>(n) / r.render_s : 0.0; };
   json versions = {{"orrery", program_version()}};
   for (const auto& [name, version] : library_versions()) versions[name] = version;
-  const json out = {
-      {"schema", "orrery.stats/1"},
-      {"exit_reason", exit_reason},
-      {"scene_hash", report.scene_hash},
-      {"width", report.width},
-      {"height", report.height},
-      {"samples", report.samples},
-      {"spheres", report.spheres},
-      {"paths", r.paths},
-      {"rays", r.rays},
-      {"paths_per_second", per_second(r.paths)},
-      {"rays_per_second", per_second(r.rays)},
-      {"seconds",
-       {{"read", report.phases.read_s},
-        {"compile", report.phases.compile_s},
-        {"build", report.phases.build_s},
-        {"render", report.phases.render_s},
-        {"write", report.phases.write_s}}},
-      {"peak_memory_bytes", peak_memory()},
-      {"bad_samples", r.bad_samples},
-      {"bad_pixels",
-       {{"nan", report.bad_values.nan},
-        {"infinite", report.bad_values.infinite},
-        {"negative", report.bad_values.negative},
-        {"above_half", report.bad_values.above_half}}},
-      {"threads", r.threads},
-      {"isa", r.isa},
-      {"accelerator", r.accelerator},
-      {"versions", versions}};
-  base::write_text_file(file, out.dump(2) + "\n");
+  json out = {{"schema", "orrery.stats/1"},
+              {"exit_reason", outcome.reason},
+              {"exit_status", outcome.exit_status},
+              {"scene_hash", report.scene_hash},
+              {"width", report.width},
+              {"height", report.height},
+              {"samples", report.samples},
+              {"spheres", report.spheres},
+              {"paths", r.paths},
+              {"rays", r.rays},
+              {"paths_per_second", per_second(r.paths)},
+              {"rays_per_second", per_second(r.rays)},
+              {"seconds",
+               {{"read", report.phases.read_s},
+                {"compile", report.phases.compile_s},
+                {"build", report.phases.build_s},
+                {"render", report.phases.render_s},
+                {"write", report.phases.write_s}}},
+              {"peak_memory_bytes", peak_memory()},
+              {"bad_samples", r.bad_samples},
+              {"bad_pixels",
+               {{"nan", report.bad_values.nan},
+                {"infinite", report.bad_values.infinite},
+                {"negative", report.bad_values.negative},
+                {"above_half", report.bad_values.above_half}}},
+              {"written", {{"clamped", report.written.clamped}, {"not_finite", report.written.not_finite}}},
+              {"threads", r.threads},
+              {"isa", r.isa},
+              {"accelerator", r.accelerator},
+              {"versions", versions}};
+  if (!outcome.error.empty()) out["error"] = outcome.error;
+  return json_text(out);
+}
+
+void write_statistics(const std::filesystem::path& file, const JobReport& report, const Outcome& outcome) {
+  base::write_text_file(file, statistics_json(report, outcome));
 }
 
 }  // namespace orrery::app

@@ -3,7 +3,8 @@
 
 namespace orrery::app {
 
-/// Threads to use where nobody says: the smallest of the affinity mask, SLURM_CPUS_PER_TASK and CUE_THREADS.
+/// Threads to use where nobody says: the smallest of the affinity mask, SLURM_CPUS_PER_TASK and CUE_THREADS. A variable
+/// that holds no whole number above 0 counts as not set.
 int default_threads();
 
 }  // namespace orrery::app
