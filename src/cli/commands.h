@@ -7,14 +7,19 @@
 
 namespace orrery::cli {
 
-/// A command adds itself to the program and says what to run once argv is read.
+/// What a command does once argv is read: prints results to stdout and messages to stderr, throws base::Error.
 ///
-/// What it runs prints results to stdout, messages to stderr, and throws base::Error.
+/// Result     the exit status
 using Action = std::function<int()>;
+
+/// Adds one command to the program; where argv names it, parsing puts what it does into `action`.
+///
+/// Domain     `action` outlives the parsing
 void add_render(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action);
 void add_develop(CLI::App& program, Action& action);
+void add_compare(CLI::App& program, Action& action);
 
 }  // namespace orrery::cli

@@ -1,44 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
 #include <memory>
 
 #include "app/develop_file.h"
 #include "cli/commands.h"
 #include "cli/display_options.h"
+#include "cli/option_checks.h"
 #include "cli/signals.h"
 
 namespace orrery::cli {
 namespace {
 
 struct DevelopOptions {
-  std::filesystem::path input;
-  std::vector<std::filesystem::path> outputs;
-  display::Settings display;
-  int bits = 8;
+  app::Development development;
+  bool quiet = false;
 };
+
+int develop(const DevelopOptions& options) {
+  end_on_signals();
+  const app::DevelopReport report = app::develop_file(options.development);
+  if (options.quiet) return 0;
+  for (const std::string& warning : report.display.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (const std::uint64_t bad = report.bad_values.nan + report.bad_values.infinite; bad > 0)
+    std::fprintf(stderr, "warning: %llu values of %s are not finite and are shown as 0\n",
+                 static_cast<unsigned long long>(bad), options.development.input.c_str());
+  return 0;
+}
 
 }  // namespace
 
 void add_develop(CLI::App& program, Action& action) {
   const auto options = std::make_shared<DevelopOptions>();
+  app::Development& development = options->development;
   CLI::App& command = *program.add_subcommand("develop", "Develop an EXR on disk for a display, through OCIO");
-  command.add_option("IN", options->input, "Picture with scene-linear light")->required();
-  command.add_option("-o,--output", options->outputs, "File to write: png, tiff, jpg or ppm; can be repeated")
+  command.add_option("IN", development.input, "Picture with scene-linear light: EXR or HDR")
       ->required()
-      ->type_name("FILE")
-      ->take_all()
-      ->expected(1);
-  add_display_options(command, options->display, options->bits);
-  command.add_option("--space", options->display.working_space, "Colour space of the picture; default lin_rec709")->type_name("NAME");
-  command.footer("Examples:\n"
-                 "  orrery develop final.exr -o final.png --exposure 1\n"
-                 "  orrery develop final.exr -o graded.tif --bits 16 --view \"ACES 1.0 SDR Video\"");
-  command.callback([options, &action] {
-    action = [options] {
-      stop_on_signals();
-      app::develop_file(options->input, options->outputs, options->display, options->bits);
-      return 0;
-    };
-  });
+      ->type_name("FILE");
+  repeatable(
+      *command.add_option("-o,--output", development.outputs, "File to write: PNG, TIFF, JPEG or PPM; can be repeated")
+           ->required()
+           ->type_name("FILE"));
+  add_display_options(command, development.display, development.bits);
+  command.add_option("--space", development.display.working_space, "Colour space of the picture; default lin_rec709")
+      ->type_name("NAME");
+  command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+  command.footer(
+      "Examples:\n"
+      "  orrery develop final.exr -o final.png --exposure 1\n"
+      "  orrery develop final.exr -o book.tif --bits 16 --display \"Gamma 2.0 Rec.709\"");
+  command.callback([options, &action] { action = [options] { return develop(*options); }; });
 }
 
 }  // namespace orrery::cli

@@ -1,96 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/progress.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace orrery::cli {
 namespace {
 
-/// A supervisor that hears nothing for longer takes a render for hung.
-constexpr double kHeartbeat = 60;  // seconds
-
-std::string duration_text(double seconds) {
-  char out[32];
-  const auto s = static_cast<long>(std::ceil(std::min(seconds, 359999.0)));
-  if (s >= 3600) {
-    std::snprintf(out, sizeof(out), "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
-  } else {
-    std::snprintf(out, sizeof(out), "%ld:%02ld", s / 60, s % 60);
-  }
-  return out;
+/// Columns of the terminal; 80 where it does not tell.
+int columns_of(std::FILE* terminal) {
+  winsize size{};
+  return ioctl(fileno(terminal), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-std::string rate_text(double per_second) {
-  char out[32];
-  if (per_second >= 1e6) {
-    std::snprintf(out, sizeof(out), "%.1f M samples/s", per_second / 1e6);
-  } else {
-    std::snprintf(out, sizeof(out), "%.0f k samples/s", per_second / 1e3);
-  }
-  return out;
+ProgressStyle resolved(ProgressStyle style, std::FILE* to) {
+  if (style != ProgressStyle::kAuto) return style;
+  return isatty(fileno(to)) != 0 ? ProgressStyle::kBar : ProgressStyle::kArnold;
 }
 
 }  // namespace
 
-const std::vector<std::string>& progress_style_names() {
-  static const std::vector<std::string> names = {"auto", "bar", "alf", "openjd", "arnold", "json", "none"};
-  return names;
+ProgressPrinter::ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat)
+    : style_(resolved(style, to)), to_(to), heartbeat_(heartbeat), state_{0, 1, 0} {
+  if (style_ != ProgressStyle::kBar && style_ != ProgressStyle::kNone) beating_ = std::thread([this] { beat(); });
 }
 
-ProgressPrinter::ProgressPrinter(ProgressStyle style, std::FILE* to) : style_(style), to_(to) {
-  if (style_ == ProgressStyle::kAuto) style_ = isatty(fileno(to_)) != 0 ? ProgressStyle::kBar : ProgressStyle::kArnold;
-}
+ProgressPrinter::~ProgressPrinter() { finish(); }
 
-void ProgressPrinter::update(std::uint64_t done, std::uint64_t total, double seconds) {
-  if (style_ == ProgressStyle::kNone || total == 0) return;
-  const double fraction = static_cast<double>(done) / static_cast<double>(total);
-  const double per_second = seconds > 0 ? static_cast<double>(done) / seconds : 0;
+void ProgressPrinter::update(const ProgressState& state) {
+  if (style_ == ProgressStyle::kNone) return;
+  const std::lock_guard lock(mutex_);
+  if (finished_) return;
+  state_ = state;
   if (style_ == ProgressStyle::kBar) {
-    const double left = done > 0 ? seconds / fraction - seconds : 0;
-    print_bar(fraction, per_second, left);
-    return;
+    print_bar();
+  } else if (state_.percent() != last_percent_) {
+    print_line();
   }
-  const int percent = static_cast<int>(fraction * 100);
-  if (percent == last_percent_ && seconds - last_line_s_ < kHeartbeat) return;
-  last_percent_ = percent;
-  last_line_s_ = seconds;
-  print_line(percent, per_second);
 }
 
-void ProgressPrinter::print_bar(double fraction, double per_second, double seconds_left) {
-  constexpr int kCells = 30;
-  const int full = static_cast<int>(fraction * kCells);
-  std::string bar(static_cast<std::size_t>(full), '#');
-  bar.resize(kCells, '.');
-  std::fprintf(to_, "\r[%s] %3d %%  %s  %s left \033[K", bar.c_str(), static_cast<int>(fraction * 100), rate_text(per_second).c_str(),
-               duration_text(seconds_left).c_str());
+void ProgressPrinter::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    finished_ = true;
+    if (bar_shown_) std::fputs("\r\033[K", to_);
+    std::fflush(to_);
+    bar_shown_ = false;
+  }
+  wake_.notify_all();
+  if (beating_.joinable()) beating_.join();
+}
+
+void ProgressPrinter::print_bar() {
+  std::fprintf(to_, "\r%s\033[K", progress_bar(state_, columns_of(to_)).c_str());
   std::fflush(to_);
   bar_shown_ = true;
 }
 
-void ProgressPrinter::print_line(int percent, double per_second) {
-  switch (style_) {
-    case ProgressStyle::kAlf: std::fprintf(to_, "ALF_PROGRESS %d%%\n", percent); break;
-    case ProgressStyle::kOpenJd: std::fprintf(to_, "openjd_progress: %d\n", percent); break;
-    case ProgressStyle::kJson:
-      std::fprintf(to_, "{\"progress\": %d, \"samples_per_second\": %.0f}\n", percent, per_second);
-      break;
-    case ProgressStyle::kArnold:
-    case ProgressStyle::kAuto:
-    case ProgressStyle::kBar:
-    case ProgressStyle::kNone: std::fprintf(to_, "%d%% done\n", percent); break;
-  }
+void ProgressPrinter::print_line() {
+  std::fprintf(to_, "%s\n", progress_line(style_, state_).c_str());
   std::fflush(to_);
+  last_percent_ = state_.percent();
+  last_line_ = std::chrono::steady_clock::now();
 }
 
-void ProgressPrinter::finish() {
-  if (!bar_shown_) return;
-  std::fputs("\r\033[K", to_);
-  std::fflush(to_);
-  bar_shown_ = false;
+/// Says the last word again whenever nothing was said for too long.
+void ProgressPrinter::beat() {
+  std::unique_lock lock(mutex_);
+  while (!finished_) {
+    const auto due = last_line_ + heartbeat_;
+    if (wake_.wait_until(lock, due, [this] { return finished_; })) return;
+    if (std::chrono::steady_clock::now() >= last_line_ + heartbeat_) print_line();
+  }
 }
 
 }  // namespace orrery::cli

@@ -1,40 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <chrono>
+#include <condition_variable>
 #include <cstdio>
-#include <string>
-#include <vector>
+#include <mutex>
+#include <thread>
+
+#include "cli/progress_text.h"
 
 namespace orrery::cli {
 
-/// In which words a render tells how far it is.
-enum class ProgressStyle { kAuto, kBar, kAlf, kOpenJd, kArnold, kJson, kNone };
-const std::vector<std::string>& progress_style_names();  ///< in the order of the enumerators
+/// A supervisor that hears nothing for longer takes a render for hung.
+inline constexpr std::chrono::milliseconds kHeartbeat{60'000};
 
-/// Tells how far a render is: one line with a bar on a terminal, otherwise a line whenever the whole percent changes,
-/// and at least every minute.
+/// Tells how far a render is: one line with a bar, or a line whenever the whole percent changes and at the latest when
+/// the heartbeat's time has passed, also while the scene is read and while a tile takes its time.
 class ProgressPrinter {
  public:
-  ProgressPrinter(ProgressStyle style, std::FILE* to);
-  ~ProgressPrinter() { finish(); }
+  /// Domain     `to` stays open as long as this lives
+  ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat = kHeartbeat);
+  ~ProgressPrinter();
   ProgressPrinter(const ProgressPrinter&) = delete;
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
-  void update(std::uint64_t done, std::uint64_t total, double seconds);
+  /// To be called from any thread.
+  void update(const ProgressState& state);
 
-  /// Takes the bar away, so that the next message has its line.
+  /// Takes the bar away, so that the next message has its line, and ends the heartbeat.
   void finish();
 
  private:
-  void print_bar(double fraction, double per_second, double seconds_left);
-  void print_line(int percent, double per_second);
+  void print_line();
+  void print_bar();
+  void beat();
 
   ProgressStyle style_;
   std::FILE* to_;
+  std::chrono::milliseconds heartbeat_;
+  std::mutex mutex_;  // of all below
+  std::condition_variable wake_;
+  ProgressState state_;
   int last_percent_ = -1;
-  double last_line_s_ = 0;
+  std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
   bool bar_shown_ = false;
+  bool finished_ = false;
+  std::thread beating_;
 };
 
 }  // namespace orrery::cli

@@ -5,12 +5,16 @@
 #include "app/job.h"
 #include "cli/commands.h"
 #include "cli/display_options.h"
+#include "cli/option_checks.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
 
 namespace orrery::cli {
 namespace {
+
+/// More than any machine has; a number of another kind was meant.
+constexpr std::uint64_t kMostThreads = 4096;
 
 struct RenderOptions {
   app::Job job;
@@ -19,11 +23,10 @@ struct RenderOptions {
   bool quiet = false, verbose = false;
 };
 
+/// Quiet is about what people read; a farm manager that asked for its lines gets them.
 ProgressStyle style_of(const RenderOptions& options) {
-  const auto& names = progress_style_names();
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == options.progress && !(options.quiet && i == 0)) return static_cast<ProgressStyle>(i);
-  return ProgressStyle::kNone;
+  const ProgressStyle style = progress_style(options.progress);
+  return options.quiet && style == ProgressStyle::kAuto ? ProgressStyle::kNone : style;
 }
 
 /// What somebody should know before trusting the picture.
@@ -35,28 +38,27 @@ void print_bad_values(const app::JobReport& report) {
   tell(report.bad_values.nan, "values of the picture are not a number");
   tell(report.bad_values.infinite, "values of the picture are infinite");
   tell(report.written.not_finite, "values that are not finite were written as 0");
-  tell(report.written.clamped, "values beyond the largest half, 65504, were clamped; --type float keeps them");
+  tell(report.written.clamped, "values do not fit into their file and were clamped; EXR with --type float keeps them");
 }
 
 void print_summary(const RenderOptions& options, const app::JobReport& report) {
   std::string files;
-  for (const auto& output : options.job.outputs) {
-    if (!files.empty()) files += ", ";
-    files += output.string();
-  }
+  for (const auto& output : options.job.outputs) files += (files.empty() ? "" : ", ") + output.string();
   const double seconds = report.render.render_s;
-  std::fprintf(stderr, "wrote %s: %d x %d, %d samples per pixel in %.1f s, %.2f M samples/s\n", files.c_str(), report.width,
-               report.height, report.samples, seconds,
+  std::fprintf(stderr, "wrote %s: %d x %d, %d samples per pixel in %.1f s, %.2f M samples/s\n", files.c_str(),
+               report.width, report.height, report.samples, seconds,
                seconds > 0 ? static_cast<double>(report.render.paths) / seconds / 1e6 : 0.0);
   if (!options.verbose) return;
-  std::fprintf(stderr, "%zu spheres, %s, %s, %d threads, %llu rays; scene %s\n", report.spheres, report.render.accelerator.c_str(),
-               report.render.isa.c_str(), report.render.threads, static_cast<unsigned long long>(report.render.rays),
-               report.scene_hash.c_str());
-  std::fprintf(stderr, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, write %.3f s\n", report.phases.read_s,
-               report.phases.compile_s, report.phases.build_s, report.phases.render_s, report.phases.write_s);
-  if (!report.display.display.empty())
-    std::fprintf(stderr, "display %s, view %s, OCIO config %s\n", report.display.display.c_str(), report.display.view.c_str(),
-                 report.display.config.c_str());
+  std::fprintf(stderr, "%zu spheres, %s, %s, %d threads, %llu rays; scene %s\n", report.spheres,
+               report.render.accelerator.c_str(), report.render.isa.c_str(), report.render.threads,
+               static_cast<unsigned long long>(report.render.rays), report.scene_hash.c_str());
+  const app::Phases& phases = report.phases;
+  std::fprintf(stderr, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, write %.3f s\n", phases.read_s,
+               phases.compile_s, phases.build_s, phases.render_s, phases.write_s);
+  const display::Choice& display = report.display;
+  if (!display.display.empty())
+    std::fprintf(stderr, "display %s, view %s, OCIO config %s\n", display.display.c_str(), display.view.c_str(),
+                 display.config.c_str());
 }
 
 int render(RenderOptions& options) {
@@ -65,7 +67,7 @@ int render(RenderOptions& options) {
   job.exr.as_float = options.type == "float";
   job.cancel = &stop_on_signals();
   ProgressPrinter printer(style_of(options), stderr);
-  job.on_progress = [&](const auto& p) { printer.update(p.samples_done, p.samples_total, p.seconds); };
+  job.on_progress = [&](const auto& p) { printer.update({p.samples_done, p.samples_total, p.seconds}); };
   job.on_warning = [&](const base::Finding& warning) {
     if (!options.quiet) std::fputs(base::formatted(warning).c_str(), stderr);
   };
@@ -78,28 +80,37 @@ int render(RenderOptions& options) {
   return 0;
 }
 
+void add_picture_options(CLI::App& command, RenderOptions& options) {
+  add_display_options(command, options.job.display, options.job.bits);
+  command.add_option("--type", options.type, "EXR channels: half, the default, or float")
+      ->check(one_of({"half", "float"}))
+      ->type_name("TYPE");
+  command
+      .add_option("--compression", options.job.exr.compression, "EXR compression, zips by default: zip, dwaa:45 ...")
+      ->type_name("NAME");
+  command.add_flag("--reproducible", options.job.reproducible, "Leave out of headers what changes between runs");
+}
+
 }  // namespace
 
 void add_render(CLI::App& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
   CLI::App& command = *program.add_subcommand("render", "Render a scene into one or more picture files");
-  command.add_option("SCENE", options->job.scene, "Scene file")->required();
-  command.add_option("-o,--output", options->job.outputs, "File to write; its extension chooses EXR, HDR, PNG, TIFF, JPEG or PPM; can be repeated")
-      ->required()
-      ->type_name("FILE")
-      ->take_all()
-      ->expected(1);
+  command.add_option("SCENE", options->job.scene, "Scene file")->required()->type_name("FILE");
+  repeatable(*command
+                  .add_option("-o,--output", options->job.outputs,
+                              "File to write; its extension chooses EXR, HDR, PNG, TIFF, JPEG or PPM; can be repeated")
+                  ->required()
+                  ->type_name("FILE"));
   options->scene.add_to(command);
-  command.add_option("-t,--threads", options->job.threads, "Threads; default: what this process may use")
-      ->check(CLI::Range(1, 4096))
+  command.add_option("-t,--threads", options->job.threads, "Threads; default: as many as this process may use")
+      ->check(whole_number(1, kMostThreads))
       ->type_name("N");
-  command.add_option("--isa", options->job.isa, "Use no better instruction set: sse4, avx2 or avx512")->type_name("NAME");
-  add_display_options(command, options->job.display, options->job.bits);
-  command.add_option("--type", options->type, "EXR channels: half or float")->check(CLI::IsMember({"half", "float"}))->type_name("TYPE");
-  command.add_option("--compression", options->job.exr.compression, "EXR compression: zips, zip, piz, dwaa:45, none")->type_name("NAME");
-  command.add_flag("--reproducible", options->job.reproducible, "Leave out of headers what changes between runs");
+  command.add_option("--isa", options->job.isa, "Use no better instruction set: sse4, avx2 or avx512")
+      ->type_name("NAME");
+  add_picture_options(command, *options);
   command.add_option("--progress", options->progress, "auto, bar, alf, openjd, arnold, json or none")
-      ->check(CLI::IsMember(progress_style_names()))
+      ->check(one_of(progress_style_names()))
       ->type_name("STYLE");
   command.add_option("--stats", options->job.statistics, "Write what the render did as JSON")->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");

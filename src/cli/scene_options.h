@@ -3,22 +3,29 @@
 
 #include <CLI/CLI.hpp>
 
+#include <deque>
 #include <string>
 #include <vector>
 
 namespace orrery::cli {
 
-/// Flags that change the scene: --set, and short forms of the most used.
+/// Flags that change the scene: --set, and short forms of the most used keys.
 class SceneOptions {
  public:
+  /// Domain     called once; neither this moves nor `command` goes until overrides() was asked
   void add_to(CLI::App& command);
 
   /// All of them as "key=value", in an order in which --set wins over the short forms.
   std::vector<std::string> overrides() const;
 
  private:
+  struct Short {
+    const char* key;
+    std::string value;
+    const CLI::Option* flag;
+  };
   std::vector<std::string> set_;
-  std::string samples_, width_, height_, seed_, max_depth_, precision_, accelerator_;
+  std::deque<Short> short_forms_;  ///< a deque: the parser holds on to where the values are
 };
 
 }  // namespace orrery::cli

@@ -18,20 +18,32 @@ void on_signal(int signal) {
   _exit(128 + signal);  // as a shell reports a process that a signal ended
 }
 
-}  // namespace
-
-const std::atomic<bool>& stop_on_signals() {
+void handle_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  // A file-size limit is a full disk to us: the write fails and says so, instead of ending the process.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+  // A limit on the size of files is a full disk to us: the write fails and says so, instead of ending the process.
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGXFSZ, &ignore, nullptr);
+}
+
+}  // namespace
+
+const std::atomic<bool>& stop_on_signals() {
+  handle_signals();
   return stop;
+}
+
+void end_on_signals() {
+  stop.store(true);
+  handle_signals();
 }
 
 }  // namespace orrery::cli

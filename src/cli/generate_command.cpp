@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+#include <memory>
+
+#include "app/generate_files.h"
+#include "cli/commands.h"
+#include "cli/option_checks.h"
+#include "cli/signals.h"
+
+namespace orrery::cli {
+namespace {
+
+struct GenerateOptions {
+  app::FinalScene final_scene;
+  app::Cloud cloud;
+  std::filesystem::path output;
+};
+
+constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::uint64_t>::max();
+
+/// What all kinds of scenes have.
+void add_common(CLI::App& command, std::filesystem::path& output, std::uint64_t& seed) {
+  command.add_option("-o,--output", output, "Scene file to write")->required()->type_name("FILE");
+  command.add_option("--seed", seed, "Another seed is another scene; default 1")
+      ->check(whole_number(0, kLargestSeed))
+      ->type_name("N");
+}
+
+void add_final(CLI::App& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+  CLI::App& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
+  add_common(command, options->output, options->final_scene.seed);
+  command.add_option("--grid", options->final_scene.grid, "Cells from the middle to the edge; default 11, the book's")
+      ->check(whole_number(0, app::kLargestFinalGrid))
+      ->type_name("N");
+  command.footer("Example:\n  orrery generate final -o final.toml --seed 7");
+  command.callback([options, &action] {
+    action = [options] {
+      end_on_signals();
+      app::generate_final(options->final_scene, options->output);
+      return 0;
+    };
+  });
+}
+
+void add_cloud(CLI::App& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+  CLI::App& command = *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY beside it");
+  add_common(command, options->output, options->cloud.seed);
+  command.add_option("--count", options->cloud.count, "Spheres; default 1000")
+      ->check(whole_number(1, app::kLargestCloud))
+      ->type_name("N");
+  command.add_option("--radius", options->cloud.radius, "Of every sphere; default: by the count, and varied")
+      ->check(real_number(0, app::kLargestCloudRadius))
+      ->type_name("R");
+  command.footer("Example:\n  orrery generate cloud -o cloud.toml --count 1000000");
+  command.callback([options, &action] {
+    action = [options] {
+      end_on_signals();
+      app::generate_cloud(options->cloud, options->output);
+      return 0;
+    };
+  });
+}
+
+}  // namespace
+
+void add_generate(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<GenerateOptions>();
+  CLI::App& command = *program.add_subcommand("generate", "Make a scene file");
+  command.require_subcommand(1);
+  add_final(command, options, action);
+  add_cloud(command, options, action);
+  command.footer(
+      "Examples:\n"
+      "  orrery generate final -o final.toml --seed 7\n"
+      "  orrery generate cloud -o cloud.toml --count 1000000");
+}
+
+}  // namespace orrery::cli

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/option_checks.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <utility>
+
+#include "base/suggestion.h"
+
+namespace orrery::cli {
+namespace {
+
+/// A check that shows no text of its own in the help: the option's says it better.
+CLI::Validator check(std::function<std::string(std::string&)> function, const char* name) {
+  return CLI::Validator(std::move(function), "", name);
+}
+
+std::string text_of(double value) {
+  char out[32];
+  std::snprintf(out, sizeof(out), "%g", value);
+  return out;
+}
+
+/// All of the text, not only how it begins.
+template <class Number>
+bool parse(const std::string& text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stopped == end;
+}
+
+}  // namespace
+
+CLI::Validator one_of(std::vector<std::string> names) {
+  return check(
+      [names = std::move(names)](std::string& word) -> std::string {
+        if (std::find(names.begin(), names.end(), word) != names.end()) return {};
+        const bool is_number = !word.empty() && word[0] >= '0' && word[0] <= '9';  // 12 is not meant to be 16
+        const std::string remedy = is_number ? "" : base::did_you_mean(word, names);
+        return "there is no `" + word + "`; " + (remedy.empty() ? "there are " + base::joined(names) : remedy);
+      },
+      "one_of");
+}
+
+CLI::Validator whole_number(std::uint64_t from, std::uint64_t to) {
+  return check(
+      [from, to](std::string& text) -> std::string {
+        std::uint64_t value = 0;
+        if (parse(text, value) && value >= from && value <= to) {
+          text = std::to_string(value);  // the library would take 010 for eight
+          return {};
+        }
+        return "must be a whole number from " + std::to_string(from) + " to " + std::to_string(to) + ", not `" + text +
+               "`";
+      },
+      "whole_number");
+}
+
+CLI::Validator real_number(double from, double to) {
+  return check(
+      [from, to](std::string& text) -> std::string {
+        double value = 0;
+        const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+        if (parse(plus ? text.substr(1) : text, value) && value >= from && value <= to) return {};
+        return "must be a number from " + text_of(from) + " to " + text_of(to) + ", not `" + text + "`";
+      },
+      "real_number");
+}
+
+void repeatable(CLI::Option& option) { option.take_all()->expected(1)->allow_extra_args(false); }
+
+}  // namespace orrery::cli

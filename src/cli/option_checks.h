@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace orrery::cli {
+
+// Checks of what is given to an option, in our own words: those of the library differ between its versions.
+
+/// Refuses a word that is not among `names`, and says which one was meant.
+CLI::Validator one_of(std::vector<std::string> names);
+
+/// Refuses what is no whole number from..to. Digits are decimal, also after a leading zero.
+CLI::Validator whole_number(std::uint64_t from, std::uint64_t to);
+
+/// Refuses what is no finite number from..to.
+CLI::Validator real_number(double from, double to);
+
+/// An option that can be given several times, and takes one value each time: what follows is the next argument.
+void repeatable(CLI::Option& option);
+
+}  // namespace orrery::cli

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "base/error.h"
+
+namespace orrery::cli {
+
+/// Prints a result to stdout, all of it.
+///
+/// Errors     base::Error(kIo): a result that nobody got is a failure, also of a command that writes no file
+void print_result(const std::string& text);
+
+/// Tells an error on stderr: each finding with its place, then the error itself.
+///
+/// Result     the exit status that it asks for
+int print_error(const base::Error& error);
+
+}  // namespace orrery::cli
