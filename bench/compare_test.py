@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 import compare
+import tidy
 
 
 class CompareTest(unittest.TestCase):
@@ -74,6 +75,19 @@ class CompareTest(unittest.TestCase):
                 compare.read_rates(path)
         with self.assertRaises(compare.BadInput):
             compare.read_rates(os.path.join(self.folder.name, "missing.json"))
+
+    def test_a_tidy_result_says_the_same(self):
+        path = self.write("a.json", {"a/10": [1.5, 2.5], "a/9": [1.0]})
+        with open(path, encoding="utf-8") as file:
+            result = json.load(file)
+        result["context"] = {"host_name": "nobody's business", "num_cpus": 2}
+        text = tidy.tidy(result)
+        small = os.path.join(self.folder.name, "tidy.json")
+        with open(small, "w", encoding="utf-8") as file:
+            file.write(text)
+        self.assertEqual(compare.read_rates(small), compare.read_rates(path))
+        self.assertNotIn("host_name", text)
+        self.assertNotIn("aggregate", text)
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ cmake --build "$build" --target bench_kernel bench_accel bench_render bench_same
 cd "$build/bench"
 ./bench_same_picture >/dev/null || fail "the baseline computes another picture than orrery: see $build/bench/bench_same_picture"
 
-# What the figures belong to. The host's name is nobody's business.
+# What the figures belong to.
 revision=$(git -C "$root" describe --always --dirty 2>/dev/null || echo unknown)
 processor=$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1)
 results="$root/bench/results/$machine"
@@ -51,6 +51,7 @@ for room in kernel accel render; do
     { cat "$part/messages" >&2; fail "bench_$room failed"; }
   # A filter may leave nothing of a room.
   if ! grep -q '"run_type"' "$part/$room.json"; then continue; fi
-  sed '/^ *"host_name": /d' "$part/$room.json" >"$results/$room.json"
+  "$root/bench/tidy.py" "$part/$room.json" >"$part/tidy.json" || fail "bench_$room wrote what bench/tidy.py can't read"
+  mv "$part/tidy.json" "$results/$room.json"
 done
 printf 'Results are in bench/results/%s; bench/compare.py makes tables of them.\n' "$machine"
