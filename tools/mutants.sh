@@ -78,8 +78,12 @@ if [ -z "$work" ]; then
   trap 'rm -rf "$work"' EXIT
 fi
 mkdir -p "$work/tree"
-(cd "$root" && tar -cf - CMakeLists.txt cmake src tests) | tar -xf - -C "$work/tree"
-(cd "$root" && for file in LICENSE README.md CHANGELOG.md; do if [ -e "$file" ]; then cp -p "$file" "$work/tree/"; fi; done)
+(cd "$root" && tar -cf - --exclude=./.git --exclude=./build --exclude=./out .) | tar -xf - -C "$work/tree"
+# One instruction set instead of three, where this processor has it: built in a third of the time.
+if grep -qw avx2 /proc/cpuinfo 2>/dev/null; then
+  printf 'set(ORRERY_SIMD -march=x86-64-v3 -maes -mpclmul "-DHWY_DISABLED_TARGETS=(HWY_AVX2-1)")\n' \
+    >>"$work/tree/cmake/OrreryRoom.cmake"
+fi
 launcher=()
 if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 # -O1: the same bits (tools/one-hash.sh), built in half the time.

@@ -181,5 +181,25 @@ TEST(AccelAccel, APacketMayBePartlyFilled) {
   }
 }
 
+TEST(AccelAccel, ATouchCountsAndTheStartDoesNot) {
+  const std::vector<Sphere> spheres = {{0, 1, 0, 1}};
+  kernel::SceneView view;
+  view.spheres = spheres.data();
+  view.sphere_count = 1;
+  const auto list = make_list(view, kernel::Precision::kExact);
+  kernel::RayPacket p;
+  p.count = 2;
+  test::set_ray(p, 0, {0, 0, 5}, {0, 0, 0}, {0, 0, -1}, kNoSphere);  // tangent in the origin
+  test::set_ray(p, 1, {0, 2, 0}, {0, 0, 0}, {0, 1, 0}, kNoSphere);   // starts on the surface, outward
+  for (int lane = 0; lane < 2; ++lane) {
+    p.distance[lane] = std::numeric_limits<double>::max();
+    p.hit[lane] = kNoSphere;
+  }
+  list->tracer().trace(list->tracer().self, p);
+  EXPECT_EQ(p.hit[0], 0u);
+  EXPECT_EQ(p.distance[0], 5);
+  EXPECT_EQ(p.hit[1], std::uint64_t{kNoSphere});
+}
+
 }  // namespace
 }  // namespace orrery::accel

@@ -34,6 +34,8 @@ TEST(CompileCompile, ANegativeRadiusTurnsGlassInsideOut) {
   const kernel::Material& inward = world.materials[world.sphere_materials[2]];
   EXPECT_EQ(outward.eta[0], 1 / 1.5);
   EXPECT_EQ(outward.eta[1], 1.5);
+  EXPECT_NEAR(outward.r0[0], 0.04, 1e-15);
+  EXPECT_NEAR(outward.r0[1], 0.04, 1e-15);
   EXPECT_EQ(inward.eta[0], outward.eta[1]);
   EXPECT_EQ(inward.eta[1], outward.eta[0]);
   EXPECT_EQ(inward.fresnel, kernel::FresnelKind::kExact);
@@ -77,6 +79,14 @@ TEST(CompileCameraBasis, SpansThePictureOnTheFocusPlane) {
   EXPECT_DOUBLE_EQ(c.down[1] * 100, -4);
   EXPECT_DOUBLE_EQ(c.lens_u[0], 2);
   EXPECT_EQ(c.half_width, 100);
+}
+
+TEST(CompileCompile, KnowsWhenAMetalIsFuzzy) {
+  scene::Scene s = one_of_each();
+  s.spheres[0].material = 0;
+  EXPECT_FALSE(compile(s).features.fuzz);
+  s.materials[0].model = scene::Metal{{1, 1, 1}, 0.25};
+  EXPECT_TRUE(compile(s).features.fuzz);
 }
 
 TEST(CompileCameraBasis, FocusesOnWhatItLooksAtByDefault) {

@@ -48,6 +48,16 @@ void unit_ends(double* ends, float* ends_fast) {
   ends_fast[1] = hn::GetLane(to_unit(df, hn::Set(duf, 0xffffffffu)));
 }
 
+/// All numbers of the vertices 0 .. 3 of one path, four each.
+void numbers_of_a_path(double* out) {
+  const hn::FixedTag<double, 1> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  for (std::uint32_t vertex = 0; vertex < 4; ++vertex) {
+    const auto four = random_at_vertex(d, 1, hn::Set(du, 5u), hn::Set(du, 6u), vertex);
+    for (int i = 0; i < 4; ++i) *out++ = hn::GetLane(four.v[i]);
+  }
+}
+
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -58,6 +68,7 @@ namespace {
 HWY_EXPORT(philox_64);
 HWY_EXPORT(philox_32);
 HWY_EXPORT(unit_ends);
+HWY_EXPORT(numbers_of_a_path);
 
 struct KnownAnswer {
   std::uint32_t counter[4], key[2], answer[4];
@@ -93,6 +104,13 @@ TEST(KernelRandom, UnitNumbersStayInside) {
   EXPECT_EQ(ends[1], 1 - 0x1p-33);
   EXPECT_EQ(ends_fast[0], 0x1p-24f);
   EXPECT_EQ(ends_fast[1], 1 - 0x1p-24f);
+}
+
+TEST(KernelRandom, NoVertexAndNoDimensionTakesAnothersNumber) {
+  double numbers[16];
+  ORRERY_BEST(numbers_of_a_path)(numbers);
+  for (int i = 0; i < 16; ++i)
+    for (int j = 0; j < i; ++j) EXPECT_NE(numbers[i], numbers[j]) << i << ' ' << j;
 }
 
 }  // namespace

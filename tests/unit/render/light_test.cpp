@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the light of whole paths is known exactly: how often they scatter, what they multiply, what is left out.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compile/compile.h"
+#include "render/render.h"
+
+namespace orrery::render {
+namespace {
+
+scene::Scene grey_sphere() {
+  scene::Scene s;
+  s.image = {16, 16};
+  s.camera.look_from = {0, 0, 3};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 5;
+  s.background.bottom = s.background.top = {1, 1, 1};
+  s.render.samples = 16;
+  s.materials = {{"grey", scene::Lambertian{{0.5, 0.5, 0.5}}}, {"air", scene::Dielectric{1, scene::Fresnel::kExact}}};
+  s.spheres = {{{0, 0, 0}, 0.5, 0, ""}};
+  return s;
+}
+
+TEST(RenderLight, APathInAClosedSphereScattersAsOftenAsItMay) {
+  scene::Scene s = grey_sphere();
+  s.spheres[0].radius = 10;
+  for (int depth = 0; depth < 5; ++depth) {
+    s.render.max_depth = depth;
+    const Result result = render(compile::compile(s), {});
+    EXPECT_EQ(result.statistics.rays, result.statistics.paths * static_cast<unsigned>(depth + 1));
+    EXPECT_EQ(result.picture.planes[0].values[0], 0.0f);
+  }
+}
+
+TEST(RenderLight, OneScatteringEventIsEnoughForAConvexSphere) {
+  scene::Scene s = grey_sphere();
+  s.render.max_depth = 1;
+  const Result result = render(compile::compile(s), {});
+  for (const float value : result.picture.planes[0].values) ASSERT_EQ(value, 0.5f);
+}
+
+TEST(RenderLight, EverySurfaceOnTheWayMultiplies) {
+  scene::Scene s = grey_sphere();
+  s.spheres.push_back({{0, 0, 0}, 1, 1, ""});  // into it, off the grey one, out of it
+  const Result result = render(compile::compile(s), {});
+  for (const float value : result.picture.planes[0].values) ASSERT_EQ(value, 0.5f);
+}
+
+TEST(RenderLight, ABadSampleIsLeftOutOfItsPixelsMean) {
+  scene::Scene s = grey_sphere();
+  s.camera.vfov = 30;
+  s.background.bottom = s.background.top = {1e30, 1e30, 1e30};
+  s.render.shading = scene::Shading::kFlat;
+  const Result result = render(compile::compile(s), {});
+  EXPECT_GT(result.statistics.bad_samples, 0u);
+  for (const float value : result.picture.planes[0].values) EXPECT_TRUE(value == 0.5f || value == 0.0f) << value;
+}
+
+/// Places in the pixel and directions of the first bounce must know nothing of each other: one large pixel is the mean
+/// of many small ones.
+TEST(RenderLight, OnePixelIsTheMeanOfManySmallOnes) {
+  scene::Scene s = grey_sphere();
+  s.camera.vfov = 18;
+  s.background.bottom = {1, 0, 1};
+  s.background.top = {0, 1, 0};
+  s.image = {64, 64};
+  s.render.samples = 64;
+  const auto mean = [&] {
+    const Result result = render(compile::compile(s), {});
+    double sum = 0;
+    for (const float value : result.picture.planes[0].values) sum += static_cast<double>(value);
+    return sum / static_cast<double>(result.picture.planes[0].values.size());
+  };
+  const double small = mean();
+  s.image = {1, 1};
+  s.render.samples = 64 * 64 * 64;
+  EXPECT_NEAR(mean(), small, 0.002);
+}
+
+/// What rounding takes from a far origin is carried along: at 2^40 units from home a double is wrong by 2^-13.
+TEST(RenderLight, ASceneFarFromHomeLooksTheSame) {
+  scene::Scene s = grey_sphere();
+  s.camera.vfov = 40;
+  s.background.bottom = {1, 0, 1};
+  s.materials[1].model = scene::Metal{{1, 1, 1}, 0};
+  s.spheres = {{{0.5, 0, 0}, 0.5, 1, ""}, {{-0.5, 0, 0}, 0.5, 1, ""}, {{0, 0.75, 0}, 0.25, 1, ""}};
+  const Result home = render(compile::compile(s), {});
+  const math::Vec3d away{0x1p40, 0, -0x1p40};
+  s.camera.look_from = s.camera.look_from + away;
+  s.camera.look_at = s.camera.look_at + away;
+  for (scene::Sphere& sphere : s.spheres) sphere.center = sphere.center + away;
+  const Result far = render(compile::compile(s), {});
+  int different = 0;
+  for (std::size_t i = 0; i < 256; ++i)
+    different += std::abs(far.picture.planes[0].values[i] - home.picture.planes[0].values[i]) > 1e-6f;
+  EXPECT_LE(different, 2);  // a path or two may pass a rim on the other side
+}
+
+}  // namespace
+}  // namespace orrery::render
