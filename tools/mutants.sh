@@ -3,10 +3,11 @@
 # Breaks the numerics on purpose, one bug at a time (tools/mutants/table.txt), and asks the tests to notice each. A bug
 # that no test notices is a hole in the tests. Takes half a minute to two minutes a bug, so it is no part of ctest.
 #
-#   tools/mutants.sh [-w WORKDIR] [-l] [NAME...]
+#   tools/mutants.sh [-w WORKDIR] [-p PROGRAMS] [-l] [NAME...]
 #
 #   NAME...   only these mutants; without names all
 #   -l        lists the mutants, after checking that each still fits the source
+#   -p "..."  asks only these test programs, in this order; what survives them may still die by the others
 #   -w DIR    keeps the copy of the tree and its build there, which makes the next run quick
 #
 # Prints a line a mutant: name | what killed it | seconds. Exit status 1 if one survives, does not compile or no longer
@@ -22,11 +23,12 @@ hung_after_s=600  # a mutant may loop for ever
 
 work=""
 list=0
-while getopts "w:lh" option; do
+while getopts "w:p:lh" option; do
   case $option in
     w) work=$OPTARG ;;
+    p) read -r -a programs <<<"$OPTARG" ;;
     l) list=1 ;;
-    h) sed -n '3,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 0 ;;
+    h) sed -n '3,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 0 ;;
     *) exit 2 ;;
   esac
 done
