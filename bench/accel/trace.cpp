@@ -66,7 +66,7 @@ void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which) 
   std::size_t next = 0;
   for (auto _ : state) {
     baseline::HitRecord record;
-    const bool hit = program.world().hit(rays[next], {0.001, std::numeric_limits<double>::infinity()}, record);
+    bool hit = program.world().hit(rays[next], {0.001, std::numeric_limits<double>::infinity()}, record);
     benchmark::DoNotOptimize(hit);
     benchmark::DoNotOptimize(record);
     next = next + 1 == rays.size() ? 0 : next + 1;
