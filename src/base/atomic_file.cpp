@@ -69,7 +69,8 @@ std::filesystem::path renamed_onto(const std::filesystem::path& path) {
 int create_beside(const std::filesystem::path& path, const std::filesystem::path& target, std::string& name) {
   std::error_code ignored;
   const std::filesystem::path directory = directory_of(target);
-  if (!std::filesystem::is_directory(directory, ignored)) cannot_create(path, "there is no directory " + directory.string());
+  if (!std::filesystem::is_directory(directory, ignored))
+    cannot_create(path, "there is no directory " + directory.string());
   // A name of the greatest length must not fail because its temporary name is longer.
   constexpr std::size_t kLongestStem = 200;
   name = (directory / ("." + target.filename().string().substr(0, kLongestStem) + ".XXXXXX")).string();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/ply_header.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace orrery::format {
@@ -39,6 +40,11 @@ bool parse_type(std::string_view word, PlyType& type) {
   return false;
 }
 
+template <class Named>
+bool is_named(const std::vector<Named>& list, const std::string& name) {
+  return std::any_of(list.begin(), list.end(), [&](const Named& n) { return n.name == name; });
+}
+
 std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
   if (words.size() != 3) return "a format line is `format ENCODING 1.0`";
   if (words[1] == "ascii") {
@@ -58,7 +64,9 @@ std::string parse_element(const std::vector<std::string_view>& words, PlyHeader&
   if (words.size() != 3) return "an element line is `element NAME COUNT`";
   element.name = words[1];
   const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-  if (error != std::errc() || end != words[2].data() + words[2].size()) return "an element's count must be a whole number";
+  if (error != std::errc() || end != words[2].data() + words[2].size())
+    return "an element's count must be a whole number";
+  if (is_named(header.elements, element.name)) return "element `" + element.name + "` stands twice";
   header.elements.push_back(element);
   return {};
 }
@@ -69,8 +77,11 @@ std::string parse_property(const std::vector<std::string_view>& words, PlyHeader
   property.is_list = words.size() == 5 && words[1] == "list";
   if (!property.is_list && words.size() != 3) return "a property line is `property TYPE NAME`";
   if (property.is_list && !parse_type(words[2], property.count_type)) return "unknown type of a list's length";
-  if (!parse_type(words[words.size() - 2], property.type)) return "unknown type; known are char .. double, int8 .. float64";
+  if (!parse_type(words[words.size() - 2], property.type))
+    return "unknown type; known are char .. double, int8 .. float64";
   property.name = words.back();
+  if (is_named(header.elements.back().properties, property.name))
+    return "property `" + property.name + "` stands twice";
   header.elements.back().properties.push_back(property);
   return {};
 }
@@ -78,17 +89,19 @@ std::string parse_property(const std::vector<std::string_view>& words, PlyHeader
 }  // namespace
 
 std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line) {
+  constexpr const char* kNoPly = "this is no PLY file: its first line is not `ply`";
+  constexpr std::size_t kLongestHeader = 1 << 20;
   std::size_t at = 0;
   bool has_format = false;
   for (line = 1;; ++line) {
     const std::size_t end = file.find('\n', at);
-    constexpr std::size_t kLongestHeader = 1 << 20;
-    if (end == std::string_view::npos || end > kLongestHeader) return line == 1 ? "this is no PLY file" : "the header has no end_header";
+    if (end == std::string_view::npos || end > kLongestHeader)
+      return line == 1 ? kNoPly : "the header has no end_header";
     const auto words = words_of(file.substr(at, end - at));
     at = end + 1;
     std::string fault;
     if (line == 1) {
-      if (words.size() != 1 || words[0] != "ply") return "this is no PLY file: it does not begin with `ply`";
+      if (words.size() != 1 || words[0] != "ply") return kNoPly;
     } else if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
       continue;
     } else if (words[0] == "format") {

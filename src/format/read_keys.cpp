@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/read_keys.h"
 
-#include <cmath>
-
 namespace orrery::format {
 namespace {
 
@@ -15,7 +13,7 @@ std::string type_name(const toml::node& node) {
     case toml::node_type::array: return "a list";
     case toml::node_type::string: return "a string";
     case toml::node_type::integer: return "a whole number";
-    case toml::node_type::floating_point: return "a number";
+    case toml::node_type::floating_point: return "a floating-point number";
     case toml::node_type::boolean: return "true or false";
     case toml::node_type::date: return "a date";
     case toml::node_type::time: return "a time";
@@ -36,7 +34,7 @@ std::optional<double> read_number(Reading& reading, const toml::node& node, cons
     return {};
   }
   const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
-  if (std::isnan(x) || !range.contains(x)) {
+  if (!range.contains(x)) {
     reading.error(place_of(node), name + " is " + scene::number_text(x) + "; allowed is " + range.text());
     return {};
   }
@@ -47,9 +45,9 @@ std::optional<Value> read_vector(Reading& reading, const toml::node& node, const
                                  const scene::Range& range) {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 3) {
-    reading.error(place_of(node), name + " must be three numbers like [0, 1, 0], this is " +
-                                      (array == nullptr ? type_name(node)
-                                                        : "a list of " + std::to_string(array->size())));
+    reading.error(place_of(node),
+                  name + " must be three numbers like [0, 1, 0], this is " +
+                      (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
   double v[3];
@@ -82,7 +80,7 @@ std::optional<Value> read_integer(Reading& reading, const toml::node& node, cons
 std::optional<Value> read_text(Reading& reading, const toml::node& node, const std::string& name,
                                const std::vector<std::string>& choices) {
   if (!node.is_string()) {
-    wrong_type(reading, node, name, choices.empty() ? "a string" : "one of \"" + base::joined(choices) + "\"");
+    wrong_type(reading, node, name, choices.empty() ? "a string" : "one of " + base::joined(choices));
     return {};
   }
   const std::string& text = node.as_string()->get();
@@ -111,14 +109,12 @@ std::optional<Value> read_value(Reading& reading, const toml::node& node, const 
   return {};
 }
 
-void report_unknown_key(Reading& reading, const toml::key& key, const toml::node& node, const std::string& table_name,
+void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint) {
   const std::string name(key.str());
   std::string remedy = hint.empty() ? base::did_you_mean(name, known) : hint;
   if (remedy.empty()) remedy = "known are " + base::joined(known);
-  // A key out of an override has no place of its own.
-  const Place place = place_of(key);
-  reading.error(place.line > 0 ? place : place_of(node), "unknown key `" + name + "` in " + table_name, remedy);
+  reading.error(place_of(key), "unknown key `" + name + "` in " + table_name, remedy);
 }
 
 }  // namespace orrery::format

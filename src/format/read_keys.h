@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/suggestion.h"
 #include "format/toml_tree.h"
@@ -14,6 +18,7 @@ namespace orrery::format {
 struct Reading {
   SourceText source;
   std::vector<base::Finding> findings;
+  std::set<std::string> unread;  ///< full names of keys whose values stayed at their defaults for an error
 
   void error(const Place& place, std::string text, std::string remedy = {}) {
     findings.push_back(source.finding(base::Severity::kError, place, std::move(text), std::move(remedy)));
@@ -27,8 +32,8 @@ std::optional<scene::Value> read_value(Reading& reading, const toml::node& node,
                                        scene::ValueType type, const scene::Range& range,
                                        const std::vector<std::string>& choices);
 
-/// Reports a key that the schema does not know.
-void report_unknown_key(Reading& reading, const toml::key& key, const toml::node& node, const std::string& table_name,
+/// Reports a key that the schema does not know; `hint` takes the place of the suggestion.
+void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint = {});
 
 /// Reads a table into a target by its keys. Keys in `also` are known, but read by the caller.
@@ -39,16 +44,19 @@ void read_keys(Reading& reading, const toml::table& table, const std::string& ta
   for (const auto& key : keys) known.push_back(key.name);
   for (const auto& [key, node] : table)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(reading, key, node, table_name, known);
+      report_unknown_key(reading, key, table_name, known);
   for (const auto& key : keys) {
     const toml::node* node = table.get(key.name);
+    const std::string full_name = table_name + "." + key.name;
     if (node == nullptr) {
-      if (key.required) reading.error(place_of(table), table_name + " needs `" + key.name + "`");
-      continue;
+      if (!key.required) continue;
+      reading.error(place_of(table), table_name + " needs `" + key.name + "`");
+      reading.unread.insert(full_name);
+    } else if (const auto value = read_value(reading, *node, full_name, key.type, key.range, key.choices)) {
+      key.set(target, *value);
+    } else {
+      reading.unread.insert(full_name);
     }
-    const auto value =
-        read_value(reading, *node, table_name + "." + key.name, key.type, key.range, key.choices);
-    if (value) key.set(target, *value);
   }
 }
 

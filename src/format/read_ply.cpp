@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/read_ply.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "format/ply_header.h"
 #include "format/source_text.h"
+#include "scene/validate.h"
+#include "scene/value_text.h"
 
 namespace orrery::format {
 namespace {
 
 /// A hundred million spheres in doubles with a radius.
 constexpr std::uint64_t kLargestFile = std::uint64_t{8} << 30;
-
-/// Faults of one kind that are told one by one.
-constexpr std::uint64_t kMostTold = 10;
 
 template <class T>
 double as_double(const char* bytes, bool swap) {
@@ -50,7 +54,9 @@ double binary_value(const char* at, PlyType type, bool swap) {
 class PlyCursor {
  public:
   PlyCursor(std::string_view data, PlyEncoding encoding)
-      : at_(data.data()), end_(data.data() + data.size()), ascii_(encoding == PlyEncoding::kAscii),
+      : at_(data.data()),
+        end_(data.data() + data.size()),
+        ascii_(encoding == PlyEncoding::kAscii),
         swap_((encoding == PlyEncoding::kBigEndian) != (std::endian::native == std::endian::big)) {}
 
   /// False where the data end, or where an ascii value is no number.
@@ -65,7 +71,9 @@ class PlyCursor {
   bool skip(const PlyProperty& property) {
     double value = 0;
     if (!property.is_list) return take(property.type, value);
-    if (!take(property.count_type, value) || !(value >= 0)) return false;
+    if (!take(property.count_type, value)) return false;
+    is_bad_length_ = !(value >= 0) || value != std::floor(value);
+    if (is_bad_length_) return false;
     for (double i = 0; i < value; ++i) {
       double ignored = 0;
       if (!take(property.type, ignored)) return false;  // ends with the data, whatever the count says
@@ -73,10 +81,19 @@ class PlyCursor {
     return true;
   }
   std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
+  /// Why the last take or skip was false.
+  std::string fault() {
+    if (is_bad_length_) return "a list's length is no whole number";
+    skip_blanks();
+    return ascii_ && at_ < end_ ? "what stands there is no number" : "the file ends";
+  }
 
  private:
+  void skip_blanks() {
+    while (at_ < end_ && (*at_ == ' ' || (*at_ >= '\t' && *at_ <= '\r'))) ++at_;
+  }
   bool take_word(double& value) {
-    while (at_ < end_ && std::strchr(" \t\r\n", *at_) != nullptr) ++at_;
+    skip_blanks();
     const char* const begin = at_ < end_ && *at_ == '+' ? at_ + 1 : at_;
     const auto [end, error] = std::from_chars(begin, end_, value);
     if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
@@ -87,7 +104,7 @@ class PlyCursor {
 
   const char* at_;
   const char* end_;
-  bool ascii_, swap_;
+  bool ascii_, swap_, is_bad_length_ = false;
 };
 
 /// Collects findings of one file.
@@ -103,14 +120,15 @@ class PlyFaults {
     findings_.push_back(std::move(finding));
   }
   void add_of_many(const std::string& text) {
-    if (++many_ <= kMostTold) add(0, text);
+    if (++many_ <= scene::kMostTold) add(0, text);
   }
   [[noreturn]] void fail(int line, const std::string& text) {
     add(line, text);
     raise();
   }
   void raise_if_any() {
-    if (many_ > kMostTold) add(0, "and " + std::to_string(many_ - kMostTold) + " more (" + std::to_string(many_) + " in all)");
+    if (many_ > scene::kMostTold)
+      add(0, "and " + std::to_string(many_ - scene::kMostTold) + " more (" + std::to_string(many_) + " in all)");
     if (!findings_.empty()) raise();
   }
 
@@ -128,16 +146,24 @@ struct VertexLayout {
   int x = -1, y = -1, z = -1, radius = -1, material = -1;
 };
 
+constexpr std::array<std::string_view, 3> kRadiusNames = {"radius", "scalar_radius", "r"};
+
 VertexLayout layout_of(const PlyElement& vertex) {
   VertexLayout layout;
+  std::size_t radius_rank = kRadiusNames.size();
   for (int i = 0; i < static_cast<int>(vertex.properties.size()); ++i) {
     const PlyProperty& p = vertex.properties[static_cast<std::size_t>(i)];
     if (p.is_list) continue;
     if (p.name == "x") layout.x = i;
     if (p.name == "y") layout.y = i;
     if (p.name == "z") layout.z = i;
-    if (p.name == "radius") layout.radius = i;
     if (p.name == "material") layout.material = i;
+    // In this order: a file with `r` for red has its `radius` under that name.
+    for (std::size_t k = 0; k < kRadiusNames.size(); ++k)
+      if (p.name == kRadiusNames[k] && k < radius_rank) {
+        layout.radius = i;
+        radius_rank = k;
+      }
   }
   return layout;
 }
@@ -153,7 +179,8 @@ std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding) {
 void check_count(PlyFaults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left) {
   const std::uint64_t each = std::max<std::uint64_t>(1, fewest_bytes(element, header.encoding));
   // The last ascii word needs no space behind it.
-  if (element.count > (bytes_left + 1) / each)
+  const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
+  if (element.count > bytes / each)
     faults.fail(0, "the header promises " + std::to_string(element.count) + " of `" + element.name + "`, but only " +
                        std::to_string(bytes_left) + " bytes follow; the file is cut off, or its count is wrong");
 }
@@ -173,7 +200,9 @@ void read_vertices(PlyFaults& faults, const PlyElement& vertex, PlyCursor& curso
     for (std::size_t k = 0; k < row.size(); ++k) {
       const PlyProperty& property = vertex.properties[k];
       const bool good = property.is_list ? cursor.skip(property) : cursor.take(property.type, row[k]);
-      if (!good) faults.fail(0, "the file ends, or is no number, in vertex " + std::to_string(i) + " of " + std::to_string(count));
+      if (!good)
+        faults.fail(0, "vertex " + std::to_string(i) + " of " + std::to_string(count) + ", `" + property.name +
+                           "`: " + cursor.fault());
     }
     const auto value = [&](int property) { return row[static_cast<std::size_t>(property)]; };
     points.centers[i] = {value(at.x), value(at.y), value(at.z)};
@@ -183,8 +212,8 @@ void read_vertices(PlyFaults& faults, const PlyElement& vertex, PlyCursor& curso
     if (at.material < 0) continue;
     const double material = value(at.material);
     if (!(material >= 0 && material < static_cast<double>(material_count)) || material != std::floor(material)) {
-      faults.add_of_many("vertex " + std::to_string(i) + " has material " + std::to_string(material) + "; the scene has 0.." +
-                         std::to_string(material_count == 0 ? 0 : material_count - 1));
+      faults.add_of_many("vertex " + std::to_string(i) + " has material " + scene::number_text(material) +
+                         "; the scene has " + std::to_string(material_count) + ", counted from 0");
     } else {
       points.materials[i] = static_cast<std::uint32_t>(material);
     }
@@ -203,14 +232,20 @@ void read_ply(const std::filesystem::path& file, std::size_t material_count, sce
   for (const PlyElement& element : header.elements) {
     check_count(faults, element, header, cursor.bytes_left());
     if (element.name == "vertex") {
-      read_vertices(faults, element, cursor, material_count, points);
+      scene::Points read;
+      read.radius = points.radius;
+      read_vertices(faults, element, cursor, material_count, read);
       faults.raise_if_any();
+      points.centers = std::move(read.centers);
+      points.radii = std::move(read.radii);
+      points.materials = std::move(read.materials);
       return;  // what follows is not ours
     }
     if (element.properties.empty()) continue;
     for (std::uint64_t i = 0; i < element.count; ++i)
       for (const PlyProperty& property : element.properties)
-        if (!cursor.skip(property)) faults.fail(0, "the file ends in element `" + element.name + "`");
+        if (!cursor.skip(property))
+          faults.fail(0, "element `" + element.name + "`, row " + std::to_string(i) + ": " + cursor.fault());
   }
   faults.fail(0, "there is no element `vertex`");
 }

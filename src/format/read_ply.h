@@ -10,12 +10,13 @@ namespace orrery::format {
 
 /// Reads the vertices of a PLY file (ascii, binary of either byte order) as spheres into `points`.
 ///
-/// Properties: x, y, z (any number type); `radius`, where `points.radius` is not set; `material`, an index from 0 into
-/// the scene's materials, optional. Other properties and elements are passed over.
+/// Properties: x, y, z (any number type); `radius`, `r` or `scalar_radius`, where `points.radius` is not set;
+/// `material`, an index from 0 into the scene's materials, optional. Other properties and elements are passed over.
 ///
 /// Errors     base::Error: kMissingInput; kBadData with findings for a header that can't be understood, a file shorter
-///            than it says, no radius anywhere, numbers that are not finite, a material that is not there
-/// Cost       one read of the file
+///            than it says, no radius anywhere, numbers that are not finite, a material that is not there; `points`
+///            then is as before
+/// Cost       one read of the file; memory in proportion to it, whatever its header promises
 /// Reference  turk1994
 void read_ply(const std::filesystem::path& file, std::size_t material_count, scene::Points& points);
 

@@ -2,11 +2,15 @@
 #include "format/read_scene.h"
 
 #include <algorithm>
-#include <cctype>
+#include <cstdlib>
+#include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "base/error.h"
+#include "format/overrides.h"
 #include "format/read_keys.h"
+#include "format/read_materials.h"
 #include "format/read_ply.h"
 #include "scene/validate.h"
 
@@ -16,13 +20,17 @@ namespace {
 /// A scene of a million [[sphere]] tables; whoever has more has a points file.
 constexpr std::uint64_t kLargestSceneFile = 256u << 20;
 
+/// Materials by their names.
+using MaterialIndex = std::unordered_map<std::string, std::uint32_t>;
+
 /// Lists that are no list of tables are reported once, not per element.
 const toml::array* tables_under(Reading& reading, const toml::table& root, const char* name) {
   const toml::node* node = root.get(name);
   if (node == nullptr) return nullptr;
   const toml::array* array = node->as_array();
   if (array == nullptr || (!array->empty() && !array->is_array_of_tables())) {
-    reading.error(place_of(*node), std::string("each ") + name + " is a table of its own", std::string("write [[") + name + "]]");
+    reading.error(place_of(*node), std::string("each ") + name + " is a table of its own",
+                  std::string("write [[") + name + "]]");
     return nullptr;
   }
   return array;
@@ -40,89 +48,33 @@ void read_single_tables(Reading& reading, const toml::table& root, scene::Scene&
   }
 }
 
-/// Where else a key of a material would be right: "`fuzz` belongs to metal".
-std::string other_type_with(const std::string& key) {
-  std::vector<std::string> owners;
-  for (const scene::MaterialType& type : scene::material_types())
-    for (const auto& known : type.keys)
-      if (known.name == key) owners.push_back(type.name);
-  return owners.empty() ? "" : "`" + key + "` belongs to " + base::joined(owners);
-}
-
-void read_material(Reading& reading, const std::string& name, const toml::table& table, scene::Scene& scene) {
-  const std::string full_name = "material." + name;
-  std::vector<std::string> type_names;
-  for (const scene::MaterialType& type : scene::material_types()) type_names.push_back(type.name);
-  // Also a material that is wrong has a name that spheres may use: one mistake is one finding.
-  scene.materials.push_back({name, scene::Lambertian{}});
-  const toml::node* type_node = table.get("type");
-  if (type_node == nullptr) {
-    reading.error(place_of(table), full_name + " needs `type`", "one of " + base::joined(type_names));
-    return;
-  }
-  const auto type_name = read_value(reading, *type_node, full_name + ".type", scene::ValueType::kChoice, {}, type_names);
-  if (!type_name) return;
-  for (const scene::MaterialType& type : scene::material_types()) {
-    if (type.name != std::get<std::string>(*type_name)) continue;
-    std::vector<std::string> known = {"type"};
-    for (const auto& key : type.keys) known.push_back(key.name);
-    toml::table own;  // what other types own is reported with their names, and not again
-    std::vector<std::string> also = {"type"};
-    for (const auto& [key, node] : table) {
-      const std::string word(key.str());
-      if (std::find(known.begin(), known.end(), word) != known.end() || other_type_with(word).empty()) continue;
-      report_unknown_key(reading, key, node, full_name + " of type " + type.name, known, other_type_with(word));
-      also.push_back(word);
-    }
-    scene.materials.back().model = type.model;
-    read_keys(reading, table, full_name, type.keys, also, scene.materials.back().model);
-  }
-}
-
-void read_materials(Reading& reading, const toml::table& root, scene::Scene& scene) {
-  const toml::node* node = root.get("material");
-  if (node == nullptr) return;
-  const toml::table* all = node->as_table();
-  if (all == nullptr) {
-    reading.error(place_of(*node), "`material` must hold tables", "write [material.NAME]");
-    return;
-  }
-  // The library sorts keys by name; data files count materials in the order of the file.
-  std::vector<std::pair<const toml::key*, const toml::node*>> in_order;
-  for (const auto& [key, value] : *all) in_order.emplace_back(&key, &value);
-  std::stable_sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) {
-    const Place p = place_of(*a.first), q = place_of(*b.first);
-    return std::pair(p.line, p.column) < std::pair(q.line, q.column);
-  });
-  for (const auto& [key, value] : in_order) {
-    if (const toml::table* table = value->as_table()) {
-      read_material(reading, std::string(key->str()), *table, scene);
-    } else {
-      reading.error(place_of(*value), "material." + std::string(key->str()) + " must be a table");
-    }
-  }
-}
-
 /// The index of the material that a sphere or a points file names; 0 and a finding where there is none.
-std::uint32_t read_material_name(Reading& reading, const toml::table& table, const std::string& full_name,
-                                 const scene::Scene& scene, const std::vector<std::string>& names) {
+std::uint32_t read_material_name(Reading& reading, const toml::table& table, const std::string& table_name,
+                                 const scene::Scene& scene, const MaterialIndex& index) {
+  const std::string full_name = table_name + ".material";
   const toml::node* node = table.get("material");
   if (node == nullptr) {
-    reading.error(place_of(table), full_name + " needs `material`");
+    reading.error(place_of(table), table_name + " needs `material`");
+    reading.unread.insert(full_name);
     return 0;
   }
-  const auto value = read_value(reading, *node, full_name + ".material", scene::ValueType::kText, {}, {});
-  if (!value) return 0;
-  const auto& name = std::get<std::string>(*value);
-  for (std::size_t i = 0; i < scene.materials.size(); ++i)
-    if (scene.materials[i].name == name) return static_cast<std::uint32_t>(i);
-  std::string remedy = base::did_you_mean(name, names);
-  if (remedy.empty() && names.size() <= 12) remedy = names.empty() ? "write [material." + name + "]" : "there are " + base::joined(names);
-  reading.error(place_of(*node), "there is no material \"" + name + "\"", remedy);
+  const auto value = read_value(reading, *node, full_name, scene::ValueType::kText, {}, {});
+  if (value) {
+    if (const auto found = index.find(std::get<std::string>(*value)); found != index.end()) return found->second;
+    const auto& name = std::get<std::string>(*value);
+    std::vector<std::string> names;
+    for (const scene::Material& material : scene.materials) names.push_back(material.name);
+    constexpr std::size_t kMostNamed = 12;
+    std::string remedy = base::did_you_mean(name, names);
+    if (remedy.empty() && names.empty()) remedy = "the scene has no [material.NAME] at all";
+    if (remedy.empty() && names.size() <= kMostNamed) remedy = "there are " + base::joined(names);
+    reading.error(place_of(*node), full_name + " is \"" + name + "\", and there is no such material", remedy);
+  }
+  reading.unread.insert(full_name);
   return 0;
 }
 
-void read_spheres(Reading& reading, const toml::table& root, const std::vector<std::string>& names, scene::Scene& scene) {
+void read_spheres(Reading& reading, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
   const toml::array* list = tables_under(reading, root, "sphere");
   if (list == nullptr) return;
   scene.spheres.reserve(list->size());
@@ -131,13 +83,13 @@ void read_spheres(Reading& reading, const toml::table& root, const std::vector<s
     const std::string full_name = "sphere[" + std::to_string(i) + "]";
     scene::Sphere sphere;
     read_keys(reading, table, full_name, scene::sphere_keys(), {"material"}, sphere);
-    sphere.material = read_material_name(reading, table, full_name, scene, names);
+    sphere.material = read_material_name(reading, table, full_name, scene, index);
     scene.spheres.push_back(std::move(sphere));
   }
 }
 
 void read_points(Reading& reading, const toml::table& root, const std::filesystem::path& folder,
-                 const std::vector<std::string>& names, scene::Scene& scene) {
+                 const MaterialIndex& index, scene::Scene& scene) {
   const toml::array* list = tables_under(reading, root, "points");
   if (list == nullptr) return;
   for (std::size_t i = 0; i < list->size(); ++i) {
@@ -145,14 +97,13 @@ void read_points(Reading& reading, const toml::table& root, const std::filesyste
     const std::string full_name = "points[" + std::to_string(i) + "]";
     scene::Points points;
     read_keys(reading, table, full_name, scene::points_keys(), {"material"}, points);
-    points.material = read_material_name(reading, table, full_name, scene, names);
-    if (!points.file.empty()) {
+    points.material = read_material_name(reading, table, full_name, scene, index);
+    if (reading.unread.count(full_name + ".file") == 0) {
       try {
         read_ply(folder / points.file, scene.materials.size(), points);
       } catch (const base::Error& error) {
         // The place in the scene that names the file, then what the file itself has to say.
-        const toml::node* file = table.get("file");
-        reading.error(place_of(file != nullptr ? *file : static_cast<const toml::node&>(table)), error.what());
+        reading.error(place_of(*table.get("file")), full_name + ".file: " + error.what());
         reading.findings.insert(reading.findings.end(), error.findings().begin(), error.findings().end());
       }
     }
@@ -183,20 +134,19 @@ const toml::node* node_of(const toml::table& root, const std::string& key) {
 
 bool is_error(const base::Finding& finding) { return finding.severity == base::Severity::kError; }
 
-/// Adds what is wrong with the whole. A value that could not be read stands at its default: what the whole makes of that
-/// would be a finding too many, so tables with an error are left alone, and nobody is warned of a scene that is wrong.
+/// Adds what is wrong with the whole. A value that could not be read stands at its default: what the whole makes of
+/// that would be a finding too many, and nobody is warned of a scene that is wrong.
 void add_problems(Reading& reading, const toml::table& root, const scene::Scene& scene, const std::string& file) {
   const bool has_errors = std::any_of(reading.findings.begin(), reading.findings.end(), is_error);
-  const auto table_of = [](const std::string& text) { return text.substr(0, text.find_first_of(". ")); };
-  std::vector<std::string> faulty;
-  for (const base::Finding& finding : reading.findings) faulty.push_back(table_of(finding.text));
+  const auto is_of_camera = [](const std::string& key) { return key.rfind("camera.", 0) == 0; };
+  const bool camera_is_read = std::none_of(reading.unread.begin(), reading.unread.end(), is_of_camera);
   for (const scene::Problem& problem : scene::validate(scene)) {
     if (has_errors && problem.severity == base::Severity::kWarning) continue;
-    if (std::find(faulty.begin(), faulty.end(), table_of(problem.key)) != faulty.end()) continue;
+    if (reading.unread.count(problem.key) != 0 || (is_of_camera(problem.key) && !camera_is_read)) continue;
     const toml::node* node = node_of(root, problem.key);
-    Place place = node != nullptr ? place_of(*node) : Place{file, 0, 0, 1};
-    if (place.text_name.empty()) place.text_name = file;
-    reading.findings.push_back(reading.source.finding(problem.severity, place, problem.key + ": " + problem.text));
+    const Place place = node != nullptr ? place_of(*node) : Place{file, 0, 0, 1};
+    const std::string text = problem.key.empty() ? problem.text : problem.key + ": " + problem.text;
+    reading.findings.push_back(reading.source.finding(problem.severity, place, text));
   }
 }
 
@@ -206,7 +156,7 @@ void report_unknown_tables(Reading& reading, const toml::table& root) {
   known.insert(known.end(), {"material", "sphere", "points"});
   for (const auto& [key, node] : root)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(reading, key, node, "the scene", known);
+      report_unknown_key(reading, key, "the scene", known);
 }
 
 std::vector<Setting> settings_of(const toml::table& root, const scene::Scene& scene) {
@@ -218,7 +168,8 @@ std::vector<Setting> settings_of(const toml::table& root, const scene::Scene& sc
       std::string origin = "default";
       if (node != nullptr) {
         const Place place = place_of(*node);
-        origin = place.text_name == kOverrideName ? place.text_name : place.text_name + ":" + std::to_string(place.line);
+        origin = place.text_name;
+        if (origin != kOverrideName) origin += ':' + std::to_string(place.line);
       }
       settings.push_back({table.name + "." + key.name, key.text(scene), origin});
     }
@@ -233,7 +184,8 @@ void throw_errors(const std::filesystem::path& file, std::vector<base::Finding> 
     return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
   });
   throw base::Error(base::ErrorKind::kBadData,
-                    file.string() + ": " + std::to_string(errors) + (errors == 1 ? " error" : " errors"), std::move(findings));
+                    file.string() + ": " + std::to_string(errors) + (errors == 1 ? " error" : " errors"),
+                    std::move(findings));
 }
 
 }  // namespace
@@ -247,11 +199,12 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::
   ReadResult result;
   report_unknown_tables(reading, root);
   read_single_tables(reading, root, result.scene);
-  read_materials(reading, root, result.scene);
-  std::vector<std::string> names;
-  for (const scene::Material& material : result.scene.materials) names.push_back(material.name);
-  read_spheres(reading, root, names, result.scene);
-  read_points(reading, root, file.parent_path(), names, result.scene);
+  read_materials(reading, root, result.scene.materials);
+  MaterialIndex index;
+  for (const scene::Material& material : result.scene.materials)
+    index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
+  read_spheres(reading, root, index, result.scene);
+  read_points(reading, root, file.parent_path(), index, result.scene);
   add_problems(reading, root, result.scene, file.string());
   throw_errors(file, reading.findings);
   result.warnings = std::move(reading.findings);

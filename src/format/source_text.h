@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -12,8 +13,10 @@
 namespace orrery::format {
 
 /// A stretch of one line of a text.
+///
+/// Units      characters, not bytes, as the TOML library counts
 struct Place {
-  std::string text_name;  ///< of the text it is in; empty: the scene file
+  std::string text_name;  ///< of the text it is in; empty where there is none
   int line = 0;           ///< from 1; 0 where there is none
   int column = 0;         ///< from 1
   int width = 1;
@@ -22,13 +25,20 @@ struct Place {
 /// The texts that a scene is read from, the file and the overrides, to show their lines in findings.
 class SourceText {
  public:
+  /// Puts lines behind those that are there already under that name.
   void add(const std::string& name, std::string_view text);
 
   /// A finding at a place, with its source line.
   base::Finding finding(base::Severity severity, const Place& place, std::string text, std::string remedy = {}) const;
 
  private:
-  std::map<std::string, std::vector<std::string>> lines_;
+  struct Text {
+    std::string bytes;
+    mutable std::vector<std::size_t> begins;  ///< of each kStride-th line; made when the first line is asked for
+  };
+  static std::string_view line_of(const Text& text, int line);
+
+  std::map<std::string, Text> texts_;
 };
 
 /// A whole file as bytes.

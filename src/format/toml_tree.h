@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/finding.h"
@@ -11,12 +12,12 @@
 
 namespace orrery::format {
 
-/// The name of the text that all overrides together are, in the place of a file's name.
-inline constexpr const char* kOverrideName = "--set";
-
 /// Where a node or a key stands.
 Place place_of(const toml::node& node);
 Place place_of(const toml::key& key);
+
+/// A parse error of the library in our own words.
+base::Finding parse_finding(const toml::parse_error& error, const SourceText& source);
 
 /// Parses the scene file's text and puts the overrides in; what can't be parsed becomes findings.
 ///

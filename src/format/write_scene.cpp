@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/write_scene.h"
 
-#include <bit>
-#include <cstring>
+#include <algorithm>
+#include <set>
 #include <sstream>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
+#include "format/write_ply.h"
 #include "scene/schema.h"
 
 namespace orrery::format {
@@ -16,12 +18,18 @@ using scene::string_text;
 using scene::vector_text;
 
 bool is_bare_key(const std::string& name) {
-  return !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
+  return !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") ==
+                              std::string::npos;
 }
 
 void add_comment(std::string& out, const std::string& comment) {
   std::istringstream lines(comment);
-  for (std::string line; std::getline(lines, line);) out += line.empty() ? "#\n" : "# " + line + "\n";
+  for (std::string line; std::getline(lines, line);) {
+    // TOML has no control characters in comments, not even in a file name that stands there.
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 0x7f; }, '?');
+    out += line.empty() ? "#\n" : "# " + line + "\n";
+  }
   if (!comment.empty()) out += '\n';
 }
 
@@ -39,9 +47,13 @@ void add_tables(std::string& out, const scene::Scene& scene) {
 void add_materials(std::string& out, const std::vector<scene::Material>& materials) {
   if (materials.empty()) return;
   out += "[material]\n";
+  std::set<std::string> names;
   for (const scene::Material& material : materials) {
+    if (!names.insert(material.name).second)
+      throw base::Error(base::ErrorKind::kInternal, "a scene to write has two materials named " + material.name);
     const scene::MaterialType& type = scene::material_types()[material.model.index()];
-    out += (is_bare_key(material.name) ? material.name : string_text(material.name)) + " = { type = " + string_text(type.name);
+    out += (is_bare_key(material.name) ? material.name : string_text(material.name)) +
+           " = { type = " + string_text(type.name);
     for (const auto& key : type.keys)
       if (key.required || key.text(material.model) != key.text(type.model))
         out += ", " + key.name + " = " + key.text(material.model);
@@ -50,13 +62,10 @@ void add_materials(std::string& out, const std::vector<scene::Material>& materia
   out += '\n';
 }
 
-template <class T>
-void append_bytes(std::string& out, T value) {
-  char bytes[sizeof(T)];
-  std::memcpy(bytes, &value, sizeof(T));
-  if constexpr (std::endian::native == std::endian::big)
-    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
-  out.append(bytes, sizeof(T));
+const std::string& material_name(const scene::Scene& scene, std::uint32_t material) {
+  if (material >= scene.materials.size())
+    throw base::Error(base::ErrorKind::kInternal, "a scene to write has no material " + std::to_string(material));
+  return scene.materials[material].name;
 }
 
 }  // namespace
@@ -69,33 +78,17 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   for (const scene::Sphere& sphere : scene.spheres) {
     out += "[[sphere]]\n";
     if (!sphere.name.empty()) out += "name = " + string_text(sphere.name) + "\n";
-    out += "center = " + vector_text(sphere.center) + "\nradius = " + number_text(sphere.radius) + "\nmaterial = " +
-           string_text(scene.materials[sphere.material].name) + "\n\n";
+    out += "center = " + vector_text(sphere.center) + "\nradius = " + number_text(sphere.radius) +
+           "\nmaterial = " + string_text(material_name(scene, sphere.material)) + "\n\n";
   }
   for (const scene::Points& points : scene.points) {
-    out += "[[points]]\nfile = " + string_text(points.file.string()) + "\nmaterial = " +
-           string_text(scene.materials[points.material].name) + "\n";
+    out += "[[points]]\nfile = " + string_text(points.file.string()) +
+           "\nmaterial = " + string_text(material_name(scene, points.material)) + "\n";
     if (points.radius) out += "radius = " + number_text(*points.radius) + "\n";
     out += '\n';
   }
   if (!out.empty()) out.pop_back();  // the blank line behind the last block
   return out;
-}
-
-void write_ply(const scene::Points& points, const std::filesystem::path& file) {
-  std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.centers.size()) +
-                    "\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n";
-  if (!points.materials.empty()) out += "property uint material\n";
-  out += "end_header\n";
-  out.reserve(out.size() + points.centers.size() * 36);
-  for (std::size_t i = 0; i < points.centers.size(); ++i) {
-    append_bytes(out, points.centers[i].x);
-    append_bytes(out, points.centers[i].y);
-    append_bytes(out, points.centers[i].z);
-    append_bytes(out, points.radii[i]);
-    if (!points.materials.empty()) append_bytes(out, points.materials[i]);
-  }
-  base::write_text_file(file, out);
 }
 
 void write_scene(const scene::Scene& scene, const std::string& comment, const std::filesystem::path& file) {

@@ -49,8 +49,8 @@ std::string key_of(const Scene& scene, std::size_t index) {
 Coincidents coincident_spheres(const Scene& scene, std::size_t most_told) {
   std::size_t count = scene.spheres.size();
   for (const Points& p : scene.points) count += p.centers.size();
-  // A table of ten million places would be the largest thing in memory; their hashes are enough to find the few that can
-  // be alike.
+  // A table of ten million places would be the largest thing in memory; their hashes are enough to find the few that
+  // can be alike.
   std::vector<std::size_t> hashes;
   hashes.reserve(count);
   for_each_sphere(scene, [&](const PlaceOfSphere& place) { hashes.push_back(PlaceHash{}(place)); });

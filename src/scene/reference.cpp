@@ -43,7 +43,8 @@ std::string row(const Key<Target>& key, const Target& defaults) {
   const auto or_dash = [](const std::string& text) { return text.empty() ? std::string("-") : text; };
   std::string standard = key.required ? "**required**" : key.text(defaults);
   if (standard == "\"\"") standard = "none";
-  std::string out = "| `" + key.name + "` | " + type_name(key.type) + " | " + range_text(key) + " | " + or_dash(key.unit);
+  std::string out =
+      "| `" + key.name + "` | " + type_name(key.type) + " | " + range_text(key) + " | " + or_dash(key.unit);
   return out + " | " + standard + " | " + key.doc + " | " + or_dash(key.cost) + " |\n";
 }
 

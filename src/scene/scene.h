@@ -35,9 +35,9 @@ enum class BackgroundType { kGradient, kConstant };
 
 struct Background {
   BackgroundType type = BackgroundType::kGradient;
-  Vec3d bottom{1, 1, 1};    ///< gradient: looking straight down
-  Vec3d top{0.5, 0.7, 1};   ///< gradient: looking straight up
-  Vec3d color{1, 1, 1};     ///< constant
+  Vec3d bottom{1, 1, 1};   ///< gradient: looking straight down
+  Vec3d top{0.5, 0.7, 1};  ///< gradient: looking straight up
+  Vec3d color{1, 1, 1};    ///< constant
 };
 
 enum class Precision { kExact, kFast, kBook };
@@ -45,8 +45,8 @@ enum class Shading { kPath, kNormal, kFlat };
 enum class Accelerator { kEmbree, kList };
 
 struct Render {
-  int samples = 100;     ///< per pixel
-  int max_depth = 50;    ///< scattering events
+  int samples = 100;   ///< per pixel
+  int max_depth = 50;  ///< scattering events
   std::uint32_t seed = 1;
   Precision precision = Precision::kExact;
   Shading shading = Shading::kPath;
@@ -79,16 +79,16 @@ struct Material {
 
 struct Sphere {
   Vec3d center;
-  double radius = 1;         ///< negative: inward normal (hollow glass)
+  double radius = 1;           ///< negative: inward normal (hollow glass)
   std::uint32_t material = 0;  ///< index into Scene::materials
-  std::string name;          ///< optional, for mattes
+  std::string name;            ///< optional, for mattes
 };
 
 /// Spheres from a data file: flat arrays, since there may be ten million. Filled by format::read.
 struct Points {
-  std::filesystem::path file;            ///< as written in the scene, relative to the scene file
-  std::uint32_t material = 0;            ///< index into Scene::materials; where the file has none of its own
-  std::optional<double> radius;          ///< of every point, whatever the file says; default: the file's
+  std::filesystem::path file;    ///< as written in the scene, relative to the scene file
+  std::uint32_t material = 0;    ///< index into Scene::materials; where the file has none of its own
+  std::optional<double> radius;  ///< of every point, whatever the file says; default: the file's
   std::vector<Vec3d> centers;
   std::vector<double> radii;             ///< as many as centers
   std::vector<std::uint32_t> materials;  ///< as many as centers, or empty: `material` for all

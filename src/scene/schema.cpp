@@ -24,10 +24,14 @@ struct About {
 /// A key for the member that `at` finds in its target; `at` changes nothing, it only gives a reference.
 template <class Target, class At, class Text>
 Key<Target> key_of(const char* name, ValueType type, Range range, const About& about, At at, Text text) {
-  return {name,  type,
-          range, {},
-          about.unit, about.doc,
-          about.cost, false,
+  return {name,
+          type,
+          range,
+          {},
+          about.unit,
+          about.doc,
+          about.cost,
+          false,
           [at](Target& t, const Value& v) {
             using Member = std::remove_reference_t<decltype(at(t))>;
             if constexpr (std::is_integral_v<Member>) {
@@ -59,7 +63,14 @@ Key<Target> text(const char* name, const About& about, At at) {
 /// A number that may be left out, and then is what `otherwise` says.
 template <class Target, class At>
 Key<Target> optional_number(const char* name, Range range, const About& about, const char* otherwise, At at) {
-  return {name, ValueType::kNumber, range, {}, about.unit, about.doc, about.cost, false,
+  return {name,
+          ValueType::kNumber,
+          range,
+          {},
+          about.unit,
+          about.doc,
+          about.cost,
+          false,
           [at](Target& t, const Value& v) { at(t) = std::get<double>(v); },
           [at, otherwise](const Target& t) -> std::string {
             const std::optional<double>& x = at(const_cast<Target&>(t));
@@ -69,7 +80,14 @@ Key<Target> optional_number(const char* name, Range range, const About& about, c
 /// Choices stand in the order of the enumerators.
 template <class Target, class At>
 Key<Target> choice(const char* name, std::vector<std::string> choices, const About& about, At at) {
-  return {name, ValueType::kChoice, {}, choices, about.unit, about.doc, about.cost, false,
+  return {name,
+          ValueType::kChoice,
+          {},
+          choices,
+          about.unit,
+          about.doc,
+          about.cost,
+          false,
           [at, choices](Target& t, const Value& v) {
             using Enum = std::remove_reference_t<decltype(at(t))>;
             for (std::size_t i = 0; i < choices.size(); ++i)
@@ -116,16 +134,17 @@ Table camera_table() {
 
 Table background_table() {
   const char* const unit = "scene-linear";
-  return {"background",
-          {choice<S>("type", {"gradient", "constant"},
-                     {"", "`gradient`: from `bottom` to `top`, linear in the height of the direction; `constant`: `color`"},
-                     [](S& s) -> BackgroundType& { return s.background.type; }),
-           vector<S>("bottom", kLight, {unit, "gradient: light from straight below"},
-                     [](S& s) -> Vec3d& { return s.background.bottom; }),
-           vector<S>("top", kLight, {unit, "gradient: light from straight above"},
-                     [](S& s) -> Vec3d& { return s.background.top; }),
-           vector<S>("color", kLight, {unit, "constant: light from everywhere"},
-                     [](S& s) -> Vec3d& { return s.background.color; })}};
+  return {
+      "background",
+      {choice<S>("type", {"gradient", "constant"},
+                 {"", "`gradient`: from `bottom` to `top`, linear in the height of the direction; `constant`: `color`"},
+                 [](S& s) -> BackgroundType& { return s.background.type; }),
+       vector<S>("bottom", kLight, {unit, "gradient: light from straight below"},
+                 [](S& s) -> Vec3d& { return s.background.bottom; }),
+       vector<S>("top", kLight, {unit, "gradient: light from straight above"},
+                 [](S& s) -> Vec3d& { return s.background.top; }),
+       vector<S>("color", kLight, {unit, "constant: light from everywhere"},
+                 [](S& s) -> Vec3d& { return s.background.color; })}};
 }
 
 Table render_table() {
@@ -141,10 +160,11 @@ Table render_table() {
        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},
                   {"", "chooses the random numbers; the same seed gives the same picture, bit for bit"},
                   [](S& s) -> std::uint32_t& { return s.render.seed; }),
-       choice<S>("precision", {"exact", "fast", "book"},
-                 {"", "`exact`: double without any epsilon; `fast`: float; `book`: the book's formula with its smallest t",
-                  "`fast` and `book` trade accuracy for time"},
-                 [](S& s) -> Precision& { return s.render.precision; }),
+       choice<S>(
+           "precision", {"exact", "fast", "book"},
+           {"", "`exact`: double without any epsilon; `fast`: float; `book`: the book's formula with its smallest t",
+            "`fast` and `book` trade accuracy for time"},
+           [](S& s) -> Precision& { return s.render.precision; }),
        choice<S>("shading", {"path", "normal", "flat"},
                  {"", "`path`: light; `normal`: normals as colour; `flat`: the albedo, without light",
                   "`normal` and `flat` follow no light, one ray for each sample"},
@@ -159,20 +179,30 @@ std::vector<MaterialType> make_material_types() {
   using M = MaterialModel;
   const About albedo{"scene-linear", "share of the light that is scattered, by colour"};
   return {
-      {"lambertian", "diffuse: light leaves by the cosine law", Lambertian{},
+      {"lambertian",
+       "diffuse: light leaves by the cosine law",
+       Lambertian{},
        {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Lambertian>(m).albedo; }))}},
-      {"hemisphere", "the book's first diffuse: light leaves evenly over the hemisphere", Hemisphere{},
+      {"hemisphere",
+       "the book's first diffuse: light leaves evenly over the hemisphere",
+       Hemisphere{},
        {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Hemisphere>(m).albedo; }))}},
-      {"metal", "mirror, sharp or fuzzy", Metal{},
+      {"metal",
+       "mirror, sharp or fuzzy",
+       Metal{},
        {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Metal>(m).albedo; })),
-        number<M>("fuzz", kUnit, {"", "radius of the ball around the tip of the reflected direction; 0 is a sharp mirror"},
+        number<M>("fuzz", kUnit,
+                  {"", "radius of the ball around the tip of the reflected direction; 0 is a sharp mirror"},
                   [](M& m) -> double& { return std::get<Metal>(m).fuzz; })}},
-      {"dielectric", "clear glass, water, air in water", Dielectric{},
+      {"dielectric",
+       "clear glass, water, air in water",
+       Dielectric{},
        {number<M>("ior", {1e-6, 1e6}, {"", "refractive index of the inside, relative to what is around"},
                   [](M& m) -> double& { return std::get<Dielectric>(m).ior; }),
         choice<M>("fresnel", {"schlick", "exact", "none"},
-                  {"", "share of the light that is reflected: `schlick`, as in the book; `exact`; `none`: all is refracted "
-                       "unless reflected totally"},
+                  {"",
+                   "share of the light that is reflected: `schlick`, as in the book; `exact`; `none`: all is refracted "
+                   "unless reflected totally"},
                   [](M& m) -> Fresnel& { return std::get<Dielectric>(m).fresnel; })}},
   };
 }
@@ -187,9 +217,13 @@ std::string Range::text() const {
 
 const std::vector<Table>& tables() {
   static const std::vector<Table> all = {
-      image_table(), camera_table(), background_table(), render_table(),
-      {"color", {text<S>("space", {"", "name of the colour space of all colours here, and of the EXR"},
-                         [](S& s) -> std::string& { return s.color.space; })}}};
+      image_table(),
+      camera_table(),
+      background_table(),
+      render_table(),
+      {"color",
+       {text<S>("space", {"", "name of the colour space of all colours here, and of the EXR"},
+                [](S& s) -> std::string& { return s.color.space; })}}};
   return all;
 }
 
@@ -211,12 +245,13 @@ const std::vector<Key<Sphere>>& sphere_keys() {
 
 const std::vector<Key<Points>>& points_keys() {
   static const std::vector<Key<Points>> keys = [] {
-    auto file = required(text<Points>("file", {"", "PLY file, relative to the scene file", "one read; 32 bytes a sphere, 36 with materials"},
-                                      [](Points& p) -> std::filesystem::path& { return p.file; }));
+    auto file = required(text<Points>(
+        "file", {"", "PLY file, relative to the scene file", "one read; 32 bytes a sphere, 36 with materials"},
+        [](Points& p) -> std::filesystem::path& { return p.file; }));
     return std::vector<Key<Points>>{
-        file, optional_number<Points>("radius", kLength, {"scene units", "radius of every sphere, whatever the file says"},
-                                      "as in the file",
-                                      [](Points& p) -> std::optional<double>& { return p.radius; })};
+        file,
+        optional_number<Points>("radius", kLength, {"scene units", "radius of every sphere, whatever the file says"},
+                                "as in the file", [](Points& p) -> std::optional<double>& { return p.radius; })};
   }();
   return keys;
 }

@@ -37,17 +37,20 @@ bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
 
 void check_camera(const Camera& camera, Problems& problems) {
   bool usable = true;
-  for (const auto& [name, v] : {std::pair{"look_from", camera.look_from}, {"look_at", camera.look_at}, {"up", camera.up}}) {
+  for (const auto& [name, v] :
+       {std::pair{"look_from", camera.look_from}, {"look_at", camera.look_at}, {"up", camera.up}}) {
     if (in_domain(v)) continue;
-    problems.error(std::string("camera.") + name, vector_text(v) + " is not finite or beyond " + number_text(kLargestLength));
+    problems.error(std::string("camera.") + name,
+                   vector_text(v) + " is not finite or beyond " + number_text(kLargestLength));
     usable = false;
   }
   if (!usable) return;  // what they make together would be a finding too many
   const Vec3d view = camera.look_at - camera.look_from;
   if (!has_direction(view)) {
-    problems.error("camera.look_at", view == Vec3d{} ? "look_at is the same point as look_from, so the camera has no direction"
-                                                     : "look_at is closer to look_from than " + number_text(kSmallestRadius) +
-                                                           ", so the camera has no direction");
+    problems.error("camera.look_at", view == Vec3d{}
+                                         ? "look_at is the same point as look_from, so the camera has no direction"
+                                         : "look_at is closer to look_from than " + number_text(kSmallestRadius) +
+                                               ", so the camera has no direction");
   } else if (!has_direction(camera.up)) {
     problems.error("camera.up", camera.up == Vec3d{} ? "up is zero; any direction that is not the view's will do"
                                                      : "up is shorter than " + number_text(kSmallestRadius) +
@@ -63,8 +66,9 @@ void check_lens(const Camera& camera, Problems& problems) {
   const double focus = camera.focus_distance.value_or(math::length(camera.look_at - camera.look_from));
   const double radius = std::tan(camera.defocus_angle / 360 * std::numbers::pi) * focus;
   if (radius <= kLargestLength) return;
-  problems.error("camera.defocus_angle", "the lens would have a radius of " + number_text(radius) + "; allowed is up to " +
-                                             number_text(kLargestLength) + ": choose a smaller angle or focus_distance");
+  problems.error("camera.defocus_angle", "the lens would have a radius of " + number_text(radius) +
+                                             "; allowed is up to " + number_text(kLargestLength) +
+                                             ": choose a smaller angle or focus_distance");
 }
 
 /// What is wrong with a radius by itself; empty where nothing is.
@@ -103,8 +107,9 @@ void check_spheres(const Scene& scene, Problems& problems) {
 void check_points(const Points& points, const std::string& key, const Scene& scene, Problems& problems) {
   if (points.radii.size() != points.centers.size() ||
       (!points.materials.empty() && points.materials.size() != points.centers.size())) {
-    problems.error(key, "has " + std::to_string(points.centers.size()) + " centres, " + std::to_string(points.radii.size()) +
-                            " radii and " + std::to_string(points.materials.size()) + " materials");
+    problems.error(key, "has " + std::to_string(points.centers.size()) + " centres, " +
+                            std::to_string(points.radii.size()) + " radii and " +
+                            std::to_string(points.materials.size()) + " materials");
     return;
   }
   if (points.materials.empty())

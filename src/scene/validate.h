@@ -20,11 +20,12 @@ struct Problem {
   std::string text;
 };
 
-/// Finds what makes no sense although every value by itself has the right type: a camera without direction, a lens of no
-/// sensible size, numbers outside the domain, materials that are not there, spheres in the same place (a warning).
+/// Finds what makes no sense although every value by itself has the right type: a camera without direction, a lens of
+/// no sensible size, numbers outside the domain, materials that are not there, spheres in the same place (a warning).
 ///
 /// Domain     any scene, also with numbers that are not finite
-/// Result     empty where all is well; each sphere of its own is told, of each points file and of all coincident spheres
+/// Result     empty where all is well; each sphere of its own is told, of each points file and of all coincident
+/// spheres
 ///            the first kMostTold and the number of the rest
 /// Cost       O(n log n), 16 bytes a sphere
 std::vector<Problem> validate(const Scene& scene);

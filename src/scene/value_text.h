@@ -7,7 +7,8 @@
 
 namespace orrery::scene {
 
-/// A double as the shortest decimal that reads back to the same bits, as a scene file writes it: "0.1", "-0.0", "1e+18".
+/// A double as the shortest decimal that reads back to the same bits, as a scene file writes it: "0.1", "-0.0",
+/// "1e+18".
 std::string number_text(double value);
 
 /// "[0, 1, 0]".

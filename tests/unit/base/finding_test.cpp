@@ -60,7 +60,10 @@ TEST(BaseFinding, NeverUnderlinesBeyondTheLine) {
 }
 
 TEST(BaseFinding, BytesOutOfAFileDoNotCommandTheTerminal) {
-  const std::string shown = formatted(at(1, 1, 1, "name \"\x1b[2J\" \xC2\x9B" "31m", "\x1b[31mred\x7f"));
+  const std::string shown = formatted(at(1, 1, 1,
+                                         "name \"\x1b[2J\" \xC2\x9B"
+                                         "31m",
+                                         "\x1b[31mred\x7f"));
   EXPECT_EQ(shown, "scene.toml:1:1: error: name \"?[2J\" ??31m\n    ?[31mred?\n    ^\n");
 }
 

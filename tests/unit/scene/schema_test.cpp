@@ -68,7 +68,8 @@ TEST(SceneSchema, MaterialTypesStandInTheOrderOfTheVariant) {
 
 TEST(SceneSchema, DefaultsAreInsideTheirOwnRange) {
   const auto inside = [](const Range& range, std::string text) {
-    std::replace_if(text.begin(), text.end(), [](char c) { return c == '[' || c == ',' || c == ']'; }, ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '[' || c == ',' || c == ']'; }, ' ');
     std::istringstream numbers(text);
     for (double x = 0; numbers >> x;)
       if (!range.contains(x)) return false;
@@ -109,8 +110,7 @@ TEST(SceneSchema, RangesOfTheIssue) {
 TEST(SceneSchema, NotANumberIsInNoRange) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Table& table : tables())
-    for (const auto& key : table.keys)
-      EXPECT_FALSE(has_range(key.type) && key.range.contains(nan)) << key.name;
+    for (const auto& key : table.keys) EXPECT_FALSE(has_range(key.type) && key.range.contains(nan)) << key.name;
 }
 
 TEST(SceneSchema, RangesAsText) {

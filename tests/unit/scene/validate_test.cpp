@@ -34,7 +34,8 @@ TEST(SceneValidate, ASceneWithoutAnythingIsAllRight) { EXPECT_EQ(told({}), Told{
 TEST(SceneValidate, CameraThatLooksNowhere) {
   Scene scene;
   scene.camera.look_at = scene.camera.look_from;
-  EXPECT_EQ(told(scene), Told{"camera.look_at: look_at is the same point as look_from, so the camera has no direction"});
+  EXPECT_EQ(told(scene),
+            Told{"camera.look_at: look_at is the same point as look_from, so the camera has no direction"});
   // Its length would be 0, or its square would: both end in a direction that is not a number.
   scene.camera.look_at = scene.camera.look_from + Vec3d{0, 0, 1e-200};
   EXPECT_EQ(told(scene),
@@ -73,7 +74,8 @@ TEST(SceneValidate, LensLargerThanTheDomain) {
   scene.camera.defocus_angle = 179;
   scene.camera.focus_distance = 1e18;
   ASSERT_EQ(told(scene).size(), 1u);
-  EXPECT_EQ(told(scene)[0].rfind("camera.defocus_angle: the lens would have a radius of 1.14", 0), 0u) << told(scene)[0];
+  EXPECT_EQ(told(scene)[0].rfind("camera.defocus_angle: the lens would have a radius of 1.14", 0), 0u)
+      << told(scene)[0];
   scene.camera.focus_distance = 1e10;
   EXPECT_EQ(told(scene), Told{});
   scene.camera.defocus_angle = kInfinity;
@@ -92,8 +94,10 @@ TEST(SceneValidate, RadiusOutsideTheDomain) {
 }
 
 TEST(SceneValidate, CenterOutsideTheDomain) {
-  EXPECT_EQ(told(with_sphere({0, 2e18, 0}, 1)), Told{"sphere[0].center: center [0, 2e+18, 0] is not finite or beyond 1e+18"});
-  EXPECT_EQ(told(with_sphere({0, 0, kNan}, 1)), Told{"sphere[0].center: center [0, 0, nan] is not finite or beyond 1e+18"});
+  EXPECT_EQ(told(with_sphere({0, 2e18, 0}, 1)),
+            Told{"sphere[0].center: center [0, 2e+18, 0] is not finite or beyond 1e+18"});
+  EXPECT_EQ(told(with_sphere({0, 0, kNan}, 1)),
+            Told{"sphere[0].center: center [0, 0, nan] is not finite or beyond 1e+18"});
   EXPECT_EQ(told(with_sphere({-1e18, 1e18, 1e18}, 1)), Told{});
 }
 
@@ -109,8 +113,9 @@ TEST(SceneValidate, MaterialThatIsNotThere) {
   scene.points[1] = scene.points[0];
   scene.points[1].centers = {{7, 0, 0}, {8, 0, 0}};
   scene.points[1].materials = {0, 3};
-  EXPECT_EQ(told(scene), (Told{"points[0].material: there is no material number 9; the scene has 1, counted from 0",
-                               "points[1][1].material: there is no material number 3; the scene has 1, counted from 0"}));
+  EXPECT_EQ(told(scene),
+            (Told{"points[0].material: there is no material number 9; the scene has 1, counted from 0",
+                  "points[1][1].material: there is no material number 3; the scene has 1, counted from 0"}));
 }
 
 TEST(SceneValidate, MaterialOfAWholePointsFileIsToldOnce) {
@@ -118,8 +123,7 @@ TEST(SceneValidate, MaterialOfAWholePointsFileIsToldOnce) {
   scene.points.resize(1);
   scene.points[0].centers = {{5, 0, 0}, {6, 0, 0}};
   scene.points[0].radii = {1, 1};
-  EXPECT_EQ(told(scene),
-            Told{"points[0].material: there is no material number 0; the scene has 0, counted from 0"});
+  EXPECT_EQ(told(scene), Told{"points[0].material: there is no material number 0; the scene has 0, counted from 0"});
 }
 
 TEST(SceneValidate, EverySphereOfItsOwnIsTold) {

@@ -16,7 +16,8 @@ TEST(SceneValueText, NumbersReadBackToTheSameBits) {
   for (int i = 0; i < 20000; ++i) {
     const double x = std::bit_cast<double>(random());
     if (x != x) continue;
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(std::strtod(number_text(x).c_str(), nullptr)), std::bit_cast<std::uint64_t>(x))
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(std::strtod(number_text(x).c_str(), nullptr)),
+              std::bit_cast<std::uint64_t>(x))
         << number_text(x);
   }
 }

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/read_materials.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+
+#include "format/overrides.h"
+
+namespace orrery::format {
+namespace {
+
+/// Where else a key of a material would be right: "`fuzz` belongs to metal".
+std::string other_type_with(const std::string& key) {
+  std::vector<std::string> owners;
+  for (const scene::MaterialType& type : scene::material_types())
+    for (const auto& known : type.keys)
+      if (known.name == key) owners.push_back(type.name);
+  return owners.empty() ? "" : "`" + key + "` belongs to " + base::joined(owners);
+}
+
+/// Keys that no type of material has, of a material whose type is not known.
+void report_keys_of_no_type(Reading& reading, const toml::table& table, const std::string& full_name) {
+  std::vector<std::string> known = {"type"};
+  for (const scene::MaterialType& type : scene::material_types())
+    for (const auto& key : type.keys)
+      if (std::find(known.begin(), known.end(), key.name) == known.end()) known.push_back(key.name);
+  for (const auto& [key, node] : table)
+    if (std::find(known.begin(), known.end(), key.str()) == known.end())
+      report_unknown_key(reading, key, full_name, known);
+}
+
+/// The type that [material.NAME] says it has; nothing, and a finding, where it does not say or there is none such.
+const scene::MaterialType* read_type(Reading& reading, const toml::table& table, const std::string& full_name) {
+  std::vector<std::string> names;
+  for (const scene::MaterialType& type : scene::material_types()) names.push_back(type.name);
+  const toml::node* node = table.get("type");
+  if (node == nullptr) {
+    reading.error(place_of(table), full_name + " needs `type`", "one of " + base::joined(names));
+    return nullptr;
+  }
+  const auto name = read_value(reading, *node, full_name + ".type", scene::ValueType::kChoice, {}, names);
+  if (!name) return nullptr;
+  for (const scene::MaterialType& type : scene::material_types())
+    if (type.name == std::get<std::string>(*name)) return &type;
+  return nullptr;
+}
+
+void read_material(Reading& reading, const toml::table& table, scene::Material& material) {
+  const std::string full_name = "material." + material.name;
+  const scene::MaterialType* type = read_type(reading, table, full_name);
+  if (type == nullptr) return report_keys_of_no_type(reading, table, full_name);
+  std::vector<std::string> known = {"type"};
+  for (const auto& key : type->keys) known.push_back(key.name);
+  std::vector<std::string> also = {"type"};  // and what other types own: reported with their names, and not again
+  for (const auto& [key, node] : table) {
+    const std::string word(key.str());
+    if (std::find(known.begin(), known.end(), word) != known.end() || other_type_with(word).empty()) continue;
+    report_unknown_key(reading, key, full_name + " of type " + type->name, known, other_type_with(word));
+    also.push_back(word);
+  }
+  material.model = type->model;
+  read_keys(reading, table, full_name, type->keys, also, material.model);
+}
+
+}  // namespace
+
+void read_materials(Reading& reading, const toml::table& root, std::vector<scene::Material>& materials) {
+  const toml::node* node = root.get("material");
+  if (node == nullptr) return;
+  const toml::table* all = node->as_table();
+  if (all == nullptr) {
+    reading.error(place_of(*node), "`material` must hold tables", "write [material.NAME]");
+    return;
+  }
+  // The library sorts keys by name; data files count materials in the order of the file. What an override adds comes
+  // behind, or it would change the material of every point.
+  struct Entry {
+    bool is_override;
+    int line, column;
+    const toml::key* key;
+    const toml::node* value;
+  };
+  std::vector<Entry> in_order;
+  for (const auto& [key, value] : *all) {
+    const Place place = place_of(key);
+    in_order.push_back({place.text_name == kOverrideName, place.line, place.column, &key, &value});
+  }
+  std::stable_sort(in_order.begin(), in_order.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.is_override, a.line, a.column) < std::tie(b.is_override, b.line, b.column);
+  });
+  for (const Entry& entry : in_order) {
+    const std::string name(entry.key->str());
+    // Also a material that is wrong has a name that spheres may use: one mistake is one finding.
+    materials.push_back({name, scene::Lambertian{}});
+    if (const toml::table* table = entry.value->as_table()) {
+      read_material(reading, *table, materials.back());
+    } else {
+      reading.error(place_of(*entry.value), "material." + name + " must be a table", "write [material." + name + "]");
+    }
+  }
+}
+
+}  // namespace orrery::format

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/write_ply.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "scene/value_text.h"
+
+namespace orrery::format {
+namespace {
+
+template <class T>
+void append_bytes(std::string& out, T value) {
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, &value, sizeof(T));
+  if constexpr (std::endian::native == std::endian::big)
+    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
+  out.append(bytes, sizeof(T));
+}
+
+void append_float(std::string& out, double value, std::size_t index) {
+  if (std::abs(value) > std::numeric_limits<float>::max())
+    throw base::Error(base::ErrorKind::kBadData, "sphere " + std::to_string(index) + " has the number " +
+                                                     scene::number_text(value) +
+                                                     ", too large for a float; write doubles");
+  append_bytes(out, static_cast<float>(value));
+}
+
+std::string header(const scene::Points& points, PlyReal real) {
+  const std::string property = real == PlyReal::kDouble ? "property double " : "property float ";
+  std::string out =
+      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.centers.size()) + '\n';
+  for (const char* name : {"x", "y", "z", "radius"}) out += property + name + '\n';
+  if (!points.materials.empty()) out += "property uint material\n";
+  return out + "end_header\n";
+}
+
+}  // namespace
+
+void write_ply(const scene::Points& points, const std::filesystem::path& file, PlyReal real) {
+  std::string out = header(points, real);
+  const std::size_t bytes = 4 * (real == PlyReal::kDouble ? sizeof(double) : sizeof(float)) + sizeof(std::uint32_t);
+  out.reserve(out.size() + points.centers.size() * bytes);
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    const math::Vec3d c = points.centers[i];
+    for (const double x : {c.x, c.y, c.z, points.radii[i]}) {
+      if (real == PlyReal::kDouble) {
+        append_bytes(out, x);
+      } else {
+        append_float(out, x, i);
+      }
+    }
+    if (!points.materials.empty()) append_bytes(out, points.materials[i]);
+  }
+  base::write_text_file(file, out);
+}
+
+}  // namespace orrery::format

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/finding.h"
+#include "format/read_scene.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::support {
+
+/// Scene files of one test, and what the reader says about them.
+class SceneFiles {
+ public:
+  /// Puts a file beside scene.toml.
+  void add(const std::string& name, const std::string& bytes) { write_bytes(folder_ / name, bytes); }
+
+  /// Reads `text` as scene.toml; fails the test where it is refused.
+  format::ReadResult read(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    add("scene.toml", text);
+    try {
+      return format::read_scene(folder_ / "scene.toml", overrides);
+    } catch (const base::Error& error) {
+      ADD_FAILURE() << told(error);
+      return {};
+    }
+  }
+
+  /// All findings as the user reads them, without the folder; what the reader warns of where there is no error.
+  std::string findings(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    add("scene.toml", text);
+    try {
+      std::string out;
+      for (const base::Finding& f : format::read_scene(folder_ / "scene.toml", overrides).warnings)
+        out += base::formatted(f);
+      return without_folder(out);
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+      return told(error);
+    }
+  }
+
+  const ScratchFolder& folder() const { return folder_; }
+
+  std::string told(const base::Error& error) const {
+    std::string out;
+    for (const base::Finding& f : error.findings()) out += base::formatted(f);
+    return without_folder(out.empty() ? error.what() : out);
+  }
+
+ private:
+  std::string without_folder(std::string text) const {
+    const std::string prefix = folder_.path().string() + "/";
+    for (std::size_t at; (at = text.find(prefix)) != std::string::npos;) text.erase(at, prefix.size());
+    return text;
+  }
+
+  ScratchFolder folder_;
+};
+
+}  // namespace orrery::support

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/overrides.h"
+
+#include <gtest/gtest.h>
+
+#include "support/scene_files.h"
+
+namespace orrery::format {
+namespace {
+
+using support::SceneFiles;
+
+constexpr const char* kScene = R"([camera]
+vfov = 20
+[material.gold]
+type = "metal"
+albedo = [0.8, 0.6, 0.2]
+[material."dark gold"]
+type = "metal"
+albedo = [0.4, 0.3, 0.1]
+[[sphere]]
+center = [0, 0, 0]
+radius = 1
+material = "gold"
+[[sphere]]
+center = [3, 0, 0]
+radius = 1
+material = "gold"
+)";
+
+/// The first line of what an override is told.
+std::string told(const std::string& override_text) {
+  SceneFiles files;
+  const std::string all = files.findings(kScene, {override_text});
+  return all.substr(0, all.find('\n'));
+}
+
+TEST(FormatOverrides, ReplaceWhatStandsInTheFile) {
+  SceneFiles files;
+  const auto scene = files
+                         .read(kScene, {"camera.vfov=30", "camera.look_from=[1, 2, 3]", "material.gold.fuzz=0.25",
+                                        "sphere[1].radius=-2", "material.\"dark gold\".albedo=[1,1,1]"})
+                         .scene;
+  EXPECT_EQ(scene.camera.vfov, 30);
+  EXPECT_EQ(scene.camera.look_from, (scene::Vec3d{1, 2, 3}));
+  EXPECT_EQ(std::get<scene::Metal>(scene.materials[0].model).fuzz, 0.25);
+  EXPECT_EQ(std::get<scene::Metal>(scene.materials[0].model).albedo, (scene::Vec3d{0.8, 0.6, 0.2})) << "and no more";
+  EXPECT_EQ(scene.spheres[0].radius, 1);
+  EXPECT_EQ(scene.spheres[1].radius, -2);
+  EXPECT_EQ(std::get<scene::Metal>(scene.materials[1].model).albedo, (scene::Vec3d{1, 1, 1}));
+}
+
+TEST(FormatOverrides, MakeTablesThatTheFileDoesNotHave) {
+  SceneFiles files;
+  const auto scene = files.read(kScene, {"image.width=7", "render.samples=3"}).scene;
+  EXPECT_EQ(scene.image.width, 7);
+  EXPECT_EQ(scene.render.samples, 3);
+}
+
+TEST(FormatOverrides, AnInlineTableReplacesTheWholeTable) {
+  SceneFiles files;
+  const auto scene = files.read(kScene, {"material.gold={type=\"dielectric\"}"}).scene;
+  EXPECT_EQ(std::get<scene::Dielectric>(scene.materials[0].model).ior, 1.5);
+}
+
+TEST(FormatOverrides, TheLastOneWins) {
+  SceneFiles files;
+  EXPECT_EQ(files.read(kScene, {"camera.vfov=30", "camera.vfov=40"}).scene.camera.vfov, 40);
+}
+
+TEST(FormatOverrides, WordsNeedNoQuotes) {
+  SceneFiles files;
+  EXPECT_EQ(files.read(kScene, {"render.precision=fast"}).scene.render.precision, scene::Precision::kFast);
+  EXPECT_EQ(files.read(kScene, {"render.precision=\"fast\""}).scene.render.precision, scene::Precision::kFast);
+  EXPECT_EQ(files.read(kScene, {"color.space=Utility - \\ \"x\""}).scene.color.space, "Utility - \\ \"x\"");
+}
+
+TEST(FormatOverrides, BlanksAroundTheSignsAreAllRight) {
+  SceneFiles files;
+  EXPECT_EQ(files.read(kScene, {" camera.vfov = 30 "}).scene.camera.vfov, 30);
+}
+
+TEST(FormatOverrides, MistakesArePointedAtInTheOverride) {
+  SceneFiles files;
+  EXPECT_EQ(
+      files.findings(kScene, {"image.width=5", "camera.vfov=300", "camera.vfow=3", "sphere[1].radius=0",
+                              "sphere[0].center=[0, 1]"}),
+      "--set:2:13: error: camera.vfov is 300; allowed is above 0, below 180\n"
+      "    camera.vfov=300\n"
+      "                ^~~\n"
+      "--set:3:8: error: unknown key `vfow` in camera; did you mean `vfov`?\n"
+      "    camera.vfow=3\n"
+      "           ^~~~\n"
+      "--set:4:18: error: sphere[1].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 for an inward "
+      "normal\n"
+      "    sphere[1].radius=0\n"
+      "                     ^\n"
+      "--set:5:18: error: sphere[0].center must be three numbers like [0, 1, 0], this is a list of 2\n"
+      "    sphere[0].center=[0, 1]\n"
+      "                     ^~~~~~\n");
+}
+
+TEST(FormatOverrides, SameChecksAsTheFile) {
+  EXPECT_EQ(told("material.gold.ior=1.5"),
+            "--set:1:15: error: unknown key `ior` in material.gold of type metal; `ior` belongs to dielectric");
+  EXPECT_EQ(told("sphere[0].material=glod"),
+            "--set:1:20: error: sphere[0].material is \"glod\", and there is no such material; did you mean `gold`?");
+  EXPECT_EQ(told("render.samples=1.5"),
+            "--set:1:16: error: render.samples must be a whole number, this is a floating-point number");
+  EXPECT_EQ(told("camera=3"), "--set:1:8: error: `camera` must be a table; write [camera]");
+  EXPECT_EQ(told("material.new.fuzz=0.5"),
+            "--set:1:10: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric");
+}
+
+TEST(FormatOverrides, WhatIsNoOverrideIsTold) {
+  const std::string example = "; write it like camera.vfov=30 or sphere[0].radius=2";
+  EXPECT_EQ(told("camera.vfov"), "--set:1:1: error: this is no key=value" + example);
+  EXPECT_EQ(told(""), "--set:1:1: error: this is no key=value" + example);
+  EXPECT_EQ(told("=3"), "--set:1:1: error: there is no key before the =" + example);
+  EXPECT_EQ(told("camera.vfov="), "--set:1:1: error: there is no value behind the =" + example);
+  EXPECT_EQ(told("camera.vfov=1\nimage.width=0"), "--set:1:1: error: an override is one line" + example);
+  EXPECT_EQ(told("a.b.c.d.e.f.g.h.i=1"), "--set:1:1: error: a key of more than 8 parts" + example);
+}
+
+TEST(FormatOverrides, SyntaxOfAListIsToldAndNotTakenForAWord) {
+  EXPECT_EQ(told("camera.up=[1,2"), "--set:1:15: error: array: encountered end-of-file");
+  EXPECT_EQ(told("camera..vfov=1").rfind("--set:1:8: error: key: ", 0), 0u) << told("camera..vfov=1");
+}
+
+TEST(FormatOverrides, ElementsOfListsMustBeThere) {
+  EXPECT_EQ(told("sphere[2].radius=1"),
+            "--set:1:1: error: there is no sphere[2]; the scene has 2 of `sphere`, counted from 0");
+  EXPECT_EQ(told("points[0].radius=1").rfind("--set:1:1: error: the scene has no list `points`", 0), 0u);
+  EXPECT_EQ(told("camera[0].vfov=1").rfind("--set:1:1: error: the scene has no list `camera`", 0), 0u);
+  EXPECT_EQ(told("sphere[0]=1").rfind("--set:1:1: error: an element of a list is not set as a whole", 0), 0u);
+  EXPECT_EQ(told("sphere[].radius=1").rfind("--set:1:1: error: `sphere[]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("sphere[-1].radius=1").rfind("--set:1:1: error: `sphere[-1]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("sphere[0][1].radius=1").rfind("--set:1:1: error: `sphere[0][1]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("sphere[99999999999999999999].radius=1").rfind("--set:1:1: error: `sphere[9", 0), 0u);
+  EXPECT_EQ(told("].radius=1").rfind("--set:1:1: error: `]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("sphere.radius=1"),
+            "--set:1:1: error: `sphere` is no table; name one of its elements, like sphere[0].radius=2");
+  EXPECT_EQ(told("camera.vfov.x=1"), "--set:1:1: error: `vfov` is no table");
+}
+
+}  // namespace
+}  // namespace orrery::format

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/ply_header.h"
+
+#include <gtest/gtest.h>
+
+namespace orrery::format {
+namespace {
+
+/// "line: fault" of a header; empty where it is good.
+std::string fault_of(const std::string& text) {
+  PlyHeader header;
+  int line = 0;
+  const std::string fault = parse_ply_header(text, header, line);
+  return fault.empty() ? "" : std::to_string(line) + ": " + fault;
+}
+
+TEST(FormatPlyHeader, KnowsElementsPropertiesAndWhereTheDataBegin) {
+  const std::string text =
+      "ply\r\ncomment made by hand\nformat binary_big_endian 1.0\nobj_info x\nelement vertex 12\nproperty float x\n"
+      "property  double\ty\nproperty list uchar int neighbours\nelement face 0\nend_header\n";
+  PlyHeader header;
+  int line = 0;
+  ASSERT_EQ(parse_ply_header(text + "DATA", header, line), "");
+  EXPECT_EQ(header.encoding, PlyEncoding::kBigEndian);
+  EXPECT_EQ(header.bytes, text.size());
+  EXPECT_EQ(header.lines, 10);
+  ASSERT_EQ(header.elements.size(), 2u);
+  EXPECT_EQ(header.elements[0].name, "vertex");
+  EXPECT_EQ(header.elements[0].count, 12u);
+  ASSERT_EQ(header.elements[0].properties.size(), 3u);
+  EXPECT_EQ(header.elements[0].properties[0].type, PlyType::kFloat32);
+  EXPECT_EQ(header.elements[0].properties[1].type, PlyType::kFloat64);
+  EXPECT_EQ(header.elements[0].properties[1].name, "y");
+  EXPECT_TRUE(header.elements[0].properties[2].is_list);
+  EXPECT_EQ(header.elements[0].properties[2].count_type, PlyType::kUint8);
+  EXPECT_EQ(header.elements[0].properties[2].type, PlyType::kInt32);
+  EXPECT_TRUE(header.elements[0].has_list());
+  EXPECT_FALSE(header.elements[1].has_list());
+}
+
+TEST(FormatPlyHeader, TypesHaveTheirSizes) {
+  const std::pair<const char*, std::size_t> types[] = {{"char", 1},  {"int8", 1},    {"uchar", 1},  {"uint8", 1},
+                                                       {"short", 2}, {"int16", 2},   {"ushort", 2}, {"uint16", 2},
+                                                       {"int", 4},   {"int32", 4},   {"uint", 4},   {"uint32", 4},
+                                                       {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
+  for (const auto& [name, size] : types) {
+    PlyHeader header;
+    int line = 0;
+    ASSERT_EQ(parse_ply_header(std::string("ply\nformat ascii 1.0\nelement e 1\nproperty ") + name + " p\nend_header\n",
+                               header, line),
+              "");
+    EXPECT_EQ(ply_size(header.elements[0].properties[0].type), size) << name;
+  }
+}
+
+TEST(FormatPlyHeader, FaultsNameTheirLine) {
+  const std::string begin = "ply\nformat ascii 1.0\n";
+  EXPECT_EQ(fault_of(""), "1: this is no PLY file: its first line is not `ply`");
+  EXPECT_EQ(fault_of("polygon\n"), "1: this is no PLY file: its first line is not `ply`");
+  EXPECT_EQ(fault_of("ply\nend_header\n"), "2: the header has no format line");
+  EXPECT_EQ(fault_of("ply\nformat ascii\n"), "2: a format line is `format ENCODING 1.0`");
+  EXPECT_EQ(fault_of("ply\nformat text 1.0\n"),
+            "2: unknown encoding; known are ascii, binary_little_endian, binary_big_endian");
+  EXPECT_EQ(fault_of(begin + "element vertex\n"), "3: an element line is `element NAME COUNT`");
+  for (const char* count : {"-1", "1.5", "many", "18446744073709551616"})
+    EXPECT_EQ(fault_of(begin + "element vertex " + count + "\n"), "3: an element's count must be a whole number")
+        << count;
+  EXPECT_EQ(fault_of(begin + "element a 1\nelement a 1\n"), "4: element `a` stands twice");
+  EXPECT_EQ(fault_of(begin + "property float x\n"), "3: a property before any element");
+  EXPECT_EQ(fault_of(begin + "element a 1\nproperty float\n"), "4: a property line is `property TYPE NAME`");
+  EXPECT_EQ(fault_of(begin + "element a 1\nproperty half x\n"),
+            "4: unknown type; known are char .. double, int8 .. float64");
+  EXPECT_EQ(fault_of(begin + "element a 1\nproperty list half int x\n"), "4: unknown type of a list's length");
+  EXPECT_EQ(fault_of(begin + "element a 1\nproperty int x\nproperty float x\n"), "5: property `x` stands twice");
+  EXPECT_EQ(fault_of(begin + "texture a\n"), "3: unknown word in the header");
+  EXPECT_EQ(fault_of(begin + "element a 1\n"), "4: the header has no end_header");
+}
+
+TEST(FormatPlyHeader, EndlessHeadersAreGivenUp) {
+  std::string text = "ply\nformat ascii 1.0\n";
+  while (text.size() < (2u << 20)) text += "comment and so on\n";
+  const std::string fault = fault_of(text + "end_header\n");
+  EXPECT_NE(fault.find("the header has no end_header"), std::string::npos) << fault;
+}
+
+}  // namespace
+}  // namespace orrery::format

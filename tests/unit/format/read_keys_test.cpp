@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/read_keys.h"
+
+#include <gtest/gtest.h>
+
+#include "support/scene_files.h"
+
+namespace orrery::format {
+namespace {
+
+using support::SceneFiles;
+
+/// The text of the first finding, without place and source line.
+std::string text_of(const std::string& scene) {
+  SceneFiles files;
+  const std::string told = files.findings(scene);
+  const std::size_t begin = told.find("error: ");
+  return begin == std::string::npos ? told : told.substr(begin + 7, told.find('\n') - begin - 7);
+}
+
+TEST(FormatReadKeys, WrongTypesAreNamed) {
+  EXPECT_EQ(text_of("camera.vfov = \"20\""), "camera.vfov must be a number, this is a string");
+  EXPECT_EQ(text_of("camera.vfov = true"), "camera.vfov must be a number, this is true or false");
+  EXPECT_EQ(text_of("camera.vfov = [20]"), "camera.vfov must be a number, this is a list");
+  EXPECT_EQ(text_of("camera.vfov = 2024-01-01"), "camera.vfov must be a number, this is a date");
+  EXPECT_EQ(text_of("camera.vfov = {}"), "camera.vfov must be a number, this is a table");
+  EXPECT_EQ(text_of("camera.up = 1"), "camera.up must be three numbers like [0, 1, 0], this is a whole number");
+  EXPECT_EQ(text_of("camera.up = [0, \"1\", 0]"), "camera.up[1] must be a number, this is a string");
+  EXPECT_EQ(text_of("color.space = 1"), "color.space must be a string, this is a whole number");
+  EXPECT_EQ(text_of("render.shading = 1"), "render.shading must be one of path, normal, flat, this is a whole number");
+}
+
+TEST(FormatReadKeys, AWholeNumberServesAsNumberButNotTheOtherWay) {
+  SceneFiles files;
+  EXPECT_EQ(files.read("camera.vfov = 20").scene.camera.vfov, 20);
+  EXPECT_EQ(text_of("render.samples = 10.0"), "render.samples must be a whole number, this is a floating-point number");
+}
+
+TEST(FormatReadKeys, RangesAreClosedOrOpenAsTheySay) {
+  EXPECT_EQ(text_of("camera.vfov = 0"), "camera.vfov is 0; allowed is above 0, below 180");
+  EXPECT_EQ(text_of("camera.vfov = 180"), "camera.vfov is 180; allowed is above 0, below 180");
+  EXPECT_EQ(text_of("camera.defocus_angle = 180"), "camera.defocus_angle is 180; allowed is from 0, below 180");
+  EXPECT_EQ(text_of("camera.defocus_angle = 0"), "");
+  EXPECT_EQ(text_of("render.max_depth = 10001"), "render.max_depth is 10001; allowed is 0..10000");
+  EXPECT_EQ(text_of("render.max_depth = 10000"), "");
+  EXPECT_EQ(text_of("render.seed = -1"), "render.seed is -1; allowed is 0..4294967295");
+  EXPECT_EQ(text_of("image.width = 9223372036854775807"), "image.width is 9223372036854775807; allowed is 1..65536");
+  EXPECT_EQ(text_of("background.top = [0, -0.5, 0]"), "background.top[1] is -0.5; allowed is 0..1e+06");
+}
+
+TEST(FormatReadKeys, NotANumberAndInfinityAreInNoRange) {
+  EXPECT_EQ(text_of("camera.vfov = nan"), "camera.vfov is nan; allowed is above 0, below 180");
+  EXPECT_EQ(text_of("camera.look_at = [0, 0, -inf]"), "camera.look_at[2] is -inf; allowed is -1e+18..1e+18");
+  EXPECT_EQ(text_of("camera.focus_distance = inf"), "camera.focus_distance is inf; allowed is 1e-30..1e+18");
+}
+
+TEST(FormatReadKeys, EachWrongComponentIsAFinding) {
+  SceneFiles files;
+  EXPECT_EQ(files.findings("camera.up = [nan,\n inf, 0]"),
+            "scene.toml:1:14: error: camera.up[0] is nan; allowed is -1e+18..1e+18\n"
+            "    camera.up = [nan,\n"
+            "                 ^~~\n"
+            "scene.toml:2:2: error: camera.up[1] is inf; allowed is -1e+18..1e+18\n"
+            "     inf, 0]\n"
+            "     ^~~\n");
+}
+
+TEST(FormatReadKeys, UnknownKeysWithNothingNearAreToldWhatThereIs) {
+  EXPECT_EQ(text_of("image.gamma = 2.2"), "unknown key `gamma` in image; known are width, height");
+  EXPECT_EQ(text_of("image.Width = 2"), "unknown key `Width` in image; did you mean `width`?");
+}
+
+}  // namespace
+}  // namespace orrery::format

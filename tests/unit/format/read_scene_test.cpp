@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/read_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "support/scene_files.h"
+
+namespace orrery::format {
+namespace {
+
+using scene::Vec3d;
+using support::SceneFiles;
+
+TEST(FormatReadScene, AnEmptyFileIsThePictureOfTheDefaults) {
+  SceneFiles files;
+  const auto read = files.read("");
+  EXPECT_TRUE(read.scene.spheres.empty());
+  EXPECT_EQ(read.scene.image.width, scene::Image{}.width);
+  EXPECT_TRUE(read.warnings.empty());
+}
+
+TEST(FormatReadScene, ReadsEveryKey) {
+  SceneFiles files;
+  const auto read = files.read(R"(
+[image]
+width = 320
+height = 200
+[camera]
+look_from = [13, 2, 3.5]
+look_at = [0, 1, 0]
+up = [0, 0, 1]
+vfov = 20
+defocus_angle = 0.6
+focus_distance = 10
+[background]
+type = "constant"
+bottom = [0.1, 0.2, 0.3]
+top = [1, 2, 3]
+color = [0.25, 0.5, 1]
+[render]
+samples = 7
+max_depth = 9
+seed = 4294967295
+precision = "fast"
+shading = "normal"
+accelerator = "list"
+[color]
+space = "ACEScg"
+[material.ground]
+type = "lambertian"
+albedo = [0.1, 0.2, 0.3]
+[material.clay]
+type = "hemisphere"
+albedo = [0.4, 0.5, 0.6]
+[material.gold]
+type = "metal"
+albedo = [0.8, 0.6, 0.2]
+fuzz = 0.1
+[material.glass]
+type = "dielectric"
+ior = 1.33
+fresnel = "none"
+[[sphere]]
+center = [0, -1000, 0]
+radius = 1000
+material = "ground"
+name = "floor"
+[[sphere]]
+center = [1, 2, 3]
+radius = -0.5
+material = "glass"
+)");
+  const scene::Scene& s = read.scene;
+  EXPECT_EQ(s.image.width, 320);
+  EXPECT_EQ(s.image.height, 200);
+  EXPECT_EQ(s.camera.look_from, (Vec3d{13, 2, 3.5}));
+  EXPECT_EQ(s.camera.look_at, (Vec3d{0, 1, 0}));
+  EXPECT_EQ(s.camera.up, (Vec3d{0, 0, 1}));
+  EXPECT_EQ(s.camera.vfov, 20);
+  EXPECT_EQ(s.camera.defocus_angle, 0.6);
+  EXPECT_EQ(s.camera.focus_distance, 10.0);
+  EXPECT_EQ(s.background.type, scene::BackgroundType::kConstant);
+  EXPECT_EQ(s.background.bottom, (Vec3d{0.1, 0.2, 0.3}));
+  EXPECT_EQ(s.background.top, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(s.background.color, (Vec3d{0.25, 0.5, 1}));
+  EXPECT_EQ(s.render.samples, 7);
+  EXPECT_EQ(s.render.max_depth, 9);
+  EXPECT_EQ(s.render.seed, 4294967295u);
+  EXPECT_EQ(s.render.precision, scene::Precision::kFast);
+  EXPECT_EQ(s.render.shading, scene::Shading::kNormal);
+  EXPECT_EQ(s.render.accelerator, scene::Accelerator::kList);
+  EXPECT_EQ(s.color.space, "ACEScg");
+  ASSERT_EQ(s.materials.size(), 4u);
+  EXPECT_EQ(std::get<scene::Lambertian>(s.materials[0].model).albedo, (Vec3d{0.1, 0.2, 0.3}));
+  EXPECT_EQ(std::get<scene::Hemisphere>(s.materials[1].model).albedo, (Vec3d{0.4, 0.5, 0.6}));
+  EXPECT_EQ(std::get<scene::Metal>(s.materials[2].model).albedo, (Vec3d{0.8, 0.6, 0.2}));
+  EXPECT_EQ(std::get<scene::Metal>(s.materials[2].model).fuzz, 0.1);
+  EXPECT_EQ(std::get<scene::Dielectric>(s.materials[3].model).ior, 1.33);
+  EXPECT_EQ(std::get<scene::Dielectric>(s.materials[3].model).fresnel, scene::Fresnel::kNone);
+  ASSERT_EQ(s.spheres.size(), 2u);
+  EXPECT_EQ(s.spheres[0].center, (Vec3d{0, -1000, 0}));
+  EXPECT_EQ(s.spheres[0].radius, 1000);
+  EXPECT_EQ(s.spheres[0].material, 0u);
+  EXPECT_EQ(s.spheres[0].name, "floor");
+  EXPECT_EQ(s.spheres[1].radius, -0.5);
+  EXPECT_EQ(s.spheres[1].material, 3u);
+}
+
+TEST(FormatReadScene, AllFindingsInOneRunInTheOrderOfTheFile) {
+  SceneFiles files;
+  EXPECT_EQ(
+      files.findings("[camera]\n"
+                     "\tvfov = 200\n"
+                     "fov = 20\n"
+                     "[render]\n"
+                     "samples = 0\n"
+                     "precision = \"exakt\"\n"
+                     "[materal.x]\n"
+                     "[material.gold]\n"
+                     "type = \"metal\"\n"
+                     "albdo = [0.8, 0.6, 0.2]\n"
+                     "[[sphere]]\n"
+                     "center = [0, 0]\n"
+                     "radius = 0\n"
+                     "material = \"glod\"\n"),
+      "scene.toml:2:9: error: camera.vfov is 200; allowed is above 0, below 180\n"
+      "    \tvfov = 200\n"
+      "    \t       ^~~\n"
+      "scene.toml:3:1: error: unknown key `fov` in camera; did you mean `vfov`?\n"
+      "    fov = 20\n"
+      "    ^~~\n"
+      "scene.toml:5:11: error: render.samples is 0; allowed is 1..2147483647\n"
+      "    samples = 0\n"
+      "              ^\n"
+      "scene.toml:6:13: error: render.precision is \"exakt\"; allowed is exact, fast, book; did you mean `exact`?\n"
+      "    precision = \"exakt\"\n"
+      "                ^~~~~~~\n"
+      "scene.toml:7:2: error: unknown key `materal` in the scene; did you mean `material`?\n"
+      "    [materal.x]\n"
+      "     ^~~~~~~\n"
+      "scene.toml:8:1: error: material.gold needs `albedo`\n"
+      "    [material.gold]\n"
+      "    ^~~~~~~~~~~~~~~\n"
+      "scene.toml:10:1: error: unknown key `albdo` in material.gold; did you mean `albedo`?\n"
+      "    albdo = [0.8, 0.6, 0.2]\n"
+      "    ^~~~~\n"
+      "scene.toml:12:10: error: sphere[0].center must be three numbers like [0, 1, 0], this is a list of 2\n"
+      "    center = [0, 0]\n"
+      "             ^~~~~~\n"
+      "scene.toml:13:10: error: sphere[0].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 for an "
+      "inward normal\n"
+      "    radius = 0\n"
+      "             ^\n"
+      "scene.toml:14:12: error: sphere[0].material is \"glod\", and there is no such material; did you mean `gold`?\n"
+      "    material = \"glod\"\n"
+      "               ^~~~~~\n");
+}
+
+TEST(FormatReadScene, TheErrorCountsItsFindings) {
+  SceneFiles files;
+  files.add("bad.toml", "camera.vfov = 0\nimage.width = 0\n");
+  try {
+    read_scene(files.folder() / "bad.toml");
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+    EXPECT_EQ(error.what(), (files.folder() / "bad.toml").string() + ": 2 errors");
+  }
+}
+
+TEST(FormatReadScene, MissingFileIsMissingInput) {
+  const SceneFiles files;
+  for (const std::string name : {"none.toml", "."}) {
+    try {
+      read_scene(files.folder() / name);
+      FAIL() << "no error";
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kMissingInput) << error.what();
+    }
+  }
+}
+
+TEST(FormatReadScene, RequiredKeysOfASphere) {
+  SceneFiles files;
+  EXPECT_EQ(files.findings("[[sphere]]\n"),
+            "scene.toml:1:1: error: sphere[0] needs `center`\n"
+            "    [[sphere]]\n    ^~~~~~~~~~\n"
+            "scene.toml:1:1: error: sphere[0] needs `radius`\n"
+            "    [[sphere]]\n    ^~~~~~~~~~\n"
+            "scene.toml:1:1: error: sphere[0] needs `material`\n"
+            "    [[sphere]]\n    ^~~~~~~~~~\n");
+}
+
+TEST(FormatReadScene, MaterialNamesOutsideTheScene) {
+  SceneFiles files;
+  const std::string sphere = "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"chalk\"\n";
+  EXPECT_EQ(files.findings(sphere),
+            "scene.toml:4:12: error: sphere[0].material is \"chalk\", and there is no such material; the scene has no "
+            "[material.NAME] at all\n"
+            "    material = \"chalk\"\n"
+            "               ^~~~~~~\n");
+  const std::string told =
+      files.findings("[material.ruby]\ntype=\"dielectric\"\n[material.gold]\ntype=\"dielectric\"\n" + sphere);
+  EXPECT_NE(told.find("no such material; there are ruby, gold\n"), std::string::npos) << told;
+}
+
+TEST(FormatReadScene, ATableThatIsNone) {
+  SceneFiles files;
+  EXPECT_EQ(files.findings("camera = 3\nsphere = 4\npoints = [1, 2]\nmaterial = 5\n"),
+            "scene.toml:1:10: error: `camera` must be a table; write [camera]\n"
+            "    camera = 3\n"
+            "             ^\n"
+            "scene.toml:2:10: error: each sphere is a table of its own; write [[sphere]]\n"
+            "    sphere = 4\n"
+            "             ^\n"
+            "scene.toml:3:10: error: each points is a table of its own; write [[points]]\n"
+            "    points = [1, 2]\n"
+            "             ^~~~~~\n"
+            "scene.toml:4:12: error: `material` must hold tables; write [material.NAME]\n"
+            "    material = 5\n"
+            "               ^\n");
+}
+
+TEST(FormatReadScene, ProblemsOfTheWholeStandWhereTheirKeyStands) {
+  SceneFiles files;
+  EXPECT_EQ(
+      files.findings("[camera]\nup = [0, 0, 2]\n"),
+      "scene.toml:2:6: error: camera.up: up is parallel to the view, so the picture has no upright; choose another "
+      "direction\n"
+      "    up = [0, 0, 2]\n"
+      "         ^~~~~~~~~\n");
+  // The key that makes the view parallel may be another one: then the place is the table.
+  EXPECT_EQ(
+      files.findings("[camera]\nlook_at = [0, 1, 0]\n"),
+      "scene.toml:1:1: error: camera.up: up is parallel to the view, so the picture has no upright; choose another "
+      "direction\n"
+      "    [camera]\n"
+      "    ^~~~~~~~\n");
+}
+
+TEST(FormatReadScene, OneMistakeIsOneFinding) {
+  SceneFiles files;
+  // look_at stays at its default, which here is look_from: that is no second mistake.
+  const std::string told = files.findings("[camera]\nlook_from = [0, 0, -1]\nlook_at = [0, nan, 0]\n");
+  EXPECT_EQ(told,
+            "scene.toml:3:15: error: camera.look_at[1] is nan; allowed is -1e+18..1e+18\n"
+            "    look_at = [0, nan, 0]\n"
+            "                  ^~~\n");
+  // Here the default makes a view that is parallel to up, which is another key than the wrong one.
+  const std::string parallel = files.findings("[camera]\nlook_from = [0, 5, -1]\nlook_at = [0, nan, 0]\n");
+  EXPECT_EQ(parallel.find("parallel"), std::string::npos) << parallel;
+  EXPECT_EQ(
+      files.findings("[material.a]\ntype = \"metall\"\nalbedo = 3\n"
+                     "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
+      "scene.toml:2:8: error: material.a.type is \"metall\"; allowed is lambertian, hemisphere, metal, dielectric; did "
+      "you mean `metal`?\n"
+      "    type = \"metall\"\n"
+      "           ^~~~~~~~\n");
+}
+
+TEST(FormatReadScene, CoincidentSpheresAreAWarning) {
+  SceneFiles files;
+  const std::string material = "[material.a]\ntype = \"dielectric\"\n";
+  const std::string sphere = "[[sphere]]\ncenter = [1, 2, 3]\nradius = 1\nmaterial = \"a\"\n";
+  const std::string told = files.findings(material + sphere + sphere);
+  EXPECT_EQ(told,
+            "scene.toml:7:1: warning: sphere[1]: has exactly the same place and size as sphere[0]; rays meet the "
+            "first of them only\n"
+            "    [[sphere]]\n    ^~~~~~~~~~\n");
+  const std::string wrong = files.findings(material + sphere + sphere + "[image]\nwidth = 0\n");
+  EXPECT_EQ(wrong.find("warning"), std::string::npos) << "nobody is warned of a scene that is wrong";
+}
+
+TEST(FormatReadScene, SettingsSayWhereEachValueComesFrom) {
+  SceneFiles files;
+  const auto settings = files.read("[camera]\nvfov = 20\n", {"render.precision=fast"}).settings;
+  const auto line = [&](const std::string& key) {
+    for (const Setting& s : settings)
+      if (s.key == key) return s.value + " " + std::filesystem::path(s.origin).filename().string();
+    return std::string("none");
+  };
+  EXPECT_EQ(settings.front().key, "image.width");
+  EXPECT_EQ(line("image.width"), "1200 default");
+  EXPECT_EQ(line("camera.vfov"), "20 scene.toml:2");
+  EXPECT_EQ(line("camera.focus_distance"), "distance to look_at default");
+  EXPECT_EQ(line("render.precision"), "\"fast\" --set");
+  EXPECT_EQ(line("color.space"), "\"lin_rec709\" default");
+}
+
+TEST(FormatReadScene, PointsAreReadFromBesideTheScene) {
+  SceneFiles files;
+  files.add("two.ply",
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+            "property float radius\nproperty int material\nend_header\n1 2 3 0.5 1\n4 5 6 0.25 0\n");
+  // By name b stands before a-b, in the file behind it: points count by the file.
+  const auto read = files.read(
+      "[material.b]\ntype = \"dielectric\"\n[material.a]\ntype = \"metal\"\nalbedo = [1,1,1]\n"
+      "[[points]]\nfile = \"two.ply\"\nmaterial = \"b\"\n");
+  ASSERT_EQ(read.scene.points.size(), 1u);
+  EXPECT_EQ(read.scene.points[0].centers, (std::vector<Vec3d>{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(read.scene.points[0].radii, (std::vector<double>{0.5, 0.25}));
+  EXPECT_EQ(read.scene.points[0].materials, (std::vector<std::uint32_t>{1, 0}));
+  EXPECT_EQ(read.scene.materials[1].name, "a");
+}
+
+TEST(FormatReadScene, FindingsOfAPointsFileFollowThePlaceThatNamesIt) {
+  SceneFiles files;
+  files.add("bad.ply",
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+            "property float radius\nend_header\n1 2 nan 0.5\n4 5 6 0\n");
+  const std::string scene =
+      "[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"bad.ply\"\nmaterial = \"a\"\n"
+      "[[points]]\nfile = \"none.ply\"\nmaterial = \"a\"\n";
+  EXPECT_EQ(files.findings(scene),
+            "bad.ply: error: vertex 0 has a number that is not finite\n"
+            "scene.toml:4:8: error: points[0].file: cannot use bad.ply\n"
+            "    file = \"bad.ply\"\n"
+            "           ^~~~~~~~~\n"
+            "scene.toml:7:8: error: points[1].file: cannot open none.ply: No such file or directory\n"
+            "    file = \"none.ply\"\n"
+            "           ^~~~~~~~~~\n");
+}
+
+TEST(FormatReadScene, RadiiOutsideTheDomainAreFoundInPointsToo) {
+  SceneFiles files;
+  files.add("zero.ply",
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+            "property float radius\nend_header\n1 2 3 0.5\n4 5 6 0\n");
+  const std::string told =
+      files.findings("[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"zero.ply\"\nmaterial = \"a\"\n");
+  EXPECT_EQ(told,
+            "scene.toml:3:1: error: points[0][1].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 "
+            "for an inward normal\n"
+            "    [[points]]\n    ^~~~~~~~~~\n");
+}
+
+TEST(FormatReadScene, ManyMistakesDoNotTakeForever) {
+  SceneFiles files;
+  std::string text;
+  for (int i = 0; i < 3000; ++i) text += "[[sphere]]\ncenter = [0,0,0]\nradius = 0\nmaterial = \"x\"\n";
+  const std::string told = files.findings(text);
+  EXPECT_EQ(std::count(told.begin(), told.end(), '^'), 6000);
+}
+
+TEST(FormatReadScene, EveryPictureOfTheBookReadsWithoutAFinding) {
+  const auto folder = std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / "scenes" / "book";
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    try {
+      EXPECT_TRUE(read_scene(entry.path()).warnings.empty()) << entry.path();
+    } catch (const base::Error& error) {
+      ADD_FAILURE() << error.what() << "\n" << (error.findings().empty() ? "" : base::formatted(error.findings()[0]));
+    }
+  }
+  EXPECT_GE(count, 20);
+}
+
+}  // namespace
+}  // namespace orrery::format

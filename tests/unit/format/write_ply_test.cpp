@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/write_ply.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "base/error.h"
+#include "format/read_ply.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::format {
+namespace {
+
+scene::Points some_points(std::size_t count, bool with_materials) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-10, 10);
+  scene::Points points;
+  for (std::size_t i = 0; i < count; ++i) {
+    points.centers.push_back({uniform(random), uniform(random), uniform(random)});
+    points.radii.push_back(uniform(random));
+    if (with_materials) points.materials.push_back(static_cast<std::uint32_t>(i % 5));
+  }
+  return points;
+}
+
+scene::Points read_back(const std::filesystem::path& file) {
+  scene::Points points;
+  read_ply(file, 5, points);
+  return points;
+}
+
+TEST(FormatWritePly, DoublesReadBackToTheSameBits) {
+  const support::ScratchFolder folder;
+  for (const bool with_materials : {false, true}) {
+    const auto points = some_points(100, with_materials);
+    write_ply(points, folder / "a.ply");
+    const auto read = read_back(folder / "a.ply");
+    EXPECT_EQ(read.centers, points.centers);
+    EXPECT_EQ(read.radii, points.radii);
+    EXPECT_EQ(read.materials, points.materials);
+  }
+}
+
+TEST(FormatWritePly, FloatsAreRoundedAndTakeHalfTheSpace) {
+  const support::ScratchFolder folder;
+  const auto points = some_points(100, false);
+  write_ply(points, folder / "d.ply", PlyReal::kDouble);
+  write_ply(points, folder / "f.ply", PlyReal::kFloat);
+  const auto read = read_back(folder / "f.ply");
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(read.centers[i].y, static_cast<float>(points.centers[i].y));
+  EXPECT_LT(std::filesystem::file_size(folder / "f.ply") + 1500, std::filesystem::file_size(folder / "d.ply"));
+}
+
+TEST(FormatWritePly, WhatAFloatCannotHoldIsRefused) {
+  const support::ScratchFolder folder;
+  auto points = some_points(3, false);
+  points.centers[1].z = 1e39;
+  EXPECT_NO_THROW(write_ply(points, folder / "a.ply", PlyReal::kDouble));
+  try {
+    write_ply(points, folder / "b.ply", PlyReal::kFloat);
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+    EXPECT_STREQ(error.what(), "sphere 1 has the number 1e+39, too large for a float; write doubles");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.ply"));
+}
+
+TEST(FormatWritePly, NoPointsAreAFileToo) {
+  const support::ScratchFolder folder;
+  write_ply({}, folder / "a.ply");
+  EXPECT_TRUE(read_back(folder / "a.ply").centers.empty());
+}
+
+TEST(FormatWritePly, FolderThatIsNotThere) {
+  const support::ScratchFolder folder;
+  try {
+    write_ply({}, folder / "none" / "a.ply");
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
+  }
+}
+
+}  // namespace
+}  // namespace orrery::format
