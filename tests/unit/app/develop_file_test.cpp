@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/develop_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "base/error.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::app {
+namespace {
+
+class AppDevelopFile : public testing::Test {
+ protected:
+  AppDevelopFile() {
+    ::unsetenv("OCIO");
+    film::Picture picture{4, 2, {}};
+    for (const char* name : {"R", "G", "B"}) picture.planes.push_back({name, std::vector<float>(8, 0.25f)});
+    image::write_exr(folder_ / "in.exr", picture, {}, {true, "zips"});
+    development_.input = folder_ / "in.exr";
+    development_.display.display = "Gamma 2.0 Rec.709";
+  }
+
+  base::ErrorKind kind_of_error() {
+    try {
+      develop_file(development_);
+    } catch (const base::Error& error) {
+      return error.kind();
+    }
+    ADD_FAILURE() << "nothing is found wrong";
+    return base::ErrorKind::kInternal;
+  }
+
+  support::ScratchFolder folder_;
+  Development development_;
+};
+
+TEST_F(AppDevelopFile, WritesEveryOutputThroughTheDisplay) {
+  development_.outputs = {folder_ / "out.png", folder_ / "out.ppm"};
+  const DevelopReport report = develop_file(development_);
+  EXPECT_EQ(report.display.display, "Gamma 2.0 Rec.709");
+  for (const auto& output : development_.outputs)
+    EXPECT_NEAR(image::read(output).planes.at(0).values.at(0), 0.5, 0.6 / 255) << "the square root of a quarter";
+}
+
+TEST_F(AppDevelopFile, SixteenBitsAreFiner) {
+  development_.outputs = {folder_ / "out.png"};
+  development_.bits = 16;
+  develop_file(development_);
+  EXPECT_NEAR(image::read(folder_ / "out.png").planes.at(0).values.at(0), 0.5, 0.6 / 65535);
+}
+
+TEST_F(AppDevelopFile, OnlyLightIsDevelopedAndOnlyIntoDisplayFormats) {
+  development_.outputs = {folder_ / "out.exr"};
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);
+  development_.outputs = {folder_ / "out.png"};
+  develop_file(development_);
+  development_.input = folder_ / "out.png";
+  development_.outputs = {folder_ / "again.png"};
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);
+}
+
+TEST_F(AppDevelopFile, WhatIsMissingIsFoundBeforeAnythingIsWritten) {
+  development_.outputs = {folder_ / "out.png", folder_.path() / "none/out.png"};
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kCannotCreate);
+  development_.outputs = {folder_ / "out.png"};
+  development_.display.view = "none such";
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);
+  development_.display.view.clear();
+  development_.input = folder_ / "missing.exr";
+  EXPECT_EQ(kind_of_error(), base::ErrorKind::kMissingInput);
+  EXPECT_EQ(folder_.count(), 1u);
+}
+
+TEST_F(AppDevelopFile, CountsWhatTheDisplayWouldHide) {
+  // The writer of this program lets no NaN into a file; a negative value passes, and shows the way of the count.
+  film::Picture picture{2, 1, {}};
+  for (const char* name : {"R", "G", "B"}) picture.planes.push_back({name, {-1.0f, 70000.0f}});
+  image::write_exr(folder_ / "odd.exr", picture, {}, {true, "zips"});
+  development_.input = folder_ / "odd.exr";
+  development_.outputs = {folder_ / "out.png"};
+  const film::BadValues bad = develop_file(development_).bad_values;
+  EXPECT_EQ(bad.negative, 3u);
+  EXPECT_EQ(bad.above_half, 3u);
+}
+
+}  // namespace
+}  // namespace orrery::app

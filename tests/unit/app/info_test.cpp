@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/info.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/scratch_folder.h"
+
+namespace orrery::app {
+namespace {
+
+constexpr const char* kScene = R"(
+[image]
+width = 24
+height = 16
+[camera]
+defocus_angle = 0.5
+[render]
+samples = 2
+[material.grey]
+type = "lambertian"
+albedo = [0.5, 0.5, 0.5]
+[material.mirror]
+type = "metal"
+albedo = [0.5, 0.5, 0.5]
+[material.unused]
+type = "dielectric"
+ior = 1.5
+[[sphere]]
+center = [0, 0, -1]
+radius = 0.5
+material = "grey"
+[[sphere]]
+center = [2, 0, -1]
+radius = -0.25
+material = "mirror"
+[[sphere]]
+center = [4, 0, -1]
+radius = 0.5
+material = "grey"
+)";
+
+class AppInfo : public testing::Test {
+ protected:
+  SceneInfo info(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+    support::write_bytes(folder_ / "scene.toml", scene);
+    return scene_info(folder_ / "scene.toml", overrides);
+  }
+  bool requires_(const SceneInfo& info, const std::string& name) {
+    for (const Feature& feature : info.features)
+      if (feature.name == name) return feature.required;
+    ADD_FAILURE() << "nothing is said of " << name;
+    return false;
+  }
+
+  support::ScratchFolder folder_;
+};
+
+TEST_F(AppInfo, TellsWhatTheSceneIs) {
+  const SceneInfo found = info(kScene);
+  EXPECT_EQ(found.width, 24);
+  EXPECT_EQ(found.spheres, 3u);
+  EXPECT_EQ(found.lower[0], -0.5);
+  EXPECT_EQ(found.upper[0], 4.5);
+  EXPECT_EQ(found.smallest_radius, 0.25);
+  EXPECT_EQ(found.largest_radius, 0.5);
+  EXPECT_EQ(found.precision, "exact");
+  EXPECT_EQ(found.accelerator, "embree");
+}
+
+TEST_F(AppInfo, TellsWhatIsRequiredAndWhatIsLeftOut) {
+  const SceneInfo found = info(kScene);
+  EXPECT_TRUE(requires_(found, "thin lens"));
+  EXPECT_TRUE(requires_(found, "lambertian"));
+  EXPECT_TRUE(requires_(found, "metal"));
+  EXPECT_TRUE(requires_(found, "gradient sky"));
+  EXPECT_FALSE(requires_(found, "fuzz"));
+  EXPECT_FALSE(requires_(found, "dielectric")) << "a material that no sphere has";
+  const SceneInfo pinhole = info(kScene, {"camera.defocus_angle=0", "background.type=constant"});
+  EXPECT_FALSE(requires_(pinhole, "thin lens"));
+  EXPECT_FALSE(requires_(pinhole, "gradient sky"));
+  const std::string text = info_text(pinhole);
+  EXPECT_NE(text.find("left out    thin lens (pinhole: no lens is sampled);"), std::string::npos) << text;
+}
+
+TEST_F(AppInfo, ListNeedsNoMemoryForATree) {
+  EXPECT_GT(info(kScene).accelerator_bytes, 0u);
+  EXPECT_EQ(info(kScene, {"render.accelerator=list"}).accelerator_bytes, 0u);
+}
+
+TEST_F(AppInfo, SettingsTellWhereTheyCameFrom) {
+  const std::string text = settings_text(info(kScene, {"render.samples=9"}));
+  EXPECT_NE(
+      text.find("image.width                24                       " + (folder_ / "scene.toml").string() + ":3\n"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(text.find("render.samples             9                        --set\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("render.seed                1                        default\n"), std::string::npos) << text;
+}
+
+TEST_F(AppInfo, AnEmptySceneHasNoBounds) {
+  const SceneInfo empty = info("");
+  EXPECT_EQ(empty.spheres, 0u);
+  EXPECT_NE(info_text(empty).find("spheres     0\nmaterials   none\n"), std::string::npos) << info_text(empty);
+  const auto json = nlohmann::json::parse(info_json(empty));
+  EXPECT_TRUE(json["bounds"].is_null());
+  EXPECT_TRUE(json["radius"].is_null());
+}
+
+TEST_F(AppInfo, JsonSaysTheSame) {
+  const auto json = nlohmann::json::parse(info_json(info(kScene)));
+  EXPECT_EQ(json["schema"], "orrery.info/1");
+  EXPECT_EQ(json["spheres"], 3);
+  EXPECT_EQ(json["bounds"]["lower"][0], -0.5);
+  EXPECT_EQ(json["radius"]["largest"], 0.5);
+  EXPECT_EQ(json["memory_bytes"]["film"], 24 * 16 * 64);
+  EXPECT_EQ(json["settings"][0]["key"], "image.width");
+}
+
+TEST_F(AppInfo, WarningsAreTold) {
+  const std::string twice = "[[sphere]]\ncenter = [0, 0, -1]\nradius = 0.5\nmaterial = \"grey\"\n";
+  const SceneInfo found = info(kScene + twice);
+  EXPECT_EQ(found.warnings.size(), 1u);
+  EXPECT_EQ(nlohmann::json::parse(info_json(found))["warnings"].size(), 1u);
+}
+
+}  // namespace
+}  // namespace orrery::app

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/job.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "image/read.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::app {
+namespace {
+
+constexpr const char* kScene = R"(
+[image]
+width = 24
+height = 16
+[render]
+samples = 2
+[material.grey]
+type = "lambertian"
+albedo = [0.5, 0.5, 0.5]
+[[sphere]]
+center = [0, 0, -1]
+radius = 0.5
+material = "grey"
+)";
+
+class AppJob : public testing::Test {
+ protected:
+  AppJob() {
+    ::unsetenv("OCIO");
+    support::write_bytes(folder_ / "scene.toml", kScene);
+    job_.scene = folder_ / "scene.toml";
+    job_.statistics = folder_ / "stats.json";
+    job_.on_progress = [this](const render::Progress&) { rendered_ = true; };
+  }
+
+  /// The error that the job ends with.
+  base::Error error() {
+    try {
+      run_job(job_);
+    } catch (const base::Error& error) {
+      return error;
+    }
+    ADD_FAILURE() << "the job went through";
+    return {base::ErrorKind::kInternal, ""};
+  }
+
+  nlohmann::json statistics() { return nlohmann::json::parse(support::file_bytes(job_.statistics)); }
+
+  support::ScratchFolder folder_;
+  Job job_;
+  bool rendered_ = false;
+};
+
+TEST_F(AppJob, WritesEveryOutputAndTellsWhatItDid) {
+  job_.outputs = {folder_ / "a.exr", folder_ / "a.png", folder_ / "a.hdr"};
+  const JobReport report = run_job(job_);
+  for (const auto& output : job_.outputs) EXPECT_EQ(image::read(output).width, 24) << output;
+  EXPECT_EQ(folder_.count(), 5u) << "the scene, three pictures, statistics";
+  EXPECT_EQ(report.render.paths, 24u * 16 * 2);
+  EXPECT_EQ(report.spheres, 1u);
+  EXPECT_EQ(report.display.config, "built-in");
+  EXPECT_TRUE(rendered_);
+  EXPECT_EQ(statistics()["exit_reason"], "completed");
+  EXPECT_EQ(statistics()["exit_status"], 0);
+  EXPECT_EQ(statistics().count("error"), 0u);
+}
+
+TEST_F(AppJob, LooksForNoDisplayWhereNoneIsNeeded) {
+  job_.outputs = {folder_ / "a.exr"};
+  job_.display.config = folder_ / "nowhere.ocio";
+  EXPECT_EQ(run_job(job_).display.display, "");
+}
+
+TEST_F(AppJob, WhatTheRequestGetsWrongIsKnownBeforeRendering) {
+  const auto kind_of_error = [&](const char* output) {
+    job_.outputs = {folder_ / output};
+    return error().kind();
+  };
+  EXPECT_EQ(kind_of_error("a.webp"), base::ErrorKind::kUsage);
+  EXPECT_EQ(kind_of_error("none/a.png"), base::ErrorKind::kCannotCreate);
+  job_.exr.compression = "zipps";
+  EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
+  job_.exr.compression = "zip";
+  job_.isa = "mmx";
+  EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
+  job_.isa.clear();
+  job_.display.view = "none such";
+  EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kUsage);
+  job_.display.view.clear();
+  job_.overrides = {"render.samples=0"};
+  EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kBadData);
+  job_.scene = folder_ / "missing.toml";
+  EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kMissingInput);
+  EXPECT_FALSE(rendered_);
+}
+
+TEST_F(AppJob, StoppedBeforeItBeganItWritesNothing) {
+  const std::atomic<bool> cancel{true};
+  job_.cancel = &cancel;
+  job_.outputs = {folder_ / "a.exr"};
+  EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
+  EXPECT_FALSE(rendered_);
+  EXPECT_EQ(folder_.count(), 2u) << "the scene and the statistics";
+  EXPECT_EQ(statistics()["exit_reason"], "stopped");
+  EXPECT_EQ(statistics()["exit_status"], 75);
+}
+
+TEST_F(AppJob, StoppedWhileRenderingItWritesNothing) {
+  std::atomic<bool> cancel{false};
+  job_.cancel = &cancel;
+  job_.on_progress = [&](const render::Progress&) { cancel = true; };
+  job_.outputs = {folder_ / "a.exr"};
+  job_.overrides = {"render.samples=10000000"};
+  EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
+  EXPECT_EQ(folder_.count(), 2u);
+  EXPECT_EQ(statistics()["exit_reason"], "stopped");
+  EXPECT_GT(statistics()["rays"], 0);
+}
+
+TEST_F(AppJob, AFailedWriteIsInTheStatistics) {
+  job_.outputs = {folder_ / "a.exr"};
+  job_.overrides = {"image.width=512", "image.height=512", "render.samples=1"};
+  job_.exr.compression = "none";
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{100'000, before.rlim_max};  // the picture has 2 MB, the statistics less than 2 kB
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const base::Error failed = error();
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_EQ(failed.kind(), base::ErrorKind::kIo);
+  EXPECT_EQ(folder_.count(), 2u);
+  EXPECT_EQ(statistics()["exit_reason"], "failed");
+  EXPECT_EQ(statistics()["exit_status"], 74);
+  EXPECT_EQ(statistics()["error"], failed.what());
+}
+
+TEST_F(AppJob, WarningsReachTheCaller) {
+  const std::string twice = "[[sphere]]\ncenter = [0, 0, -1]\nradius = 0.5\nmaterial = \"grey\"\n";
+  support::write_bytes(job_.scene, kScene + twice);
+  std::vector<base::Finding> warnings;
+  job_.on_warning = [&](const base::Finding& warning) { warnings.push_back(warning); };
+  job_.outputs = {folder_ / "a.exr"};
+  run_job(job_);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].severity, base::Severity::kWarning);
+}
+
+}  // namespace
+}  // namespace orrery::app

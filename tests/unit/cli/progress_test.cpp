@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/progress.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+
+namespace orrery::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Long enough to never beat during a test.
+constexpr std::chrono::milliseconds kNever = 24h;
+
+class CliProgress : public testing::Test {
+ protected:
+  ~CliProgress() override { std::fclose(file_); }
+
+  std::string printed() {
+    std::fflush(file_);
+    std::rewind(file_);
+    std::string text;
+    for (int c = std::fgetc(file_); c != EOF; c = std::fgetc(file_)) text += static_cast<char>(c);
+    return text;
+  }
+
+  std::FILE* file_ = std::tmpfile();
+};
+
+TEST_F(CliProgress, PrintsALineAtEachWholePercent) {
+  {
+    ProgressPrinter printer(ProgressStyle::kArnold, file_, kNever);
+    for (const std::uint64_t done : {0, 4, 9, 10, 11, 500, 505, 999, 1000, 1000}) printer.update({done, 1000, 1});
+  }
+  EXPECT_EQ(printed(), "0% done\n1% done\n50% done\n99% done\n100% done\n");
+}
+
+TEST_F(CliProgress, AutoIsLinesWhereThereIsNoTerminal) {
+  { ProgressPrinter(ProgressStyle::kAuto, file_, kNever).update({42, 100, 1}); }
+  EXPECT_EQ(printed(), "42% done\n");
+}
+
+TEST_F(CliProgress, NoneSaysNothing) {
+  { ProgressPrinter(ProgressStyle::kNone, file_, 1ms).update({42, 100, 1}); }
+  EXPECT_EQ(printed(), "");
+}
+
+TEST_F(CliProgress, BarIsOneLineThatIsTakenAway) {
+  {
+    ProgressPrinter printer(ProgressStyle::kBar, file_, kNever);
+    printer.update({1, 4, 1});
+    printer.update({2, 4, 1});
+  }
+  const std::string text = printed();
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_NE(text.find("\r[##########"), std::string::npos);
+  EXPECT_NE(text.find(" 50 %"), std::string::npos);
+  EXPECT_TRUE(text.ends_with("\r\033[K")) << text;
+}
+
+TEST_F(CliProgress, NothingIsPrintedAfterTheEnd) {
+  ProgressPrinter printer(ProgressStyle::kArnold, file_, kNever);
+  printer.update({1, 2, 1});
+  printer.finish();
+  printer.update({2, 2, 1});
+  EXPECT_EQ(printed(), "50% done\n");
+}
+
+TEST_F(CliProgress, HeartbeatRepeatsTheLastWord) {
+  // No number of beats is expected but that there are some: however slow the machine, they come.
+  ProgressPrinter printer(ProgressStyle::kOpenJd, file_, 2ms);
+  printer.update({42, 100, 1});
+  std::string text;
+  while (text.find("openjd_progress: 42\nopenjd_progress: 42\nopenjd_progress: 42\n") == std::string::npos) {
+    std::this_thread::sleep_for(5ms);
+    char buffer[4096];
+    const int descriptor = fileno(file_);
+    const auto length = ::pread(descriptor, buffer, sizeof(buffer), 0);
+    text.assign(buffer, static_cast<std::size_t>(length));
+  }
+  SUCCEED();
+}
+
+TEST_F(CliProgress, HeartbeatBeginsBeforeAnythingIsDone) {
+  const ProgressPrinter printer(ProgressStyle::kAlf, file_, 2ms);
+  char buffer[64] = {};
+  while (::pread(fileno(file_), buffer, sizeof(buffer) - 1, 0) == 0) std::this_thread::sleep_for(5ms);
+  EXPECT_EQ(std::string(buffer).substr(0, 16), "ALF_PROGRESS 0%\n");
+}
+
+}  // namespace
+}  // namespace orrery::cli

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/scene_options.h"
+
+#include <gtest/gtest.h>
+
+namespace orrery::cli {
+namespace {
+
+std::vector<std::string> overrides_of(const std::vector<const char*>& words) {
+  CLI::App app;
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  SceneOptions options;
+  options.add_to(app);
+  std::vector<const char*> argv = {"program"};
+  argv.insert(argv.end(), words.begin(), words.end());
+  app.parse(static_cast<int>(argv.size()), argv.data());
+  return options.overrides();
+}
+
+TEST(CliSceneOptions, NothingIsOverriddenByNothing) { EXPECT_TRUE(overrides_of({}).empty()); }
+
+TEST(CliSceneOptions, EveryShortFormIsItsKey) {
+  EXPECT_EQ(overrides_of({"--samples", "1", "--width", "2", "--height", "3", "--seed", "4", "--max-depth", "5",
+                          "--precision", "fast", "--accelerator", "list"}),
+            (std::vector<std::string>{"render.samples=1", "image.width=2", "image.height=3", "render.seed=4",
+                                      "render.max_depth=5", "render.precision=fast", "render.accelerator=list"}));
+}
+
+TEST(CliSceneOptions, SetComesAfterShortForms) {
+  EXPECT_EQ(overrides_of({"--set", "render.samples=9", "--set", "camera.vfov=30", "--samples", "1"}),
+            (std::vector<std::string>{"render.samples=1", "render.samples=9", "camera.vfov=30"}));
+}
+
+TEST(CliSceneOptions, TheLastShortFormCounts) {
+  EXPECT_EQ(overrides_of({"--samples", "1", "--samples", "2"}), (std::vector<std::string>{"render.samples=2"}));
+}
+
+TEST(CliSceneOptions, AnEmptyValueIsNotNone) {
+  EXPECT_EQ(overrides_of({"--samples", ""}), (std::vector<std::string>{"render.samples="}));
+}
+
+}  // namespace
+}  // namespace orrery::cli

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/usage.h"
+
+#include <gtest/gtest.h>
+
+#include "cli/option_checks.h"
+
+namespace orrery::cli {
+namespace {
+
+/// A program of the shape of ours.
+class CliUsage : public testing::Test {
+ protected:
+  CliUsage() {
+    program_.require_subcommand(1);
+    CLI::App& render = *program_.add_subcommand("render", "");
+    render.add_option("SCENE", scene_)->required();
+    repeatable(*render.add_option("-o,--output", outputs_)->required());
+    render.add_option("--samples", samples_);
+    render.add_flag("-q,--quiet", quiet_);
+    CLI::App& generate = *program_.add_subcommand("generate", "");
+    generate.require_subcommand(1);
+    generate.add_subcommand("final", "")->add_option("--seed", samples_);
+    generate.add_subcommand("cloud", "");
+  }
+
+  /// What is said about a command line; empty: it is fine.
+  std::string message(const std::vector<std::string>& words) {
+    std::vector<const char*> argv = {"orrery"};
+    for (const std::string& word : words) argv.push_back(word.c_str());
+    try {
+      program_.parse(static_cast<int>(argv.size()), argv.data());
+    } catch (const CLI::ParseError& error) {
+      return usage_message(program_, error, words);
+    }
+    return {};
+  }
+
+  CLI::App program_{"", "orrery"};
+  std::string scene_, samples_;
+  std::vector<std::string> outputs_;
+  bool quiet_ = false;
+};
+
+TEST_F(CliUsage, NothingIsWrongWithWhatIsRight) {
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samples", "3"}), "");
+  EXPECT_EQ(message({"generate", "final", "--seed=3"}), "");
+}
+
+TEST_F(CliUsage, UnknownFlagsNameTheOneThatWasMeant) {
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes", "3"}),
+            "unknown flag --samlpes; did you mean `--samples`?");
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes=3"}),
+            "unknown flag --samlpes; did you mean `--samples`?");
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--zzzzzz"}), "unknown flag --zzzzzz");
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "-x"}), "unknown flag -x");
+}
+
+TEST_F(CliUsage, AnUnknownFlagIsToldBeforeWhatIsMissing) {
+  EXPECT_EQ(message({"render", "--ouptut", "a.png", "a.toml"}), "unknown flag --ouptut; did you mean `--output`?");
+}
+
+TEST_F(CliUsage, FlagsAreThoseOfTheInnermostCommand) {
+  EXPECT_EQ(message({"generate", "final", "--sede", "3"}), "unknown flag --sede; did you mean `--seed`?");
+  EXPECT_EQ(message({"generate", "cloud", "--sede", "3"}), "unknown flag --sede");
+}
+
+TEST_F(CliUsage, UnknownCommandsNameTheOneThatWasMeant) {
+  EXPECT_EQ(message({"rendr", "a.toml"}), "unknown command rendr; did you mean `render`?");
+  EXPECT_EQ(message({"paint", "a.toml"}), "unknown command paint; there are render, generate");
+  EXPECT_EQ(message({"generate", "fianl"}), "unknown command fianl; did you mean `final`?");
+}
+
+TEST_F(CliUsage, ASceneAloneTellsHowToRenderIt) {
+  EXPECT_EQ(message({"a.toml"}), "unknown command a.toml; to render it: orrery render a.toml -o picture.png");
+}
+
+TEST_F(CliUsage, MissingThingsAreNamed) {
+  EXPECT_EQ(message({}), "a command is missing; there are render, generate");
+  EXPECT_EQ(message({"generate"}), "a command is missing; there are final, cloud");
+  EXPECT_EQ(message({"render"}), "SCENE is required");
+  EXPECT_EQ(message({"render", "a.toml"}), "--output is required");
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samples"}), "--samples needs a value");
+}
+
+TEST_F(CliUsage, TooMuchIsNamed) {
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "b.png"}),
+            "`b.png` is one argument too many; files to write are named by -o");
+  EXPECT_EQ(message({"generate", "cloud", "b.png"}), "`b.png` is one argument too many");
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--quiet=maybe"}), "--quiet takes no value");
+}
+
+TEST_F(CliUsage, NamesOfCommandsAreAsTyped) {
+  EXPECT_EQ(full_name(program_), "orrery");
+  EXPECT_EQ(message({"generate", "final"}), "");
+  EXPECT_EQ(full_name(innermost(program_)), "orrery generate final");
+}
+
+}  // namespace
+}  // namespace orrery::cli
