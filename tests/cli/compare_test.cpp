@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+class CliCompare : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    ASSERT_EQ(run("render good.toml -o a.exr -q").status, 0);
+    ASSERT_EQ(run("render good.toml -o b.exr -q --seed 2").status, 0);
+  }
+};
+
+TEST_F(CliCompare, APictureIsAsItIs) {
+  const Outcome r = run("compare a.exr a.exr --fail-above rmse=0 --fail-above relmse=0 --fail-above max=0");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(r.out,
+            "pictures    32 x 18, channels R, G, B, A\n"
+            "rmse        0\n"
+            "relmse      0\n"
+            "max         0\n"
+            "psnr        infinite\n"
+            "differing   0 of 2304 values\n");
+}
+
+TEST_F(CliCompare, AnotherSeedDiffersAndLimitsFail) {
+  const Outcome r = run("compare a.exr b.exr --json");
+  EXPECT_EQ(r.status, 0);
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_GT(json["rmse"], 0);
+  EXPECT_GT(json["max"], json["rmse"]);
+  EXPECT_EQ(run("compare a.exr b.exr --fail-above rmse=1 --fail-above max=1").status, 0);
+  const Outcome failed = run("compare a.exr b.exr -q --fail-above rmse=1 --fail-above max=0");
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_EQ(failed.out, "");
+  EXPECT_EQ(failed.err.rfind("orrery: max is ", 0), 0u) << failed.err;
+}
+
+TEST_F(CliCompare, OtherSizesAndDamagedFilesAreBadData) {
+  ASSERT_EQ(run("render good.toml -o c.exr -q --width 16").status, 0);
+  const Outcome r = run("compare a.exr c.exr");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_EQ(r.err, "orrery: pictures of different sizes cannot be compared: 32 x 18 and 16 x 18\n");
+  write("noise.exr", "noise");
+  EXPECT_EQ(run("compare a.exr noise.exr").status, 65);
+}
+
+}  // namespace
+}  // namespace orrery::test

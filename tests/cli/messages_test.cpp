@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the program says when it is asked for nonsense, word for word: people and scripts read it.
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+struct Case {
+  const char* arguments;
+  int status;
+  const char* message;  ///< all of stderr
+};
+
+const Case kCases[] = {
+    {"", 2,
+     "orrery: a command is missing; there are render, info, check, generate, develop, compare\n"
+     "Try orrery --help.\n"},
+    {"rendr good.toml", 2,
+     "orrery: unknown command rendr; did you mean `render`?\n"
+     "Try orrery --help.\n"},
+    {"good.toml", 2,
+     "orrery: unknown command good.toml; to render it: orrery render good.toml -o picture.png\n"
+     "Try orrery --help.\n"},
+    {"render good.toml -o a.png --samlpes 3", 2,
+     "orrery: unknown flag --samlpes; did you mean `--samples`?\n"
+     "Try orrery render --help.\n"},
+    {"render good.toml", 2,
+     "orrery: --output is required\n"
+     "Try orrery render --help.\n"},
+    {"render -o a.png", 2,
+     "orrery: SCENE is required\n"
+     "Try orrery render --help.\n"},
+    {"render good.toml -o a.png b.png", 2,
+     "orrery: `b.png` is one argument too many; files to write are named by -o\n"
+     "Try orrery render --help.\n"},
+    {"render good.toml -o a.png -t many", 2,
+     "orrery: --threads: must be a whole number from 1 to 4096, not `many`\n"
+     "Try orrery render --help.\n"},
+    {"render good.toml -o a.png --exposure bright", 2,
+     "orrery: --exposure: must be a number from -100 to 100, not `bright`\n"
+     "Try orrery render --help.\n"},
+    {"render good.toml -o a.png --exposure", 2,
+     "orrery: --exposure needs a value\n"
+     "Try orrery render --help.\n"},
+    {"render good.toml -o a.png --progress jsno", 2,
+     "orrery: --progress: there is no `jsno`; did you mean `json`?\n"
+     "Try orrery render --help.\n"},
+    {"render good.toml -o a.png --quiet=maybe", 2,
+     "orrery: --quiet takes no value\n"
+     "Try orrery render --help.\n"},
+    {"render good.toml -o a.exr --compression zipp", 2,
+     "orrery: unknown EXR compression zipp; did you mean `zip`? known are none, rle, zip, zips, piz, dwaa, dwab, the "
+     "last two also with a "
+     "level, as in dwaa:45\n"},
+    {"render good.toml -o a.jpg --bits 16", 2, "orrery: a.jpg holds 8 bits in a channel; PNG and TIFF hold 16\n"},
+    {"render good.toml -o a.png -o ./a.png", 2, "orrery: ./a.png is to be written twice\n"},
+    {"render good.toml -o a.png --stats good.toml", 2, "orrery: good.toml is read and would be overwritten\n"},
+    {"render none.toml -o a.png", 66, "orrery: cannot open none.toml: No such file or directory\n"},
+    {"render good.toml -o none/a.png", 73, "orrery: cannot create none/a.png: there is no directory none\n"},
+    {"info good.toml --json --settings", 2,
+     "orrery: --json excludes --settings\n"
+     "Try orrery info --help.\n"},
+    {"info good.toml > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
+    {"--version > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
+    {"check good.toml > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
+    {"generate", 2,
+     "orrery: a command is missing; there are final, cloud\n"
+     "Try orrery generate --help.\n"},
+    {"generate fianl -o a.toml", 2,
+     "orrery: unknown command fianl; did you mean `final`?\n"
+     "Try orrery generate --help.\n"},
+    {"generate final -o a.toml --grid -3", 2,
+     "orrery: --grid: must be a whole number from 0 to 1000, not `-3`\n"
+     "Try orrery generate final --help.\n"},
+    {"develop a.png -o b.png", 2, "orrery: a.png is developed already; scene-linear light is in exr and hdr\n"},
+    {"develop none.exr -o b.png", 66, "orrery: cannot open none.exr: No such file or directory\n"},
+    {"compare none.exr none.exr", 66, "orrery: cannot open none.exr: No such file or directory\n"},
+    {"compare a.png b.exr", 2,
+     "orrery: b.exr holds scene-linear light and the other picture what a display shows; develop it first: orrery "
+     "develop b.exr -o developed.png\n"},
+    {"compare a.exr b.exr --fail-above rsme=1", 2,
+     "orrery: --fail-above rsme=1: there is no such metric; did you mean `rmse`?\n"},
+    {"compare a.exr b.exr --fail-above rmse", 2, "orrery: --fail-above rmse: write METRIC=VALUE, as in rmse=0.001\n"},
+    {"compare a.exr b.exr --fail-above rmse=-1", 2,
+     "orrery: --fail-above rmse=-1: the value must be a number of 0 or more\n"},
+    {"compare a.exr b.exr --fail-above psnr=40", 2,
+     "orrery: --fail-above psnr=40: psnr falls as pictures differ more; limit rmse instead\n"},
+};
+
+class CliMessages : public ProgramTest, public testing::WithParamInterface<Case> {};
+
+TEST_P(CliMessages, AreGolden) {
+  const Case& c = GetParam();
+  // What a case sends elsewhere is said last in its shell, and wins over the test's own redirection.
+  const std::string arguments = c.arguments;
+  const std::size_t to = arguments.find(" > ");
+  const Outcome r =
+      to == std::string::npos ? run(arguments) : run(arguments.substr(0, to) + " 2>.err" + arguments.substr(to) + " #");
+  EXPECT_EQ(r.status, c.status);
+  EXPECT_EQ(r.err, c.message);
+  EXPECT_EQ(file_count(), 0);
+}
+
+std::string name_of(const testing::TestParamInfo<Case>& info) { return std::to_string(info.index); }
+
+INSTANTIATE_TEST_SUITE_P(Table, CliMessages, testing::ValuesIn(kCases), name_of);
+
+}  // namespace
+}  // namespace orrery::test

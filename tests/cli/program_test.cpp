@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+class CliProgram : public ProgramTest {};
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_F(CliProgram, RendersEveryFormatInOneGo) {
+  const Outcome r = run("render good.toml -o a.exr -o a.png -o a.jpg -o a.tif -o a.ppm -o a.hdr");
+  EXPECT_EQ(r.status, 0) << r.err;
+  for (const char* name : {"a.exr", "a.png", "a.jpg", "a.tif", "a.ppm", "a.hdr"})
+    EXPECT_GT(std::filesystem::file_size(folder_ / name), 100u) << name;
+  EXPECT_TRUE(r.out.empty());
+  EXPECT_TRUE(contains(r.err, "100% done")) << "progress is told where there is no terminal";
+  EXPECT_TRUE(contains(r.err, "wrote a.exr, a.png"));
+  EXPECT_EQ(file_count(), 6) << "no temporary file is left";
+}
+
+TEST_F(CliProgram, QuietIsQuiet) {
+  const Outcome r = run("render good.toml -o a.png -q");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_EQ(r.out + r.err, "");
+}
+
+TEST_F(CliProgram, SpeaksTheGrammarsOfSupervisors) {
+  EXPECT_TRUE(contains(run("render good.toml -o a.png --progress alf").err, "ALF_PROGRESS 100%\n"));
+  EXPECT_TRUE(contains(run("render good.toml -o a.png --progress openjd").err, "openjd_progress: 100\n"));
+  EXPECT_TRUE(contains(run("render good.toml -o a.png --progress json").err, "{\"progress\": 100"));
+  EXPECT_FALSE(contains(run("render good.toml -o a.png --progress none").err, "%"));
+}
+
+TEST_F(CliProgram, AMissingSceneIs66) {
+  const Outcome r = run("render nowhere.toml -o a.png");
+  EXPECT_EQ(r.status, 66);
+  EXPECT_TRUE(contains(r.err, "nowhere.toml"));
+}
+
+TEST_F(CliProgram, AWrongSceneIs65WithEveryFindingAndNothingIsWritten) {
+  write("bad.toml", "[image]\nwidht = 3\n[camera]\nvfov = 200\n[render]\nsamples = 0\n");
+  const Outcome r = run("render bad.toml -o a.png");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_EQ(r.err,
+            "bad.toml:2:1: error: unknown key `widht` in image; did you mean `width`?\n"
+            "    widht = 3\n"
+            "    ^~~~~\n"
+            "bad.toml:4:8: error: camera.vfov is 200; allowed is above 0, below 180\n"
+            "    vfov = 200\n"
+            "           ^~~\n"
+            "bad.toml:6:11: error: render.samples is 0; allowed is 1..2147483647\n"
+            "    samples = 0\n"
+            "              ^\n"
+            "orrery: bad.toml: 3 errors\n");
+  EXPECT_EQ(file_count(), 0);
+}
+
+TEST_F(CliProgram, UnwritableOutputsAre73BeforeAnyRendering) {
+  // A render of this size would take hours; that the answer comes shows that it was not begun.
+  const std::string slow = "render good.toml --samples 100000000 ";
+  Outcome r = run(slow + "-o nowhere/a.exr");
+  EXPECT_EQ(r.status, 73);
+  EXPECT_TRUE(contains(r.err, "nowhere"));
+  std::filesystem::create_directory(folder_ / "taken.png");
+  EXPECT_EQ(run(slow + "-o taken.png").status, 73);
+  EXPECT_EQ(run(slow + "-o a.png --stats nowhere/s.json").status, 73);
+}
+
+TEST_F(CliProgram, UsageIs2AndSaysWhatWasMeant) {
+  Outcome r = run("render good.toml -o a.png --sampels 3");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_TRUE(contains(r.err, "did you mean `--samples`?")) << r.err;
+  r = run("rendr good.toml");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_TRUE(contains(r.err, "did you mean `render`?")) << r.err;
+  EXPECT_EQ(run("").status, 2);
+  EXPECT_EQ(run("render good.toml").status, 2) << "no output";
+  r = run("render good.toml -o a.webp");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_TRUE(contains(r.err, "exr, hdr, png")) << r.err;
+  EXPECT_EQ(run("render good.toml -o a.png --threads 0").status, 2);
+  EXPECT_EQ(run("render good.toml -o a.png --isa mmx").status, 2);
+  EXPECT_EQ(run("render good.toml -o a.jpg --bits 16").status, 2);
+  r = run("render good.toml -o a.png --view Filmik --display sRGB");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_TRUE(contains(r.err, "Un-tone-mapped")) << r.err;
+  EXPECT_EQ(file_count(), 0);
+}
+
+TEST_F(CliProgram, AFullDiskIs74AndLeavesNothing) {
+  // A limit on file sizes is what a full disk is to whoever writes; ulimit counts in blocks of 512 or 1024 bytes.
+  for (const char* name : {"a.exr", "a.png", "a.tif", "a.ppm", "a.hdr"}) {
+    const Outcome r =
+        run(std::string("render good.toml --width 400 --height 300 --samples 1 -q -o ") + name, "ulimit -f 8 &&");
+    EXPECT_EQ(r.status, 74) << name << ": " << r.err;
+    EXPECT_EQ(file_count(), 0) << name;
+  }
+}
+
+TEST_F(CliProgram, AnExistingPictureSurvivesAFailedWrite) {
+  ASSERT_EQ(run("render good.toml -o a.png -q").status, 0);
+  const std::string before = text_of(folder_ / "a.png");
+  EXPECT_EQ(run("render good.toml --width 400 --height 300 --samples 1 -q -o a.png", "ulimit -f 8 &&").status, 74);
+  EXPECT_TRUE(text_of(folder_ / "a.png") == before);
+}
+
+TEST_F(CliProgram, OverridesAreCheckedLikeTheFile) {
+  const Outcome r = run("render good.toml -o a.png --set camera.vfov=30 --set render.sampels=3");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_TRUE(contains(r.err, "--set:2:")) << r.err;
+  EXPECT_TRUE(contains(r.err, "did you mean `samples`?")) << r.err;
+  EXPECT_EQ(run("render good.toml -o a.png -q --set 'sphere[0].radius=0.25' --set render.precision=fast").status, 0);
+}
+
+TEST_F(CliProgram, SettingsTellWhereTheyCameFrom) {
+  const Outcome r = run("info good.toml --settings --set camera.vfov=33");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_TRUE(contains(r.out, "good.toml:3")) << r.out;
+  EXPECT_TRUE(contains(r.out, "--set")) << r.out;
+  EXPECT_TRUE(contains(r.out, "default")) << r.out;
+}
+
+TEST_F(CliProgram, InfoIsJsonOnRequest) {
+  const Outcome r = run("info good.toml --json");
+  ASSERT_EQ(r.status, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["spheres"], 1);
+  EXPECT_EQ(json["schema"], "orrery.info/1");
+}
+
+TEST_F(CliProgram, CheckLooksAtAllScenesAndTellsTheWorst) {
+  write("bad.toml", "nonsense");
+  const Outcome r = run("check bad.toml good.toml");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_EQ(r.out, "good.toml: ok\n");
+  EXPECT_EQ(run("check good.toml missing.toml").status, 66);
+}
+
+TEST_F(CliProgram, StatisticsSayWhatWasDone) {
+  ASSERT_EQ(run("render good.toml -o a.png -q --stats s.json").status, 0);
+  const auto json = nlohmann::json::parse(text_of(folder_ / "s.json"));
+  EXPECT_EQ(json["schema"], "orrery.stats/1");
+  EXPECT_EQ(json["paths"], 32 * 18 * 4);
+  EXPECT_EQ(json["exit_reason"], "completed");
+  EXPECT_GT(json["paths_per_second"], 0);
+}
+
+TEST_F(CliProgram, ReproducibleFilesAreTheSameBytes) {
+  ASSERT_EQ(run("render good.toml -o a.exr -q --reproducible").status, 0);
+  ASSERT_EQ(run("render good.toml -o b.exr -q --reproducible -t 1").status, 0);
+  EXPECT_TRUE(text_of(folder_ / "a.exr") == text_of(folder_ / "b.exr"));
+}
+
+TEST_F(CliProgram, DevelopsAnExrAsARenderWould) {
+  ASSERT_EQ(run("render good.toml -o a.exr -o a.ppm -q --type float --display 'Gamma 2.0 Rec.709'").status, 0);
+  ASSERT_EQ(run("develop a.exr -o b.ppm --display 'Gamma 2.0 Rec.709'").status, 0);
+  EXPECT_TRUE(text_of(folder_ / "a.ppm") == text_of(folder_ / "b.ppm"));
+  EXPECT_EQ(run("develop a.exr -o b.exr").status, 2);
+  EXPECT_EQ(run("develop missing.exr -o b.png").status, 66);
+  write("noise.exr", std::string(5000, 'x'));
+  EXPECT_EQ(run("develop noise.exr -o b.png").status, 65);
+}
+
+TEST_F(CliProgram, GeneratesScenesThatRender) {
+  ASSERT_EQ(run("generate final -o f.toml --grid 2 --seed 5").status, 0);
+  ASSERT_EQ(run("generate cloud -o c.toml --count 500").status, 0);
+  EXPECT_EQ(run("render f.toml -o f.png -q --width 32 --height 18 --samples 2").status, 0);
+  EXPECT_EQ(run("render c.toml -o c.png -q --width 32 --height 18 --samples 2").status, 0);
+  EXPECT_EQ(run("generate final -o g.toml --grid 5000").status, 2);
+}
+
+TEST_F(CliProgram, AConfigThatIsNoneIs65AndAMissingOne66) {
+  write("broken.ocio", "this is no config");
+  EXPECT_EQ(run("render good.toml -o a.png --ocio broken.ocio").status, 65);
+  EXPECT_EQ(run("render good.toml -o a.png --ocio nowhere.ocio").status, 66);
+  EXPECT_EQ(run("render good.toml -o a.png -q", "OCIO=").status, 0);
+}
+
+TEST_F(CliProgram, HelpAndVersionSucceed) {
+  for (const char* command :
+       {"", "render", "info", "check", "generate", "generate final", "generate cloud", "develop", "compare"}) {
+    const Outcome r = run(std::string(command) + " --help");
+    EXPECT_EQ(r.status, 0);
+    EXPECT_TRUE(contains(r.out, "Usage: orrery") && r.err.empty()) << command;
+    EXPECT_TRUE(contains(r.out, "Example") || *command == '\0') << command;
+  }
+  EXPECT_TRUE(contains(run("--version").out, "Embree"));
+}
+
+}  // namespace
+}  // namespace orrery::test
