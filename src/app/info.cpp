@@ -18,9 +18,12 @@
 namespace orrery::app {
 namespace {
 
-/// Embree's user geometry, one primitive a sphere, on top of the sphere itself: measured on a cloud of a million
-/// (docs/benchmarks.md).
-constexpr std::uint64_t kAcceleratorBytesPerSphere = 80;
+/// Embree's user geometry while it is built, one primitive a sphere, on top of the sphere itself. Measured on clouds of
+/// one and three million: peak_memory_bytes of --stats with embree less that with list.
+constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
+
+/// A pixel's sum, and the four floats of the finished picture.
+constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
 
 std::vector<Feature> features_of(const compile::World& world) {
   const kernel::Features& f = world.features;
@@ -75,7 +78,7 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
     if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
   info.isa = kernel::isa_name();
-  info.film_bytes = std::uint64_t(world.width) * std::uint64_t(world.height) * sizeof(kernel::PixelSum);
+  info.film_bytes = std::uint64_t(world.width) * std::uint64_t(world.height) * kFilmBytesPerPixel;
   info.sphere_bytes = world.bytes();
   info.accelerator_bytes = info.accelerator == "embree" ? info.spheres * kAcceleratorBytesPerSphere : 0;
   info.warnings = std::move(read.warnings);

@@ -102,13 +102,14 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
 /// The way data takes.
 void run_phases(const Job& job, JobReport& report) {
   Stopwatch watch;
-  const format::ReadResult read = format::read_scene(job.scene, job.overrides);
+  format::ReadResult read = format::read_scene(job.scene, job.overrides);
   for (const base::Finding& warning : read.warnings) warn(job, warning);
   const display::Settings display = choose_display(job, read.scene, report);
   report.phases.read_s = watch.lap();
   stop_if_asked(job);
 
   const compile::World world = compile::compile(read.scene);
+  read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
   report.scene_hash = scene_hash(world);
   report.width = world.width;
   report.height = world.height;

@@ -31,8 +31,9 @@ class CliSignals : public ProgramTest {
   }
   /// A render that would take hours. It listens to signals once it has told how far it is.
   pid_t start_render(int ignored = 0) {
-    const pid_t child =
-        start({"render", "good.toml", "-o", "a.exr", "--samples", "2000000", "--progress", "arnold"}, ignored);
+    const pid_t child = start({"render", "good.toml", "-o", "a.exr", "--width", "1000", "--height", "1000", "--samples",
+                               "60000", "--progress", "arnold"},
+                              ignored);
     wait_until([&] { return text_of(folder_ / ".err").find("done") != std::string::npos; });
     return child;
   }

@@ -118,7 +118,7 @@ TEST_F(AppJob, StoppedWhileRenderingItWritesNothing) {
   job_.cancel = &cancel;
   job_.on_progress = [&](const render::Progress&) { cancel = true; };
   job_.outputs = {folder_ / "a.exr"};
-  job_.overrides = {"render.samples=10000000"};
+  job_.overrides = {"image.width=500", "image.height=500", "render.samples=40000"};
   EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
   EXPECT_EQ(folder_.count(), 2u);
   EXPECT_EQ(statistics()["exit_reason"], "stopped");
