@@ -45,6 +45,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "The rooms of orrery as static libraries, their headers, and the package\n that find_package(orrery) of CMake finds.")
 # Whoever links the rooms links what they link: the -dev packages that this was built with.
-file(STRINGS tools/packages-build.txt build_packages REGEX "-dev$")
+file(STRINGS tools/packages-build.txt build_packages REGEX "-dev( |$)")
+list(TRANSFORM build_packages REPLACE " .*" "")
 list(JOIN build_packages ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 include(CPack)

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders one sphere through the installed libraries.
+// Renders one sphere through the installed libraries, and calls kernel text that it instantiated itself.
+#include <cstdio>
+
 #include "compile/compile.h"
 #include "render/render.h"
+
+double sine_of_quarter_turn();
 
 int main() {
   orrery::scene::Scene scene;
@@ -10,5 +14,13 @@ int main() {
   scene.materials = {{"grey", orrery::scene::Lambertian{}}};
   scene.spheres = {{{0, 0, -1}, 0.5, 0, ""}};
   const auto result = orrery::render::render(orrery::compile::compile(scene), {});
-  return result.completed && result.picture.planes.size() == 4 ? 0 : 1;
+  if (!result.completed || result.picture.planes.size() != 4) {
+    std::puts("no picture");
+    return 1;
+  }
+  if (sine_of_quarter_turn() != 1) {
+    std::puts("the sine of a quarter turn is not 1");
+    return 1;
+  }
+  return 0;
 }

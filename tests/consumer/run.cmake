@@ -1,15 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs the build into a folder of its own, then configures, builds and runs the consumer against it.
+# Installs the build into a folder of its own, moves that, and configures, builds and runs the consumer against it.
+# Moved, since an installed tree that names the folder of its birth is of no use in a package.
 file(REMOVE_RECURSE ${WORK})
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${ARGV}\n${output}")
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "${command}\n${status}\n${output}")
   endif()
 endfunction()
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/born)
+file(RENAME ${WORK}/born ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
     -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 run(${WORK}/prefix/bin/orrery --version)
+
+# Nothing that was installed remembers where it was built.
+file(GLOB_RECURSE texts ${WORK}/prefix/*.cmake ${WORK}/prefix/*.h)
+foreach(text IN LISTS texts)
+  file(STRINGS ${text} lines)
+  foreach(line IN LISTS lines)
+    string(FIND "${line}" "${BUILD}" at)
+    if(NOT at EQUAL -1)
+      message(FATAL_ERROR "${text} names the build folder:\n${line}")
+    endif()
+  endforeach()
+endforeach()
