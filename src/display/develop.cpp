@@ -16,6 +16,9 @@ namespace ocio = OCIO_NAMESPACE;
 /// Pixels transformed at a time: they stay in the second-level cache, and a large picture needs no second copy.
 constexpr std::size_t kPixelsAtATime = std::size_t{1} << 14;
 
+/// More stops than this show every half as black or white; the factor stays a number that a float holds.
+constexpr double kMostStops = 120;
+
 const std::vector<float>& plane(const film::Picture& picture, const char* name) {
   const film::Plane* found = picture.find(name);
   if (found == nullptr)
@@ -27,7 +30,7 @@ const std::vector<float>& plane(const film::Picture& picture, const char* name) 
 
 /// A view's curves are made for halves: beyond them products overflow, and infinity less infinity is no colour.
 float fit(float v, float gain) {
-  if (!std::isfinite(v) || v == 0) return 0;
+  if (!std::isfinite(v)) return 0;
   return std::clamp(v * gain, -film::kLargestHalf, film::kLargestHalf);
 }
 
@@ -61,7 +64,7 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
   out.is_srgb = view.is_srgb;
   out.values.resize(pixels * 3);
   const double largest = bits == 8 ? 255 : 65535;
-  const float gain = static_cast<float>(std::exp2(settings.exposure));
+  const float gain = static_cast<float>(std::exp2(std::clamp(settings.exposure, -kMostStops, kMostStops)));
   std::vector<float> rgb(std::min(pixels, kPixelsAtATime) * 3);
   for (std::size_t begin = 0; begin < pixels; begin += kPixelsAtATime) {
     const std::size_t count = std::min(kPixelsAtATime, pixels - begin);

@@ -54,8 +54,6 @@ void choose_names(const Config& source, const Settings& settings, Choice& choice
 bool ends_in_srgb(const ocio::Config& config, const Choice& choice) {
   std::string space = config.getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str());
   if (space == "<USE_DISPLAY_NAME>") space = choice.display;
-  const ocio::ConstColorSpaceRcPtr known = config.getColorSpace(space.c_str());
-  if (known != nullptr && known->isData()) return false;
   return space.find("sRGB") != std::string::npos;
 }
 

@@ -117,6 +117,8 @@ TEST_F(DisplayDevelop, ExposureIsInStops) {
   EXPECT_EQ(shown({0.1f, 0, 0.1f}, brighter), (std::vector<std::uint16_t>{255, 0, 255}));
   brighter.exposure = -1000;
   EXPECT_EQ(shown({1000, 1000, 1000}, brighter), grey(0));
+  brighter.exposure = -20;  // light beyond half that a float picture holds is not lost before it is dimmed
+  EXPECT_EQ(shown({0x1p19f, 0x1p19f, 0x1p19f}, brighter), grey(188));
 }
 
 TEST_F(DisplayDevelop, ALookActsOnSaturatedColoursOnly) {

@@ -152,6 +152,16 @@ TEST_F(DisplayView, AConfigThatMakesNoSenseIsBadData) {
   expect_error(settings, base::ErrorKind::kBadData, {settings.config});
 }
 
+TEST_F(DisplayView, AConfigIsCheckedWhole) {
+  Settings settings;
+  std::string text = config_text("Root");
+  const std::string plain = "    - !<View> {name: Plain, colorspace: out}\n";
+  text.insert(text.find(plain) + plain.size(), "    - !<View> {name: Other, colorspace: nowhere}\n");
+  settings.config = file("a.ocio", text);
+  settings.view = "Plain";  // would do, but the file is not to be trusted
+  expect_error(settings, base::ErrorKind::kBadData, {"nowhere"});
+}
+
 TEST_F(DisplayView, ATableThatAConfigNamesAndLacksIsAMissingInput) {
   Settings settings;
   std::string text = config_text("Root");

@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <random>
 #include <sstream>
 
@@ -160,6 +161,10 @@ TEST_F(ImageRead, AHeaderThatClaimsTooMuchIsBadData) {
   }
   support::write_bytes(folder_ / "a.exr", bytes);
   expect_error(ErrorKind::kBadData, {"a.exr"}, [&] { read(folder_ / "a.exr"); });
+  write_foreign(folder_ / "wide.exr", grey(65536, 1));
+  EXPECT_EQ(read(folder_ / "wide.exr").width, 65536);
+  write_foreign(folder_ / "wider.exr", grey(65537, 1));
+  expect_error(ErrorKind::kBadData, {"65537 x 1", "1 to 65536"}, [&] { read(folder_ / "wider.exr"); });
   support::write_bytes(folder_ / "a.ppm", "P6\n1000000 1000000\n255\nabc");
   expect_error(ErrorKind::kBadData, {"a.ppm"}, [&] { read(folder_ / "a.ppm"); });
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <limits>
+#include <algorithm>
+#include <cmath>
 
 #include "image/read.h"
 #include "image/write.h"

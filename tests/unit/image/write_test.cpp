@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/write.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 
