@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the results that are checked in: all repetitions of all cases, in random order, as bench/results/<machine>/<room>.json.
+# Makes the results that are checked in: all repetitions of all cases, in random order, as
+# bench/results/<machine>/<room>.json.
 #
 #   bench/run.sh MACHINE [GOOGLE BENCHMARK OPTION...]
 #   bench/run.sh amd-zen3-2cores
@@ -16,7 +17,9 @@ fail() { printf 'bench/run.sh: error: %s\n' "$1" >&2; exit "${2:-1}"; }
 
 machine=${1:-}
 case $machine in
-  "" | -* | *[!a-z0-9-]*) fail "name the machine first, in small letters, digits and dashes: bench/run.sh amd-zen3-2cores" 2 ;;
+  "" | -* | *[!a-z0-9-]*)
+    fail "name the machine first, in small letters, digits and dashes: bench/run.sh amd-zen3-2cores" 2
+    ;;
 esac
 shift
 
@@ -33,7 +36,8 @@ fi
 cmake --build "$build" --target bench_kernel bench_accel bench_render bench_same_picture >/dev/null ||
   fail "the build failed; 'cmake --build $build' shows why"
 cd "$build/bench"
-./bench_same_picture >/dev/null || fail "the baseline computes another picture than orrery: see $build/bench/bench_same_picture"
+./bench_same_picture >/dev/null ||
+  fail "the baseline computes another picture than orrery: run $build/bench/bench_same_picture"
 
 # What the figures belong to.
 revision=$(git -C "$root" describe --always --dirty 2>/dev/null || echo unknown)

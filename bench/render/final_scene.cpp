@@ -19,7 +19,8 @@ struct Size {
   std::int64_t paths() const { return std::int64_t{width} * height * samples; }
 };
 constexpr Size kLarge{480, 270, 4};
-/// For what is slow. Embree is measured at this size too: a small picture pays more for its build and its ragged packets.
+/// For what is slow. Embree is measured at this size too: a small picture pays more for its build and its ragged
+/// packets.
 constexpr Size kSmall{96, 54, 8};
 
 void render(benchmark::State& state, Size size, compile::Accelerator accelerator, Precision precision, int threads) {
