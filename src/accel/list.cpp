@@ -7,6 +7,8 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
+#include <memory>
+
 #include "kernel/intersect-inl.h"
 #include "math/dispatch.h"
 

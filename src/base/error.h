@@ -17,7 +17,7 @@ enum class ErrorKind {
   kMissingInput,  ///< an input cannot be opened (exit 66)
   kCannotCreate,  ///< an output cannot be created (exit 73)
   kIo,            ///< reading or writing failed midway (exit 74)
-  kStopped,       ///< stopped early on request; running again goes on (exit 75)
+  kStopped,       ///< stopped early on request; nothing was wrong (exit 75)
 };
 
 /// The one exception type of all cold paths.

@@ -118,7 +118,7 @@ void merge(toml::table& to, toml::table& from) {
       throw Fault{"`" + std::string(key.str()) + "` is no table",
                   there->is_array() ? "name one of its elements, like sphere[0].radius=2" : ""};
     }
-    node.visit([&](auto& value) { to.insert_or_assign(key, std::move(value)); });
+    node.visit([&to, &name = key](auto& value) { to.insert_or_assign(name, std::move(value)); });
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/read_keys.h"
 
+#include <algorithm>
+
 namespace orrery::format {
 namespace {
 

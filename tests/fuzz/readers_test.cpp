@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/readers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fuzz/mutator.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::fuzz {
+namespace {
+
+using Fault = std::string (*)(const std::filesystem::path&, const std::string&);
+
+/// The files of a folder of seeds, in an order that does not depend on the machine.
+std::vector<std::string> seeds_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<std::string> seeds;
+  for (const auto& file : files) seeds.push_back(support::file_bytes(file));
+  return seeds;
+}
+std::filesystem::path here() { return std::filesystem::path(__FILE__).parent_path(); }
+
+std::vector<std::string> scene_words() {
+  return {"[",
+          "]",
+          "[[",
+          "]]",
+          "{",
+          "}",
+          "=",
+          ".",
+          "\"",
+          "\"\"\"",
+          "'",
+          "'''",
+          "#",
+          "\n",
+          ",",
+          "nan",
+          "inf",
+          "-inf",
+          "1e400",
+          "-0.0",
+          "1e18",
+          "1e-30",
+          "0x10",
+          "-1",
+          "2147483648",
+          "\xff",
+          "\xC3\xBC",
+          "[sphere]",
+          "a.b.c",
+          "[camera]",
+          "[points]",
+          "vfov",
+          "\\u",
+          "1979-05-27",
+          "[[material]]",
+          "true",
+          "sphere",
+          "type",
+          "metal",
+          "material",
+          std::string(1, '\0')};
+}
+std::vector<std::string> ply_words() {
+  return {"element vertex 99999999999999999999\n",
+          "element vertex 1000000000000\n",
+          "element vertex -1\n",
+          "property list uchar int a\n",
+          "property list double double a\n",
+          "property double x\n",
+          "format ascii 1.0\n",
+          "format binary_big_endian 1.0\n",
+          "end_header\n",
+          "comment ",
+          "\r\n",
+          "\n",
+          " ",
+          "nan",
+          "1e999",
+          "-",
+          "ply\n",
+          std::string(4, '\0'),
+          std::string(8, '\xff')};
+}
+
+void expect_no_fault(Fault fault, const std::string& bytes, const std::string& what) {
+  static const support::ScratchFolder folder;
+  const std::string told = fault(folder.path(), bytes);
+  EXPECT_EQ(told, "") << what << ", " << bytes.size() << " bytes:\n" << bytes.substr(0, 2000);
+}
+
+void expect_no_fault_with_mutants(Fault fault, Mutator mutator, int count) {
+  for (int i = 0; i < count && !testing::Test::HasFailure(); ++i)
+    expect_no_fault(fault, mutator.mutant(), "mutant " + std::to_string(i));
+}
+
+void expect_no_fault_with_noise(Fault fault, std::uint64_t seed, int count, const std::string& begin = {}) {
+  Mutator mutator(seed, {""}, {""});
+  for (int i = 0; i < count && !testing::Test::HasFailure(); ++i)
+    expect_no_fault(fault, begin + mutator.noise(300), "noise " + std::to_string(i));
+}
+
+TEST(FuzzReaders, SeedsAreGood) {
+  const support::ScratchFolder folder;
+  for (const std::string& seed : seeds_of(here() / "corpus" / "scene"))
+    EXPECT_EQ(fault_with_scene(folder.path(), seed), "");
+  for (const std::string& seed : seeds_of(here() / "corpus" / "ply"))
+    EXPECT_EQ(fault_with_ply(folder.path(), seed), "");
+  for (const std::string& seed : seeds_of(here() / "corpus" / "override"))
+    EXPECT_EQ(fault_with_overrides(folder.path(), seed), "");
+}
+
+TEST(FuzzReaders, NoiseIsNoScene) { expect_no_fault_with_noise(fault_with_scene, 1, 3000); }
+
+TEST(FuzzReaders, NoiseIsNoPly) { expect_no_fault_with_noise(fault_with_ply, 2, 3000); }
+
+TEST(FuzzReaders, NoiseBehindAGoodHeader) {
+  const std::string properties =
+      "property float x\nproperty float y\nproperty float z\nproperty double radius\nend_header\n";
+  for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"})
+    expect_no_fault_with_noise(fault_with_ply, 3, 1000,
+                               std::string("ply\nformat ") + format +
+                                   " 1.0\nelement face 1\nproperty list uchar uchar c\n" + "element vertex 3\n" +
+                                   properties);
+}
+
+TEST(FuzzReaders, NoiseIsNoOverride) { expect_no_fault_with_noise(fault_with_overrides, 4, 3000); }
+
+TEST(FuzzReaders, BrokenScenes) {
+  std::vector<std::string> seeds = seeds_of(here() / "corpus" / "scene");
+  expect_no_fault_with_mutants(fault_with_scene, Mutator(5, seeds, scene_words()), 6000);
+}
+
+TEST(FuzzReaders, BrokenPlys) {
+  expect_no_fault_with_mutants(fault_with_ply, Mutator(6, seeds_of(here() / "corpus" / "ply"), ply_words()), 10000);
+}
+
+TEST(FuzzReaders, BrokenOverrides) {
+  expect_no_fault_with_mutants(fault_with_overrides,
+                               Mutator(7, seeds_of(here() / "corpus" / "override"), scene_words()), 6000);
+}
+
+/// A character of U+0800 and more, as UTF-8.
+std::string character(unsigned code) {
+  return {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 63)),
+          static_cast<char>(0x80 | (code & 63))};
+}
+
+// What is no ASCII belongs into strings and comments; the library's tables of blanks have gaps, see run.sh.
+TEST(FuzzReaders, LettersOutsideOfStrings) {
+  for (unsigned code = 0x0800; code <= 0x3100 && !testing::Test::HasFailure(); ++code) {
+    const std::string letter = character(code);
+    expect_no_fault(fault_with_scene, "camera.vfov =" + letter + "30\n" + letter + "[camera]\n", "letter");
+    expect_no_fault(fault_with_overrides, "camera.vfov=" + letter + "\nrender.precision=" + letter + "fast", "letter");
+  }
+}
+
+// The checks themselves must be able to fail.
+TEST(FuzzReaders, AFaultIsFound) {
+  const support::ScratchFolder folder;
+  EXPECT_EQ(
+      fault_with_scene(folder.path() / "none", ""),
+      "not bad data: cannot open " + (folder.path() / "none" / "scene.toml").string() + ": No such file or directory");
+}
+
+}  // namespace
+}  // namespace orrery::fuzz
