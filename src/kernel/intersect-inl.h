@@ -133,6 +133,17 @@ struct HitPoint {
   Vec3<V> outward;  ///< the same as a unit vector
 };
 
+/// A distance to the other end of the own chord, as `nearest` computes it, freed of most of its rounding: what is not
+/// perpendicular to the ray in the chord's middle is taken out, as `chord` does for other spheres.
+template <class D, Precision kPrecision>
+HWY_INLINE hn::Vec<D> own_distance(D d, const Rays<D>& ray, hn::Vec<D> distance) {
+  if constexpr (kPrecision != Precision::kExact) return distance;
+  using T = hn::TFromD<D>;
+  const auto middle = mul_add(ray.direction, distance * hn::Set(d, static_cast<T>(0.5)), ray.offset);
+  const auto rest = dot(middle, ray.direction) * ray.inverse_square;
+  return hn::NegMulAdd(rest, hn::Set(d, static_cast<T>(2)), distance);
+}
+
 /// The point that belongs to a distance of `nearest`.
 ///
 /// Domain     lanes where `nearest` found this sphere
@@ -148,7 +159,7 @@ HWY_INLINE HitPoint<hn::Vec<D>> hit_point(D d, const Rays<D>& ray, const Spheres
     const auto half = hn::Sqrt(hn::Max(c.discriminant, zero) * ray.inverse_square);
     const auto along = hn::IfThenElse(c.middle - half > zero, hn::Neg(half), half);
     const auto other = mul_add(ray.direction, along, negated(c.to_center));
-    const auto own = mul_add(ray.direction, distance, ray.offset);
+    const auto own = mul_add(ray.direction, own_distance<D, kPrecision>(d, ray, distance), ray.offset);
     const auto m = select(is_self, own, other);
     const auto length = hn::Sqrt(dot(m, m));
     return {m * (sphere.radius / length), m * (one / length)};

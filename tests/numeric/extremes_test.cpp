@@ -153,12 +153,14 @@ Truth truth(const Case& c, const kernel::RayPacket& p, int lane) {
     out.offset[1] = m.y.to_double();
     out.offset[2] = m.z.to_double();
   };
-  if (c.self == 0) {  // the exact other end of the chord that starts at the stored point
+  if (c.self == 0) {
+    // The other end of the chord that starts at the stored point. Rounding has put that point, and so the chord's other
+    // end, some 1e-16 radii off the sphere; the point asked for is the one on the sphere.
     const Vec start{c.offset[0], c.offset[1], c.offset[2]};
     const Real t = Real(-2.0) * dot(start, direction) / dd;
     out.hit = Real(0.0) < t;
     const Vec m = start + direction * t;
-    set(m);
+    set(m * (radius / sqrt(dot(m, m))));
     out.cos_incidence = std::abs((dot(m, direction) / sqrt(dot(m, m) * dd)).to_double());
     return out;
   }

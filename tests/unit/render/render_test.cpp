@@ -7,32 +7,13 @@
 #include <cmath>
 
 #include "compile/compile.h"
+#include "support/everything.h"
 
 namespace orrery::render {
 namespace {
 
 using math::Vec3d;
-
-/// A scene with every material, a lens, and spheres that touch.
-scene::Scene everything() {
-  scene::Scene s;
-  s.image = {61, 37};
-  s.camera.look_from = {3, 2, 4};
-  s.camera.look_at = {0, 0.3, 0};
-  s.camera.vfov = 40;
-  s.camera.defocus_angle = 2;
-  s.render.samples = 7;
-  s.materials = {{"ground", scene::Lambertian{{0.5, 0.6, 0.4}}},
-                 {"old", scene::Hemisphere{{0.7, 0.3, 0.3}}},
-                 {"mirror", scene::Metal{{0.9, 0.9, 0.9}, 0}},
-                 {"brushed", scene::Metal{{0.8, 0.6, 0.2}, 0.4}},
-                 {"glass", scene::Dielectric{1.5, scene::Fresnel::kSchlick}},
-                 {"crystal", scene::Dielectric{2.4, scene::Fresnel::kExact}}};
-  s.spheres = {{{0, -1000, 0}, 1000, 0, ""}, {{-1, 0.5, 0}, 0.5, 1, ""},   {{0, 0.5, 0}, 0.5, 2, ""},
-               {{1, 0.5, 0}, 0.5, 3, ""},    {{0, 0.5, 1}, 0.5, 4, ""},    {{0, 0.5, 1}, -0.45, 4, ""},
-               {{1, 0.5, 1.5}, 0.5, 5, ""},  {{-1, 0.4, 1.2}, 0.4, 0, ""}};
-  return s;
-}
+using test::everything;
 
 std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
   const compile::World world = compile::compile(scene);

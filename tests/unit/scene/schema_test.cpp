@@ -7,15 +7,17 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace orrery::scene {
 namespace {
 
-const Key<Scene>& key_of(const std::string& table_name, const std::string& name) {
+const Key<Scene>& key_of(std::string_view table_name, std::string_view name) {
   for (const Table& table : tables())
     for (const auto& key : table.keys)
       if (table.name == table_name && key.name == name) return key;
-  throw std::out_of_range(table_name + "." + name);
+  throw std::out_of_range(std::string(table_name) + "." + std::string(name));
 }
 
 bool has_range(ValueType type) {
