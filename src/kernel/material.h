@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace orrery::kernel {
@@ -17,5 +18,9 @@ struct Material {
   MaterialKind kind = MaterialKind::kLambertian;
   FresnelKind fresnel = FresnelKind::kSchlick;
 };
+
+// Shading fetches albedo with fuzz, and eta with r0, as four doubles in a row.
+static_assert(offsetof(Material, fuzz) == offsetof(Material, albedo) + 3 * sizeof(double));
+static_assert(offsetof(Material, r0) == offsetof(Material, eta) + 2 * sizeof(double));
 
 }  // namespace orrery::kernel

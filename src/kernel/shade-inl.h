@@ -80,35 +80,58 @@ struct Lookup {
   hn::Vec<D> eta_outside, eta_inside, r0_outside, r0_inside;
 };
 
+/// Transposes four consecutive doubles of each lane's own into four vectors.
+template <class D, class RowOfLane>
+HWY_INLINE void gather4(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
+  using T = hn::TFromD<D>;
+  if constexpr (hn::MaxLanes(D()) == 1) {
+    for (int k = 0; k < 4; ++k) out[k] = hn::Set(d, row_of_lane(0)[k]);
+  } else {
+    const hn::CappedTag<double, 4> row_tag;
+    const hn::Rebind<T, decltype(row_tag)> to_tag;
+    HWY_ALIGN T rows[4 * hn::MaxLanes(D())];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      for (std::size_t k = 0; k < 4; k += hn::Lanes(row_tag)) {
+        const auto part = hn::LoadU(row_tag, row_of_lane(i) + k);
+        if constexpr (sizeof(T) == sizeof(double)) {
+          hn::StoreU(part, row_tag, rows + 4 * i + k);
+        } else {
+          hn::StoreU(hn::DemoteTo(to_tag, part), to_tag, rows + 4 * i + k);
+        }
+      }
+    }
+    hn::LoadInterleaved4(d, rows, out[0], out[1], out[2], out[3]);
+  }
+}
+
 /// Fetches spheres and materials of the lanes that hit something; the others get those of sphere 0.
 template <class D>
 HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits) {
-  using T = hn::TFromD<D>;
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
-  HWY_ALIGN T f[13][kMax];
+  const IdTag<D> du;
   HWY_ALIGN Id id[kMax], kind[kMax], fresnel[kMax];
-  hn::Store(hits, IdTag<D>(), id);
+  const Material* material[kMax];
+  hn::Store(hn::IfThenZeroElse(hits == hn::Set(du, static_cast<Id>(kNoSphere)), hits), du, id);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-    const std::size_t sphere_id = id[i] == kNoSphere ? 0 : static_cast<std::size_t>(id[i]);
-    const Sphere& s = scene.spheres[sphere_id];
-    const Material& m = scene.materials[scene.sphere_materials[sphere_id]];
-    const double values[13] = {s.x,         s.y,    s.z,      s.radius, m.albedo[0], m.albedo[1], m.albedo[2],
-                               m.fuzz, m.eta[0], m.eta[1], m.r0[0],     m.r0[1], 0};
-    for (std::size_t k = 0; k < 12; ++k) f[k][i] = static_cast<T>(values[k]);
-    kind[i] = static_cast<Id>(m.kind);
-    fresnel[i] = static_cast<Id>(m.fresnel);
+    material[i] = &scene.materials[scene.sphere_materials[id[i]]];
+    kind[i] = static_cast<Id>(material[i]->kind);
+    fresnel[i] = static_cast<Id>(material[i]->fresnel);
   }
+  hn::Vec<D> sphere[4], color[4], glass[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  gather4(d, [&](std::size_t i) { return &scene.spheres[id[i]].x; }, sphere);
+  gather4(d, [&](std::size_t i) { return material[i]->albedo; }, color);
+  if (scene.features.dielectric) gather4(d, [&](std::size_t i) { return material[i]->eta; }, glass);
   Lookup<D> out;
-  out.sphere = {load3(d, f[0], f[1], f[2]), hn::Load(d, f[3])};
-  out.albedo = load3(d, f[4], f[5], f[6]);
-  out.surface.fuzz = hn::Load(d, f[7]);
-  out.eta_outside = hn::Load(d, f[8]);
-  out.eta_inside = hn::Load(d, f[9]);
-  out.r0_outside = hn::Load(d, f[10]);
-  out.r0_inside = hn::Load(d, f[11]);
-  out.surface.kind = hn::Load(IdTag<D>(), kind);
-  out.surface.fresnel = hn::Load(IdTag<D>(), fresnel);
+  out.sphere = {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
+  out.albedo = {color[0], color[1], color[2]};
+  out.surface.fuzz = color[3];
+  out.eta_outside = glass[0];
+  out.eta_inside = glass[1];
+  out.r0_outside = glass[2];
+  out.r0_inside = glass[3];
+  out.surface.kind = hn::Load(du, kind);
+  out.surface.fresnel = hn::Load(du, fresnel);
   return out;
 }
 
