@@ -20,7 +20,7 @@ enum class Rays { kCamera, kBounced };
 enum class Traversal { kEmbree, kList };
 
 template <class Packet>
-std::vector<Packet>& choose(RecordedRays<Packet>& rays, Rays which) {
+std::vector<Packet>& choose(render::RecordedRays<Packet>& rays, Rays which) {
   return which == Rays::kCamera ? rays.camera : rays.bounced;
 }
 
@@ -39,7 +39,7 @@ void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, 
   std::size_t next = 0;
   for (auto _ : state) {
     Packet& packet = packets[next];
-    forget_hits(packet);
+    render::forget_hits(packet);
     trace_packet(tracer, packet);
     rays += packet.count;
     next = next + 1 == packets.size() ? 0 : next + 1;

@@ -8,10 +8,14 @@
 #include <utility>
 
 #include "accel/accel.h"
-#include "support/recorded_rays.h"
+#include "render/recorded_rays.h"
 #include "support/scenes.h"
 
 namespace orrery::bench {
+
+/// The picture that is rendered to record its rays.
+inline constexpr int kRecordedWidth = 48, kRecordedHeight = 27;  // px
+inline constexpr int kRecordedSamples = kernel::kPacketSize;     // per pixel
 
 /// A scene with everything that is made before the clock starts.
 template <class Packet>
@@ -19,17 +23,18 @@ struct Workload {
   scene::Scene scene;
   compile::World world;
   std::unique_ptr<accel::Accel> embree, list;
-  RecordedRays<Packet> rays;
+  render::RecordedRays<Packet> rays;
 
   Workload(scene::Scene authored, kernel::Precision precision)
       : scene(std::move(authored)),
         world(compile_for(scene, precision)),
         embree(accel::make_embree(world.view(), precision)),
         list(accel::make_list(world.view(), precision)) {
+    const render::RecordedPixels pixels{kRecordedWidth, kRecordedHeight, 1, kRecordedSamples};
     if constexpr (std::is_same_v<Packet, kernel::RayPacketFast>) {
-      rays = record_rays_fast(world.view(), *embree);
+      rays = render::record_rays_fast(world.view(), *embree, pixels);
     } else {
-      rays = record_rays(world.view(), *embree, precision);
+      rays = render::record_rays(world.view(), *embree, precision, pixels);
     }
   }
 };

@@ -21,5 +21,6 @@ void add_check(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action);
 void add_develop(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
+void add_bench(CLI::App& program, Action& action);
 
 }  // namespace orrery::cli

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "accel/accel.h"
@@ -99,42 +100,52 @@ class TileRenderer {
   kernel::RenderTileFast render_fast_ = nullptr;
 };
 
-std::unique_ptr<accel::Accel> build(const compile::World& world) {
-  switch (world.accelerator) {
-    case compile::Accelerator::kList: return accel::make_list(world.view(), world.precision);
-    case compile::Accelerator::kEmbree: break;
+/// So many threads, whatever the number of processors: without the limit TBB makes no more than there are of those.
+class Threads {
+ public:
+  explicit Threads(int threads)
+      : limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)), arena_(threads) {}
+
+  template <class F>
+  void execute(F&& f) {
+    arena_.execute(std::forward<F>(f));
   }
-  return accel::make_embree(world.view(), world.precision);
-}
+
+ private:
+  tbb::global_control limit_;
+  tbb::task_arena arena_;
+};
+
+int threads_of(const Settings& settings) { return settings.threads > 0 ? settings.threads : available_threads(); }
 
 }  // namespace
 
 int available_threads() { return tbb::this_task_arena::max_concurrency(); }
 
-Result render(const compile::World& world, const Settings& settings) {
-  const int threads = settings.threads > 0 ? settings.threads : available_threads();
-  // Without this TBB makes no more threads than there are processors, whatever is asked for.
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  tbb::task_arena arena(threads);
-  Result result;
-  result.statistics.threads = threads;
-  result.statistics.isa = kernel::isa_name();
-
-  const auto build_start = Clock::now();
+std::unique_ptr<accel::Accel> build(const compile::World& world, int threads) {
   std::unique_ptr<accel::Accel> accel;
-  arena.execute([&] { accel = build(world); });
-  result.statistics.build_s = seconds_since(build_start);
-  result.statistics.accelerator = accel->name();
+  Threads(threads).execute([&] {
+    accel = world.accelerator == compile::Accelerator::kList ? accel::make_list(world.view(), world.precision)
+                                                             : accel::make_embree(world.view(), world.precision);
+  });
+  return accel;
+}
+
+Result render(const compile::World& world, const accel::Accel& accel, const Settings& settings) {
+  Result result;
+  result.statistics.threads = threads_of(settings);
+  result.statistics.isa = kernel::isa_name();
+  result.statistics.accelerator = accel.name();
 
   film::Film film(world.width, world.height);
   const std::vector<kernel::Tile> tiles = make_tiles(world.width, world.height, world.samples, film);
-  const TileRenderer render_tile(world, *accel);
+  const TileRenderer render_tile(world, accel);
   const auto total = static_cast<std::uint64_t>(world.width) * static_cast<std::uint64_t>(world.height) *
                      static_cast<std::uint64_t>(world.samples);
   ProgressReporter progress(settings, total);
   tbb::enumerable_thread_specific<Worker> workers;
   const auto cancelled = [&] { return settings.cancel != nullptr && settings.cancel->load(std::memory_order_relaxed); };
-  arena.execute([&] {
+  Threads(result.statistics.threads).execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
@@ -157,6 +168,15 @@ Result render(const compile::World& world, const Settings& settings) {
   if (!result.completed) return result;
   result.statistics.paths = total;
   result.picture = film.picture();
+  return result;
+}
+
+Result render(const compile::World& world, const Settings& settings) {
+  const auto start = Clock::now();
+  const std::unique_ptr<accel::Accel> accel = build(world, threads_of(settings));
+  const double build_s = seconds_since(start);
+  Result result = render(world, *accel, settings);
+  result.statistics.build_s = build_s;
   return result;
 }
 

@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 
+#include "accel/accel.h"
 #include "compile/world.h"
 #include "film/picture.h"
 
@@ -45,7 +47,18 @@ struct Result {
 /// Threads this process may use: the processors in its affinity mask.
 int available_threads();
 
-/// Renders a whole picture.
+/// Builds what finds hits, as the world's accelerator and precision ask for it.
+///
+/// Domain     the world's spheres outlive the result
+/// Errors     base::Error(kInternal) where it cannot be built
+std::unique_ptr<accel::Accel> build(const compile::World& world, int threads);
+
+/// Renders a whole picture with hits of an `accel` that was built for this world's spheres and precision.
+///
+/// Result     completed == false where `cancel` stopped it; build_s is 0
+Result render(const compile::World& world, const accel::Accel& accel, const Settings& settings);
+
+/// Builds, and renders a whole picture.
 ///
 /// The picture's bits depend on the world alone, not on threads, tiles or accelerator.
 ///

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/bench_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "app/scene_hash.h"
+#include "app/text.h"
+#include "base/error.h"
+#include "base/suggestion.h"
+#include "compile/compile.h"
+#include "format/read_scene.h"
+#include "kernel/isa.h"
+#include "render/recorded_rays.h"
+#include "render/render.h"
+
+namespace orrery::app {
+namespace {
+
+using compile::Accelerator;
+using compile::Precision;
+
+/// Pixels of the picture that is rendered: few, so that a list can render all of them, and with many samples each, which
+/// is how pictures are rendered in earnest.
+constexpr double kPixels = 96 * 54;
+
+/// Every so many rows are recorded: some ten thousand paths, so that the record does not crowd out the caches.
+constexpr int kRecordedRows = 4;
+
+/// A list that would take longer for a sample a pixel is left out.
+constexpr double kLongestList = 10;  // seconds
+/// Rays against spheres a second, of one lane.
+constexpr double kListTests = 1e8;
+
+constexpr double kMostSamples = 1 << 20;
+
+struct Case {
+  std::string name;
+  Accelerator accelerator;
+  Precision precision;
+  kernel::Features features;
+  int samples = 1;
+  std::vector<double> paths_per_s, tracing;
+};
+
+const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_features() {
+  static const std::vector<std::pair<const char*, bool kernel::Features::*>> known = {
+      {"thin lens", &kernel::Features::lens},      {"lambertian", &kernel::Features::lambertian},
+      {"hemisphere", &kernel::Features::hemisphere}, {"metal", &kernel::Features::metal},
+      {"fuzz", &kernel::Features::fuzz},           {"dielectric", &kernel::Features::dielectric},
+      {"gradient sky", &kernel::Features::sky}};
+  return known;
+}
+
+/// Linear between the two nearest.
+double quantile(const std::vector<double>& sorted, double q) {
+  const double at = q * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (sorted[above] - sorted[below]) * (at - static_cast<double>(below));
+}
+
+Quartiles quartiles(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75)};
+}
+
+/// The scene's picture, small.
+compile::World small_world(const BenchRequest& request) {
+  format::ReadResult read = format::read_scene(request.scene, request.overrides);
+  scene::Image& image = read.scene.image;
+  const double scale = std::min(1.0, std::sqrt(kPixels / (static_cast<double>(image.width) * image.height)));
+  image.width = std::max(1, static_cast<int>(std::lround(image.width * scale)));
+  image.height = std::max(1, static_cast<int>(std::lround(image.height * scale)));
+  return compile::compile(read.scene);
+}
+
+/// One scene, to be rendered in many ways.
+class Subject {
+ public:
+  explicit Subject(const BenchRequest& request) : request_(request), world_(small_world(request)) {}
+
+  const compile::World& world() const { return world_; }
+
+  /// Paths a second of one render.
+  render::Statistics run(const Case& c) {
+    prepare(c);
+    world_.samples = c.samples;
+    render::Settings settings;
+    settings.threads = request_.threads;
+    settings.cancel = request_.cancel;
+    const render::Result result = render::render(world_, accel(c), settings);
+    if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; nothing was measured");
+    return result.statistics;
+  }
+
+  /// Seconds a path when nothing but tracing is done.
+  double trace_alone(const Case& c) {
+    prepare(c);
+    const accel::Accel& with = accel(c);
+    const render::RecordedPixels pixels{world_.width, world_.height, kRecordedRows, kernel::kPacketSize};
+    if (c.precision == Precision::kFast) {
+      if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(world_.view(), with, pixels);
+      return seconds_a_path(with, fast_rays_);
+    }
+    auto& rays = rays_[c.precision];
+    if (rays.paths == 0) rays = render::record_rays(world_.view(), with, c.precision, pixels);
+    return seconds_a_path(with, rays);
+  }
+
+ private:
+  void prepare(const Case& c) {
+    world_.accelerator = c.accelerator;
+    world_.precision = c.precision;
+    world_.features = c.features;
+  }
+
+  const accel::Accel& accel(const Case& c) {
+    auto& built = accels_[{c.accelerator, c.precision}];
+    if (!built) built = render::build(world_, render::available_threads());
+    return *built;
+  }
+
+  template <class Packet>
+  static double seconds_a_path(const accel::Accel& with, render::RecordedRays<Packet>& rays) {
+    return render::trace_again(with.tracer(), rays) / static_cast<double>(rays.paths);
+  }
+
+  const BenchRequest& request_;
+  compile::World world_;
+  std::map<std::pair<Accelerator, Precision>, std::unique_ptr<accel::Accel>> accels_;
+  std::map<Precision, render::RecordedRays<kernel::RayPacket>> rays_;
+  render::RecordedRays<kernel::RayPacketFast> fast_rays_;
+};
+
+std::vector<Case> cases_of(const compile::World& world, Benchmark& out) {
+  std::vector<Case> cases;
+  const std::pair<const char*, Precision> precisions[] = {
+      {"exact", Precision::kExact}, {"fast", Precision::kFast}, {"book", Precision::kBook}};
+  for (const auto& [name, precision] : precisions)
+    cases.push_back({std::string("embree ") + name, Accelerator::kEmbree, precision, world.features, 1, {}, {}});
+  const double list_s = 3.0 * world.width * world.height * static_cast<double>(world.spheres.size()) / kListTests;
+  if (list_s > kLongestList) {
+    std::string why;
+    append(why, "list: one sample for each pixel would take about %.0f s", list_s);
+    out.left_out.push_back(why);
+    return cases;
+  }
+  for (const auto& [name, precision] : precisions)
+    cases.push_back({std::string("list ") + name, Accelerator::kList, precision, world.features, 1, {}, {}});
+  return cases;
+}
+
+std::vector<Case> feature_cases_of(const compile::World& world) {
+  std::vector<Case> cases;
+  if (world.shading != kernel::Shading::kPath) return cases;
+  for (const auto& [name, feature] : known_features()) {
+    if (world.features.*feature) continue;
+    cases.push_back({name, Accelerator::kEmbree, Precision::kExact, world.features, 1, {}, {}});
+    cases.back().features.*feature = true;
+  }
+  return cases;
+}
+
+/// Finds the number of samples with which a render takes long enough.
+void calibrate(Subject& subject, Case& c, double seconds) {
+  for (;;) {
+    const double took = std::max(subject.run(c).render_s, 1e-6);
+    if (took >= seconds / 2 || c.samples >= kMostSamples) return;
+    // Not too far in one step: the first render also warms up.
+    const double factor = std::clamp(seconds / took, 2.0, 64.0);
+    c.samples = static_cast<int>(std::min(c.samples * factor, kMostSamples));
+  }
+}
+
+BenchCase result_of(const Case& c, const std::vector<double>& reference) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < reference.size(); ++i) ratios.push_back(c.paths_per_s[i] / reference[i]);
+  BenchCase out{c.name, quartiles(c.paths_per_s), quartiles(ratios), {}};
+  if (!c.tracing.empty()) out.tracing = quartiles(c.tracing);
+  return out;
+}
+
+}  // namespace
+
+Benchmark bench_scene(const BenchRequest& request) {
+  if (!request.isa.empty() && !kernel::limit_isa(request.isa))
+    throw base::Error(base::ErrorKind::kUsage, "no instruction set " + request.isa +
+                                                   " here; this processor and program have " +
+                                                   base::joined(kernel::available_isas()));
+  Subject subject(request);
+  const compile::World& world = subject.world();
+  Benchmark out;
+  out.scene_hash = scene_hash(world);
+  out.isa = kernel::isa_name();
+  out.spheres = world.spheres.size();
+  out.width = world.width;
+  out.height = world.height;
+  out.threads = request.threads;
+  out.rounds = request.rounds;
+
+  std::vector<Case> cases = cases_of(world, out);
+  const std::size_t ways = cases.size();
+  for (Case& c : feature_cases_of(world)) cases.push_back(std::move(c));
+  const int total = static_cast<int>(cases.size()) * (request.rounds + 1);
+  int done = 0;
+  const auto tell = [&] {
+    ++done;
+    if (request.on_progress) request.on_progress(done, total);
+  };
+  for (Case& c : cases) {
+    calibrate(subject, c, request.seconds);
+    tell();
+  }
+  for (int round = 0; round < request.rounds; ++round) {
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      // Each round begins elsewhere, so that no case always follows the same one.
+      Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
+      const render::Statistics did = subject.run(c);
+      c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
+      if (c.accelerator == Accelerator::kEmbree && request.threads == 1 && &c < &cases[ways])
+        c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
+      out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
+      if (c.accelerator == Accelerator::kEmbree) out.accelerator = did.accelerator;
+      tell();
+    }
+  }
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    (i < ways ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
+  return out;
+}
+
+}  // namespace orrery::app

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace orrery::app {
+
+struct BenchRequest {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;
+  std::string isa;        ///< empty: the best
+  int threads = 1;
+  int rounds = 7;         ///< each round measures every case once
+  double seconds = 0.25;  ///< of one measurement, at least
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(int done, int total)> on_progress;  ///< measurements
+};
+
+/// The middle half of some measurements.
+struct Quartiles {
+  double low = 0, median = 0, high = 0;
+};
+
+/// One way to render the scene.
+struct BenchCase {
+  std::string name;       ///< "embree fast"
+  Quartiles paths_per_s;
+  Quartiles ratio;        ///< of paths a second to those of "embree exact" in the same round
+  /// Part of its time that tracing its rays alone needs; with one thread and Embree only.
+  std::optional<Quartiles> tracing;
+};
+
+/// What was measured, in one run whose rounds alternate between all cases.
+struct Benchmark {
+  std::string scene_hash, isa, accelerator;
+  std::uint64_t spheres = 0;
+  double rays_per_path = 0;
+  int width = 0, height = 0;  ///< px; of the small picture that is rendered
+  int threads = 0, rounds = 0;
+  std::vector<BenchCase> cases;       ///< first "embree exact"
+  std::vector<BenchCase> features;    ///< exact, as if the scene had one feature more; named by it
+  std::vector<std::string> left_out;  ///< what was not measured, and why
+};
+
+/// Renders the scene, at a small size, in every precision by Embree and by the list, and measures how fast that is.
+///
+/// Errors     as format::read_scene; base::Error(kStopped) where `cancel` stopped it, kUsage for an unknown `isa`
+Benchmark bench_scene(const BenchRequest& request);
+
+/// For people.
+std::string benchmark_text(const Benchmark& benchmark);
+/// As JSON, "orrery.bench/1".
+std::string benchmark_json(const Benchmark& benchmark);
+
+}  // namespace orrery::app

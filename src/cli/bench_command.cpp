@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+
+#include "app/bench_scene.h"
+#include "cli/commands.h"
+#include "cli/option_checks.h"
+#include "cli/output.h"
+#include "cli/scene_options.h"
+#include "cli/signals.h"
+
+namespace orrery::cli {
+namespace {
+
+constexpr std::uint64_t kMostThreads = 4096;
+constexpr std::uint64_t kMostRounds = 1000;
+constexpr double kLongest = 3600;  // seconds of one measurement
+
+struct BenchOptions {
+  app::BenchRequest request;
+  SceneOptions scene;
+  bool json = false, quiet = false;
+};
+
+int bench(BenchOptions& options) {
+  app::BenchRequest& request = options.request;
+  request.overrides = options.scene.overrides();
+  request.cancel = &stop_on_signals();
+  const bool shows_progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
+  if (shows_progress)
+    request.on_progress = [](int done, int total) {
+      std::fprintf(stderr, done < total ? "\rmeasurement %d of %d" : "\r\x1b[K", done, total);
+    };
+  const app::Benchmark found = app::bench_scene(request);
+  print_result(options.json ? app::benchmark_json(found) : app::benchmark_text(found));
+  return 0;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<BenchOptions>();
+  CLI::App& command = *program.add_subcommand("bench", "Measure how fast a scene renders, in every precision");
+  command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
+  options->scene.add_to(command);
+  command.add_option("-t,--threads", options->request.threads, "Threads; default 1")
+      ->check(whole_number(1, kMostThreads))
+      ->type_name("N");
+  command.add_option("--isa", options->request.isa, "Use no better instruction set: sse4, avx2 or avx512")
+      ->type_name("NAME");
+  command.add_option("--rounds", options->request.rounds, "Measurements of each case; default 7")
+      ->check(whole_number(1, kMostRounds))
+      ->type_name("N");
+  command.add_option("--seconds", options->request.seconds, "Least time of one measurement; default 0.25")
+      ->check(real_number(0.001, kLongest))
+      ->type_name("SECONDS");
+  command.add_flag("--json", options->json, "As JSON");
+  command.add_flag("-q,--quiet", options->quiet, "Show no progress");
+  command.footer(
+      "Examples:\n"
+      "  orrery bench scenes/book/final.toml\n"
+      "  orrery bench cloud.toml --threads 8 --rounds 15 --json");
+  command.callback([options, &action] { action = [options] { return bench(*options); }; });
+}
+
+}  // namespace orrery::cli

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/recorded_rays.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <type_traits>
+
+#include "kernel/render_tile.h"
+
+namespace orrery::render {
+namespace {
+
+/// Stands between the kernel and the traversal, and writes down what passes.
+template <class Packet>
+struct Recorder {
+  kernel::Tracer tracer;
+  RecordedRays<Packet> rays;
+
+  void keep(const Packet& packet) {
+    const bool from_camera = packet.self[0] == kernel::kNoSphere;
+    (from_camera ? rays.camera : rays.bounced).push_back(packet);
+  }
+};
+
+void trace(const void* self, kernel::RayPacket& packet) {
+  // Tracers are const to the kernel, which a recorder can't be.
+  auto& recorder = *static_cast<Recorder<kernel::RayPacket>*>(const_cast<void*>(self));
+  recorder.tracer.trace(recorder.tracer.self, packet);
+  recorder.keep(packet);
+}
+void trace_fast(const void* self, kernel::RayPacketFast& packet) {
+  auto& recorder = *static_cast<Recorder<kernel::RayPacketFast>*>(const_cast<void*>(self));
+  recorder.tracer.trace_fast(recorder.tracer.self, packet);
+  recorder.keep(packet);
+}
+
+template <class Packet, class Stream, class RenderTile>
+RecordedRays<Packet> record(const kernel::SceneView& view, const accel::Accel& accel, const RecordedPixels& pixels,
+                            RenderTile render_tile) {
+  Recorder<Packet> recorder{accel.tracer(), {}};
+  const kernel::Tracer tap{trace, trace_fast, &recorder};
+  std::vector<kernel::PixelSum> sums(static_cast<std::size_t>(pixels.width));
+  const auto stream = std::make_unique<Stream>();
+  for (int y = 0; y < pixels.height; y += pixels.row_step) {
+    kernel::Tile row;
+    row.y = y;
+    row.width = pixels.width;
+    row.height = 1;
+    row.sample_end = static_cast<std::uint32_t>(pixels.samples);
+    row.sums = sums.data();
+    render_tile(view, tap, row, *stream);
+    recorder.rays.paths += static_cast<std::uint64_t>(pixels.width) * row.sample_end;
+  }
+  return std::move(recorder.rays);
+}
+
+void trace_packet(const kernel::Tracer& tracer, kernel::RayPacket& packet) { tracer.trace(tracer.self, packet); }
+void trace_packet(const kernel::Tracer& tracer, kernel::RayPacketFast& packet) {
+  tracer.trace_fast(tracer.self, packet);
+}
+
+template <class Packet>
+double seconds_to_trace(const kernel::Tracer& tracer, RecordedRays<Packet>& rays) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::vector<Packet>* packets : {&rays.camera, &rays.bounced}) {
+    for (Packet& packet : *packets) {
+      forget_hits(packet);
+      trace_packet(tracer, packet);
+    }
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+RecordedRays<kernel::RayPacket> record_rays(const kernel::SceneView& view, const accel::Accel& accel,
+                                            kernel::Precision precision, const RecordedPixels& pixels) {
+  return record<kernel::RayPacket, kernel::PathStream>(view, accel, pixels, kernel::render_tile_function(precision));
+}
+
+RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& view, const accel::Accel& accel,
+                                                     const RecordedPixels& pixels) {
+  return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, pixels,
+                                                               kernel::render_tile_fast_function());
+}
+
+template <class Packet>
+void forget_hits(Packet& packet) {
+  using T = std::remove_reference_t<decltype(packet.distance[0])>;
+  std::fill_n(packet.distance, kernel::kPacketSize, std::numeric_limits<T>::max());
+  std::fill_n(packet.hit, kernel::kPacketSize, kernel::kNoSphere);
+}
+
+template void forget_hits(kernel::RayPacket& packet);
+template void forget_hits(kernel::RayPacketFast& packet);
+
+double trace_again(const kernel::Tracer& tracer, RecordedRays<kernel::RayPacket>& rays) {
+  return seconds_to_trace(tracer, rays);
+}
+double trace_again(const kernel::Tracer& tracer, RecordedRays<kernel::RayPacketFast>& rays) {
+  return seconds_to_trace(tracer, rays);
+}
+
+}  // namespace orrery::render

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+class CliBench : public ProgramTest {};
+
+TEST_F(CliBench, PrintsATableOrJsonAndNothingElse) {
+  const Outcome text = run("bench good.toml --rounds 1 --seconds 0.001");
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(text.err, "");
+  EXPECT_NE(text.out.find("\nlist book "), std::string::npos) << text.out;
+  const Outcome json = run("bench good.toml --rounds 1 --seconds 0.001 --json");
+  EXPECT_EQ(json.status, 0) << json.err;
+  EXPECT_EQ(nlohmann::json::parse(json.out)["cases"].size(), 6u);
+  EXPECT_EQ(file_count(), 0);
+}
+
+TEST_F(CliBench, SaysWhatIsWrong) {
+  EXPECT_EQ(run("bench none.toml").status, 66);
+  EXPECT_EQ(run("bench good.toml --rounds 0").status, 2);
+  EXPECT_EQ(run("bench good.toml --isa mmx").status, 2);
+  EXPECT_EQ(run("bench good.toml --set render.samples=0").status, 65);
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/bench_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::app {
+namespace {
+
+constexpr const char* kGreySphere = R"(
+image = { width = 300, height = 200 }
+material.grey = { type = "lambertian", albedo = [0.5, 0.5, 0.5] }
+sphere = [{ center = [0, 0, -2], radius = 1, material = "grey" }]
+)";
+
+class AppBenchScene : public testing::Test {
+ protected:
+  BenchRequest request() {
+    const auto file = folder_.path() / "scene.toml";
+    std::ofstream(file) << kGreySphere;
+    BenchRequest r;
+    r.scene = file;
+    r.rounds = 3;
+    r.seconds = 0.001;
+    return r;
+  }
+
+ private:
+  support::ScratchFolder folder_;
+};
+
+std::vector<std::string> names(const std::vector<BenchCase>& cases) {
+  std::vector<std::string> out;
+  for (const BenchCase& c : cases) out.push_back(c.name);
+  return out;
+}
+
+TEST_F(AppBenchScene, MeasuresEveryPrecisionBothWays) {
+  const Benchmark b = bench_scene(request());
+  EXPECT_EQ(names(b.cases), (std::vector<std::string>{"embree exact", "embree fast", "embree book", "list exact",
+                                                      "list fast", "list book"}));
+  EXPECT_EQ(b.spheres, 1u);
+  EXPECT_EQ(b.threads, 1);
+  EXPECT_GT(b.rays_per_path, 1);
+  EXPECT_LE(b.rays_per_path, 2);
+  EXPECT_NEAR(b.width * b.height, 96 * 54, 100);
+  EXPECT_NEAR(static_cast<double>(b.width) / b.height, 1.5, 0.05);
+  for (const BenchCase& c : b.cases) {
+    EXPECT_GT(c.paths_per_s.low, 0) << c.name;
+    EXPECT_LE(c.paths_per_s.low, c.paths_per_s.median) << c.name;
+    EXPECT_LE(c.paths_per_s.median, c.paths_per_s.high) << c.name;
+    EXPECT_EQ(c.tracing.has_value(), c.name.rfind("embree", 0) == 0) << c.name;
+  }
+  EXPECT_EQ(b.cases[0].ratio.low, 1);
+  EXPECT_EQ(b.cases[0].ratio.high, 1);
+  EXPECT_TRUE(b.left_out.empty());
+}
+
+TEST_F(AppBenchScene, MeasuresTheFeaturesThatTheSceneLacks) {
+  EXPECT_EQ(names(bench_scene(request()).features),
+            (std::vector<std::string>{"thin lens", "hemisphere", "metal", "fuzz", "dielectric"}));
+}
+
+TEST_F(AppBenchScene, TracingAloneIsMeasuredInOneThreadOnly) {
+  BenchRequest r = request();
+  r.threads = 2;
+  for (const BenchCase& c : bench_scene(r).cases) EXPECT_FALSE(c.tracing.has_value()) << c.name;
+}
+
+TEST_F(AppBenchScene, StopsWhenAsked) {
+  BenchRequest r = request();
+  const std::atomic<bool> cancel{true};
+  r.cancel = &cancel;
+  try {
+    bench_scene(r);
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kStopped);
+  }
+}
+
+TEST_F(AppBenchScene, TellsHowFarItIs) {
+  BenchRequest r = request();
+  int last = 0, total = 0;
+  r.on_progress = [&](int done, int of) {
+    EXPECT_EQ(done, last + 1);
+    last = done;
+    total = of;
+  };
+  bench_scene(r);
+  EXPECT_EQ(last, total);
+}
+
+Benchmark some_benchmark() {
+  Benchmark b;
+  b.scene_hash = "0123";
+  b.width = 96;
+  b.height = 54;
+  b.threads = 1;
+  b.rounds = 7;
+  b.isa = "avx2";
+  b.accelerator = "embree";
+  b.rays_per_path = 2.5;
+  b.cases = {{"embree exact", {1e6, 2e6, 3e6}, {1, 1, 1}, Quartiles{0.6, 0.7, 0.8}},
+             {"list book", {1e5, 2e5, 3e5}, {0.05, 0.1, 0.15}, {}}};
+  b.left_out = {"something, since"};
+  return b;
+}
+
+TEST(AppBenchReport, AsText) {
+  EXPECT_EQ(benchmark_text(some_benchmark()),
+            "scene       0123, 0 spheres, 2.50 rays a path\n"
+            "measured    96 x 54 px, 1 thread, avx2, embree; 7 rounds, median (middle half)\n"
+            "\n"
+            "                  M paths/s  ratio to embree exact    tracing alone\n"
+            "embree exact              2  1 (1 .. 1)               70 %\n"
+            "list book               0.2  0.1 (0.05 .. 0.15)\n"
+            "\n"
+            "left out    something, since\n");
+}
+
+TEST(AppBenchReport, AsJson) {
+  const auto json = nlohmann::json::parse(benchmark_json(some_benchmark()));
+  EXPECT_EQ(json["schema"], "orrery.bench/1");
+  EXPECT_EQ(json["cases"][0]["tracing"]["median"], 0.7);
+  EXPECT_TRUE(json["cases"][1]["tracing"].is_null());
+  EXPECT_EQ(json["cases"][1]["ratio"]["high"], 0.15);
+  EXPECT_EQ(json["left_out"][0], "something, since");
+}
+
+}  // namespace
+}  // namespace orrery::app
