@@ -30,11 +30,14 @@ struct Workload {
         world(compile_for(scene, precision)),
         embree(accel::make_embree(world.view(), precision)),
         list(accel::make_list(world.view(), precision)) {
-    const render::RecordedPixels pixels{kRecordedWidth, kRecordedHeight, 1, kRecordedSamples};
+    kernel::Tile whole;
+    whole.width = kRecordedWidth;
+    whole.height = kRecordedHeight;
+    whole.sample_end = kRecordedSamples;
     if constexpr (std::is_same_v<Packet, kernel::RayPacketFast>) {
-      rays = render::record_rays_fast(world.view(), *embree, pixels);
+      rays = render::record_rays_fast(world.view(), *embree, {whole});
     } else {
-      rays = render::record_rays(world.view(), *embree, precision, pixels);
+      rays = render::record_rays(world.view(), *embree, precision, {whole});
     }
   }
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,15 @@
 #include "kernel/scene_view.h"
 
 namespace orrery::accel {
+
+/// How rays go through the hierarchy: those of a packet together, which pays as long as they visit the same boxes, or
+/// one after the other.
+enum class Traversal : std::uint8_t { kPacket, kSingle };
+
+/// Chosen for rays of the camera, and for those that have bounced. Hits do not depend on it.
+struct Traversals {
+  Traversal camera = Traversal::kPacket, bounced = Traversal::kPacket;
+};
 
 /// Finds the nearest hit of rays among a scene's spheres.
 ///
@@ -20,6 +30,9 @@ class Accel {
 
   /// What the kernel calls for each packet; valid as long as this Accel lives.
   virtual kernel::Tracer tracer() const noexcept = 0;
+
+  /// Goes on this way from now on; not while rays are traced. A list has but one way.
+  virtual void use(Traversals) noexcept {}
 
   /// "embree 3.13.5", "list".
   virtual std::string name() const = 0;

@@ -79,7 +79,7 @@ class Embree final : public Accel {
  public:
   Embree(const kernel::SceneView& view, kernel::Precision precision)
       : functions_(embree_functions(precision)), state_{make_scene(view), {}} {
-    const std::size_t primitives = view.sphere_count - state_.apart_count();
+    const std::size_t primitives = view.sphere_count - state_.scene.apart.size();
     if (primitives == 0) return;
     device_ = rtcNewDevice(nullptr);
     if (device_ == nullptr) fail(nullptr, "Embree does not start");
@@ -100,6 +100,7 @@ class Embree final : public Accel {
   Embree& operator=(const Embree&) = delete;
 
   kernel::Tracer tracer() const noexcept override { return {functions_.trace, functions_.trace_fast, &state_.scene}; }
+  void use(Traversals traversals) noexcept override { state_.scene.traversals = traversals; }
   std::string name() const override { return "embree " + embree_version(); }
   std::size_t bytes() const noexcept override { return static_cast<std::size_t>(std::max<std::int64_t>(0, bytes_)); }
 
@@ -107,12 +108,11 @@ class Embree final : public Accel {
   struct State {
     EmbreeScene scene;
     BuildState build;
-    std::size_t apart_count() const { return scene.apart.size(); }
   };
 
   static EmbreeScene make_scene(const kernel::SceneView& view) {
     std::vector<std::uint32_t> apart = find_apart(view.spheres, view.sphere_count);
-    return {nullptr, view.spheres, BoxFrame(view.spheres, all_but(apart, view.sphere_count)), std::move(apart)};
+    return {nullptr, view.spheres, BoxFrame(view.spheres, all_but(apart, view.sphere_count)), std::move(apart), {}};
   }
 
   void build(std::size_t primitives) {
@@ -122,8 +122,7 @@ class Embree final : public Accel {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
     rtcSetGeometryUserData(geometry, &state_.build);
-    rtcSetGeometryBoundsFunction(
-        geometry, sphere_bounds, nullptr);
+    rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, functions_.intersect);
     rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
     rtcCommitGeometry(geometry);

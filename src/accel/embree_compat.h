@@ -31,6 +31,14 @@ inline void intersect(const int* valid, RTCScene scene, EmbreeContext& context, 
   }
 }
 
+/// Traces one ray.
+inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  rtcIntersect1(scene, &ray, &arguments);
+}
+
 #else
 
 using EmbreeContext = RTCIntersectContext;
@@ -47,6 +55,8 @@ inline void intersect(const int* valid, RTCScene scene, EmbreeContext& context, 
     rtcIntersect4(valid, scene, &context, &rays);
   }
 }
+
+inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
 
 #endif
 

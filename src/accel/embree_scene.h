@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "accel/accel.h"
 #include "accel/box_frame.h"
 #include "accel/embree_compat.h"
 #include "kernel/precision.h"
@@ -21,6 +22,7 @@ struct EmbreeScene {
   /// Spheres so much larger than the rest that a box around them would hold everything (a ground): ascending ids,
   /// tested by every ray before the hierarchy is entered, which they shorten.
   std::vector<std::uint32_t> apart;
+  Traversals traversals;
 
   /// The sphere behind a primitive: ids count all spheres, primitives those that do not stand apart.
   std::uint32_t sphere_id(std::uint32_t primitive) const noexcept {

@@ -26,26 +26,39 @@ using EmbreeRays = std::conditional_t<kWidth == 16, RTCRayHit16, std::conditiona
 template <class Packet>
 using DistanceOf = std::remove_cvref_t<decltype(Packet::distance[0])>;
 
-/// Keeps the nearer of the known hit and this sphere's, lane by lane; of two at the same place the smaller id.
-///
-/// Result     lanes whose hit is new
-template <class D, kernel::Precision kPrecision, class Packet>
-HWY_INLINE hn::Mask<D> keep_nearest(D d, const kernel::Sphere& sphere, std::uint32_t id, hn::Mask<D> lanes, Packet& packet,
-                                    int first) {
-  const k::IdTag<D> du;
-  using Id = hn::TFromD<k::IdTag<D>>;
-  const auto ray = k::load_rays(d, packet, first);
-  const auto ids = hn::Set(du, static_cast<Id>(id));
+/// The nearest hits so far.
+template <class D>
+struct Nearest {
+  hn::Vec<D> distance;
+  hn::Vec<k::IdTag<D>> ids;
+  hn::Mask<D> is_new;  ///< lanes that were found since it was loaded
+
+  template <class Packet>
+  static HWY_INLINE Nearest load(D d, const Packet& packet, int first) {
+    return {hn::Load(d, packet.distance + first), hn::Load(k::IdTag<D>(), packet.hit + first), hn::FirstN(d, 0)};
+  }
+  template <class Packet>
+  HWY_INLINE void store(D d, Packet& packet, int first) const {
+    hn::Store(distance, d, packet.distance + first);
+    hn::Store(ids, k::IdTag<D>(), packet.hit + first);
+  }
+  /// Takes what is nearer; of two at the same place the smaller id.
+  HWY_INLINE void take(D d, const k::Distances<D>& found, hn::Vec<k::IdTag<D>> found_ids, hn::Mask<D> lanes) {
+    const auto same_place = hn::And(found.value == distance, hn::RebindMask(d, ids > found_ids));
+    const auto nearer = hn::And(hn::And(lanes, found.mask), hn::Or(found.value < distance, same_place));
+    distance = hn::IfThenElse(nearer, found.value, distance);
+    ids = hn::IfThenElse(hn::RebindMask(k::IdTag<D>(), nearer), found_ids, ids);
+    is_new = hn::Or(is_new, nearer);
+  }
+};
+
+/// Some rays, one a lane, against one sphere.
+template <class D, kernel::Precision kPrecision>
+HWY_INLINE void meet(D d, const k::Rays<D>& ray, const kernel::Sphere& sphere, std::uint32_t id, hn::Mask<D> lanes,
+                     Nearest<D>& nearest) {
+  const auto ids = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(id));
   const auto is_self = hn::RebindMask(d, ray.self == ids);
-  const auto found = k::nearest<D, kPrecision>(d, ray, k::broadcast(d, sphere), is_self);
-  const auto best = hn::Load(d, packet.distance + first);
-  const auto best_ids = hn::Load(du, packet.hit + first);
-  const auto same_place = hn::And(found.value == best, hn::RebindMask(d, best_ids > ids));
-  const auto nearer = hn::And(hn::And(lanes, found.mask), hn::Or(found.value < best, same_place));
-  if (hn::AllFalse(d, nearer)) return nearer;
-  hn::Store(hn::IfThenElse(nearer, found.value, best), d, packet.distance + first);
-  hn::Store(hn::IfThenElse(hn::RebindMask(du, nearer), ids, best_ids), du, packet.hit + first);
-  return nearer;
+  nearest.take(d, k::nearest<D, kPrecision>(d, ray, k::broadcast(d, sphere), is_self), ids, lanes);
 }
 
 /// Distances along rays as Embree's far limits: never below what the numbers say, so that boxes of other spheres at the
@@ -79,6 +92,25 @@ HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
   return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
 }
 
+/// Embree's callback for one ray.
+template <class Packet, kernel::Precision kPrecision>
+void intersect_single(const RTCIntersectFunctionNArguments* arguments, const EmbreeQuery<Packet>& query) {
+  using D = hn::FixedTag<DistanceOf<Packet>, 1>;
+  const D d;
+  const EmbreeScene& scene = *query.scene;
+  Packet& packet = *query.packet;
+  const std::uint32_t id = scene.sphere_id(arguments->primID);
+  auto nearest = Nearest<D>::load(d, packet, query.first);
+  meet<D, kPrecision>(d, k::load_rays(d, packet, query.first), scene.spheres[id], id, hn::FirstN(d, 1), nearest);
+  if (hn::AllFalse(d, nearest.is_new)) {
+    arguments->valid[0] = 0;
+    return;
+  }
+  nearest.store(d, packet, query.first);
+  const auto limit = far_limits(d, nearest.distance, scene.frame.scale, hn::Load(d, query.start));
+  RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, 1), 1, 0) = static_cast<float>(hn::GetLane(limit));
+}
+
 /// Embree's callback: some rays of the query against one sphere.
 template <class Packet, kernel::Precision kPrecision>
 void intersect(const RTCIntersectFunctionNArguments* arguments) {
@@ -87,6 +119,7 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
   const D d;
   const hn::Rebind<std::int32_t, D> di;
   auto& query = *reinterpret_cast<EmbreeQuery<Packet>*>(arguments->context);
+  if (arguments->N == 1) return intersect_single<Packet, kPrecision>(arguments, query);
   const EmbreeScene& scene = *query.scene;
   Packet& packet = *query.packet;
   const std::uint32_t id = scene.sphere_id(arguments->primID);
@@ -103,19 +136,51 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
       valid = hn::RebindMask(d, valid_int < hn::Zero(di));
     }
     const int first = query.first + v;
-    const auto hit = keep_nearest<D, kPrecision>(d, scene.spheres[id], id, valid, packet, first);
-    if (hn::AllFalse(d, hit)) {
+    const auto ray = k::load_rays(d, packet, first);
+    auto nearest = Nearest<D>::load(d, packet, first);
+    meet<D, kPrecision>(d, ray, scene.spheres[id], id, valid, nearest);
+    if (hn::AllFalse(d, nearest.is_new)) {
       hn::StoreU(hn::Zero(di), di, arguments->valid + v);
       continue;
     }
+    nearest.store(d, packet, first);
     alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
-    store_float(d, far_limits(d, hn::Load(d, packet.distance + first), scene.frame.scale, hn::Load(d, query.start + v)), limits);
-    const unsigned hits = bits_of(d, hit);
+    store_float(d, far_limits(d, nearest.distance, scene.frame.scale, hn::Load(d, query.start + v)), limits);
+    const unsigned hits = bits_of(d, nearest.is_new);
     for (int i = 0; i < step; ++i) {
       const bool lane_hit = (hits >> i & 1) != 0;
       if (lane_hit) to_limit[v + i] = limits[i];
       arguments->valid[v + i] = lane_hit ? -1 : 0;
     }
+  }
+}
+
+/// Traces some rays of a packet one after the other.
+template <class Packet>
+HWY_INLINE void trace_one_by_one(const int* valid, const EmbreeRays& rays, EmbreeQuery<Packet>& query) {
+  const int first = query.first;
+  alignas(64) DistanceOf<Packet> start[kWidth];
+  std::copy_n(query.start, kWidth, start);
+  RTCRayHit ray;
+  ray.ray.tnear = 0;
+  ray.ray.time = 0;
+  ray.ray.mask = ~0u;
+  ray.ray.id = 0;
+  ray.ray.flags = 0;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  for (int i = 0; i < kWidth; ++i) {
+    if (valid[i] == 0) continue;
+    ray.ray.org_x = rays.ray.org_x[i];
+    ray.ray.org_y = rays.ray.org_y[i];
+    ray.ray.org_z = rays.ray.org_z[i];
+    ray.ray.dir_x = rays.ray.dir_x[i];
+    ray.ray.dir_y = rays.ray.dir_y[i];
+    ray.ray.dir_z = rays.ray.dir_z[i];
+    ray.ray.tfar = rays.ray.tfar[i];
+    query.first = first + i;
+    query.start[0] = start[i];
+    accel::intersect(query.scene->scene, query.context, ray);
   }
 }
 
@@ -127,11 +192,16 @@ void trace(const void* self, Packet& packet) {
   const D d;
   const int step = static_cast<int>(hn::Lanes(d));
   const auto& scene = *static_cast<const EmbreeScene*>(self);
-  for (const std::uint32_t id : scene.apart)
-    for (int v = 0; v < packet.count; v += step)
-      keep_nearest<D, kPrecision>(d, scene.spheres[id], id, hn::FirstN(d, static_cast<std::size_t>(packet.count - v)),
-                                            packet, v);
+  for (int v = 0; !scene.apart.empty() && v < packet.count; v += step) {
+    const auto ray = k::load_rays(d, packet, v);
+    const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
+    auto nearest = Nearest<D>::load(d, packet, v);
+    for (const std::uint32_t id : scene.apart) meet<D, kPrecision>(d, ray, scene.spheres[id], id, lanes, nearest);
+    nearest.store(d, packet, v);
+  }
   if (scene.scene == nullptr) return;
+  const bool from_camera = packet.self[0] == kernel::kNoSphere;
+  const Traversal traversal = from_camera ? scene.traversals.camera : scene.traversals.bounced;
 
   EmbreeQuery<Packet> query;
   init(query.context);
@@ -167,7 +237,11 @@ void trace(const void* self, Packet& packet) {
       const unsigned lanes = bits_of(d, hn::And(hn::And(active, box.reaches), limit > hn::Zero(d)));
       for (int i = 0; i < step; ++i) valid[v + i] = (lanes >> i & 1) != 0 ? -1 : 0;
     }
-    accel::intersect(valid, scene.scene, query.context, rays);
+    if (traversal == Traversal::kPacket) {
+      accel::intersect(valid, scene.scene, query.context, rays);
+    } else {
+      trace_one_by_one(valid, rays, query);
+    }
   }
 }
 

@@ -42,6 +42,7 @@ struct Case {
   Accelerator accelerator;
   Precision precision;
   kernel::Features features;
+  render::Traversal traversal = render::Traversal::kAuto;
   int samples = 1;
   std::vector<double> paths_per_s, tracing;
 };
@@ -91,6 +92,7 @@ class Subject {
     world_.samples = c.samples;
     render::Settings settings;
     settings.threads = request_.threads;
+    settings.traversal = c.traversal;
     settings.cancel = request_.cancel;
     const render::Result result = render::render(world_, accel(c), settings);
     if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; nothing was measured");
@@ -101,13 +103,21 @@ class Subject {
   double trace_alone(const Case& c) {
     prepare(c);
     const accel::Accel& with = accel(c);
-    const render::RecordedPixels pixels{world_.width, world_.height, kRecordedRows, kernel::kPacketSize};
+    std::vector<kernel::Tile> rows;
+    for (int y = 0; y < world_.height; y += kRecordedRows) {
+      kernel::Tile row;
+      row.y = y;
+      row.width = world_.width;
+      row.height = 1;
+      row.sample_end = kernel::kPacketSize;
+      rows.push_back(row);
+    }
     if (c.precision == Precision::kFast) {
-      if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(world_.view(), with, pixels);
+      if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(world_.view(), with, rows);
       return seconds_a_path(with, fast_rays_);
     }
     auto& rays = rays_[c.precision];
-    if (rays.paths == 0) rays = render::record_rays(world_.view(), with, c.precision, pixels);
+    if (rays.paths == 0) rays = render::record_rays(world_.view(), with, c.precision, rows);
     return seconds_a_path(with, rays);
   }
 
@@ -118,7 +128,7 @@ class Subject {
     world_.features = c.features;
   }
 
-  const accel::Accel& accel(const Case& c) {
+  accel::Accel& accel(const Case& c) {
     auto& built = accels_[{c.accelerator, c.precision}];
     if (!built) built = render::build(world_, render::available_threads());
     return *built;
@@ -126,7 +136,9 @@ class Subject {
 
   template <class Packet>
   static double seconds_a_path(const accel::Accel& with, render::RecordedRays<Packet>& rays) {
-    return render::trace_again(with.tracer(), rays) / static_cast<double>(rays.paths);
+    const double seconds =
+        render::trace_again(with.tracer(), rays.camera) + render::trace_again(with.tracer(), rays.bounced);
+    return seconds / static_cast<double>(rays.paths);
   }
 
   const BenchRequest& request_;
@@ -141,7 +153,11 @@ std::vector<Case> cases_of(const compile::World& world, Benchmark& out) {
   const std::pair<const char*, Precision> precisions[] = {
       {"exact", Precision::kExact}, {"fast", Precision::kFast}, {"book", Precision::kBook}};
   for (const auto& [name, precision] : precisions)
-    cases.push_back({std::string("embree ") + name, Accelerator::kEmbree, precision, world.features, 1, {}, {}});
+    cases.push_back({std::string("embree ") + name, Accelerator::kEmbree, precision, world.features,
+                     render::Traversal::kAuto, 1, {}, {}});
+  for (const auto& [name, traversal] :
+       {std::pair{"exact packet", render::Traversal::kPacket}, std::pair{"exact single", render::Traversal::kSingle}})
+    cases.push_back({name, Accelerator::kEmbree, Precision::kExact, world.features, traversal, 1, {}, {}});
   const double list_s = 3.0 * world.width * world.height * static_cast<double>(world.spheres.size()) / kListTests;
   if (list_s > kLongestList) {
     std::string why;
@@ -150,7 +166,8 @@ std::vector<Case> cases_of(const compile::World& world, Benchmark& out) {
     return cases;
   }
   for (const auto& [name, precision] : precisions)
-    cases.push_back({std::string("list ") + name, Accelerator::kList, precision, world.features, 1, {}, {}});
+    cases.push_back({std::string("list ") + name, Accelerator::kList, precision, world.features,
+                     render::Traversal::kAuto, 1, {}, {}});
   return cases;
 }
 
@@ -159,7 +176,7 @@ std::vector<Case> feature_cases_of(const compile::World& world) {
   if (world.shading != kernel::Shading::kPath) return cases;
   for (const auto& [name, feature] : known_features()) {
     if (world.features.*feature) continue;
-    cases.push_back({name, Accelerator::kEmbree, Precision::kExact, world.features, 1, {}, {}});
+    cases.push_back({name, Accelerator::kEmbree, Precision::kExact, world.features, render::Traversal::kAuto, 1, {}, {}});
     cases.back().features.*feature = true;
   }
   return cases;

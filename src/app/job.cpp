@@ -40,11 +40,19 @@ bool wants_display(const Job& job) {
   return false;
 }
 
+render::Traversal traversal_of(const Job& job) {
+  if (job.traversal == "auto") return render::Traversal::kAuto;
+  if (job.traversal == "packet") return render::Traversal::kPacket;
+  if (job.traversal == "single") return render::Traversal::kSingle;
+  throw base::Error(base::ErrorKind::kUsage, "no traversal " + job.traversal + "; there are auto, packet and single");
+}
+
 /// Everything that can be known to fail before hours are spent, but for the scene.
 void check_request(const Job& job) {
   std::vector<std::filesystem::path> others;
   if (!job.statistics.empty()) others.push_back(job.statistics);
   check_output_files(job.outputs, job.bits, others, job.scene);
+  traversal_of(job);
   image::check_compression(job.exr.compression);
   if (!job.isa.empty() && !kernel::limit_isa(job.isa))
     throw base::Error(base::ErrorKind::kUsage, "no instruction set " + job.isa +
@@ -120,6 +128,7 @@ void run_phases(const Job& job, JobReport& report) {
 
   render::Settings settings;
   settings.threads = job.threads > 0 ? job.threads : default_threads();
+  settings.traversal = traversal_of(job);
   settings.on_progress = job.on_progress;
   settings.cancel = job.cancel;
   const render::Result result = render::render(world, settings);

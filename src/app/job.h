@@ -26,6 +26,7 @@ struct Job {
   bool reproducible = false;         ///< leave out of headers what changes between runs
   std::filesystem::path statistics;  ///< empty: none
   int threads = 0;                   ///< 0: default_threads()
+  std::string traversal = "auto";    ///< auto, packet or single; how rays go through the hierarchy, for comparison
   std::string isa;                   ///< "avx2": no better instruction set; empty: the processor's best
   std::function<void(const render::Progress&)> on_progress;
   std::function<void(const base::Finding&)> on_warning;

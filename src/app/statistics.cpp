@@ -51,6 +51,7 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"written", {{"clamped", report.written.clamped}, {"not_finite", report.written.not_finite}}},
               {"threads", r.threads},
               {"isa", r.isa},
+              {"traversal", r.traversal},
               {"accelerator", r.accelerator},
               {"versions", versions}};
   if (!outcome.error.empty()) out["error"] = outcome.error;

@@ -49,8 +49,9 @@ void print_summary(const RenderOptions& options, const app::JobReport& report) {
                report.width, report.height, report.samples, seconds,
                seconds > 0 ? static_cast<double>(report.render.paths) / seconds / 1e6 : 0.0);
   if (!options.verbose) return;
-  std::fprintf(stderr, "%zu spheres, %s, %s, %d threads, %llu rays; scene %s\n", report.spheres,
-               report.render.accelerator.c_str(), report.render.isa.c_str(), report.render.threads,
+  std::fprintf(stderr, "%zu spheres, %s, %s, traversal %s, %d threads, %llu rays; scene %s\n",
+               report.spheres, report.render.accelerator.c_str(), report.render.isa.c_str(),
+               report.render.traversal.c_str(), report.render.threads,
                static_cast<unsigned long long>(report.render.rays), report.scene_hash.c_str());
   const app::Phases& phases = report.phases;
   std::fprintf(stderr, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, write %.3f s\n", phases.read_s,
@@ -106,6 +107,11 @@ void add_render(CLI::App& program, Action& action) {
   command.add_option("-t,--threads", options->job.threads, "Threads; default: as many as this process may use")
       ->check(whole_number(1, kMostThreads))
       ->type_name("N");
+  command
+      .add_option("--traversal", options->job.traversal,
+                  "How rays go through the hierarchy: auto, the default, measures what is quicker; packet or single")
+      ->check(one_of({"auto", "packet", "single"}))
+      ->type_name("WAY");
   command.add_option("--isa", options->job.isa, "Use no better instruction set: sse4, avx2 or avx512")
       ->type_name("NAME");
   add_picture_options(command, *options);

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "kernel/compaction.h"
+#include "kernel/gather-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/render_tile.h"
@@ -79,30 +80,6 @@ struct Lookup {
   Vec3<hn::Vec<D>> albedo;
   hn::Vec<D> eta_outside, eta_inside, r0_outside, r0_inside;
 };
-
-/// Transposes four consecutive doubles of each lane's own into four vectors.
-template <class D, class RowOfLane>
-HWY_INLINE void gather4(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
-  using T = hn::TFromD<D>;
-  if constexpr (hn::MaxLanes(D()) == 1) {
-    for (int k = 0; k < 4; ++k) out[k] = hn::Set(d, row_of_lane(0)[k]);
-  } else {
-    const hn::CappedTag<double, 4> row_tag;
-    const hn::Rebind<T, decltype(row_tag)> to_tag;
-    HWY_ALIGN T rows[4 * hn::MaxLanes(D())];
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-      for (std::size_t k = 0; k < 4; k += hn::Lanes(row_tag)) {
-        const auto part = hn::LoadU(row_tag, row_of_lane(i) + k);
-        if constexpr (sizeof(T) == sizeof(double)) {
-          hn::StoreU(part, row_tag, rows + 4 * i + k);
-        } else {
-          hn::StoreU(hn::DemoteTo(to_tag, part), to_tag, rows + 4 * i + k);
-        }
-      }
-    }
-    hn::LoadInterleaved4(d, rows, out[0], out[1], out[2], out[3]);
-  }
-}
 
 /// Fetches spheres and materials of the lanes that hit something; the others get those of sphere 0.
 template <class D>

@@ -7,7 +7,6 @@
 #include <memory>
 #include <type_traits>
 
-#include "kernel/render_tile.h"
 
 namespace orrery::render {
 namespace {
@@ -37,21 +36,19 @@ void trace_fast(const void* self, kernel::RayPacketFast& packet) {
 }
 
 template <class Packet, class Stream, class RenderTile>
-RecordedRays<Packet> record(const kernel::SceneView& view, const accel::Accel& accel, const RecordedPixels& pixels,
-                            RenderTile render_tile) {
+RecordedRays<Packet> record(const kernel::SceneView& view, const accel::Accel& accel,
+                            const std::vector<kernel::Tile>& tiles, RenderTile render_tile) {
   Recorder<Packet> recorder{accel.tracer(), {}};
   const kernel::Tracer tap{trace, trace_fast, &recorder};
-  std::vector<kernel::PixelSum> sums(static_cast<std::size_t>(pixels.width));
   const auto stream = std::make_unique<Stream>();
-  for (int y = 0; y < pixels.height; y += pixels.row_step) {
-    kernel::Tile row;
-    row.y = y;
-    row.width = pixels.width;
-    row.height = 1;
-    row.sample_end = static_cast<std::uint32_t>(pixels.samples);
-    row.sums = sums.data();
-    render_tile(view, tap, row, *stream);
-    recorder.rays.paths += static_cast<std::uint64_t>(pixels.width) * row.sample_end;
+  std::vector<kernel::PixelSum> sums;
+  for (kernel::Tile tile : tiles) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
+    sums.assign(pixels, {});
+    tile.sums = sums.data();
+    tile.row_stride = tile.width;
+    render_tile(view, tap, tile, *stream);
+    recorder.rays.paths += pixels * (tile.sample_end - tile.sample_begin);
   }
   return std::move(recorder.rays);
 }
@@ -62,13 +59,11 @@ void trace_packet(const kernel::Tracer& tracer, kernel::RayPacketFast& packet) {
 }
 
 template <class Packet>
-double seconds_to_trace(const kernel::Tracer& tracer, RecordedRays<Packet>& rays) {
+double seconds_to_trace(const kernel::Tracer& tracer, std::vector<Packet>& packets) {
   const auto begin = std::chrono::steady_clock::now();
-  for (std::vector<Packet>* packets : {&rays.camera, &rays.bounced}) {
-    for (Packet& packet : *packets) {
-      forget_hits(packet);
-      trace_packet(tracer, packet);
-    }
+  for (Packet& packet : packets) {
+    forget_hits(packet);
+    trace_packet(tracer, packet);
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -76,13 +71,13 @@ double seconds_to_trace(const kernel::Tracer& tracer, RecordedRays<Packet>& rays
 }  // namespace
 
 RecordedRays<kernel::RayPacket> record_rays(const kernel::SceneView& view, const accel::Accel& accel,
-                                            kernel::Precision precision, const RecordedPixels& pixels) {
-  return record<kernel::RayPacket, kernel::PathStream>(view, accel, pixels, kernel::render_tile_function(precision));
+                                            kernel::Precision precision, const std::vector<kernel::Tile>& tiles) {
+  return record<kernel::RayPacket, kernel::PathStream>(view, accel, tiles, kernel::render_tile_function(precision));
 }
 
 RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& view, const accel::Accel& accel,
-                                                     const RecordedPixels& pixels) {
-  return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, pixels,
+                                                     const std::vector<kernel::Tile>& tiles) {
+  return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, tiles,
                                                                kernel::render_tile_fast_function());
 }
 
@@ -96,11 +91,11 @@ void forget_hits(Packet& packet) {
 template void forget_hits(kernel::RayPacket& packet);
 template void forget_hits(kernel::RayPacketFast& packet);
 
-double trace_again(const kernel::Tracer& tracer, RecordedRays<kernel::RayPacket>& rays) {
-  return seconds_to_trace(tracer, rays);
+double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket>& packets) {
+  return seconds_to_trace(tracer, packets);
 }
-double trace_again(const kernel::Tracer& tracer, RecordedRays<kernel::RayPacketFast>& rays) {
-  return seconds_to_trace(tracer, rays);
+double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacketFast>& packets) {
+  return seconds_to_trace(tracer, packets);
 }
 
 }  // namespace orrery::render

@@ -20,6 +20,7 @@
 #include "kernel/isa.h"
 #include "kernel/render_tile.h"
 #include "render/tiles.h"
+#include "render/traversals.h"
 
 namespace orrery::render {
 namespace {
@@ -131,7 +132,7 @@ std::unique_ptr<accel::Accel> build(const compile::World& world, int threads) {
   return accel;
 }
 
-Result render(const compile::World& world, const accel::Accel& accel, const Settings& settings) {
+Result render(const compile::World& world, accel::Accel& accel, const Settings& settings) {
   Result result;
   result.statistics.threads = threads_of(settings);
   result.statistics.isa = kernel::isa_name();
@@ -143,6 +144,9 @@ Result render(const compile::World& world, const accel::Accel& accel, const Sett
   const auto total = static_cast<std::uint64_t>(world.width) * static_cast<std::uint64_t>(world.height) *
                      static_cast<std::uint64_t>(world.samples);
   ProgressReporter progress(settings, total);
+  const accel::Traversals traversals = choose_traversals(world, accel, settings.traversal);
+  accel.use(traversals);
+  result.statistics.traversal = name_of(traversals);
   tbb::enumerable_thread_specific<Worker> workers;
   const auto cancelled = [&] { return settings.cancel != nullptr && settings.cancel->load(std::memory_order_relaxed); };
   Threads(result.statistics.threads).execute([&] {

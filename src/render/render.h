@@ -19,8 +19,16 @@ struct Progress {
   double seconds = 0;  ///< since rendering began, the acceleration structure's build left out
 };
 
+/// How rays go through the hierarchy; bits do not depend on it.
+enum class Traversal : std::uint8_t {
+  kAuto,    ///< what is quicker in this scene, measured; camera rays and bounced ones apart
+  kPacket,  ///< the rays of a packet together
+  kSingle,  ///< one after the other
+};
+
 struct Settings {
   int threads = 0;  ///< 0: as many as available_threads()
+  Traversal traversal = Traversal::kAuto;
   /// Called from one thread at a time, a few times a second at the most.
   std::function<void(const Progress&)> on_progress;
   const std::atomic<bool>* cancel = nullptr;  ///< looked at between tiles; true stops the render
@@ -35,6 +43,7 @@ struct Statistics {
   double render_s = 0;
   std::string isa;          ///< instruction set of the kernel, "AVX2"
   std::string accelerator;  ///< "embree 3.13.5", "list"
+  std::string traversal;    ///< "packet, bounced single": of camera rays, and of bounced ones where it differs
   int threads = 0;
 };
 
@@ -56,7 +65,7 @@ std::unique_ptr<accel::Accel> build(const compile::World& world, int threads);
 /// Renders a whole picture with hits of an `accel` that was built for this world's spheres and precision.
 ///
 /// Result     completed == false where `cancel` stopped it; build_s is 0
-Result render(const compile::World& world, const accel::Accel& accel, const Settings& settings);
+Result render(const compile::World& world, accel::Accel& accel, const Settings& settings);
 
 /// Builds, and renders a whole picture.
 ///

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of memory fetched lane by lane. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_GATHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_GATHER_INL_H_
+#undef ORRERY_KERNEL_GATHER_INL_H_
+#else
+#define ORRERY_KERNEL_GATHER_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Transposes four consecutive doubles of each lane's own into four vectors.
+template <class D, class RowOfLane>
+HWY_INLINE void gather4(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
+  using T = hn::TFromD<D>;
+  if constexpr (hn::MaxLanes(D()) == 1) {
+    for (int k = 0; k < 4; ++k) out[k] = hn::Set(d, static_cast<T>(row_of_lane(0)[k]));
+  } else {
+    const hn::CappedTag<double, 4> row_tag;
+    const hn::Rebind<T, decltype(row_tag)> to_tag;
+    HWY_ALIGN T rows[4 * hn::MaxLanes(D())];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      for (std::size_t k = 0; k < 4; k += hn::Lanes(row_tag)) {
+        const auto part = hn::LoadU(row_tag, row_of_lane(i) + k);
+        if constexpr (sizeof(T) == sizeof(double)) {
+          hn::StoreU(part, row_tag, rows + 4 * i + k);
+        } else {
+          hn::StoreU(hn::DemoteTo(to_tag, part), to_tag, rows + 4 * i + k);
+        }
+      }
+    }
+    hn::LoadInterleaved4(d, rows, out[0], out[1], out[2], out[3]);
+  }
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

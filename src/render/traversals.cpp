@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/traversals.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "render/recorded_rays.h"
+
+namespace orrery::render {
+namespace {
+
+/// A trial path costs about five ordinary ones: it is rendered, and its rays are traced twice both ways.
+constexpr double kTrialShare = 0.002;
+constexpr double kMostTrialPaths = 32 * 1024;
+
+/// Fewer tiles than this would see one corner of the picture only.
+constexpr int kFewestTrialTiles = 4;
+
+/// Without a trial: bounced rays of larger scenes part too soon for packets.
+constexpr std::size_t kManySpheres = 2000;
+
+/// Tiles all over the picture, the same ones in every run. Each is one stream of paths: fewer would leave bounced packets
+/// emptier than they are in a render. As in a render, a packet of camera rays holds as many pixels as it needs.
+std::vector<kernel::Tile> trial_tiles(const compile::World& world) {
+  const double paths = static_cast<double>(world.width) * world.height * world.samples;
+  const int count = static_cast<int>(std::min(paths * kTrialShare, kMostTrialPaths) / kernel::kStreamSize);
+  const int samples = std::min(world.samples, kernel::kPacketSize);
+  const int width = std::min(kernel::kStreamSize / samples, world.width);
+  std::vector<kernel::Tile> tiles;
+  if (count < kFewestTrialTiles) return tiles;
+  for (int i = 0; i < count; ++i) {
+    kernel::Tile tile;
+    // Down the picture in even steps, across it by the golden ratio's fraction, which never comes near itself.
+    const double across = 0.6180339887498949 * i;
+    tile.x = static_cast<int>((across - static_cast<int>(across)) * (world.width - width + 1));
+    tile.y = static_cast<int>((i + 0.5) / count * world.height);
+    tile.width = width;
+    tile.height = 1;
+    tile.sample_end = static_cast<std::uint32_t>(samples);
+    tiles.push_back(tile);
+  }
+  return tiles;
+}
+
+/// The quicker way for these packets; each way has two tries, in turn, of which the better counts.
+template <class Packet>
+accel::Traversal quicker(accel::Accel& accel, std::vector<Packet>& packets) {
+  double best[2] = {1e300, 1e300};
+  for (int i = 0; i < 4; ++i) {
+    const auto way = static_cast<accel::Traversal>(i % 2);
+    accel.use({way, way});
+    best[i % 2] = std::min(best[i % 2], trace_again(accel.tracer(), packets));
+  }
+  return best[1] < best[0] ? accel::Traversal::kSingle : accel::Traversal::kPacket;
+}
+
+template <class Packet>
+accel::Traversals quicker(accel::Accel& accel, RecordedRays<Packet> rays) {
+  return {quicker(accel, rays.camera), quicker(accel, rays.bounced)};
+}
+
+const char* name_of(accel::Traversal traversal) { return traversal == accel::Traversal::kPacket ? "packet" : "single"; }
+
+}  // namespace
+
+accel::Traversals choose_traversals(const compile::World& world, accel::Accel& accel, Traversal wanted) {
+  if (wanted == Traversal::kPacket) return {accel::Traversal::kPacket, accel::Traversal::kPacket};
+  if (wanted == Traversal::kSingle) return {accel::Traversal::kSingle, accel::Traversal::kSingle};
+  const bool many = world.spheres.size() >= kManySpheres;
+  const accel::Traversals unmeasured{accel::Traversal::kPacket,
+                                     many ? accel::Traversal::kSingle : accel::Traversal::kPacket};
+  if (world.accelerator == compile::Accelerator::kList) return unmeasured;
+  const std::vector<kernel::Tile> tiles = trial_tiles(world);
+  if (tiles.empty()) return unmeasured;
+  accel.use(unmeasured);
+  return world.precision == compile::Precision::kFast
+             ? quicker(accel, record_rays_fast(world.view(), accel, tiles))
+             : quicker(accel, record_rays(world.view(), accel, world.precision, tiles));
+}
+
+std::string name_of(accel::Traversals traversals) {
+  const std::string camera = name_of(traversals.camera);
+  return traversals.camera == traversals.bounced ? camera : camera + ", bounced " + name_of(traversals.bounced);
+}
+
+}  // namespace orrery::render

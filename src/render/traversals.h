@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "accel/accel.h"
+#include "compile/world.h"
+#include "render/render.h"
+
+namespace orrery::render {
+
+/// How the rays of a world had best go through its hierarchy.
+///
+/// With kAuto some thousandths of the picture's paths are rendered, and their rays traced both ways against the clock;
+/// where the picture has too few paths for that to pay, the number of spheres decides. Hits do not depend on the
+/// choice, so neither does the picture.
+accel::Traversals choose_traversals(const compile::World& world, accel::Accel& accel, Traversal wanted);
+
+/// "packet", "single", "packet, bounced single".
+std::string name_of(accel::Traversals traversals);
+
+}  // namespace orrery::render

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/traversals.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "compile/compile.h"
+#include "support/everything.h"
+
+namespace orrery::render {
+namespace {
+
+std::vector<float> pixels(const scene::Scene& scene, Traversal traversal) {
+  Settings settings;
+  settings.traversal = traversal;
+  const Result result = render(compile::compile(scene), settings);
+  std::vector<float> all;
+  for (const film::Plane& plane : result.picture.planes) all.insert(all.end(), plane.values.begin(), plane.values.end());
+  return all;
+}
+
+TEST(RenderTraversals, AllGiveTheSameBits) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+    scene::Scene scene = test::everything();
+    scene.render.precision = precision;
+    const auto packet = pixels(scene, Traversal::kPacket);
+    EXPECT_EQ(pixels(scene, Traversal::kSingle), packet) << static_cast<int>(precision);
+    EXPECT_EQ(pixels(scene, Traversal::kAuto), packet) << static_cast<int>(precision);
+  }
+}
+
+TEST(RenderTraversals, WhatIsAskedForIsUsed) {
+  const compile::World world = compile::compile(test::everything());
+  Settings settings;
+  settings.traversal = Traversal::kSingle;
+  EXPECT_EQ(render(world, settings).statistics.traversal, "single");
+  settings.traversal = Traversal::kPacket;
+  EXPECT_EQ(render(world, settings).statistics.traversal, "packet");
+}
+
+TEST(RenderTraversals, NamesSayWhatDiffers) {
+  using enum accel::Traversal;
+  EXPECT_EQ(name_of({kPacket, kPacket}), "packet");
+  EXPECT_EQ(name_of({kSingle, kSingle}), "single");
+  EXPECT_EQ(name_of({kPacket, kSingle}), "packet, bounced single");
+}
+
+/// Small balls all over a cube, too few paths for a trial.
+scene::Scene balls(int count) {
+  scene::Scene scene = test::everything();
+  scene.spheres.clear();
+  for (int i = 0; i < count; ++i) {
+    const double x = i % 20, y = i / 20 % 20, z = i / 400;
+    scene.spheres.push_back({{x - 10, y - 10, -z - 5}, 0.2, 0, ""});
+  }
+  return scene;
+}
+
+TEST(RenderTraversals, WithoutATrialTheNumberOfSpheresDecides) {
+  for (const auto& [count, name] : {std::pair{1000, "packet"}, std::pair{4000, "packet, bounced single"}}) {
+    const compile::World world = compile::compile(balls(count));
+    const std::unique_ptr<accel::Accel> accel = build(world, 1);
+    EXPECT_EQ(name_of(choose_traversals(world, *accel, Traversal::kAuto)), name);
+  }
+}
+
+/// The same picture with enough samples for a trial: whatever the clock says, it comes to an end and is one of the four.
+TEST(RenderTraversals, ATrialChoosesBetweenBoth) {
+  scene::Scene scene = balls(4000);
+  scene.render.samples = 4096;
+  const compile::World world = compile::compile(scene);
+  const std::unique_ptr<accel::Accel> accel = build(world, 1);
+  const std::string name = name_of(choose_traversals(world, *accel, Traversal::kAuto));
+  EXPECT_TRUE(name == "packet" || name == "single" || name == "packet, bounced single" || name == "single, bounced packet")
+      << name;
+}
+
+}  // namespace
+}  // namespace orrery::render
