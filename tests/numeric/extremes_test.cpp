@@ -29,6 +29,9 @@ constexpr double kHitPointBound = 4.5e-16;
 /// |computed - true distance| x cos(incidence), relative to the distance or to one radius, whichever is more.
 constexpr double kDistanceBound = 5e-16;
 
+/// |distance of a hit point from the centre / radius - 1|, grazing or not.
+constexpr double kLengthBound = 4e-16;
+
 int rays_per_regime() {
   const char* wanted = std::getenv("ORRERY_NUMERIC_RAYS");
   return wanted != nullptr ? std::atoi(wanted) : 100000;
@@ -191,6 +194,7 @@ Truth truth(const Case& c, const kernel::RayPacket& p, int lane) {
 struct Tally {
   long rays = 0, wrong = 0, skipped = 0, differing = 0, doubtful = 0;
   double worst = 0;           ///< error of the hit point, times the cosine of incidence; radii
+  double worst_length = 0;    ///< hit point's distance from the centre: error, radii
   double worst_distance = 0;  ///< the same of the distance, relative to it, or to one radius if that is more
 };
 
@@ -238,6 +242,8 @@ Tally run(const Regime& regime, kernel::Precision precision, int rays) {
         square += e * e;
       }
       tally.worst = std::max(tally.worst, std::sqrt(square) * t.cos_incidence);
+      const long double x = found.offset[0][i], y = found.offset[1][i], z = found.offset[2][i];
+      tally.worst_length = std::max(tally.worst_length, static_cast<double>(std::abs(std::sqrt(x * x + y * y + z * z) / r - 1)));
       const double* const d = cases[i].direction;
       const double radius_long = r / std::hypot(d[0], d[1], d[2]);
       tally.worst_distance = std::max(tally.worst_distance, std::abs(found.distance[i] - t.distance) * t.cos_incidence /
@@ -248,16 +254,18 @@ Tally run(const Regime& regime, kernel::Precision precision, int rays) {
 }
 
 TEST(Extremes, HitOrMissAndHitPointError) {
-  std::printf("%-32s %10s %8s %8s %14s %14s\n", "regime", "rays", "in band", "wrong", "point x cos", "distance x cos");
+  std::printf("%-32s %10s %8s %8s %14s %14s %14s\n", "regime", "rays", "in band", "wrong", "point x cos",
+              "distance x cos", "off the sphere");
   for (const Regime& regime : regimes()) {
     const Tally t = run(regime, kernel::Precision::kExact, rays_per_regime());
-    std::printf("%-32s %10ld %8ld %8ld %14.2e %14.2e\n", regime.name.c_str(), t.rays, t.skipped, t.wrong, t.worst,
-                t.worst_distance);
+    std::printf("%-32s %10ld %8ld %8ld %14.2e %14.2e %14.2e\n", regime.name.c_str(), t.rays, t.skipped, t.wrong,
+                t.worst, t.worst_distance, t.worst_length);
     EXPECT_EQ(t.wrong, 0) << regime.name;
     EXPECT_EQ(t.doubtful, 0) << regime.name << ": 113 and 320 bits differ";
     EXPECT_EQ(t.differing, 0) << regime.name << ": one lane and all lanes differ";
     EXPECT_LE(t.worst, kHitPointBound) << regime.name;
     EXPECT_LE(t.worst_distance, kDistanceBound) << regime.name;
+    EXPECT_LE(t.worst_length, kLengthBound) << regime.name;
     EXPECT_LT(t.skipped, t.rays / 10) << regime.name << ": the band must stay an exception";
   }
 }

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays of a thin lens: where they start, and where they meet.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "unit/kernel/camera_test.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
+#include <hwy/highway.h>
+
+#include "kernel/camera-inl.h"
+#include "math/dispatch.h"
+
+namespace orrery::kernel {
+#ifndef ORRERY_UNIT_KERNEL_CAMERA_TEST_CASE_
+#define ORRERY_UNIT_KERNEL_CAMERA_TEST_CASE_
+struct CameraCase {
+  Camera camera;
+  bool has_lens = true;
+  double pixel[2] = {0, 0}, random[4] = {0.5, 0.5, 0.5, 0.5};
+  double offset[3] = {}, direction[3] = {};
+};
+#endif
+}  // namespace orrery::kernel
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+void camera_case(CameraCase& c) {
+  const hn::FixedTag<double, 1> d;
+  using V = hn::Vec<hn::FixedTag<double, 1>>;
+  const Four<V> random{
+      {hn::Set(d, c.random[0]), hn::Set(d, c.random[1]), hn::Set(d, c.random[2]), hn::Set(d, c.random[3])}};
+  const auto ray = camera_ray(d, c.camera, c.has_lens, hn::Set(d, c.pixel[0]), hn::Set(d, c.pixel[1]), random);
+  const auto store = [](const auto& v, double (&to)[3]) {
+    to[0] = hn::GetLane(v.x);
+    to[1] = hn::GetLane(v.y);
+    to[2] = hn::GetLane(v.z);
+  };
+  store(ray.offset, c.offset);
+  store(ray.direction, c.direction);
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orrery::kernel {
+namespace {
+
+HWY_EXPORT(camera_case);
+
+/// Looks along -z at a plane 10 away, one unit a pixel, through a lens of radius 2.
+CameraCase lens_case() {
+  CameraCase c;
+  const double forward[3] = {0, 0, -10}, right[3] = {1, 0, 0}, down[3] = {0, -1, 0}, u[3] = {2, 0, 0}, v[3] = {0, 2, 0};
+  for (int i = 0; i < 3; ++i) {
+    c.camera.forward[i] = forward[i];
+    c.camera.right[i] = right[i];
+    c.camera.down[i] = down[i];
+    c.camera.lens_u[i] = u[i];
+    c.camera.lens_v[i] = v[i];
+  }
+  c.camera.half_width = 4;
+  c.camera.half_height = 3;
+  return c;
+}
+
+TEST(KernelCamera, RaysOfALensStartOnItsDiscAndMeetInTheFocusPlane) {
+  std::mt19937_64 engine(5);
+  double farthest = 0, corner = 0;
+  for (int i = 0; i < 20000; ++i) {
+    CameraCase c = lens_case();
+    c.pixel[0] = 6;
+    c.pixel[1] = 1;
+    for (double& u : c.random) u = static_cast<double>(engine() >> 11) * 0x1p-53;
+    ORRERY_BEST(camera_case)(c);
+    const double x = c.pixel[0] + c.random[0] - 4, y = -(c.pixel[1] + c.random[1] - 3);  // on the plane
+    const double along = -10 / c.direction[2];
+    EXPECT_NEAR(c.offset[0] + along * c.direction[0], x, 1e-13);
+    EXPECT_NEAR(c.offset[1] + along * c.direction[1], y, 1e-13);
+    EXPECT_EQ(c.offset[2], 0);
+    EXPECT_NEAR(std::hypot(c.direction[0], c.direction[1], c.direction[2]), 1, 1e-15);
+    farthest = std::max(farthest, std::hypot(c.offset[0], c.offset[1]));
+    corner = std::max(corner, std::min(std::abs(c.offset[0]), std::abs(c.offset[1])));
+  }
+  EXPECT_LE(farthest, 2 * (1 + 1e-15));
+  EXPECT_GT(farthest, 2 * 0.999);
+  EXPECT_GT(corner, std::sqrt(2.0) * 0.98) << "the diagonal is reached as well";
+}
+
+TEST(KernelCamera, APinholesRaysStartInIt) {
+  CameraCase c = lens_case();
+  c.has_lens = false;
+  c.random[2] = 0.9;
+  ORRERY_BEST(camera_case)(c);
+  for (const double x : c.offset) EXPECT_EQ(x, 0);
+  EXPECT_NEAR(c.direction[0] / c.direction[2], (0.5 - 4) / -10, 1e-15);
+  EXPECT_NEAR(c.direction[1] / c.direction[2], (3 - 0.5) / -10, 1e-15);
+}
+
+}  // namespace
+}  // namespace orrery::kernel
+#endif
