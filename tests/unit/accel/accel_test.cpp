@@ -8,8 +8,10 @@
 #include <cstdlib>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
+#include "kernel/isa.h"
 #include "support/intersect_batch.h"
 
 namespace orrery::accel {
@@ -125,35 +127,57 @@ void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane
   test::set_ray(packet, lane, base, offset, direction, self);
 }
 
-TEST(AccelAccel, EmbreeFindsExactlyWhatTheListFinds) {
-  for (const Scene& scene : scenes()) {
-    const std::vector<std::uint32_t> materials(scene.spheres.size(), 0);
-    kernel::SceneView view;
-    view.spheres = scene.spheres.data();
-    view.sphere_materials = materials.data();
-    view.sphere_count = scene.spheres.size();
-    const auto list = make_list(view, kernel::Precision::kExact), embree = make_embree(view, kernel::Precision::kExact);
-    Random random;
-    long hits = 0, rays = 0, lost = 0, different = 0;
-    for (; rays < ray_count() / 8; rays += kPacketSize) {
-      kernel::RayPacket a;
-      a.count = kPacketSize;
-      for (int lane = 0; lane < kPacketSize; ++lane) {
-        aim(random, scene, a, lane);
-        a.distance[lane] = std::numeric_limits<double>::max();
-        a.hit[lane] = kNoSphere;
-      }
-      kernel::RayPacket b = a;
-      list->tracer().trace(list->tracer().self, a);
-      embree->tracer().trace(embree->tracer().self, b);
-      for (int lane = 0; lane < kPacketSize; ++lane) {
-        hits += a.hit[lane] != kNoSphere;
-        lost += a.hit[lane] != kNoSphere && b.hit[lane] == kNoSphere;
-        different += a.hit[lane] != b.hit[lane] || (a.hit[lane] != kNoSphere && a.distance[lane] != b.distance[lane]);
-      }
+/// Counts of rays that the list and Embree were both given.
+struct Differences {
+  long rays = 0, hits = 0, lost = 0, different = 0;
+};
+
+Differences differences(const Scene& scene, Traversal traversal, long ray_count) {
+  const std::vector<std::uint32_t> materials(scene.spheres.size(), 0);
+  kernel::SceneView view;
+  view.spheres = scene.spheres.data();
+  view.sphere_materials = materials.data();
+  view.sphere_count = scene.spheres.size();
+  const auto list = make_list(view, kernel::Precision::kExact), embree = make_embree(view, kernel::Precision::kExact);
+  embree->use({traversal, traversal});
+  Random random;
+  Differences found;
+  for (; found.rays < ray_count; found.rays += kPacketSize) {
+    kernel::RayPacket a;
+    a.count = kPacketSize;
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      aim(random, scene, a, lane);
+      a.distance[lane] = std::numeric_limits<double>::max();
+      a.hit[lane] = kNoSphere;
     }
-    EXPECT_EQ(different, 0) << scene.name << ": " << lost << " lost of " << hits << " hits";
-    EXPECT_GT(hits, rays / 10) << scene.name;
+    kernel::RayPacket b = a;
+    list->tracer().trace(list->tracer().self, a);
+    embree->tracer().trace(embree->tracer().self, b);
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      const bool hit = a.hit[lane] != kNoSphere;
+      found.hits += hit;
+      found.lost += hit && b.hit[lane] == kNoSphere;
+      found.different += a.hit[lane] != b.hit[lane] || (hit && a.distance[lane] != b.distance[lane]);
+    }
+  }
+  return found;
+}
+
+/// Both ways through the hierarchy, on every instruction set that this processor has: from the best down, since there is
+/// no way back up.
+TEST(AccelAccel, EmbreeFindsExactlyWhatTheListFinds) {
+  const std::vector<std::string> isas = kernel::available_isas();
+  const std::vector<Scene> all = scenes();
+  const long parts = static_cast<long>(all.size() * isas.size()) * 2;
+  for (const std::string& isa : isas) {
+    ASSERT_TRUE(kernel::limit_isa(isa));
+    for (const Scene& scene : all)
+      for (const Traversal traversal : {Traversal::kPacket, Traversal::kSingle}) {
+        const Differences found = differences(scene, traversal, ray_count() / parts);
+        EXPECT_EQ(found.different, 0) << scene.name << ", " << isa << (traversal == Traversal::kSingle ? ", single" : "")
+                                      << ": " << found.lost << " lost of " << found.hits << " hits";
+        EXPECT_GT(found.hits, found.rays / 10) << scene.name;
+      }
   }
 }
 
