@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nearest hits, rays a second: Embree, the list and the book's own program, on the rays that a render traces.
+// Nearest hits, rays a second: Embree, the list, the book's own program and Embree's own sphere points, on the rays
+// that a render traces.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
@@ -58,10 +59,10 @@ std::vector<baseline::Ray> single_rays(const std::vector<kernel::RayPacket>& pac
   return rays;
 }
 
-/// One ray an iteration, through the book's list of virtual objects.
-void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which) {
+/// One ray an iteration, through the book's list of virtual objects or Embree's own sphere points.
+void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which, baseline::Spheres how) {
   auto& work = workload<kernel::RayPacket>(spheres, Precision::kExact);
-  const baseline::Program program(work.scene);
+  const baseline::Program program(work.scene, how);
   const std::vector<baseline::Ray> rays = single_rays(choose(work.rays, which));
   std::size_t next = 0;
   for (auto _ : state) {
@@ -94,8 +95,11 @@ constexpr std::uint64_t kLongestList = 10'000;
       register_trace(name("final", "embree/" + mode, ""), 0, precision, which, Traversal::kEmbree);
       register_trace(name("final", "list/" + mode, ""), 0, precision, which, Traversal::kList);
     }
-    benchmark::RegisterBenchmark(name("final", "baseline", "").c_str(), trace_baseline, 0u, which);
-    for (std::uint64_t n = 10; n <= 1'000'000; n *= 10) {
+    benchmark::RegisterBenchmark(name("final", "baseline", "").c_str(), trace_baseline, 0u, which,
+                                 baseline::Spheres::kList);
+    benchmark::RegisterBenchmark(name("final", "native_points", "").c_str(), trace_baseline, 0u, which,
+                                 baseline::Spheres::kNativePoints);
+    for (std::uint64_t n = 1; n <= 1'000'000; n *= 10) {
       const std::string size = "/" + std::to_string(n);
       for (const Precision precision : {Precision::kExact, Precision::kFast}) {
         const std::string mode = name_of(precision);
@@ -104,7 +108,10 @@ constexpr std::uint64_t kLongestList = 10'000;
           register_trace(name("cloud", "list/" + mode, size), n, precision, which, Traversal::kList);
       }
       if (n <= kLongestList)
-        benchmark::RegisterBenchmark(name("cloud", "baseline", size).c_str(), trace_baseline, n, which);
+        benchmark::RegisterBenchmark(name("cloud", "baseline", size).c_str(), trace_baseline, n, which,
+                                     baseline::Spheres::kList);
+      benchmark::RegisterBenchmark(name("cloud", "native_points", size).c_str(), trace_baseline, n, which,
+                                   baseline::Spheres::kNativePoints);
     }
   }
   return true;

@@ -8,6 +8,8 @@
 #include <variant>
 
 #include "base/error.h"
+#include "baseline/native_points.h"
+#include "baseline/sphere.h"
 
 namespace orrery::bench::baseline {
 namespace {
@@ -34,11 +36,17 @@ struct MakeMaterial {
   }
 };
 
+std::unique_ptr<const Hittable> make_list(const std::vector<PlacedSphere>& spheres) {
+  auto list = std::make_unique<HittableList>();
+  for (const PlacedSphere& s : spheres) list->add(std::make_unique<Sphere>(s.center, s.radius, s.material));
+  return list;
+}
+
 double tangent_of_half(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 360); }
 
 }  // namespace
 
-Program::Program(const scene::Scene& scene)
+Program::Program(const scene::Scene& scene, Spheres spheres)
     : background_(scene.background),
       width_(scene.image.width),
       height_(scene.image.height),
@@ -49,14 +57,15 @@ Program::Program(const scene::Scene& scene)
   if (background_.type == scene::BackgroundType::kConstant) background_.bottom = background_.top = background_.color;
 
   for (const scene::Material& m : scene.materials) materials_.push_back(std::visit(MakeMaterial(), m.model));
-  for (const scene::Sphere& s : scene.spheres)
-    world_.add(std::make_unique<Sphere>(s.center, s.radius, materials_[s.material].get()));
+  std::vector<PlacedSphere> placed;
+  for (const scene::Sphere& s : scene.spheres) placed.push_back({s.center, s.radius, materials_[s.material].get()});
   for (const scene::Points& p : scene.points) {
     for (std::size_t i = 0; i < p.centers.size(); ++i) {
       const std::uint32_t material = p.materials.empty() ? p.material : p.materials[i];
-      world_.add(std::make_unique<Sphere>(p.centers[i], p.radii[i], materials_[material].get()));
+      placed.push_back({p.centers[i], p.radii[i], materials_[material].get()});
     }
   }
+  world_ = spheres == Spheres::kList ? make_list(placed) : make_native_points(std::move(placed));
 
   const scene::Camera& c = scene.camera;
   const double focus = c.focus_distance.value_or(math::length(c.look_from - c.look_at));
@@ -84,7 +93,7 @@ Ray Program::camera_ray(int x, int y, Random& random) const {
 Vec3d Program::ray_color(const Ray& ray, int depth, Random& random) {
   ++rays_;
   HitRecord hit;
-  if (!world_.hit(ray, {kShortestDistance, std::numeric_limits<double>::infinity()}, hit)) {
+  if (!world_->hit(ray, {kShortestDistance, std::numeric_limits<double>::infinity()}, hit)) {
     const double up = 0.5 * (math::normalized(ray.direction).y + 1);
     return (1 - up) * background_.bottom + up * background_.top;
   }

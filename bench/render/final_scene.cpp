@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <string>
+#include <utility>
 
 #include "baseline/program.h"
 #include "render/render.h"
@@ -39,8 +40,8 @@ void render(benchmark::State& state, Size size, compile::Accelerator accelerator
   state.counters["rays_per_path"] = rays / static_cast<double>(paths);
 }
 
-void render_baseline(benchmark::State& state, Size size) {
-  baseline::Program program(final_scene(size.width, size.height, size.samples));
+void render_baseline(benchmark::State& state, Size size, baseline::Spheres spheres) {
+  baseline::Program program(final_scene(size.width, size.height, size.samples), spheres);
   std::uint64_t seed = 0;
   for (auto _ : state) {
     const auto pixels = program.render(++seed);
@@ -69,8 +70,13 @@ void register_render(const std::string& name, Size size, compile::Accelerator ac
     register_render("embree/" + mode + "/one_thread/small", kSmall, Accelerator::kEmbree, precision, 1);
     register_render("list/" + mode + "/one_thread/small", kSmall, Accelerator::kList, precision, 1);
   }
-  benchmark::RegisterBenchmark("render/final_scene/baseline/one_thread/small", render_baseline, kSmall)
+  benchmark::RegisterBenchmark("render/final_scene/baseline/one_thread/small", render_baseline, kSmall,
+                               baseline::Spheres::kList)
       ->Unit(benchmark::kMillisecond);
+  for (const auto& [name, size] : {std::pair{"one_thread", kLarge}, std::pair{"one_thread/small", kSmall}})
+    benchmark::RegisterBenchmark((std::string("render/final_scene/native_points/") + name).c_str(), render_baseline,
+                                 size, baseline::Spheres::kNativePoints)
+        ->Unit(benchmark::kMillisecond);
   return true;
 }();
 

@@ -9,6 +9,7 @@
 
 #include "accel/accel.h"
 #include "render/recorded_rays.h"
+#include "render/traversals.h"
 #include "support/scenes.h"
 
 namespace orrery::bench {
@@ -30,6 +31,7 @@ struct Workload {
         world(compile_for(scene, precision)),
         embree(accel::make_embree(world.view(), precision)),
         list(accel::make_list(world.view(), precision)) {
+    embree->use(render::choose_traversals(world, *embree, render::Traversal::kAuto));
     kernel::Tile whole;
     whole.width = kRecordedWidth;
     whole.height = kRecordedHeight;

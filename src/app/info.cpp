@@ -12,18 +12,11 @@
 #include "compile/compile.h"
 #include "format/read_scene.h"
 #include "kernel/isa.h"
-#include "kernel/pixel_sum.h"
+#include "render/traversals.h"
 #include "scene/schema.h"
 
 namespace orrery::app {
 namespace {
-
-/// Embree's user geometry while it is built, one primitive a sphere, on top of the sphere itself. Measured on clouds of
-/// one and three million: peak_memory_bytes of --stats with embree less that with list.
-constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
-
-/// A pixel's sum, and the four floats of the finished picture.
-constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
 
 std::vector<Feature> features_of(const compile::World& world) {
   const kernel::Features& f = world.features;
@@ -78,9 +71,8 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
     if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
   info.isa = kernel::isa_name();
-  info.film_bytes = std::uint64_t(world.width) * std::uint64_t(world.height) * kFilmBytesPerPixel;
-  info.sphere_bytes = world.bytes();
-  info.accelerator_bytes = info.accelerator == "embree" ? info.spheres * kAcceleratorBytesPerSphere : 0;
+  info.traversal = render::planned_traversal(world);
+  info.memory = estimate_memory(world.width, world.height, info.spheres, info.accelerator == "embree");
   info.warnings = std::move(read.warnings);
   for (const std::string& advice : precision_advice(world)) {
     base::Finding warning;
@@ -107,10 +99,10 @@ std::string info_text(const SceneInfo& info) {
            info.materials[i].first.c_str());
   append(out, "\nkernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
          info.accelerator.c_str());
-  append(out, "memory      about %s: film %s, spheres %s, accelerator %s\n",
-         bytes_text(info.film_bytes + info.sphere_bytes + info.accelerator_bytes).c_str(),
-         bytes_text(info.film_bytes).c_str(), bytes_text(info.sphere_bytes).c_str(),
-         bytes_text(info.accelerator_bytes).c_str());
+  append(out, "traversal   %s\n", info.traversal.c_str());
+  append(out, "memory      about %s: film %s, spheres %s, accelerator %s\n", bytes_text(info.memory.total()).c_str(),
+         bytes_text(info.memory.film).c_str(), bytes_text(info.memory.spheres).c_str(),
+         bytes_text(info.memory.accelerator).c_str());
   for (const bool required : {true, false}) {
     out += required ? "requires   " : "left out   ";
     bool first = true;
@@ -140,24 +132,26 @@ std::string info_json(const SceneInfo& info) {
   for (const auto& [name, count] : info.materials) materials[name] = count;
   for (const base::Finding& w : info.warnings)
     warnings.push_back({{"file", w.file}, {"line", w.line}, {"column", w.column}, {"text", w.text}});
-  json out = {{"schema", "orrery.info/1"},
-              {"scene_hash", info.scene_hash},
-              {"width", info.width},
-              {"height", info.height},
-              {"samples", info.samples},
-              {"max_depth", info.max_depth},
-              {"spheres", info.spheres},
-              {"bounds", nullptr},
-              {"radius", nullptr},
-              {"materials", materials},
-              {"features", features},
-              {"precision", info.precision},
-              {"accelerator", info.accelerator},
-              {"isa", info.isa},
-              {"memory_bytes",
-               {{"film", info.film_bytes}, {"spheres", info.sphere_bytes}, {"accelerator", info.accelerator_bytes}}},
-              {"settings", settings},
-              {"warnings", warnings}};
+  json out = {
+      {"schema", "orrery.info/1"},
+      {"scene_hash", info.scene_hash},
+      {"width", info.width},
+      {"height", info.height},
+      {"samples", info.samples},
+      {"max_depth", info.max_depth},
+      {"spheres", info.spheres},
+      {"bounds", nullptr},
+      {"radius", nullptr},
+      {"materials", materials},
+      {"features", features},
+      {"precision", info.precision},
+      {"accelerator", info.accelerator},
+      {"isa", info.isa},
+      {"traversal", info.traversal},
+      {"memory_bytes",
+       {{"film", info.memory.film}, {"spheres", info.memory.spheres}, {"accelerator", info.memory.accelerator}}},
+      {"settings", settings},
+      {"warnings", warnings}};
   if (info.spheres > 0) {
     out["bounds"] = {{"lower", info.lower}, {"upper", info.upper}};
     out["radius"] = {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}};

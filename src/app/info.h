@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/memory.h"
 #include "base/finding.h"
 
 namespace orrery::app {
@@ -28,7 +29,8 @@ struct SceneInfo {
   std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< compiled materials by type
   std::vector<Feature> features;
   std::string precision, accelerator, isa;
-  std::uint64_t film_bytes = 0, sphere_bytes = 0, accelerator_bytes = 0;  ///< estimates before a render
+  std::string traversal;  ///< how rays will go through the hierarchy, as far as that is known before a render
+  MemoryEstimate memory;
   struct Setting {
     std::string key, value, origin;
   };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 
+#include "app/memory.h"
 #include "app/output_files.h"
 #include "app/picture_header.h"
 #include "app/scene_hash.h"
@@ -115,6 +116,12 @@ void run_phases(const Job& job, JobReport& report) {
   const display::Settings display = choose_display(job, read.scene, report);
   report.phases.read_s = watch.lap();
   stop_if_asked(job);
+
+  std::uint64_t spheres = read.scene.spheres.size();
+  for (const scene::Points& points : read.scene.points) spheres += points.centers.size();
+  require_memory(estimate_memory(read.scene.image.width, read.scene.image.height, spheres,
+                                 read.scene.render.accelerator == scene::Accelerator::kEmbree),
+                 job.memory_limit);
 
   const compile::World world = compile::compile(read.scene);
   read.scene.points = {};  // ten million spheres need not be there twice while the tree is built

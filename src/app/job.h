@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -26,6 +27,7 @@ struct Job {
   bool reproducible = false;         ///< leave out of headers what changes between runs
   std::filesystem::path statistics;  ///< empty: none
   int threads = 0;                   ///< 0: default_threads()
+  std::uint64_t memory_limit = 0;    ///< bytes; 0: what is free
   std::string traversal = "auto";    ///< auto, packet or single; how rays go through the hierarchy, for comparison
   std::string isa;                   ///< "avx2": no better instruction set; empty: the processor's best
   std::function<void(const render::Progress&)> on_progress;

@@ -12,6 +12,7 @@ namespace orrery::base {
 /// What went wrong, in the classes that a caller can act on; each is one exit status of the program.
 enum class ErrorKind {
   kInternal,      ///< a broken promise of our own code (exit 1)
+  kNoMemory,      ///< more memory is needed than there is (exit 1)
   kUsage,         ///< the request itself makes no sense (exit 2)
   kBadData,       ///< a scene or data file says something wrong (exit 65)
   kMissingInput,  ///< an input cannot be opened (exit 66)

@@ -9,6 +9,7 @@ namespace orrery::base {
 constexpr int exit_status(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::kInternal: return 1;
+    case ErrorKind::kNoMemory: return 1;
     case ErrorKind::kUsage: return 2;
     case ErrorKind::kBadData: return 65;
     case ErrorKind::kMissingInput: return 66;

@@ -47,12 +47,12 @@ void add_bench(CLI::App& program, Action& action) {
   command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
   options->scene.add_to(command);
   command.add_option("-t,--threads", options->request.threads, "Threads; default 1")
-      ->check(whole_number(1, kMostThreads))
+      ->transform(whole_number(1, kMostThreads))
       ->type_name("N");
   command.add_option("--isa", options->request.isa, "Use no better instruction set: sse4, avx2 or avx512")
       ->type_name("NAME");
   command.add_option("--rounds", options->request.rounds, "Measurements of each case; default 7")
-      ->check(whole_number(1, kMostRounds))
+      ->transform(whole_number(1, kMostRounds))
       ->type_name("N");
   command.add_option("--seconds", options->request.seconds, "Least time of one measurement; default 0.25")
       ->check(real_number(0.001, kLongest))

@@ -22,7 +22,7 @@ constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::uint64_t>::max()
 void add_common(CLI::App& command, std::filesystem::path& output, std::uint64_t& seed) {
   command.add_option("-o,--output", output, "Scene file to write")->required()->type_name("FILE");
   command.add_option("--seed", seed, "Another seed is another scene; default 1")
-      ->check(whole_number(0, kLargestSeed))
+      ->transform(whole_number(0, kLargestSeed))
       ->type_name("N");
 }
 
@@ -30,7 +30,7 @@ void add_final(CLI::App& generate, const std::shared_ptr<GenerateOptions>& optio
   CLI::App& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
   add_common(command, options->output, options->final_scene.seed);
   command.add_option("--grid", options->final_scene.grid, "Cells from the middle to the edge; default 11, the book's")
-      ->check(whole_number(0, app::kLargestFinalGrid))
+      ->transform(whole_number(0, app::kLargestFinalGrid))
       ->type_name("N");
   command.footer("Example:\n  orrery generate final -o final.toml --seed 7");
   command.callback([options, &action] {
@@ -46,7 +46,7 @@ void add_cloud(CLI::App& generate, const std::shared_ptr<GenerateOptions>& optio
   CLI::App& command = *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY beside it");
   add_common(command, options->output, options->cloud.seed);
   command.add_option("--count", options->cloud.count, "Spheres; default 1000")
-      ->check(whole_number(1, app::kLargestCloud))
+      ->transform(whole_number(1, app::kLargestCloud))
       ->type_name("N");
   command.add_option("--radius", options->cloud.radius, "Of every sphere; default: by the count, and varied")
       ->check(real_number(0, app::kLargestCloudRadius))

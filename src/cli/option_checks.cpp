@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <functional>
+#include <string_view>
 #include <utility>
 
 #include "base/suggestion.h"
@@ -67,6 +69,24 @@ CLI::Validator real_number(double from, double to) {
         return "must be a number from " + text_of(from) + " to " + text_of(to) + ", not `" + text + "`";
       },
       "real_number");
+}
+
+CLI::Validator byte_size() {
+  return check(
+      [](std::string& text) -> std::string {
+        constexpr std::string_view kUnits = "KMGT";
+        const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
+        double value = 0;
+        if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
+          value = std::ldexp(value, 10 * (static_cast<int>(unit) + 1));
+          if (value >= 1 && value < 0x1p63) {
+            text = std::to_string(static_cast<std::uint64_t>(value));
+            return {};
+          }
+        }
+        return "must be a size with its unit, as 512M or 1.5G, not `" + text + "`";
+      },
+      "byte_size");
 }
 
 void repeatable(CLI::Option& option) { option.take_all()->expected(1)->allow_extra_args(false); }

@@ -14,11 +14,16 @@ namespace orrery::cli {
 /// Refuses a word that is not among `names`, and says which one was meant.
 CLI::Validator one_of(std::vector<std::string> names);
 
-/// Refuses what is no whole number from..to. Digits are decimal, also after a leading zero.
+// Those that say what they leave behind are given by transform(), for check() keeps what was typed.
+
+/// Refuses what is no whole number from..to; leaves its digits without leading zeros, which would make them octal.
 CLI::Validator whole_number(std::uint64_t from, std::uint64_t to);
 
 /// Refuses what is no finite number from..to.
 CLI::Validator real_number(double from, double to);
+
+/// Refuses what is no size, as 512M or 1.5G; leaves bytes behind. K, M, G and T are powers of 1024.
+CLI::Validator byte_size();
 
 /// An option that can be given several times, and takes one value each time: what follows is the next argument.
 void repeatable(CLI::Option& option);

@@ -49,10 +49,9 @@ void print_summary(const RenderOptions& options, const app::JobReport& report) {
                report.width, report.height, report.samples, seconds,
                seconds > 0 ? static_cast<double>(report.render.paths) / seconds / 1e6 : 0.0);
   if (!options.verbose) return;
-  std::fprintf(stderr, "%zu spheres, %s, %s, traversal %s, %d threads, %llu rays; scene %s\n",
-               report.spheres, report.render.accelerator.c_str(), report.render.isa.c_str(),
-               report.render.traversal.c_str(), report.render.threads,
-               static_cast<unsigned long long>(report.render.rays), report.scene_hash.c_str());
+  std::fprintf(stderr, "%zu spheres, %s, %s, traversal %s, %d threads, %llu rays; scene %s\n", report.spheres,
+               report.render.accelerator.c_str(), report.render.isa.c_str(), report.render.traversal.c_str(),
+               report.render.threads, static_cast<unsigned long long>(report.render.rays), report.scene_hash.c_str());
   const app::Phases& phases = report.phases;
   std::fprintf(stderr, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, write %.3f s\n", phases.read_s,
                phases.compile_s, phases.build_s, phases.render_s, phases.write_s);
@@ -105,7 +104,7 @@ void add_render(CLI::App& program, Action& action) {
                   ->type_name("FILE"));
   options->scene.add_to(command);
   command.add_option("-t,--threads", options->job.threads, "Threads; default: as many as this process may use")
-      ->check(whole_number(1, kMostThreads))
+      ->transform(whole_number(1, kMostThreads))
       ->type_name("N");
   command
       .add_option("--traversal", options->job.traversal,
@@ -114,6 +113,10 @@ void add_render(CLI::App& program, Action& action) {
       ->type_name("WAY");
   command.add_option("--isa", options->job.isa, "Use no better instruction set: sse4, avx2 or avx512")
       ->type_name("NAME");
+  command
+      .add_option("--memory-limit", options->job.memory_limit, "Refuse what needs more, as 8G; default: what is free")
+      ->transform(byte_size())
+      ->type_name("SIZE");
   add_picture_options(command, *options);
   command.add_option("--progress", options->progress, "auto, bar, alf, openjd, arnold, json or none")
       ->check(one_of(progress_style_names()))

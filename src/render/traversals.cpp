@@ -20,8 +20,8 @@ constexpr int kFewestTrialTiles = 4;
 /// Without a trial: bounced rays of larger scenes part too soon for packets.
 constexpr std::size_t kManySpheres = 2000;
 
-/// Tiles all over the picture, the same ones in every run. Each is one stream of paths: fewer would leave bounced packets
-/// emptier than they are in a render. As in a render, a packet of camera rays holds as many pixels as it needs.
+/// Tiles all over the picture, the same ones in every run. Each is one stream of paths: fewer would leave bounced
+/// packets emptier than they are in a render. As in a render, a packet of camera rays holds as many pixels as it needs.
 std::vector<kernel::Tile> trial_tiles(const compile::World& world) {
   const double paths = static_cast<double>(world.width) * world.height * world.samples;
   const int count = static_cast<int>(std::min(paths * kTrialShare, kMostTrialPaths) / kernel::kStreamSize);
@@ -60,6 +60,11 @@ accel::Traversals quicker(accel::Accel& accel, RecordedRays<Packet> rays) {
   return {quicker(accel, rays.camera), quicker(accel, rays.bounced)};
 }
 
+accel::Traversals unmeasured(const compile::World& world) {
+  const bool many = world.spheres.size() >= kManySpheres;
+  return {accel::Traversal::kPacket, many ? accel::Traversal::kSingle : accel::Traversal::kPacket};
+}
+
 const char* name_of(accel::Traversal traversal) { return traversal == accel::Traversal::kPacket ? "packet" : "single"; }
 
 }  // namespace
@@ -67,16 +72,19 @@ const char* name_of(accel::Traversal traversal) { return traversal == accel::Tra
 accel::Traversals choose_traversals(const compile::World& world, accel::Accel& accel, Traversal wanted) {
   if (wanted == Traversal::kPacket) return {accel::Traversal::kPacket, accel::Traversal::kPacket};
   if (wanted == Traversal::kSingle) return {accel::Traversal::kSingle, accel::Traversal::kSingle};
-  const bool many = world.spheres.size() >= kManySpheres;
-  const accel::Traversals unmeasured{accel::Traversal::kPacket,
-                                     many ? accel::Traversal::kSingle : accel::Traversal::kPacket};
-  if (world.accelerator == compile::Accelerator::kList) return unmeasured;
+  if (world.accelerator == compile::Accelerator::kList) return unmeasured(world);
   const std::vector<kernel::Tile> tiles = trial_tiles(world);
-  if (tiles.empty()) return unmeasured;
-  accel.use(unmeasured);
+  if (tiles.empty()) return unmeasured(world);
+  accel.use(unmeasured(world));
   return world.precision == compile::Precision::kFast
              ? quicker(accel, record_rays_fast(world.view(), accel, tiles))
              : quicker(accel, record_rays(world.view(), accel, world.precision, tiles));
+}
+
+std::string planned_traversal(const compile::World& world) {
+  if (world.accelerator == compile::Accelerator::kList || world.spheres.empty()) return "list";
+  return trial_tiles(world).empty() ? name_of(unmeasured(world))
+                                    : "packet or single, chosen by a trial of the scene's rays";
 }
 
 std::string name_of(accel::Traversals traversals) {

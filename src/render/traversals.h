@@ -16,6 +16,9 @@ namespace orrery::render {
 /// choice, so neither does the picture.
 accel::Traversals choose_traversals(const compile::World& world, accel::Accel& accel, Traversal wanted);
 
+/// What can be said before anything is built: "packet" and the like, "list", or that a trial will choose.
+std::string planned_traversal(const compile::World& world);
+
 /// "packet", "single", "packet, bounced single".
 std::string name_of(accel::Traversals traversals);
 

@@ -107,6 +107,21 @@ TEST_F(CliProgram, AnExistingPictureSurvivesAFailedWrite) {
   EXPECT_TRUE(text_of(folder_ / "a.png") == before);
 }
 
+TEST_F(CliProgram, NumbersAreDecimal) {
+  const Outcome r = run("render good.toml -o a.png -v -t 010");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(contains(r.err, " 10 threads")) << r.err;
+}
+
+TEST_F(CliProgram, WhatDoesNotFitIntoMemoryIsRefused) {
+  const Outcome r = run("render good.toml -o a.png --memory-limit 1K");
+  EXPECT_EQ(r.status, 1);
+  EXPECT_TRUE(contains(r.err, "orrery: the render needs about ")) << r.err;
+  EXPECT_TRUE(contains(r.err, "1.0 KiB is what --memory-limit allows; allow more\n")) << r.err;
+  EXPECT_EQ(file_count(), 0);
+  EXPECT_EQ(run("render good.toml -o a.png --memory-limit 1G").status, 0);
+}
+
 TEST_F(CliProgram, OverridesAreCheckedLikeTheFile) {
   const Outcome r = run("render good.toml -o a.png --set camera.vfov=30 --set render.sampels=3");
   EXPECT_EQ(r.status, 65);

@@ -85,8 +85,15 @@ TEST_F(AppInfo, TellsWhatIsRequiredAndWhatIsLeftOut) {
 }
 
 TEST_F(AppInfo, ListNeedsNoMemoryForATree) {
-  EXPECT_GT(info(kScene).accelerator_bytes, 0u);
-  EXPECT_EQ(info(kScene, {"render.accelerator=list"}).accelerator_bytes, 0u);
+  EXPECT_GT(info(kScene).memory.accelerator, 0u);
+  EXPECT_EQ(info(kScene, {"render.accelerator=list"}).memory.accelerator, 0u);
+}
+
+TEST_F(AppInfo, TellsHowRaysWillTraverse) {
+  EXPECT_EQ(info(kScene).traversal, "packet") << "too few paths for a trial";
+  EXPECT_EQ(info(kScene, {"render.samples=100000"}).traversal,
+            "packet or single, chosen by a trial of the scene's rays");
+  EXPECT_EQ(info(kScene, {"render.accelerator=list"}).traversal, "list");
 }
 
 TEST_F(AppInfo, SettingsTellWhereTheyCameFrom) {

@@ -41,6 +41,18 @@ TEST(CliOptionChecks, RealNumbersAreFinite) {
     EXPECT_EQ(verdict(check, wrong), std::string("must be a number from -100 to 100, not `") + wrong + "`");
 }
 
+TEST(CliOptionChecks, SizesAreBytesWithAUnit) {
+  for (const auto& [text, bytes] :
+       {std::pair{"1K", "1024"}, {"512M", "536870912"}, {"1.5G", "1610612736"}, {"2T", "2199023255552"}}) {
+    std::string value = text;
+    EXPECT_EQ(byte_size()(value), "");
+    EXPECT_EQ(value, bytes);
+  }
+  for (const char* wrong : {"", "G", "8", "8g", "-1G", "0G", "nanG", "1e300T", "8GB"})
+    EXPECT_EQ(verdict(byte_size(), wrong),
+              std::string("must be a size with its unit, as 512M or 1.5G, not `") + wrong + "`");
+}
+
 TEST(CliOptionChecks, RepeatableTakesOneValueEachTime) {
   CLI::App app;
   std::vector<std::string> outputs;
