@@ -46,11 +46,24 @@ class Accel {
 /// Domain     the view's spheres outlive the result
 std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precision precision);
 
+/// The naive traversal with a ray in each lane: what the hierarchy has to beat. For comparison.
+///
+/// Domain     the view's spheres outlive the result
+std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision);
+
 /// Spheres as Embree user geometry.
 ///
 /// Domain     the view's spheres outlive the result
 /// Errors     base::Error(kInternal) where Embree fails or would drop a sphere
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision);
+
+/// Embree's own sphere points, one ray at a time, in float, as a renderer has them that writes no intersection of its
+/// own. Only rays of the fast kernel can be traced; hits are Embree's, not ours, so no picture is made of them. For
+/// comparison.
+///
+/// Domain     1 sphere or more, which fit into floats
+/// Errors     base::Error(kInternal) where Embree fails
+std::unique_ptr<Accel> make_native_points(const kernel::SceneView& scene);
 
 /// The version of Embree that is loaded, "3.13.5".
 std::string embree_version();

@@ -15,6 +15,8 @@ namespace orrery::accel {
 /// boxes are a hint, the hit itself is computed from the authored doubles.
 class BoxFrame {
  public:
+  BoxFrame() = default;
+
   /// Domain     `ids` not empty
   BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids);
 

@@ -21,7 +21,8 @@ constexpr double kApartRatio = 4;
 
 [[noreturn]] void fail(RTCDevice device, const std::string& what) {
   const RTCError code = rtcGetDeviceError(device);
-  throw base::Error(base::ErrorKind::kInternal, what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
+  throw base::Error(base::ErrorKind::kInternal,
+                    what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
 }
 
 /// Ids, ascending, of spheres that dwarf the box around the rest.
@@ -141,7 +142,29 @@ class Embree final : public Accel {
   std::atomic<std::int64_t> bytes_{0};
 };
 
+/// Every sphere stands apart, and no hierarchy is left.
+class SimdList final : public Accel {
+ public:
+  SimdList(const kernel::SceneView& view, kernel::Precision precision) : functions_(embree_functions(precision)) {
+    scene_.spheres = view.spheres;
+    scene_.apart.resize(view.sphere_count);
+    std::iota(scene_.apart.begin(), scene_.apart.end(), 0u);
+  }
+
+  kernel::Tracer tracer() const noexcept override { return {functions_.trace, functions_.trace_fast, &scene_}; }
+  std::string name() const override { return "SIMD list"; }
+  std::size_t bytes() const noexcept override { return scene_.apart.size() * sizeof(scene_.apart[0]); }
+
+ private:
+  EmbreeFunctions functions_;
+  EmbreeScene scene_;
+};
+
 }  // namespace
+
+std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision) {
+  return std::make_unique<SimdList>(scene, precision);
+}
 
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision) {
   if (scene.sphere_count == 0) return make_list(scene, precision);  // nothing to build a hierarchy of

@@ -45,6 +45,10 @@ std::string benchmark_text(const Benchmark& b) {
       out += ratio + "\n";
     }
   }
+  if (!b.tracing.empty()) append(out, "\n%-16s %10s  %s\n", "fast, hits only", "M rays/s", "ratio to packets");
+  for (const BenchTracing& t : b.tracing)
+    append(out, "%-16s %10.3g  %s\n", t.name.c_str(), t.rays_per_s.median / 1e6,
+           with_quartiles("%.3g", t.ratio).c_str());
   if (!b.features.empty()) out += "\nembree exact, as if the scene also had\n";
   for (const BenchCase& c : b.features)
     append(out, "%-16s %10.3g  %s\n", c.name.c_str(), c.paths_per_s.median / 1e6,
@@ -55,7 +59,10 @@ std::string benchmark_text(const Benchmark& b) {
 
 std::string benchmark_json(const Benchmark& b) {
   using nlohmann::json;
-  json cases = json::array(), features = json::array();
+  json cases = json::array(), features = json::array(), tracing = json::array();
+  for (const BenchTracing& t : b.tracing)
+    tracing.push_back(
+        {{"name", t.name}, {"rays_per_s", quartiles_json(t.rays_per_s)}, {"ratio", quartiles_json(t.ratio)}});
   for (const BenchCase& c : b.cases) cases.push_back(case_json(c));
   for (const BenchCase& c : b.features) features.push_back(case_json(c));
   return json_text({{"schema", "orrery.bench/1"},
@@ -69,6 +76,7 @@ std::string benchmark_json(const Benchmark& b) {
                     {"isa", b.isa},
                     {"accelerator", b.accelerator},
                     {"cases", cases},
+                    {"tracing", tracing},
                     {"features", features},
                     {"left_out", b.left_out}});
 }

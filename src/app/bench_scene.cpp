@@ -5,8 +5,10 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "app/bench_tracing.h"
 #include "app/scene_hash.h"
 #include "app/text.h"
 #include "base/error.h"
@@ -20,27 +22,28 @@
 namespace orrery::app {
 namespace {
 
-using compile::Accelerator;
 using compile::Precision;
 
-/// Pixels of the picture that is rendered: few, so that a list can render all of them, and with many samples each, which
-/// is how pictures are rendered in earnest.
+/// Pixels of the picture that is rendered: few, so that a list can render all of them, and with many samples each,
+/// which is how pictures are rendered in earnest.
 constexpr double kPixels = 96 * 54;
 
 /// Every so many rows are recorded: some ten thousand paths, so that the record does not crowd out the caches.
 constexpr int kRecordedRows = 4;
 
-/// A list that would take longer for a sample a pixel is left out.
+/// Lists are left out where the naive one would take longer for a sample a pixel.
 constexpr double kLongestList = 10;  // seconds
 /// Rays against spheres a second, of one lane.
 constexpr double kListTests = 1e8;
 
 constexpr double kMostSamples = 1 << 20;
 
+enum class Accelerator { kEmbree, kList, kSimdList };
+
 struct Case {
   std::string name;
-  Accelerator accelerator;
-  Precision precision;
+  Accelerator accelerator = Accelerator::kEmbree;
+  Precision precision = Precision::kExact;
   kernel::Features features;
   render::Traversal traversal = render::Traversal::kAuto;
   int samples = 1;
@@ -49,24 +52,14 @@ struct Case {
 
 const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_features() {
   static const std::vector<std::pair<const char*, bool kernel::Features::*>> known = {
-      {"thin lens", &kernel::Features::lens},      {"lambertian", &kernel::Features::lambertian},
-      {"hemisphere", &kernel::Features::hemisphere}, {"metal", &kernel::Features::metal},
-      {"fuzz", &kernel::Features::fuzz},           {"dielectric", &kernel::Features::dielectric},
+      {"thin lens", &kernel::Features::lens},
+      {"lambertian", &kernel::Features::lambertian},
+      {"hemisphere", &kernel::Features::hemisphere},
+      {"metal", &kernel::Features::metal},
+      {"fuzz", &kernel::Features::fuzz},
+      {"dielectric", &kernel::Features::dielectric},
       {"gradient sky", &kernel::Features::sky}};
   return known;
-}
-
-/// Linear between the two nearest.
-double quantile(const std::vector<double>& sorted, double q) {
-  const double at = q * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (sorted[above] - sorted[below]) * (at - static_cast<double>(below));
-}
-
-Quartiles quartiles(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75)};
 }
 
 /// The scene's picture, small.
@@ -103,15 +96,7 @@ class Subject {
   double trace_alone(const Case& c) {
     prepare(c);
     const accel::Accel& with = accel(c);
-    std::vector<kernel::Tile> rows;
-    for (int y = 0; y < world_.height; y += kRecordedRows) {
-      kernel::Tile row;
-      row.y = y;
-      row.width = world_.width;
-      row.height = 1;
-      row.sample_end = kernel::kPacketSize;
-      rows.push_back(row);
-    }
+    const std::vector<kernel::Tile> rows = recorded_rows();
     if (c.precision == Precision::kFast) {
       if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(world_.view(), with, rows);
       return seconds_a_path(with, fast_rays_);
@@ -121,16 +106,41 @@ class Subject {
     return seconds_a_path(with, rays);
   }
 
+  /// The ways to find hits in `fast`, lists where they are bearable.
+  TracingBench tracing_bench(bool with_lists) {
+    Case fast;
+    fast.precision = Precision::kFast;
+    fast.features = world_.features;
+    prepare(fast);
+    return TracingBench(world_.view(), accel(fast), recorded_rows(), with_lists);
+  }
+
  private:
+  std::vector<kernel::Tile> recorded_rows() const {
+    std::vector<kernel::Tile> rows;
+    for (int y = 0; y < world_.height; y += kRecordedRows) {
+      kernel::Tile row;
+      row.y = y;
+      row.width = world_.width;
+      row.height = 1;
+      row.sample_end = kernel::kPacketSize;
+      rows.push_back(row);
+    }
+    return rows;
+  }
+
   void prepare(const Case& c) {
-    world_.accelerator = c.accelerator;
+    world_.accelerator =
+        c.accelerator == Accelerator::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
     world_.precision = c.precision;
     world_.features = c.features;
   }
 
   accel::Accel& accel(const Case& c) {
     auto& built = accels_[{c.accelerator, c.precision}];
-    if (!built) built = render::build(world_, render::available_threads());
+    if (!built)
+      built = c.accelerator == Accelerator::kSimdList ? accel::make_simd_list(world_.view(), c.precision)
+                                                      : render::build(world_, render::available_threads());
     return *built;
   }
 
@@ -148,26 +158,36 @@ class Subject {
   render::RecordedRays<kernel::RayPacketFast> fast_rays_;
 };
 
+bool lists_are_bearable(const compile::World& world) {
+  return 3.0 * world.width * world.height * static_cast<double>(world.spheres.size()) / kListTests <= kLongestList;
+}
+
 std::vector<Case> cases_of(const compile::World& world, Benchmark& out) {
   std::vector<Case> cases;
   const std::pair<const char*, Precision> precisions[] = {
       {"exact", Precision::kExact}, {"fast", Precision::kFast}, {"book", Precision::kBook}};
   for (const auto& [name, precision] : precisions)
-    cases.push_back({std::string("embree ") + name, Accelerator::kEmbree, precision, world.features,
-                     render::Traversal::kAuto, 1, {}, {}});
+    cases.push_back({std::string("embree ") + name,
+                     Accelerator::kEmbree,
+                     precision,
+                     world.features,
+                     render::Traversal::kAuto,
+                     1,
+                     {},
+                     {}});
   for (const auto& [name, traversal] :
        {std::pair{"exact packet", render::Traversal::kPacket}, std::pair{"exact single", render::Traversal::kSingle}})
     cases.push_back({name, Accelerator::kEmbree, Precision::kExact, world.features, traversal, 1, {}, {}});
-  const double list_s = 3.0 * world.width * world.height * static_cast<double>(world.spheres.size()) / kListTests;
-  if (list_s > kLongestList) {
-    std::string why;
-    append(why, "list: one sample for each pixel would take about %.0f s", list_s);
-    out.left_out.push_back(why);
+  if (!lists_are_bearable(world)) {
+    out.left_out.push_back("lists: of so many spheres one would take more than " +
+                           std::to_string(static_cast<int>(kLongestList)) + " s for a sample a pixel");
     return cases;
   }
-  for (const auto& [name, precision] : precisions)
-    cases.push_back({std::string("list ") + name, Accelerator::kList, precision, world.features,
-                     render::Traversal::kAuto, 1, {}, {}});
+  for (const auto& [name, accelerator] :
+       {std::pair{"SIMD list ", Accelerator::kSimdList}, std::pair{"list ", Accelerator::kList}})
+    for (const auto& [suffix, precision] : precisions)
+      cases.push_back(
+          {std::string(name) + suffix, accelerator, precision, world.features, render::Traversal::kAuto, 1, {}, {}});
   return cases;
 }
 
@@ -176,7 +196,8 @@ std::vector<Case> feature_cases_of(const compile::World& world) {
   if (world.shading != kernel::Shading::kPath) return cases;
   for (const auto& [name, feature] : known_features()) {
     if (world.features.*feature) continue;
-    cases.push_back({name, Accelerator::kEmbree, Precision::kExact, world.features, render::Traversal::kAuto, 1, {}, {}});
+    cases.push_back(
+        {name, Accelerator::kEmbree, Precision::kExact, world.features, render::Traversal::kAuto, 1, {}, {}});
     cases.back().features.*feature = true;
   }
   return cases;
@@ -222,6 +243,8 @@ Benchmark bench_scene(const BenchRequest& request) {
   std::vector<Case> cases = cases_of(world, out);
   const std::size_t ways = cases.size();
   for (Case& c : feature_cases_of(world)) cases.push_back(std::move(c));
+  std::optional<TracingBench> tracing;
+  if (request.threads == 1 && !world.spheres.empty()) tracing.emplace(subject.tracing_bench(lists_are_bearable(world)));
   const int total = static_cast<int>(cases.size()) * (request.rounds + 1);
   int done = 0;
   const auto tell = [&] {
@@ -244,7 +267,9 @@ Benchmark bench_scene(const BenchRequest& request) {
       if (c.accelerator == Accelerator::kEmbree) out.accelerator = did.accelerator;
       tell();
     }
+    if (tracing) tracing->measure(round);
   }
+  if (tracing) out.tracing = tracing->results();
   for (std::size_t i = 0; i < cases.size(); ++i)
     (i < ways ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
   return out;

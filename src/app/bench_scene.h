@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "app/quartiles.h"
+
 namespace orrery::app {
 
 struct BenchRequest {
   std::filesystem::path scene;
   std::vector<std::string> overrides;
-  std::string isa;        ///< empty: the best
+  std::string isa;  ///< empty: the best
   int threads = 1;
   int rounds = 7;         ///< each round measures every case once
   double seconds = 0.25;  ///< of one measurement, at least
@@ -22,18 +24,20 @@ struct BenchRequest {
   std::function<void(int done, int total)> on_progress;  ///< measurements
 };
 
-/// The middle half of some measurements.
-struct Quartiles {
-  double low = 0, median = 0, high = 0;
-};
-
 /// One way to render the scene.
 struct BenchCase {
-  std::string name;       ///< "embree fast"
+  std::string name;  ///< "embree fast"
   Quartiles paths_per_s;
-  Quartiles ratio;        ///< of paths a second to those of "embree exact" in the same round
-  /// Part of its time that tracing its rays alone needs; with one thread and Embree only.
+  Quartiles ratio;  ///< of paths a second to those of "embree exact" in the same round
+  /// Part of its time that tracing its rays alone needs; with one thread and a hierarchy only.
   std::optional<Quartiles> tracing;
+};
+
+/// One way to find the hits of the rays that a render in `fast` has traced.
+struct BenchTracing {
+  std::string name;  ///< "sphere points, single rays"
+  Quartiles rays_per_s;
+  Quartiles ratio;  ///< of rays a second to those of the first way in the same round
 };
 
 /// What was measured, in one run whose rounds alternate between all cases.
@@ -44,6 +48,7 @@ struct Benchmark {
   int width = 0, height = 0;  ///< px; of the small picture that is rendered
   int threads = 0, rounds = 0;
   std::vector<BenchCase> cases;       ///< first "embree exact"
+  std::vector<BenchTracing> tracing;  ///< with one thread only
   std::vector<BenchCase> features;    ///< exact, as if the scene had one feature more; named by it
   std::vector<std::string> left_out;  ///< what was not measured, and why
 };

@@ -45,7 +45,8 @@ std::vector<std::string> names(const std::vector<BenchCase>& cases) {
 TEST_F(AppBenchScene, MeasuresEveryPrecisionBothWays) {
   const Benchmark b = bench_scene(request());
   EXPECT_EQ(names(b.cases), (std::vector<std::string>{"embree exact", "embree fast", "embree book", "exact packet",
-                                                      "exact single", "list exact", "list fast", "list book"}));
+                                                      "exact single", "SIMD list exact", "SIMD list fast",
+                                                      "SIMD list book", "list exact", "list fast", "list book"}));
   EXPECT_EQ(b.spheres, 1u);
   EXPECT_EQ(b.threads, 1);
   EXPECT_GT(b.rays_per_path, 1);
@@ -56,10 +57,13 @@ TEST_F(AppBenchScene, MeasuresEveryPrecisionBothWays) {
     EXPECT_GT(c.paths_per_s.low, 0) << c.name;
     EXPECT_LE(c.paths_per_s.low, c.paths_per_s.median) << c.name;
     EXPECT_LE(c.paths_per_s.median, c.paths_per_s.high) << c.name;
-    EXPECT_EQ(c.tracing.has_value(), c.name.rfind("list", 0) != 0) << c.name;
+    EXPECT_EQ(c.tracing.has_value(), c.name.find("list") == std::string::npos) << c.name;
   }
   EXPECT_EQ(b.cases[0].ratio.low, 1);
   EXPECT_EQ(b.cases[0].ratio.high, 1);
+  ASSERT_EQ(b.tracing.size(), 4u);
+  for (const BenchTracing& t : b.tracing) EXPECT_GT(t.rays_per_s.low, 0) << t.name;
+  EXPECT_EQ(b.tracing[0].ratio.median, 1);
   EXPECT_TRUE(b.left_out.empty());
 }
 
