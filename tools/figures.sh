@@ -28,6 +28,7 @@ figure() {
 }
 
 figure "hit or miss, hit point, distance, against 113 and 320 bits" numeric/numeric 'Extremes.HitOrMissAndHitPointError'
+figure "the book's formula before the same judge, which must find it guilty" numeric/numeric 'Extremes.TheBooksFormulaFailsThem'
 figure "grey furnace, radii 1e-12 .. 1e12: no self-hit" numeric/numeric 'ExtremeScenes.AGreySphereNeverHitsItself'
 figure "contacts at gaps of 1e-13 radii and more" numeric/numeric 'Extremes.NoContactIsLost'
 figure "white furnaces" numeric/numeric 'ExtremeScenes.*-*AGreySphereNeverHitsItself'

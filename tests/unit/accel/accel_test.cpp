@@ -133,6 +133,17 @@ void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane
   test::set_ray(packet, lane, base, offset, direction, self);
 }
 
+/// Moves a ray's origin back along it, as far as a thousand times the camera's distance.
+void step_back(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
+  const double by = scene.camera_distance * std::exp(random.uniform(0, 7));
+  double base[3], direction[3];
+  for (int i = 0; i < 3; ++i) {
+    direction[i] = packet.direction[i][lane];
+    base[i] = packet.origin[i][lane] - direction[i] * by;
+  }
+  test::set_ray(packet, lane, base, {0, 0, 0}, direction, kNoSphere);
+}
+
 /// One of the ways to find hits that must agree with the list's.
 struct Way {
   const char* name;
@@ -163,6 +174,8 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
     a.count = kPacketSize;
     for (int lane = 0; lane < kPacketSize; ++lane) {
       aim(random, scene, a, lane);
+      // Rays of one packet that come from far and from near are moved on by different lengths.
+      if (random.uniform(0, 1) < 0.05) step_back(random, scene, a, lane);
       a.distance[lane] = std::numeric_limits<double>::max();
       a.hit[lane] = kNoSphere;
     }

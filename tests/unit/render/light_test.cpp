@@ -73,8 +73,10 @@ TEST(RenderLight, OnePixelIsTheMeanOfManySmallOnes) {
   s.background.bottom = {0, 0, 0};
   s.background.top = {1, 1, 1};
   s.materials[1] = {"black", scene::Lambertian{{0, 0, 0}}};
-  for (const math::Vec3d side : {math::Vec3d{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}}) {
-    s.spheres = {{side * 30, 30, 0, ""}, {side * -30, 30, 1, ""}};
+  // Two walls that face the camera and meet in its middle.
+  const math::Vec3d behind{0, 0, -30};
+  for (const math::Vec3d side : {math::Vec3d{3, 0, 0}, {-3, 0, 0}, {0, 3, 0}, {0, -3, 0}}) {
+    s.spheres = {{behind + side, 30, 0, ""}, {behind - side, 30, 1, ""}};
     s.image = {64, 64};
     s.render.samples = 64;
     const double small = mean_red(s);
@@ -126,6 +128,18 @@ TEST(RenderLight, ASmallSceneFarFromHomeLooksTheSame) {
   for (std::size_t i = 0; i < 256; ++i)
     different += std::abs(far.picture.planes[0].values[i] - home.picture.planes[0].values[i]) > 1e-6f;
   EXPECT_LE(different, 2);
+}
+
+/// A ball in a shell that touches it nearly: at 2^30 units from home the gap is a twentieth of what an origin that is one
+/// double cannot say, and a ray that is bent nowhere on its way in must still find the ball.
+TEST(RenderLight, ANarrowGapFarFromHomeIsNotJumped) {
+  scene::Scene s = grey_sphere();
+  const math::Vec3d away{0x1p30, 0x1p30, -0x1p30};
+  s.camera.look_from = s.camera.look_from + away;
+  s.camera.look_at = s.camera.look_at + away;
+  s.spheres = {{away, 1, 0, ""}, {away, 1 + 0x1p-27, 1, ""}};
+  const Result result = render(compile::compile(s), {});
+  for (const float value : result.picture.planes[0].values) ASSERT_EQ(value, 0.5f);
 }
 
 }  // namespace
