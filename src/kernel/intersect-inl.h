@@ -66,26 +66,54 @@ struct Chord {
   Vec3<V> to_center;  ///< from the middle to the sphere's centre; perpendicular to the direction
 };
 
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V discriminant(const V& radius, const Vec3<V>& to_center) {
+  return hn::NegMulAdd(to_center.z, to_center.z,
+                       hn::NegMulAdd(to_center.y, to_center.y,
+                                     hn::NegMulAdd(to_center.x, to_center.x, radius * radius)));
+}
+
 /// The perpendicular form: only differences are ever squared, so nothing large cancels.
 ///
-/// Precision  test Extremes.HitPointError, against MPFR
-/// Reference  haines2019, ch. 7, extended by the low part of the difference and a second projection
+/// Reference  haines2019, ch. 7
+template <class D>
+HWY_INLINE Chord<D> plain_chord(const Rays<D>& ray, const Spheres<D>& sphere) {
+  const auto to_sphere = sphere.center - ray.origin;
+  const auto middle = dot(to_sphere, ray.direction) * ray.inverse_square;
+  const auto to_center = neg_mul_add(ray.direction, middle, to_sphere);
+  return {middle, discriminant<D>(sphere.radius, to_center), to_center};
+}
+
+/// The same, with what rounding took from the difference, and a second projection.
+///
+/// Precision  test Extremes.HitOrMissAndHitPointError, against MPFR
+template <class D>
+HWY_INLINE Chord<D> compensated(const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
+  const auto lost = difference_error(sphere.center, ray.origin, sphere.center - ray.origin);
+  auto to_center = plain.to_center + (lost - ray.origin_low);
+  // A far origin leaves a component along the ray in what should be perpendicular to it: take it out once more.
+  const auto rest = dot(to_center, ray.direction) * ray.inverse_square;
+  to_center = neg_mul_add(ray.direction, rest, to_center);
+  return {plain.middle + rest, discriminant<D>(sphere.radius, to_center), to_center};
+}
+
 template <class D, bool kCompensated>
 HWY_INLINE Chord<D> chord(const Rays<D>& ray, const Spheres<D>& sphere) {
+  const auto plain = plain_chord(ray, sphere);
+  if constexpr (kCompensated) return compensated(ray, sphere, plain);
+  return plain;
+}
+
+/// Lanes whose lines may meet their spheres; the others surely do not, whatever compensation adds.
+///
+/// The plain form errs by less than 2^-47 (|to_sphere|^2 + |center|^2): the difference by 2^-53 of itself and of the origin,
+/// which is no farther from home than both together; the projection by some 2^-51 of the difference.
+template <class D>
+HWY_INLINE hn::Mask<D> may_meet(D d, const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
   const auto to_sphere = sphere.center - ray.origin;
-  auto middle = dot(to_sphere, ray.direction) * ray.inverse_square;
-  auto to_center = neg_mul_add(ray.direction, middle, to_sphere);
-  if constexpr (kCompensated) {
-    to_center = to_center + (difference_error(sphere.center, ray.origin, to_sphere) - ray.origin_low);
-    // A far origin leaves a component along the ray in what should be perpendicular to it: take it out once more.
-    const auto rest = dot(to_center, ray.direction) * ray.inverse_square;
-    to_center = neg_mul_add(ray.direction, rest, to_center);
-    middle = middle + rest;
-  }
-  return {middle, hn::NegMulAdd(to_center.z, to_center.z,
-                                hn::NegMulAdd(to_center.y, to_center.y,
-                                              hn::NegMulAdd(to_center.x, to_center.x, sphere.radius * sphere.radius))),
-          to_center};
+  const auto reach = dot(to_sphere, to_sphere) + dot(sphere.center, sphere.center);
+  const auto margin = hn::Set(d, static_cast<hn::TFromD<D>>(0x1p-45));
+  return hn::MulAdd(reach, margin, plain.discriminant) >= hn::Zero(d);
 }
 
 /// Distances along the ray, in lengths of its direction; only lanes in `mask` have one.
@@ -118,7 +146,13 @@ HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& spher
     const auto t = hn::IfThenElse(entry >= t_min, entry, exit);
     return {t, hn::And(meets, t >= t_min)};
   } else {
-    const auto c = chord<D, kPrecision == Precision::kExact>(ray, sphere);
+    auto c = plain_chord(ray, sphere);
+    if constexpr (kPrecision == Precision::kExact) {
+      // A ray of the naive list misses nearly all spheres, and compensation takes longer than all that came before.
+      if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hn::Or(is_self, may_meet(d, ray, sphere, c))))
+        return {zero, is_self};
+      c = compensated(ray, sphere, c);
+    }
     const auto meets = hn::Or(is_self, c.discriminant >= zero);
     // A ray of the naive list misses nearly all spheres, and a root takes as long as all that came before.
     if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, meets)) return {zero, meets};
