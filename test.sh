@@ -10,7 +10,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$root/tools/setup.sh"
 
 install_missing "$root/tools/packages-build.txt" "$root/tools/packages-test.txt"
-configure -DBUILD_TESTING=ON
+configure -DBUILD_TESTING=ON -DORRERY_BENCH=ON
 build 10 all
 
 if [ $# -eq 0 ]; then set -- -LE slow; fi

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash disable=SC2154  # read by scripts that have set `root`
 # Sourced by run.sh and test.sh, which set `root` first: installs what is missing, configures, builds. Quiet about what
 # succeeds; where something fails it shows the log and says what to do.
 
@@ -75,7 +76,7 @@ build() {
   cores=$(nproc)
   if [ ! -f "$stamp" ]; then
     say "Building orrery (first time: about $(((cpu_minutes + cores - 1) / cores)) minutes) ..."
-  elif [ -n "$(find "$root/src" "$root/tests" "$root/cmake" "$root/CMakeLists.txt" -newer "$stamp" -print -quit)" ]; then
+  elif [ -n "$(find "$root/src" "$root/tests" "$root/bench" "$root/cmake" "$root/CMakeLists.txt" -newer "$stamp" -print -quit)" ]; then
     say "Building what has changed ..."
   fi
   # Two that start at once, of one checkout, take turns.

@@ -38,7 +38,7 @@ struct EmbreeQuery {
   EmbreeContext context;  // first: Embree's pointer to it is a pointer to all
   const EmbreeScene* scene;
   Packet* packet;
-  int first;                            ///< lane of the packet that is Embree's lane 0
+  int first;  ///< lane of the packet that is Embree's lane 0
   /// Box space: distance that a far ray was moved on, by Embree's lane.
   alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
 };

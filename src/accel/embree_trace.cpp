@@ -21,7 +21,8 @@ namespace orrery::accel::HWY_NAMESPACE {
 
 // Rays that Embree takes at a time: as many floats as a register holds.
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
-using EmbreeRays = std::conditional_t<kWidth == 16, RTCRayHit16, std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit4>>;
+using EmbreeRays =
+    std::conditional_t<kWidth == 16, RTCRayHit16, std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit4>>;
 
 template <class Packet>
 using DistanceOf = std::remove_cvref_t<decltype(Packet::distance[0])>;
@@ -130,8 +131,7 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
     if (hn::AllFalse(di, valid_int < hn::Zero(di))) continue;
     hn::Mask<D> valid;
     if constexpr (sizeof(T) == 8) {
-      valid = hn::RebindMask(d, hn::PromoteTo(hn::RebindToSigned<D>(), valid_int) <
-                                    hn::Zero(hn::RebindToSigned<D>()));
+      valid = hn::RebindMask(d, hn::PromoteTo(hn::RebindToSigned<D>(), valid_int) < hn::Zero(hn::RebindToSigned<D>()));
     } else {
       valid = hn::RebindMask(d, valid_int < hn::Zero(di));
     }
@@ -257,9 +257,7 @@ void intersect_fast(const RTCIntersectFunctionNArguments* a) {
 void trace_exact(const void* self, kernel::RayPacket& p) {
   trace<kernel::RayPacket, kernel::Precision::kExact>(self, p);
 }
-void trace_book(const void* self, kernel::RayPacket& p) {
-  trace<kernel::RayPacket, kernel::Precision::kBook>(self, p);
-}
+void trace_book(const void* self, kernel::RayPacket& p) { trace<kernel::RayPacket, kernel::Precision::kBook>(self, p); }
 void trace_fast(const void* self, kernel::RayPacketFast& p) {
   trace<kernel::RayPacketFast, kernel::Precision::kFast>(self, p);
 }

@@ -16,8 +16,8 @@ constexpr double kVisible = 1e-3;
 
 struct Proportions {
   double smallest = std::numeric_limits<double>::infinity();  ///< radius, scene units
-  double farthest = 0;      ///< camera to a sphere's centre, in radii of that sphere: the worst of all
-  double coordinate = 0;    ///< largest absolute coordinate of a centre or the camera, in radii of the smallest sphere
+  double farthest = 0;    ///< camera to a sphere's centre, in radii of that sphere: the worst of all
+  double coordinate = 0;  ///< largest absolute coordinate of a centre or the camera, in radii of the smallest sphere
 };
 
 Proportions proportions_of(const compile::World& world) {
@@ -52,20 +52,23 @@ std::vector<std::string> precision_advice(const compile::World& world) {
     // Origins and centres are rounded to floats before they are subtracted.
     const double error = 0x1p-23 * p.coordinate;
     if (error > kVisible)
-      advice.push_back(text("precision fast: hits on the smallest sphere (radius %g) are off by about %.1g of its radius, since "
-                            "coordinates reach %.1g radii; exact is not",
-                            p.smallest, error, p.coordinate));
+      advice.push_back(
+          text("precision fast: hits on the smallest sphere (radius %g) are off by about %.1g of its radius, since "
+               "coordinates reach %.1g radii; exact is not",
+               p.smallest, error, p.coordinate));
     return advice;
   }
   // The quadratic squares the distance and takes the radius from it: the ratio's square eats the digits.
   const double error = 0x1p-52 * p.farthest * p.farthest;
   if (error > kVisible)
-    advice.push_back(text("precision book: a sphere is %.1g radii from the camera; the quadratic's discriminant is off by about "
-                          "%.1g of its largest value there, so hits are lost and invented; exact does neither",
-                          p.farthest, error));
+    advice.push_back(
+        text("precision book: a sphere is %.1g radii from the camera; the quadratic's discriminant is off by about "
+             "%.1g of its largest value there, so hits are lost and invented; exact does neither",
+             p.farthest, error));
   if (p.smallest < 20 * kernel::kBookShortestDistance)
-    advice.push_back(text("precision book: radius %g is near t_min, %g: light leaks where spheres touch; exact has no t_min",
-                          p.smallest, kernel::kBookShortestDistance));
+    advice.push_back(
+        text("precision book: radius %g is near t_min, %g: light leaks where spheres touch; exact has no t_min",
+             p.smallest, kernel::kBookShortestDistance));
   return advice;
 }
 

@@ -35,9 +35,9 @@ struct World {
   Precision precision = Precision::kExact;
   Accelerator accelerator = Accelerator::kEmbree;
   Bounds bounds;
-  int width = 0;            ///< px
-  int height = 0;           ///< px
-  int samples = 0;          ///< per pixel
+  int width = 0;                ///< px
+  int height = 0;               ///< px
+  int samples = 0;              ///< per pixel
   std::uint32_t max_depth = 0;  ///< scattering events
   std::uint32_t seed = 0;
 

@@ -21,8 +21,7 @@ constexpr double kMostStops = 120;
 
 const std::vector<float>& plane(const film::Picture& picture, const char* name) {
   const film::Plane* found = picture.find(name);
-  if (found == nullptr)
-    throw base::Error(base::ErrorKind::kBadData, std::string("the picture has no channel ") + name);
+  if (found == nullptr) throw base::Error(base::ErrorKind::kBadData, std::string("the picture has no channel ") + name);
   if (found->values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))
     throw base::Error(base::ErrorKind::kInternal, std::string("plane ") + name + " is not of the picture's size");
   return found->values;

@@ -11,27 +11,28 @@ namespace orrery::display {
 
 /// How scene-linear light becomes what a display shows.
 struct Settings {
-  std::string config;                       ///< file of an OCIO config; empty: $OCIO, and without it the built-in one
+  std::string config;                        ///< file of an OCIO config; empty: $OCIO, and without it the built-in one
   std::string working_space = "lin_rec709";  ///< of the picture: a colour space, role or alias of the config
-  std::string display;                      ///< empty: the config's default
-  std::string view;                         ///< empty: the display's default
-  std::string look;                         ///< empty: none but the view's own
-  double exposure = 0;                      ///< stops
+  std::string display;                       ///< empty: the config's default
+  std::string view;                          ///< empty: the display's default
+  std::string look;                          ///< empty: none but the view's own
+  double exposure = 0;                       ///< stops
 };
 
 /// What was chosen, by name.
 struct Choice {
-  std::string config;                 ///< "built-in", or the config's file
-  std::string config_id;              ///< OCIO's own digest of the config: another text gives another id
+  std::string config;     ///< "built-in", or the config's file
+  std::string config_id;  ///< OCIO's own digest of the config: another text gives another id
   std::string display, view;
   std::vector<std::string> warnings;  ///< what OCIO remarked about the config
 };
 
 /// Finds out what `settings` come to.
 ///
-/// Errors     base::Error: kMissingInput for a config (or a table that it names) that cannot be opened, kBadData for one
-///            that cannot be understood, kUsage for a display, view, look or colour space that it lacks, with near names,
-///            and for an exposure that is no finite number
+/// Errors     base::Error: kMissingInput for a config (or a table that it names) that cannot be opened, kBadData for
+/// one
+///            that cannot be understood, kUsage for a display, view, look or colour space that it lacks, with near
+///            names, and for an exposure that is no finite number
 Choice choose(const Settings& settings);
 
 /// Develops planes R, G, B: exposure, look, the display's view; rounded to the nearest of 2^bits values.

@@ -24,10 +24,9 @@ Names names(int count, Get get) {
 
 [[noreturn]] void unknown(const Config& config, const std::string& what, const std::string& name, const Names& known) {
   const std::string near = base::did_you_mean(name, known);
-  throw base::Error(base::ErrorKind::kUsage,
-                    "the OCIO config (" + config.source + ") has no " + what + " `" + name + "`; " +
-                        (near.empty() ? "" : near + " ") +
-                        (known.empty() ? "it has none" : "it has " + base::joined(known)));
+  throw base::Error(base::ErrorKind::kUsage, "the OCIO config (" + config.source + ") has no " + what + " `" + name +
+                                                 "`; " + (near.empty() ? "" : near + " ") +
+                                                 (known.empty() ? "it has none" : "it has " + base::joined(known)));
 }
 
 void require(const Config& config, const std::string& what, const std::string& name, const Names& known) {
@@ -38,7 +37,8 @@ void choose_names(const Config& source, const Settings& settings, Choice& choice
   const ocio::Config& config = *source.config;
   choice.display = settings.display.empty() ? config.getDefaultDisplay() : settings.display;
   const char* const display = choice.display.c_str();
-  require(source, "display", choice.display, names(config.getNumDisplays(), [&](int i) { return config.getDisplay(i); }));
+  require(source, "display", choice.display,
+          names(config.getNumDisplays(), [&](int i) { return config.getDisplay(i); }));
   choice.view = settings.view.empty() ? config.getDefaultView(display) : settings.view;
   require(source, "view on display `" + choice.display + "` named", choice.view,
           names(config.getNumViews(display), [&](int i) { return config.getView(display, i); }));
@@ -90,10 +90,11 @@ View find_view(const Settings& settings) {
     out.processor = processor(*source.config, settings, out.choice);
     out.is_srgb = ends_in_srgb(*source.config, out.choice);
   } catch (const ocio::ExceptionMissingFile& error) {
-    throw base::Error(base::ErrorKind::kMissingInput, "the OCIO config " + source.source + " names a file that is not there: " +
-                                                          error.what());
+    throw base::Error(base::ErrorKind::kMissingInput,
+                      "the OCIO config " + source.source + " names a file that is not there: " + error.what());
   } catch (const ocio::Exception& error) {
-    throw base::Error(base::ErrorKind::kBadData, "the OCIO config " + source.source + " cannot be used: " + error.what());
+    throw base::Error(base::ErrorKind::kBadData,
+                      "the OCIO config " + source.source + " cannot be used: " + error.what());
   }
   return out;
 }

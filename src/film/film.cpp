@@ -4,11 +4,11 @@
 namespace orrery::film {
 
 Film::Film(int width_px, int height_px)
-    : width_(width_px), height_(height_px), sums_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)) {}
+    : width_(width_px),
+      height_(height_px),
+      sums_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)) {}
 
-kernel::PixelSum* Film::at(int x, int y) noexcept {
-  return sums_.data() + static_cast<std::ptrdiff_t>(y) * width_ + x;
-}
+kernel::PixelSum* Film::at(int x, int y) noexcept { return sums_.data() + static_cast<std::ptrdiff_t>(y) * width_ + x; }
 
 Picture Film::picture() const {
   Picture out;
@@ -20,8 +20,7 @@ Picture Film::picture() const {
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const kernel::PixelSum& sum = sums_[i];
       if (sum.samples > 0)
-        plane.values[i] =
-            static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.samples));
+        plane.values[i] = static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.samples));
     }
     out.planes.push_back(std::move(plane));
   }

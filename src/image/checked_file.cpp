@@ -97,8 +97,8 @@ size_t CheckedFile::pread(void* out, size_t size, int64_t offset) {
   pending_offset_ = end_;
   size_t got = 0;
   while (got < size) {
-    const ssize_t n = ::pread(descriptor_, static_cast<unsigned char*>(out) + got, size - got,
-                              offset + static_cast<int64_t>(got));
+    const ssize_t n =
+        ::pread(descriptor_, static_cast<unsigned char*>(out) + got, size - got, offset + static_cast<int64_t>(got));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail(errno);
     if (n <= 0) break;

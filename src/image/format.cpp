@@ -14,8 +14,8 @@ struct Extension {
   const char* name;
   Format format;
 };
-constexpr Extension kExtensions[] = {{"exr", Format::kExr},  {"hdr", Format::kHdr},  {"png", Format::kPng},
-                                     {"tif", Format::kTiff}, {"tiff", Format::kTiff}, {"jpg", Format::kJpeg},
+constexpr Extension kExtensions[] = {{"exr", Format::kExr},   {"hdr", Format::kHdr},   {"png", Format::kPng},
+                                     {"tif", Format::kTiff},  {"tiff", Format::kTiff}, {"jpg", Format::kJpeg},
                                      {"jpeg", Format::kJpeg}, {"ppm", Format::kPpm}};
 
 }  // namespace
@@ -31,10 +31,10 @@ Format format_of(const std::filesystem::path& file) {
     known.emplace_back(e.name);
   }
   const std::string near = base::did_you_mean(extension, known);
-  throw base::Error(base::ErrorKind::kUsage, (extension.empty() ? file.string() + " has no extension"
-                                                                : "." + extension + " is no picture format known here") +
-                                                 "; " + (near.empty() ? "" : near + " ") + "known are " +
-                                                 base::joined(known));
+  throw base::Error(
+      base::ErrorKind::kUsage,
+      (extension.empty() ? file.string() + " has no extension" : "." + extension + " is no picture format known here") +
+          "; " + (near.empty() ? "" : near + " ") + "known are " + base::joined(known));
 }
 
 bool is_display_format(Format format) { return format != Format::kExr && format != Format::kHdr; }

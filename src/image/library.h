@@ -5,7 +5,8 @@
 
 namespace orrery::image {
 
-/// Makes OpenImageIO a quiet guest: no threads of its own, nothing on the console. Every function of this room calls it.
+/// Makes OpenImageIO a quiet guest: no threads of its own, nothing on the console. Every function of this room calls
+/// it.
 ///
 /// Cost       once a process
 void prepare_library();

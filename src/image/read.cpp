@@ -60,8 +60,8 @@ const char* library_name(Format format) {
 }
 
 /// Decodes rows begin..end of some channels.
-bool decode(ImageInput& in, const ImageSpec& spec, int begin, int end, int first_channel, int end_channel, TypeDesc type,
-            void* out) {
+bool decode(ImageInput& in, const ImageSpec& spec, int begin, int end, int first_channel, int end_channel,
+            TypeDesc type, void* out) {
   if (spec.tile_width == 0) return in.read_scanlines(0, 0, begin, end, 0, first_channel, end_channel, type, out);
   return in.read_tiles(0, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
 }
@@ -144,7 +144,8 @@ film::Picture read(const std::filesystem::path& file) {
   const Format format = format_of(file);
   require_readable(file);
   const auto in = ImageInput::create(library_name(format));
-  if (!in) throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read " + file.string() + OIIO::geterror());
+  if (!in)
+    throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read " + file.string() + OIIO::geterror());
   ImageSpec spec;
   if (!in->open(file.string(), spec)) fail(file, in->geterror());
   check_spec(file, spec);

@@ -64,7 +64,8 @@ void write_whole(const std::filesystem::path& file, const std::string& format, c
   CheckedFile bytes(target.temporary());
   const auto out = OIIO::ImageOutput::create(format);
   if (!out || !out->supports("ioproxy"))
-    throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot write " + format + " files " + OIIO::geterror());
+    throw base::Error(base::ErrorKind::kInternal,
+                      "this OpenImageIO cannot write " + format + " files " + OIIO::geterror());
   out->set_ioproxy(&bytes);
   const std::string complaint = encode(*out, name, spec, type, pixels);
   if (const int error = bytes.finish(); error != 0) io_failed(file, std::strerror(error));

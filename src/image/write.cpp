@@ -65,7 +65,8 @@ void add_header(ImageSpec& spec, const Header& header) {
   // OpenImageIO translates some lower-case names into OpenEXR's own, but not that of the second.
   if (header.world_to_camera) spec.attribute("worldtocamera", matrix, header.world_to_camera->data());
   if (header.world_to_ndc) spec.attribute("worldToNDC", matrix, header.world_to_ndc->data());
-  if (header.chromaticities) spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), header.chromaticities->data());
+  if (header.chromaticities)
+    spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), header.chromaticities->data());
   if (!header.color_interop_id.empty()) spec.attribute("colorInteropID", header.color_interop_id);
   for (const Attribute& a : header.attributes) {
     if (const auto* text = std::get_if<std::string>(&a.value)) spec.attribute(a.name, *text);
@@ -89,8 +90,8 @@ void check_compression(const std::string& name) {
   const std::string word = name.substr(0, colon);
   if ((word == "dwaa" || word == "dwab") && is_level(std::string_view(name).substr(colon + 1))) return;
   const std::string near = base::did_you_mean(word, plain);
-  throw base::Error(base::ErrorKind::kUsage, "unknown EXR compression " + name + "; " + (near.empty() ? "" : near + " ") +
-                                                 "known are " + base::joined(plain) +
+  throw base::Error(base::ErrorKind::kUsage, "unknown EXR compression " + name + "; " +
+                                                 (near.empty() ? "" : near + " ") + "known are " + base::joined(plain) +
                                                  ", the last two also with a level, as in dwaa:45");
 }
 

@@ -25,7 +25,7 @@ struct Attribute {
 /// between runs, two writes give the same bytes.
 struct Header {
   std::string software;
-  std::string capture_date;  ///< "YYYY:MM:DD hh:mm:ss", local time
+  std::string capture_date;                             ///< "YYYY:MM:DD hh:mm:ss", local time
   std::optional<std::array<int, 2>> frames_per_second;  ///< numerator, denominator
   /// 4x4, row vectors times matrix as OpenEXR has it; see docs/output.md.
   std::optional<std::array<float, 16>> world_to_camera, world_to_ndc;
@@ -35,7 +35,7 @@ struct Header {
 };
 
 struct ExrOptions {
-  bool as_float = false;            ///< half otherwise
+  bool as_float = false;             ///< half otherwise
   std::string compression = "zips";  ///< as check_compression takes it
 };
 

@@ -37,7 +37,8 @@ const char* add_format(Format format, ImageSpec& spec) {
 
 }  // namespace
 
-void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software) {
+void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture,
+                   const std::string& software) {
   const Format format = format_of(file);
   if (picture.bits > most_bits(format))
     throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits in a channel; PNG and TIFF hold 16");

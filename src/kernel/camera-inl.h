@@ -32,8 +32,7 @@ HWY_INLINE CameraRay<V> camera_ray(D d, const Camera& camera, bool has_lens, V p
   using T = hn::TFromD<D>;
   const V x = pixel_x - hn::Set(d, static_cast<T>(camera.half_width)) + random.v[0];
   const V y = pixel_y - hn::Set(d, static_cast<T>(camera.half_height)) + random.v[1];
-  const auto to_focus =
-      mul_add(set3(d, camera.down), y, mul_add(set3(d, camera.right), x, set3(d, camera.forward)));
+  const auto to_focus = mul_add(set3(d, camera.down), y, mul_add(set3(d, camera.right), x, set3(d, camera.forward)));
   if (!has_lens) return {{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, normalized(d, to_focus)};
   const auto lens = sample_unit_disc(d, random.v[2], random.v[3]);
   const auto offset = mul_add(set3(d, camera.lens_u), lens.x, set3(d, camera.lens_v) * lens.y);

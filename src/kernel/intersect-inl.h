@@ -38,9 +38,12 @@ HWY_INLINE Rays<D> load_rays(D d, const Packet& p, int first) {
   const auto at = [&](const auto& component) {
     return load3(d, component[0] + first, component[1] + first, component[2] + first);
   };
-  return {at(p.origin),    at(p.origin_low),
-          at(p.offset),    at(p.direction),
-          hn::Load(d, p.inverse_square + first), hn::Load(IdTag<D>(), p.self + first)};
+  return {at(p.origin),
+          at(p.origin_low),
+          at(p.offset),
+          at(p.direction),
+          hn::Load(d, p.inverse_square + first),
+          hn::Load(IdTag<D>(), p.self + first)};
 }
 
 /// One sphere a lane, or the same in all.
@@ -61,16 +64,16 @@ HWY_INLINE Spheres<D> broadcast(D d, const Sphere& s) {
 template <class D>
 struct Chord {
   using V = hn::Vec<D>;
-  V middle;         ///< distance of the chord's middle, in lengths of the direction
-  V discriminant;   ///< radius^2 - |to_center|^2; the line meets the sphere where this is >= 0
+  V middle;           ///< distance of the chord's middle, in lengths of the direction
+  V discriminant;     ///< radius^2 - |to_center|^2; the line meets the sphere where this is >= 0
   Vec3<V> to_center;  ///< from the middle to the sphere's centre; perpendicular to the direction
 };
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V discriminant(const V& radius, const Vec3<V>& to_center) {
-  return hn::NegMulAdd(to_center.z, to_center.z,
-                       hn::NegMulAdd(to_center.y, to_center.y,
-                                     hn::NegMulAdd(to_center.x, to_center.x, radius * radius)));
+  return hn::NegMulAdd(
+      to_center.z, to_center.z,
+      hn::NegMulAdd(to_center.y, to_center.y, hn::NegMulAdd(to_center.x, to_center.x, radius * radius)));
 }
 
 /// The perpendicular form: only differences are ever squared, so nothing large cancels.
@@ -106,8 +109,8 @@ HWY_INLINE Chord<D> chord(const Rays<D>& ray, const Spheres<D>& sphere) {
 
 /// Lanes whose lines may meet their spheres; the others surely do not, whatever compensation adds.
 ///
-/// The plain form errs by less than 2^-47 (|to_sphere|^2 + |center|^2): the difference by 2^-53 of itself and of the origin,
-/// which is no farther from home than both together; the projection by some 2^-51 of the difference.
+/// The plain form errs by less than 2^-47 (|to_sphere|^2 + |center|^2): the difference by 2^-53 of itself and of the
+/// origin, which is no farther from home than both together; the projection by some 2^-51 of the difference.
 template <class D>
 HWY_INLINE hn::Mask<D> may_meet(D d, const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
   const auto to_sphere = sphere.center - ray.origin;

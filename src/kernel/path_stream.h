@@ -23,7 +23,7 @@ struct alignas(64) PathStreamOf {
   Id self[kCapacity];          ///< sphere that the ray leaves
   Id pixel[kCapacity];         ///< y << 16 | x
   Id sample[kCapacity];
-  RayPacketOf<T, Id> packet;   ///< the rays that are being traced
+  RayPacketOf<T, Id> packet;  ///< the rays that are being traced
 };
 
 using PathStream = PathStreamOf<double, std::uint64_t>;

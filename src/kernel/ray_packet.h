@@ -22,12 +22,12 @@ struct alignas(64) RayPacketOf {
   T origin[3][kPacketSize];
   T origin_low[3][kPacketSize];
   T offset[3][kPacketSize];
-  T direction[3][kPacketSize];       ///< any length that is not zero; unit within the renderer
-  T inverse_square[kPacketSize];     ///< 1 / (direction . direction)
-  Id self[kPacketSize];              ///< sphere that the ray leaves, or kNoSphere
-  T distance[kPacketSize];           ///< in: farther hits do not count; out: of the nearest hit, in lengths of direction
-  Id hit[kPacketSize];               ///< in: kNoSphere; out: the sphere of the nearest hit, or kNoSphere
-  int count = 0;                     ///< rays in use, the first ones
+  T direction[3][kPacketSize];    ///< any length that is not zero; unit within the renderer
+  T inverse_square[kPacketSize];  ///< 1 / (direction . direction)
+  Id self[kPacketSize];           ///< sphere that the ray leaves, or kNoSphere
+  T distance[kPacketSize];        ///< in: farther hits do not count; out: of the nearest hit, in lengths of direction
+  Id hit[kPacketSize];            ///< in: kNoSphere; out: the sphere of the nearest hit, or kNoSphere
+  int count = 0;                  ///< rays in use, the first ones
 };
 
 using RayPacket = RayPacketOf<double, std::uint64_t>;

@@ -29,7 +29,8 @@ class PathCounter {
 
   template <class Id>
   void take(Id& pixel, Id& sample) {
-    pixel = static_cast<Id>((static_cast<std::uint32_t>(tile_.y + y_) << 16) | static_cast<std::uint32_t>(tile_.x + x_));
+    pixel =
+        static_cast<Id>((static_cast<std::uint32_t>(tile_.y + y_) << 16) | static_cast<std::uint32_t>(tile_.x + x_));
     sample = static_cast<Id>(sample_);
     if (++sample_ < tile_.sample_end) return;
     sample_ = tile_.sample_begin;
@@ -119,7 +120,8 @@ HWY_INLINE void load_bounced_rays(D d, Stream& stream, int first, int count, Car
 /// Nothing is hit yet, at any distance.
 template <class Packet>
 HWY_INLINE void forget_hits(Packet& packet) {
-  std::fill_n(packet.distance, kPacketSize, std::numeric_limits<std::remove_reference_t<decltype(packet.distance[0])>>::max());
+  std::fill_n(packet.distance, kPacketSize,
+              std::numeric_limits<std::remove_reference_t<decltype(packet.distance[0])>>::max());
   std::fill_n(packet.hit, kPacketSize, kNoSphere);
 }
 
@@ -137,8 +139,8 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     for (int x = 0; x < tile.width; ++x) tile.sums[y * tile.row_stride + x].samples += samples;
 
   PathCounter counter(tile);
-  std::uint64_t to_start = std::uint64_t{samples} * static_cast<std::uint64_t>(tile.width) *
-                           static_cast<std::uint64_t>(tile.height);
+  std::uint64_t to_start =
+      std::uint64_t{samples} * static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
   const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
     forget_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);
@@ -200,14 +202,11 @@ HWY_EXPORT(render_fast);
 
 RenderTile render_tile_function(Precision precision, Lanes lanes) {
   const bool one = lanes == Lanes::kOne;
-  if (precision == Precision::kBook)
-    return one ? ORRERY_BEST(render_book_one) : ORRERY_BEST(render_book_all);
+  if (precision == Precision::kBook) return one ? ORRERY_BEST(render_book_one) : ORRERY_BEST(render_book_all);
   return one ? ORRERY_BEST(render_exact_one) : ORRERY_BEST(render_exact_all);
 }
 
-RenderTileFast render_tile_fast_function() {
-  return ORRERY_BEST(render_fast);
-}
+RenderTileFast render_tile_fast_function() { return ORRERY_BEST(render_fast); }
 
 }  // namespace orrery::kernel
 #endif

@@ -19,7 +19,7 @@ struct Tile {
   int x = 0, y = 0;  ///< px, upper left corner
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
-  PixelSum* sums = nullptr;    ///< of the upper left pixel
+  PixelSum* sums = nullptr;     ///< of the upper left pixel
   std::int64_t row_stride = 0;  ///< from a pixel's sum to the one below
 };
 

@@ -22,9 +22,9 @@ namespace orrery::kernel::HWY_NAMESPACE {
 template <class D>
 struct Surface {
   using V = hn::Vec<D>;
-  Vec3<V> direction;      ///< of the arriving rays, unit
-  Vec3<V> offset;         ///< from the sphere's centre to the point
-  Vec3<V> normal;         ///< unit, against the arriving ray
+  Vec3<V> direction;  ///< of the arriving rays, unit
+  Vec3<V> offset;     ///< from the sphere's centre to the point
+  Vec3<V> normal;     ///< unit, against the arriving ray
   hn::Mask<D> from_outside;
   V fuzz;
   V eta;  ///< dielectric: index on the ray's side / index beyond
@@ -75,8 +75,7 @@ HWY_INLINE Vec3<hn::Vec<D>> scatter_hemisphere(D d, const Surface<D>& at, const 
 template <class D>
 HWY_INLINE Vec3<hn::Vec<D>> mirrored(D d, const Surface<D>& at) {
   using T = hn::TFromD<D>;
-  const auto w =
-      normalized(d, neg_mul_add(at.normal, dot(at.direction, at.normal) * hn::Set(d, T(2)), at.direction));
+  const auto w = normalized(d, neg_mul_add(at.normal, dot(at.direction, at.normal) * hn::Set(d, T(2)), at.direction));
   return select(at.same_side(d, w), w, at.normal);
 }
 

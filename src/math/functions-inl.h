@@ -28,7 +28,8 @@ struct SinCos {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE SinCos<V> sin_cos_turn(D d, V u) {
   using T = hn::TFromD<D>;
-  // The turn is cut into quarters around multiples of 90 degrees: what is left is exact and at most an eighth of a turn.
+  // The turn is cut into quarters around multiples of 90 degrees: what is left is exact and at most an eighth of a
+  // turn.
   const V quarters = u * hn::Set(d, T(4));
   const V q = hn::Round(quarters);
   const V r = quarters - q;

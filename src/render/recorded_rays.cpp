@@ -7,7 +7,6 @@
 #include <memory>
 #include <type_traits>
 
-
 namespace orrery::render {
 namespace {
 
@@ -77,8 +76,7 @@ RecordedRays<kernel::RayPacket> record_rays(const kernel::SceneView& view, const
 
 RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& view, const accel::Accel& accel,
                                                      const std::vector<kernel::Tile>& tiles) {
-  return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, tiles,
-                                                               kernel::render_tile_fast_function());
+  return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, tiles, kernel::render_tile_fast_function());
 }
 
 template <class Packet>

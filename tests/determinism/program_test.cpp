@@ -81,7 +81,8 @@ TEST_F(DeterminismProgram, EveryInstructionSetGivesTheSameValues) {
     EXPECT_TRUE(same_values(best, render(isa, "--isa " + isa))) << isa;
 }
 
-/// Whatever compiler, level, library and processor: these are the values. Who changes what is sampled changes the number.
+/// Whatever compiler, level, library and processor: these are the values. Who changes what is sampled changes the
+/// number.
 TEST_F(DeterminismProgram, ThePictureIsTheOneThatIsWrittenDown) {
   if (kernel::isa_name() == "sse4") GTEST_SKIP() << "no fused multiply-add on this processor";
   std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over the bytes of all values

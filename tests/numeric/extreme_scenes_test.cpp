@@ -50,7 +50,8 @@ scene::Scene with_glass(double ior, scene::Fresnel fresnel) {
 
 std::vector<ExtremeScene> extreme_scenes() {
   std::vector<ExtremeScene> list;
-  for (const double radius : {1e3, 1e5, 1e7, 1e9}) list.push_back({"ground " + std::to_string(radius), with_ground(radius)});
+  for (const double radius : {1e3, 1e5, 1e7, 1e9})
+    list.push_back({"ground " + std::to_string(radius), with_ground(radius)});
   for (const double ior : {1e-3, 0.5, 1.0, 1.5, 10.0, 1e3}) {
     list.push_back({"exact Fresnel, ior " + std::to_string(ior), with_glass(ior, scene::Fresnel::kExact)});
     list.push_back({"Schlick, ior " + std::to_string(ior), with_glass(ior, scene::Fresnel::kSchlick)});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The intersection against arithmetic of many digits, where other renderers break. Prints the table of docs/numerics.md.
+// The intersection against arithmetic of many digits, where other renderers break. Prints the table of
+// docs/numerics.md.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -118,23 +119,37 @@ Case leaving(Random& random, double radius, double scene_offset, double gap, boo
 std::vector<Regime> regimes() {
   const auto any_impact = [](Random& r) { return r.uniform(0, 1.2); };
   std::vector<Regime> list;
-  list.push_back({"book scene", [=](Random& r) { return aimed(r, r.log_uniform(0.1, 1000), r.log_uniform(1.01, 100), any_impact(r), 10, 1); }});
-  list.push_back({"radius 1e-12 .. 1e12", [=](Random& r) { return aimed(r, r.log_uniform(1e-12, 1e12), r.log_uniform(1.01, 1e3), any_impact(r), 0, 1); }});
-  list.push_back({"distance / radius to 1e12", [=](Random& r) { return aimed(r, 1, r.log_uniform(1e3, 1e12), any_impact(r), 0, 1); }});
-  list.push_back({"offset to 1e9", [=](Random& r) { return aimed(r, 1, r.log_uniform(1.01, 1e3), any_impact(r), r.log_uniform(1e3, 1e9), 1); }});
+  list.push_back({"book scene", [=](Random& r) {
+                    return aimed(r, r.log_uniform(0.1, 1000), r.log_uniform(1.01, 100), any_impact(r), 10, 1);
+                  }});
+  list.push_back({"radius 1e-12 .. 1e12", [=](Random& r) {
+                    return aimed(r, r.log_uniform(1e-12, 1e12), r.log_uniform(1.01, 1e3), any_impact(r), 0, 1);
+                  }});
+  list.push_back({"distance / radius to 1e12",
+                  [=](Random& r) { return aimed(r, 1, r.log_uniform(1e3, 1e12), any_impact(r), 0, 1); }});
+  list.push_back({"offset to 1e9", [=](Random& r) {
+                    return aimed(r, 1, r.log_uniform(1.01, 1e3), any_impact(r), r.log_uniform(1e3, 1e9), 1);
+                  }});
   list.push_back({"grazing to 1e-15", [=](Random& r) {
                     const double away = r.log_uniform(1e-15, 1e-3);
                     return aimed(r, 1, r.log_uniform(1.5, 100), r.uniform(0, 1) < 0.5 ? 1 - away : 1 + away, 0, 1);
                   }});
-  list.push_back({"direction 1e-20 .. 1e20", [=](Random& r) { return aimed(r, 1, r.log_uniform(1.01, 1e3), any_impact(r), 0, r.log_uniform(1e-20, 1e20)); }});
-  list.push_back({"origin inside", [=](Random& r) { return aimed(r, r.log_uniform(1e-6, 1e6), r.uniform(0, 0.99), r.uniform(0, 0.1), 0, 1); }});
+  list.push_back({"direction 1e-20 .. 1e20", [=](Random& r) {
+                    return aimed(r, 1, r.log_uniform(1.01, 1e3), any_impact(r), 0, r.log_uniform(1e-20, 1e20));
+                  }});
+  list.push_back({"origin inside", [=](Random& r) {
+                    return aimed(r, r.log_uniform(1e-6, 1e6), r.uniform(0, 0.99), r.uniform(0, 0.1), 0, 1);
+                  }});
   list.push_back({"origin just outside or inside", [=](Random& r) {
                     const double away = r.log_uniform(1e-12, 1e-3);
                     return aimed(r, 1, r.uniform(0, 1) < 0.5 ? 1 + away : 1 - away, r.uniform(0, 0.9), 0, 1);
                   }});
-  list.push_back({"leaving its own surface", [=](Random& r) { return leaving(r, r.log_uniform(1e-12, 1e12), 0, 0, true); }});
-  list.push_back({"leaving another, offset to 1e9", [=](Random& r) { return leaving(r, 1, r.log_uniform(1e3, 1e9), r.log_uniform(1e-6, 1), false); }});
-  list.push_back({"its own, offset to 1e9", [=](Random& r) { return leaving(r, 1, r.log_uniform(1e3, 1e9), 0, true); }});
+  list.push_back(
+      {"leaving its own surface", [=](Random& r) { return leaving(r, r.log_uniform(1e-12, 1e12), 0, 0, true); }});
+  list.push_back({"leaving another, offset to 1e9",
+                  [=](Random& r) { return leaving(r, 1, r.log_uniform(1e3, 1e9), r.log_uniform(1e-6, 1), false); }});
+  list.push_back(
+      {"its own, offset to 1e9", [=](Random& r) { return leaving(r, 1, r.log_uniform(1e3, 1e9), 0, true); }});
   return list;
 }
 
@@ -143,16 +158,15 @@ struct Truth {
   bool hit = false;
   bool in_band = false;  ///< too close to call: grazing, or starting on the surface of a sphere that is not its own
   double offset[3] = {0, 0, 0};
-  double distance = 0;      ///< in lengths of the direction
+  double distance = 0;  ///< in lengths of the direction
   double cos_incidence = 0;
 };
 
 template <class Real>
 Truth truth(const Case& c, const kernel::RayPacket& p, int lane) {
   using Vec = Vec3Of<Real>;
-  const Vec origin =
-      Vec{p.origin[0][lane], p.origin[1][lane], p.origin[2][lane]} +
-      Vec{p.origin_low[0][lane], p.origin_low[1][lane], p.origin_low[2][lane]};
+  const Vec origin = Vec{p.origin[0][lane], p.origin[1][lane], p.origin[2][lane]} +
+                     Vec{p.origin_low[0][lane], p.origin_low[1][lane], p.origin_low[2][lane]};
   const Vec direction{c.direction[0], c.direction[1], c.direction[2]};
   const Real radius = c.sphere.radius, dd = dot(direction, direction);
   Truth out;
@@ -217,7 +231,8 @@ Tally run(const Regime& regime, kernel::Precision precision, int rays) {
     for (int i = 0; i < kPacketSize; ++i) {
       ++tally.rays;
       if (precision == kernel::Precision::kExact &&
-          (one.hit[i] != found.hit[i] || (one.hit[i] && (one.distance[i] != found.distance[i] || one.offset[0][i] != found.offset[0][i]))))
+          (one.hit[i] != found.hit[i] ||
+           (one.hit[i] && (one.distance[i] != found.distance[i] || one.offset[0][i] != found.offset[0][i]))))
         ++tally.differing;
       const Truth t = truth<QuadReal>(cases[i], packet, i);
       // The judge has a judge: 320 bits must say the same.
@@ -243,7 +258,8 @@ Tally run(const Regime& regime, kernel::Precision precision, int rays) {
       }
       tally.worst = std::max(tally.worst, std::sqrt(square) * t.cos_incidence);
       const long double x = found.offset[0][i], y = found.offset[1][i], z = found.offset[2][i];
-      tally.worst_length = std::max(tally.worst_length, static_cast<double>(std::abs(std::sqrt(x * x + y * y + z * z) / r - 1)));
+      tally.worst_length =
+          std::max(tally.worst_length, static_cast<double>(std::abs(std::sqrt(x * x + y * y + z * z) / r - 1)));
       const double* const d = cases[i].direction;
       const double radius_long = r / std::hypot(d[0], d[1], d[2]);
       tally.worst_distance = std::max(tally.worst_distance, std::abs(found.distance[i] - t.distance) * t.cos_incidence /
@@ -302,7 +318,8 @@ TEST(Extremes, NoContactIsLost) {
           double direction[3];
           for (int axis = 0; axis < 3; ++axis) direction[axis] = -c.offset[axis] * -1.0;
           const Vec3Of<BigReal> f = Vec3Of<BigReal>{c.sphere.x, c.sphere.y, c.sphere.z} -
-                            (Vec3Of<BigReal>{c.base[0], c.base[1], c.base[2]} + Vec3Of<BigReal>{c.offset[0], c.offset[1], c.offset[2]});
+                                    (Vec3Of<BigReal>{c.base[0], c.base[1], c.base[2]} +
+                                     Vec3Of<BigReal>{c.offset[0], c.offset[1], c.offset[2]});
           outside[lane] = BigReal(c.sphere.radius) * c.sphere.radius < dot(f, f);
           set_ray(packet, lane, c.base, c.offset, direction, c.self);
         }

@@ -26,7 +26,8 @@ scene::Scene diffuse_sphere(double albedo_factor) {
   s.render.samples = 64;
   s.background.bottom = {1, 0.9, 0.8};
   s.background.top = {0.2, 0.5, 1};
-  s.materials = {{"m", scene::Lambertian{{kAlbedo[0] * albedo_factor, kAlbedo[1] * albedo_factor, kAlbedo[2] * albedo_factor}}}};
+  s.materials = {
+      {"m", scene::Lambertian{{kAlbedo[0] * albedo_factor, kAlbedo[1] * albedo_factor, kAlbedo[2] * albedo_factor}}}};
   s.spheres = {{{0, 0, 0}, 1, 0, ""}};
   return s;
 }
@@ -99,9 +100,7 @@ TEST(StatisticalClosedForm, ADiffuseSphereUnderAGradientSky) {
   for (const double z : z_scores(1)) EXPECT_LT(std::abs(z), kLargestT);
 }
 
-TEST(StatisticalClosedForm, AnAlbedoWrongByAThousandthIsSeenAtSixSigma) {
-  EXPECT_GT(std::abs(z_scores(1.001)[0]), 6);
-}
+TEST(StatisticalClosedForm, AnAlbedoWrongByAThousandthIsSeenAtSixSigma) { EXPECT_GT(std::abs(z_scores(1.001)[0]), 6); }
 
 }  // namespace
 }  // namespace orrery::test

@@ -78,8 +78,10 @@ constexpr Shape kShapes[] = {Shape::kLambertian, Shape::kHemisphere, Shape::kBal
 
 TEST(StatisticalSamplers, HaveTheirDistributions) {
   for (const Shape shape : kShapes) {
-    const ChiSquare result = test(shape, [](double&, double&, double&) {}, sample_count());
-    std::printf("shape %d: chi^2 %.1f over %d bins, z %.2f\n", static_cast<int>(shape), result.statistic, kBins * kBins, result.z);
+    const ChiSquare result = test(
+        shape, [](double&, double&, double&) {}, sample_count());
+    std::printf("shape %d: chi^2 %.1f over %d bins, z %.2f\n", static_cast<int>(shape), result.statistic, kBins * kBins,
+                result.z);
     EXPECT_LT(std::abs(result.z), kLargestZ) << static_cast<int>(shape);
   }
 }
@@ -87,7 +89,8 @@ TEST(StatisticalSamplers, HaveTheirDistributions) {
 /// The judge can condemn: a shift of a thousandth is found in every shape.
 TEST(StatisticalSamplers, AShiftOfAThousandthIsFound) {
   for (const Shape shape : kShapes) {
-    const ChiSquare result = test(shape, [](double& x, double& y, double& z) { x += 1e-3, y += 1e-3, z += 1e-3; }, sample_count());
+    const ChiSquare result = test(
+        shape, [](double& x, double& y, double& z) { x += 1e-3, y += 1e-3, z += 1e-3; }, sample_count());
     EXPECT_GT(result.z, kLargestZ) << static_cast<int>(shape);
   }
 }
@@ -95,7 +98,8 @@ TEST(StatisticalSamplers, AShiftOfAThousandthIsFound) {
 TEST(StatisticalSamplers, OneDistributionIsNotTakenForAnother) {
   // Cosine-weighted directions judged as uniform ones, and the other way round.
   std::vector<double> x(1 << 14), y(1 << 14), z(1 << 14);
-  for (const auto& [drawn, judged] : {std::pair{Shape::kLambertian, Shape::kHemisphere}, {Shape::kHemisphere, Shape::kLambertian}}) {
+  for (const auto& [drawn, judged] :
+       {std::pair{Shape::kLambertian, Shape::kHemisphere}, {Shape::kHemisphere, Shape::kLambertian}}) {
     draw(drawn, 0, x.size(), x.data(), y.data(), z.data());
     std::vector<std::uint64_t> counts(kBins * kBins);
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -113,7 +117,8 @@ TEST(StatisticalSamplers, NeighboursAreIndependent) {
     std::vector<std::uint64_t> counts(kBins * kBins);
     for (std::uint32_t first = 0; first < sample_count() / 4; first += 1 << 14) {
       draw(Shape::kPixel, first, x.size(), x.data(), y.data(), z.data());
-      for (std::size_t i = 0; i + lag < x.size(); ++i) ++counts[static_cast<std::size_t>(bin_of(x[i]) * kBins + bin_of(x[i + lag]))];
+      for (std::size_t i = 0; i + lag < x.size(); ++i)
+        ++counts[static_cast<std::size_t>(bin_of(x[i]) * kBins + bin_of(x[i + lag]))];
     }
     EXPECT_LT(std::abs(chi_square_of_equal_bins(counts).z), kLargestZ) << lag;
   }

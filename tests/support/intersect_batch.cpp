@@ -39,7 +39,8 @@ void run(const kernel::RayPacket& packet, const kernel::Sphere* spheres, const s
     hn::StoreU(offset.x, d, out.offset[0] + v);
     hn::StoreU(offset.y, d, out.offset[1] + v);
     hn::StoreU(offset.z, d, out.offset[2] + v);
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) out.hit[static_cast<std::size_t>(v) + i] = hit[static_cast<std::size_t>(v) + i] != 0;
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
+      out.hit[static_cast<std::size_t>(v) + i] = hit[static_cast<std::size_t>(v) + i] != 0;
   }
 }
 

@@ -26,7 +26,8 @@ TEST(AccelBoxFrame, HoldsEverySphereWithRoomToSpare) {
       const double at = (center[axis] - frame.middle[axis]) * frame.scale, r = s.radius * frame.scale;
       EXPECT_LE(static_cast<double>(box.lower[axis]), at - r - frame.padding);
       EXPECT_GE(static_cast<double>(box.upper[axis]), at + r + frame.padding);
-      const double far = std::max(std::abs(static_cast<double>(box.lower[axis])), std::abs(static_cast<double>(box.upper[axis])));
+      const double far =
+          std::max(std::abs(static_cast<double>(box.lower[axis])), std::abs(static_cast<double>(box.upper[axis])));
       corner2 += far * far;
     }
     EXPECT_LE(std::sqrt(corner2), frame.reach);

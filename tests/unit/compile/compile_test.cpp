@@ -12,7 +12,9 @@ namespace {
 
 scene::Scene one_of_each() {
   scene::Scene s;
-  s.materials = {{"unused", scene::Metal{}}, {"grey", scene::Lambertian{}}, {"glass", scene::Dielectric{1.5, scene::Fresnel::kExact}}};
+  s.materials = {{"unused", scene::Metal{}},
+                 {"grey", scene::Lambertian{}},
+                 {"glass", scene::Dielectric{1.5, scene::Fresnel::kExact}}};
   s.spheres = {{{0, 0, -1}, 0.5, 1, ""}, {{1, 0, -1}, 0.5, 2, ""}, {{1, 0, -1}, -0.4, 2, ""}, {{2, 0, 0}, -1, 1, ""}};
   return s;
 }

@@ -66,14 +66,16 @@ TEST_P(DisplayDevelopCurve, EncodesGreyByTheDisplaysStandard) {
 /// IEC 61966-2-1.
 double srgb(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }
 
-INSTANTIATE_TEST_SUITE_P(
-    Displays, DisplayDevelopCurve,
-    testing::Values(Level{"sRGB", 0.5f, srgb(0.5)}, Level{"sRGB", 0.18f, srgb(0.18)}, Level{"sRGB", 0.002f, srgb(0.002)},
-                    Level{"sRGB", 1, 1}, Level{"Display P3", 0.5f, srgb(0.5)}, Level{"Display P3", 0.002f, srgb(0.002)},
-                    Level{"Display P3", 1, 1}, Level{"Rec.1886 Rec.709", 0.18f, std::pow(0.18, 1 / 2.4)},
-                    Level{"Rec.1886 Rec.709", 1, 1}, Level{"P3-D65 Cinema", 0.18f, std::pow(0.18, 1 / 2.6)},
-                    Level{"P3-D65 Cinema", 1, 1}, Level{"Gamma 2.0 Rec.709", 0.25f, 0.5},
-                    Level{"Gamma 2.0 Rec.709", 0.04f, 0.2}, Level{"Gamma 2.0 Rec.709", 1, 1}));
+INSTANTIATE_TEST_SUITE_P(Displays, DisplayDevelopCurve,
+                         testing::Values(Level{"sRGB", 0.5f, srgb(0.5)}, Level{"sRGB", 0.18f, srgb(0.18)},
+                                         Level{"sRGB", 0.002f, srgb(0.002)}, Level{"sRGB", 1, 1},
+                                         Level{"Display P3", 0.5f, srgb(0.5)}, Level{"Display P3", 0.002f, srgb(0.002)},
+                                         Level{"Display P3", 1, 1},
+                                         Level{"Rec.1886 Rec.709", 0.18f, std::pow(0.18, 1 / 2.4)},
+                                         Level{"Rec.1886 Rec.709", 1, 1},
+                                         Level{"P3-D65 Cinema", 0.18f, std::pow(0.18, 1 / 2.6)},
+                                         Level{"P3-D65 Cinema", 1, 1}, Level{"Gamma 2.0 Rec.709", 0.25f, 0.5},
+                                         Level{"Gamma 2.0 Rec.709", 0.04f, 0.2}, Level{"Gamma 2.0 Rec.709", 1, 1}));
 
 TEST_F(DisplayDevelop, GivesTheLevelsThatPeopleKnowByHeart) {
   EXPECT_EQ(shown({0.5f, 0.5f, 0.5f}, on("sRGB")), grey(188));

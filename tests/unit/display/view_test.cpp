@@ -17,10 +17,13 @@ std::string config_text(const std::string& display, const std::string& more = ""
   return "ocio_profile_version: 2\nenvironment: {}\nsearch_path: tables\nstrictparsing: true\n"
          "roles: {default: lin_rec709, scene_linear: lin_rec709}\n"
          "file_rules:\n  - !<Rule> {name: Default, colorspace: default}\n"
-         "displays:\n  " + display + ":\n    - !<View> {name: Plain, colorspace: out}\n"
+         "displays:\n  " +
+         display +
+         ":\n    - !<View> {name: Plain, colorspace: out}\n"
          "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
          "  - !<ColorSpace>\n    name: out\n"
-         "    from_reference: !<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}\n" + more;
+         "    from_reference: !<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}\n" +
+         more;
 }
 
 class DisplayView : public testing::Test {
@@ -103,10 +106,12 @@ TEST_F(DisplayView, TheConfigsIdTellsConfigsApart) {
 TEST_F(DisplayView, UnknownNamesAreUsageErrorsThatListWhatThereIs) {
   Settings settings;
   settings.display = "sRBG";
-  expect_error(settings, base::ErrorKind::kUsage, {"no display `sRBG`", "did you mean `sRGB`?", "Gamma 2.0 Rec.709", "built-in"});
+  expect_error(settings, base::ErrorKind::kUsage,
+               {"no display `sRBG`", "did you mean `sRGB`?", "Gamma 2.0 Rec.709", "built-in"});
   settings = {};
   settings.view = "Un-tonemapped";
-  expect_error(settings, base::ErrorKind::kUsage, {"did you mean `Un-tone-mapped`?", "ACES 1.0 SDR Video", "on display `sRGB`"});
+  expect_error(settings, base::ErrorKind::kUsage,
+               {"did you mean `Un-tone-mapped`?", "ACES 1.0 SDR Video", "on display `sRGB`"});
   settings = {};
   settings.display = "Gamma 2.0 Rec.709";
   settings.view = "ACES 1.0 SDR Video";  // the config has it, this display has not

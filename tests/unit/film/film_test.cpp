@@ -20,9 +20,7 @@ TEST(FilmFilm, GivesTheMeanOfWhatWasAdded) {
   EXPECT_EQ(picture.find("A")->values[0], 1.0f);
 }
 
-TEST(FilmFilm, APixelWithoutSamplesIsBlack) {
-  EXPECT_EQ(Film(1, 1).picture().find("R")->values[0], 0.0f);
-}
+TEST(FilmFilm, APixelWithoutSamplesIsBlack) { EXPECT_EQ(Film(1, 1).picture().find("R")->values[0], 0.0f); }
 
 }  // namespace
 }  // namespace orrery::film

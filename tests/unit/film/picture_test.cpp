@@ -19,7 +19,8 @@ TEST(FilmPicture, FindsAPlaneByItsName) {
 }
 
 TEST(FilmPicture, CountsEachKindOfBadValueOnceInAllPlanes) {
-  const Picture picture{3, 2, {{"R", {kNan, kInfinity, -kInfinity, -1, 65505, -70000}}, {"G", {kNan, kNan, -0.0f, 0, 1, 65504}}}};
+  const Picture picture{
+      3, 2, {{"R", {kNan, kInfinity, -kInfinity, -1, 65505, -70000}}, {"G", {kNan, kNan, -0.0f, 0, 1, 65504}}}};
   const BadValues bad = count_bad_values(picture);
   EXPECT_EQ(bad.nan, 3u);
   EXPECT_EQ(bad.infinite, 2u);

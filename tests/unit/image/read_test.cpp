@@ -137,8 +137,10 @@ TEST_F(ImageRead, ATruncatedFileIsBadData) {
   for (const auto& file : write_all(folder_, 100, 80)) {
     if (file.extension() == ".jpg") continue;  // its decoder fills the rest with grey and calls that a picture
     const std::string bytes = support::file_bytes(file);
-    for (const std::size_t size : {std::size_t{0}, std::size_t{3}, std::size_t{40}, bytes.size() / 2, bytes.size() - 50}) {
-      SCOPED_TRACE(file.filename().string() + " cut to " + std::to_string(size) + " of " + std::to_string(bytes.size()));
+    for (const std::size_t size :
+         {std::size_t{0}, std::size_t{3}, std::size_t{40}, bytes.size() / 2, bytes.size() - 50}) {
+      SCOPED_TRACE(file.filename().string() + " cut to " + std::to_string(size) + " of " +
+                   std::to_string(bytes.size()));
       support::write_bytes(file, bytes.substr(0, size));
       expect_error(ErrorKind::kBadData, {file.filename().string()}, [&] { read(file); });
     }
@@ -184,7 +186,8 @@ TEST_F(ImageRead, DamagedBytesNeverCrashAndPrintNothing) {
       try {
         const film::Picture picture = read(file);
         for (const film::Plane& plane : picture.planes)
-          ASSERT_EQ(plane.values.size(), static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
+          ASSERT_EQ(plane.values.size(),
+                    static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
       } catch (const base::Error& error) {
         EXPECT_EQ(static_cast<int>(error.kind()), static_cast<int>(ErrorKind::kBadData)) << error.what();
       }

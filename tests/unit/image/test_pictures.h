@@ -42,8 +42,9 @@ inline film::EncodedPicture test_encoded(int width, int height, int bits, bool s
       for (int c = 0; c < 3; ++c) {
         state = state * 1664525u + 1013904223u;
         const int ramp = c == 0 ? x : c == 1 ? y : x + y;
-        const std::uint32_t v = smooth ? static_cast<std::uint32_t>(ramp) * largest / static_cast<std::uint32_t>(width + height)
-                                       : (state >> 8) % (largest + 1);
+        const std::uint32_t v =
+            smooth ? static_cast<std::uint32_t>(ramp) * largest / static_cast<std::uint32_t>(width + height)
+                   : (state >> 8) % (largest + 1);
         picture.values.push_back(static_cast<std::uint16_t>(v));
       }
     }

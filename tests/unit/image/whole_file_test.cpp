@@ -60,8 +60,8 @@ TEST(ImageWholeFile, AFullDiskIsAnErrorWhereverItFillsUpAndLeavesNothing) {
     writer.write(folder / writer.name);
     const std::uintmax_t size = std::filesystem::file_size(folder / writer.name);
     std::filesystem::remove(folder / writer.name);
-    for (const std::uintmax_t room : {std::uintmax_t{0}, std::uintmax_t{1}, std::uintmax_t{100}, size / 3, size / 2, size - 5000,
-                                      size - 1000, size - 100, size - 8, size - 2, size - 1}) {
+    for (const std::uintmax_t room : {std::uintmax_t{0}, std::uintmax_t{1}, std::uintmax_t{100}, size / 3, size / 2,
+                                      size - 5000, size - 1000, size - 100, size - 8, size - 2, size - 1}) {
       SCOPED_TRACE(writer.name + ", room for " + std::to_string(room) + " of " + std::to_string(size) + " bytes");
       const FullDisk full(room);
       expect_error(base::ErrorKind::kIo, {writer.name, "File too large"}, [&] { writer.write(folder / writer.name); });

@@ -91,7 +91,8 @@ TEST_F(ImageWrite, ExrHasTheStandardAttributesByTheirOwnNames) {
   }
   header.chromaticities = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
   header.color_interop_id = "lin_rec709_scene";
-  header.attributes = {{"orrery/seed", "18446744073709551615"}, {"orrery/samples", 500}, {"orrery/renderSeconds", 1.5f}};
+  header.attributes = {
+      {"orrery/seed", "18446744073709551615"}, {"orrery/samples", 500}, {"orrery/renderSeconds", 1.5f}};
   auto exr = header_of(header);
 
   const auto expect_text = [&](const char* name, const std::string& text) {
@@ -207,8 +208,9 @@ TEST_F(ImageWrite, HdrClampsWhatItsPixelsCannotHold) {
 }
 
 TEST_F(ImageWrite, HdrNeedsThreeColours) {
-  expect_error(base::ErrorKind::kBadData, {"no channel B"},
-               [&] { write_hdr(folder_ / "a.hdr", test_picture(2, 2, {"R", "G"})); });
+  expect_error(base::ErrorKind::kBadData, {"no channel B"}, [&] {
+    write_hdr(folder_ / "a.hdr", test_picture(2, 2, {"R", "G"}));
+  });
 }
 
 TEST_F(ImageWrite, APlaneOfAnotherSizeIsABrokenPromise) {

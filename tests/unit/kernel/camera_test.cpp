@@ -35,7 +35,7 @@ void camera_case(CameraCase& c) {
   const Four<V> random{
       {hn::Set(d, c.random[0]), hn::Set(d, c.random[1]), hn::Set(d, c.random[2]), hn::Set(d, c.random[3])}};
   const auto ray = camera_ray(d, c.camera, c.has_lens, hn::Set(d, c.pixel[0]), hn::Set(d, c.pixel[1]), random);
-  const auto store = [](const auto& v, double (&to)[3]) {
+  const auto store = [](const auto& v, double(&to)[3]) {
     to[0] = hn::GetLane(v.x);
     to[1] = hn::GetLane(v.y);
     to[2] = hn::GetLane(v.z);

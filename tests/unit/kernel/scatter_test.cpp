@@ -44,7 +44,7 @@ void scatter_case(ScatterCase& c) {
   at.eta = hn::Set(d, c.eta);
   at.r0 = hn::Set(d, c.r0);
   at.fresnel = at.kind = hn::Set(IdTag<std::remove_const_t<D>>(), static_cast<std::uint64_t>(c.fresnel));
-  const auto store = [](const auto& v, double (&to)[3]) {
+  const auto store = [](const auto& v, double(&to)[3]) {
     to[0] = hn::GetLane(v.x);
     to[1] = hn::GetLane(v.y);
     to[2] = hn::GetLane(v.z);
@@ -89,11 +89,13 @@ TEST(KernelScatter, GlassRefractsBySnellAndReflectsBeyondTheCriticalAngle) {
 TEST(KernelScatter, ReflectanceIsSchlicksOrFresnels) {
   for (const double cosine : kCosines) {
     const double schlick = 0.04 + 0.96 * std::pow(1 - cosine, 5);
-    EXPECT_NEAR(scattered({.cos_arriving = cosine, .eta = 1 / 1.5, .r0 = 0.04, .fresnel = FresnelKind::kSchlick}).reflectance,
-                schlick, 1e-14);
+    EXPECT_NEAR(
+        scattered({.cos_arriving = cosine, .eta = 1 / 1.5, .r0 = 0.04, .fresnel = FresnelKind::kSchlick}).reflectance,
+        schlick, 1e-14);
     // Fresnel's own form: tangents and sines of the two angles.
     const double a = std::acos(cosine), b = std::asin(std::sin(a) / 1.5);
-    const double s = a == 0 ? 0.2 : std::sin(a - b) / std::sin(a + b), p = a == 0 ? 0.2 : std::tan(a - b) / std::tan(a + b);
+    const double s = a == 0 ? 0.2 : std::sin(a - b) / std::sin(a + b),
+                 p = a == 0 ? 0.2 : std::tan(a - b) / std::tan(a + b);
     EXPECT_NEAR(scattered({.cos_arriving = cosine, .eta = 1 / 1.5, .fresnel = FresnelKind::kExact}).reflectance,
                 (s * s + p * p) / 2, 1e-14);
     EXPECT_EQ(scattered({.cos_arriving = cosine, .eta = 1 / 1.5, .r0 = 0.04}).reflectance, 0);

@@ -105,8 +105,8 @@ TEST(RenderLight, ASceneFarFromHomeLooksTheSame) {
   EXPECT_LE(different, 2);  // a path or two may pass a rim on the other side
 }
 
-/// A billionth of a unit large and a million away, on coordinates that doubles hold: an eighth of a radius is lost where
-/// the origins of bounced rays are rounded.
+/// A billionth of a unit large and a million away, on coordinates that doubles hold: an eighth of a radius is lost
+/// where the origins of bounced rays are rounded.
 TEST(RenderLight, ASmallSceneFarFromHomeLooksTheSame) {
   scene::Scene s = grey_sphere();
   s.camera.look_from = {0.5, 0.25, 3};
@@ -130,8 +130,8 @@ TEST(RenderLight, ASmallSceneFarFromHomeLooksTheSame) {
   EXPECT_LE(different, 2);
 }
 
-/// A ball in a shell that touches it nearly: at 2^30 units from home the gap is a twentieth of what an origin that is one
-/// double cannot say, and a ray that is bent nowhere on its way in must still find the ball.
+/// A ball in a shell that touches it nearly: at 2^30 units from home the gap is a twentieth of what an origin that is
+/// one double cannot say, and a ray that is bent nowhere on its way in must still find the ball.
 TEST(RenderLight, ANarrowGapFarFromHomeIsNotJumped) {
   scene::Scene s = grey_sphere();
   const math::Vec3d away{0x1p30, 0x1p30, -0x1p30};

@@ -23,7 +23,8 @@ std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
   EXPECT_TRUE(result.completed);
   EXPECT_EQ(result.statistics.bad_samples, 0u);
   std::vector<float> all;
-  for (const film::Plane& plane : result.picture.planes) all.insert(all.end(), plane.values.begin(), plane.values.end());
+  for (const film::Plane& plane : result.picture.planes)
+    all.insert(all.end(), plane.values.begin(), plane.values.end());
   return all;
 }
 
@@ -83,8 +84,8 @@ TEST(RenderRender, NoSpheresIsTheSky) {
   s.camera.up = {0, 0, 1};
   s.render.samples = 4;
   const auto p = pixels(s);
-  EXPECT_NEAR(p[0], 0.5, 1e-4);                       // red at the top of the gradient
-  EXPECT_NEAR(p[2 * 64], 1.0, 1e-4);                  // blue
+  EXPECT_NEAR(p[0], 0.5, 1e-4);       // red at the top of the gradient
+  EXPECT_NEAR(p[2 * 64], 1.0, 1e-4);  // blue
 }
 
 /// One convex diffuse sphere of albedo 0.5 in a white sky: every path that meets it leaves it at once.

@@ -17,7 +17,8 @@ std::vector<float> pixels(const scene::Scene& scene, Traversal traversal) {
   settings.traversal = traversal;
   const Result result = render(compile::compile(scene), settings);
   std::vector<float> all;
-  for (const film::Plane& plane : result.picture.planes) all.insert(all.end(), plane.values.begin(), plane.values.end());
+  for (const film::Plane& plane : result.picture.planes)
+    all.insert(all.end(), plane.values.begin(), plane.values.end());
   return all;
 }
 
@@ -66,14 +67,16 @@ TEST(RenderTraversals, WithoutATrialTheNumberOfSpheresDecides) {
   }
 }
 
-/// The same picture with enough samples for a trial: whatever the clock says, it comes to an end and is one of the four.
+/// The same picture with enough samples for a trial: whatever the clock says, it comes to an end and is one of the
+/// four.
 TEST(RenderTraversals, ATrialChoosesBetweenBoth) {
   scene::Scene scene = balls(4000);
   scene.render.samples = 4096;
   const compile::World world = compile::compile(scene);
   const std::unique_ptr<accel::Accel> accel = build(world, 1);
   const std::string name = name_of(choose_traversals(world, *accel, Traversal::kAuto));
-  EXPECT_TRUE(name == "packet" || name == "single" || name == "packet, bounced single" || name == "single, bounced packet")
+  EXPECT_TRUE(name == "packet" || name == "single" || name == "packet, bounced single" ||
+              name == "single, bounced packet")
       << name;
 }
 
