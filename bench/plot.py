@@ -114,7 +114,7 @@ def svg(panels):
         if crossing:
             x, y = place.x(crossing[0]), place.y(crossing[1])
             yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7" fill="none" stroke="#222"/>'
-            yield f'<text x="{x + 10:.1f}" y="{y + 16:.1f}">{crossing[0]:.1f} spheres</text>'
+            yield f'<text x="{x + 10:.1f}" y="{y - 32:.1f}">{crossing[0]:.1f} spheres</text>'
     yield "</svg>"
 
 

@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long Embree takes to build over spheres, spheres a second on all threads, and how much memory it takes.
+// How long Embree takes to build over spheres, ours and its own sphere points, spheres a second on all threads, and how
+// much memory the hierarchy then holds.
 #include <benchmark/benchmark.h>
 
+#include <map>
 #include <string>
+#include <utility>
 
-#include "support/workload.h"
+#include "accel/accel.h"
+#include "support/scenes.h"
 
 namespace orrery::bench {
 namespace {
 
-void build(benchmark::State& state, std::uint64_t spheres) {
-  const auto& world = workload<kernel::RayPacket>(spheres, kernel::Precision::kExact).world;
+enum class Geometry { kUser, kNativePoints };
+
+void build(benchmark::State& state, std::uint64_t spheres, Geometry geometry) {
+  static std::map<std::uint64_t, compile::World> known;
+  compile::World& world = known[spheres];
+  if (world.spheres.empty()) world = compile_for(cloud_scene(spheres, 16, 16, 1), kernel::Precision::kExact);
   std::size_t bytes = 0;
   for (auto _ : state) {
-    const auto accel = accel::make_embree(world.view(), world.precision);
+    const auto accel = geometry == Geometry::kUser ? accel::make_embree(world.view(), world.precision)
+                                                   : accel::make_native_points(world.view());
     bytes = accel->bytes();
   }
   const auto count = static_cast<double>(world.spheres.size());
@@ -22,8 +31,15 @@ void build(benchmark::State& state, std::uint64_t spheres) {
 }
 
 [[maybe_unused]] const bool kRegistered = [] {
-  for (std::uint64_t n = 10; n <= 1'000'000; n *= 10)
-    benchmark::RegisterBenchmark(("accel/build/embree/" + std::to_string(n)).c_str(), build, n)->UseRealTime();
+  for (std::uint64_t n = 10; n <= 10'000'000; n *= 10) {
+    for (const auto& [name, geometry] :
+         {std::pair{"embree/", Geometry::kUser}, std::pair{"native_points/", Geometry::kNativePoints}}) {
+      auto* const registered =
+          benchmark::RegisterBenchmark(("accel/build/" + (name + std::to_string(n))).c_str(), build, n, geometry);
+      registered->UseRealTime()->Unit(benchmark::kMillisecond);
+      if (n == 10'000'000) registered->Iterations(1);  // ten seconds each
+    }
+  }
   return true;
 }();
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
 #include <memory>
 
 #include "accel/accel.h"
@@ -43,6 +44,13 @@ class NativePoints final : public Accel {
  public:
   explicit NativePoints(const kernel::SceneView& view) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
     require(scene_ != nullptr);
+    rtcSetDeviceMemoryMonitorFunction(
+        device_,
+        [](void* self, ssize_t bytes, bool) {
+          static_cast<NativePoints*>(self)->bytes_.fetch_add(bytes, std::memory_order_relaxed);
+          return true;
+        },
+        this);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), view.sphere_count));
@@ -69,11 +77,12 @@ class NativePoints final : public Accel {
 
   kernel::Tracer tracer() const noexcept override { return {nullptr, trace_points, scene_}; }
   std::string name() const override { return "embree " + embree_version() + ", sphere points"; }
-  std::size_t bytes() const noexcept override { return 0; }
+  std::size_t bytes() const noexcept override { return static_cast<std::size_t>(bytes_); }
 
  private:
   RTCDevice device_;
   RTCScene scene_;
+  std::atomic<std::int64_t> bytes_{0};
 };
 
 }  // namespace
