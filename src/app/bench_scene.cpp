@@ -53,11 +53,7 @@ struct Case {
 const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_features() {
   static const std::vector<std::pair<const char*, bool kernel::Features::*>> known = {
       {"thin lens", &kernel::Features::lens},
-      {"lambertian", &kernel::Features::lambertian},
       {"hemisphere", &kernel::Features::hemisphere},
-      {"metal", &kernel::Features::metal},
-      {"fuzz", &kernel::Features::fuzz},
-      {"dielectric", &kernel::Features::dielectric},
       {"gradient sky", &kernel::Features::sky}};
   return known;
 }

@@ -19,16 +19,24 @@ namespace orrery::app {
 namespace {
 
 std::vector<Feature> features_of(const compile::World& world) {
-  const kernel::Features& f = world.features;
-  return {{"thin lens", f.lens, f.lens ? "camera.defocus_angle is above 0" : "pinhole: no lens is sampled"},
-          {"lambertian", f.lambertian, f.lambertian ? "" : "no such sphere"},
-          {"hemisphere", f.hemisphere, f.hemisphere ? "" : "no such sphere"},
-          {"metal", f.metal, f.metal ? "" : "no such sphere"},
-          {"fuzz", f.fuzz, f.fuzz ? "" : "mirrors are sharp: no ball is sampled"},
-          {"dielectric", f.dielectric, f.dielectric ? "" : "no glass: no Fresnel term, no refraction"},
-          {"gradient sky", f.sky, f.sky ? "" : "one colour: no direction is looked at"},
-          {"light paths", world.shading == kernel::Shading::kPath,
-           world.shading == kernel::Shading::kPath ? "" : "render.shading asks for the first hit only"}};
+  const auto some = [&](auto holds) { return std::any_of(world.materials.begin(), world.materials.end(), holds); };
+  const auto of = [&](kernel::MaterialKind kind) {
+    return some([kind](const kernel::Material& m) { return m.kind == kind; });
+  };
+  const bool lens = world.features.lens, sky = world.features.sky;
+  const bool paths = world.shading == kernel::Shading::kPath;
+  std::vector<Feature> out = {
+      {"thin lens", lens, lens ? "camera.defocus_angle is above 0" : "pinhole: no lens is sampled"},
+      {"lambertian", of(kernel::MaterialKind::kLambertian), "no such sphere"},
+      {"hemisphere", of(kernel::MaterialKind::kHemisphere), "no such sphere"},
+      {"metal", of(kernel::MaterialKind::kMetal), "no such sphere"},
+      {"fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "mirrors are sharp"},
+      {"dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"},
+      {"gradient sky", sky, "one colour: no direction is looked at"},
+      {"light paths", paths, "render.shading asks for the first hit only"}};
+  for (Feature& f : out)
+    if (f.required && f.name != "thin lens") f.note.clear();
+  return out;
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::World& world) {

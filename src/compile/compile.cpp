@@ -83,25 +83,12 @@ class MaterialTable {
     if (inside_out) m = turned_inside_out(m);
     at = static_cast<std::uint32_t>(world_.materials.size());
     world_.materials.push_back(m);
-    note_features(m);
+    if (m.kind == kernel::MaterialKind::kHemisphere) world_.features.hemisphere = true;
     return at;
   }
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-  void note_features(const kernel::Material& m) {
-    kernel::Features& f = world_.features;
-    switch (m.kind) {
-      case kernel::MaterialKind::kLambertian: f.lambertian = true; break;
-      case kernel::MaterialKind::kHemisphere: f.hemisphere = true; break;
-      case kernel::MaterialKind::kMetal:
-        f.metal = true;
-        f.fuzz = f.fuzz || m.fuzz > 0;
-        break;
-      case kernel::MaterialKind::kDielectric: f.dielectric = true; break;
-    }
-  }
 
   const scene::Scene& scene_;
   World& world_;

@@ -81,9 +81,8 @@ HWY_INLINE Vec3<hn::Vec<D>> mirrored(D d, const Surface<D>& at) {
 
 /// A mirror whose reflected direction is moved within a ball; what would go into the surface is absorbed.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Scattered<D> scatter_metal(D d, const Surface<D>& at, const Vec3<V>& on_sphere, V u, bool has_fuzz) {
+HWY_INLINE Scattered<D> scatter_metal(D d, const Surface<D>& at, const Vec3<V>& on_sphere, V u) {
   const auto mirror = mirrored(d, at);
-  if (!has_fuzz) return {mirror, hn::FirstN(d, hn::Lanes(d))};
   const auto w = normalized(d, mul_add(on_sphere, at.fuzz * sample_ball_radius(d, u), mirror));
   const auto sharp = at.fuzz == hn::Zero(d);
   return {select(sharp, mirror, w), hn::Or(sharp, at.same_side(d, w))};
@@ -126,25 +125,19 @@ HWY_INLINE Vec3<V> scatter_dielectric(D d, const Surface<D>& at, V u) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Scattered<D> scatter(D d, const Features& features, const Surface<D>& at, const Four<V>& random) {
   Scattered<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
-  const bool needs_sphere = features.lambertian || features.hemisphere || features.fuzz;
-  const Vec3<V> on_sphere = needs_sphere ? sample_unit_sphere(d, random.v[0], random.v[1]) : at.normal;
+  const Vec3<V> on_sphere = sample_unit_sphere(d, random.v[0], random.v[1]);
   const auto among = [&](MaterialKind kind) { return is_kind(d, at.kind, kind); };
-  if (features.lambertian)
-    out.direction = select(among(MaterialKind::kLambertian), scatter_lambertian(d, at, on_sphere), out.direction);
+  out.direction = select(among(MaterialKind::kLambertian), scatter_lambertian(d, at, on_sphere), out.direction);
   if (features.hemisphere)
     out.direction = select(among(MaterialKind::kHemisphere), scatter_hemisphere(d, at, on_sphere), out.direction);
-  if (features.metal) {
-    const auto metal = among(MaterialKind::kMetal);
-    if (!hn::AllFalse(d, metal)) {
-      const auto scattered = scatter_metal(d, at, on_sphere, random.v[2], features.fuzz);
-      out.direction = select(metal, scattered.direction, out.direction);
-      out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, scattered.alive));
-    }
+  const auto metal = among(MaterialKind::kMetal);
+  if (!hn::AllFalse(d, metal)) {
+    const auto scattered = scatter_metal(d, at, on_sphere, random.v[2]);
+    out.direction = select(metal, scattered.direction, out.direction);
+    out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, scattered.alive));
   }
-  if (features.dielectric) {
-    const auto glass = among(MaterialKind::kDielectric);
-    if (!hn::AllFalse(d, glass)) out.direction = select(glass, scatter_dielectric(d, at, random.v[2]), out.direction);
-  }
+  const auto glass = among(MaterialKind::kDielectric);
+  if (!hn::AllFalse(d, glass)) out.direction = select(glass, scatter_dielectric(d, at, random.v[2]), out.direction);
   return out;
 }
 

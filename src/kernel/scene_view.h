@@ -18,15 +18,13 @@ struct Background {
 
 enum class Shading : std::uint8_t { kPath, kNormal, kFlat };
 
-/// What this scene asks of the kernel. Everything that is false here is not computed.
+/// What this scene asks of the kernel, as far as leaving it out saves time: what is false here is not computed. A
+/// material that no lane of a vector has met is never computed, whatever the scene holds, and needs no bit
+/// (docs/decisions/0012-few-feature-bits.md).
 struct Features {
   bool lens = false;        ///< the camera has an aperture
-  bool lambertian = false;  ///< some sphere's material is of this kind
-  bool hemisphere = false;
-  bool metal = false;
-  bool fuzz = false;  ///< some metal has fuzz > 0
-  bool dielectric = false;
-  bool sky = false;  ///< the background depends on the direction
+  bool hemisphere = false;  ///< some sphere's material is of this kind
+  bool sky = false;         ///< the background depends on the direction
 };
 
 /// The compiled scene as the inner loops see it: pointers into arrays that somebody else owns.

@@ -95,14 +95,13 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
     kind[i] = static_cast<Id>(material[i]->kind);
     fresnel[i] = static_cast<Id>(material[i]->fresnel);
   }
-  hn::Vec<D> sphere[4], color[4], glass[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  hn::Vec<D> sphere[4], color[4], glass[4];
   gather4(
       d, [&](std::size_t i) { return &scene.spheres[id[i]].x; }, sphere);
   gather4(
       d, [&](std::size_t i) { return material[i]->albedo; }, color);
-  if (scene.features.dielectric)
-    gather4(
-        d, [&](std::size_t i) { return material[i]->eta; }, glass);
+  gather4(
+      d, [&](std::size_t i) { return material[i]->eta; }, glass);
   Lookup<D> out;
   out.sphere = {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
   out.albedo = {color[0], color[1], color[2]};

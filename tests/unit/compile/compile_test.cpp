@@ -21,11 +21,7 @@ scene::Scene one_of_each() {
 
 TEST(CompileCompile, LeavesOutWhatNoSphereUses) {
   const World world = compile(one_of_each());
-  EXPECT_FALSE(world.features.metal);
-  EXPECT_FALSE(world.features.fuzz);
   EXPECT_FALSE(world.features.hemisphere);
-  EXPECT_TRUE(world.features.lambertian);
-  EXPECT_TRUE(world.features.dielectric);
   EXPECT_EQ(world.materials.size(), 3u);  // grey, glass, glass turned inside out
 }
 
@@ -83,12 +79,12 @@ TEST(CompileCameraBasis, SpansThePictureOnTheFocusPlane) {
   EXPECT_EQ(c.half_width, 100);
 }
 
-TEST(CompileCompile, KnowsWhenAMetalIsFuzzy) {
+TEST(CompileCompile, KnowsWhenAHemisphereIsUsed) {
   scene::Scene s = one_of_each();
+  s.materials[0].model = scene::Hemisphere{{1, 1, 1}};
+  EXPECT_FALSE(compile(s).features.hemisphere);
   s.spheres[0].material = 0;
-  EXPECT_FALSE(compile(s).features.fuzz);
-  s.materials[0].model = scene::Metal{{1, 1, 1}, 0.25};
-  EXPECT_TRUE(compile(s).features.fuzz);
+  EXPECT_TRUE(compile(s).features.hemisphere);
 }
 
 TEST(CompileCameraBasis, FocusesOnWhatItLooksAtByDefault) {
