@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -51,11 +52,15 @@ std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precisi
 /// Domain     the view's spheres outlive the result
 std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision);
 
+/// Hears how far a build is, 0..1, from any of its threads, and says whether to go on.
+using BuildMonitor = std::function<bool(double fraction)>;
+
 /// Spheres as Embree user geometry.
 ///
 /// Domain     the view's spheres outlive the result
-/// Errors     base::Error(kInternal) where Embree fails or would drop a sphere
-std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision);
+/// Errors     base::Error(kInternal) where Embree fails or would drop a sphere, kStopped where the monitor said so
+std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
+                                   const BuildMonitor& monitor = {});
 
 /// Embree's own sphere points, one ray at a time, in float, as a renderer has them that writes no intersection of its
 /// own. Only rays of the fast kernel can be traced; hits are Embree's, not ours, so no picture is made of them. For

@@ -19,8 +19,7 @@ constexpr std::size_t kMostApart = 4;
 /// would hold every other sphere, and its size would decide the padding of theirs.
 constexpr double kApartRatio = 4;
 
-[[noreturn]] void fail(RTCDevice device, const std::string& what) {
-  const RTCError code = rtcGetDeviceError(device);
+[[noreturn]] void fail(RTCError code, const std::string& what) {
   throw base::Error(base::ErrorKind::kInternal,
                     what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
 }
@@ -78,12 +77,12 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
 
 class Embree final : public Accel {
  public:
-  Embree(const kernel::SceneView& view, kernel::Precision precision)
+  Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor)
       : functions_(embree_functions(precision)), state_{make_scene(view), {}} {
     const std::size_t primitives = view.sphere_count - state_.scene.apart.size();
     if (primitives == 0) return;
     device_ = rtcNewDevice(nullptr);
-    if (device_ == nullptr) fail(nullptr, "Embree does not start");
+    if (device_ == nullptr) fail(rtcGetDeviceError(nullptr), "Embree does not start");
     rtcSetDeviceMemoryMonitorFunction(
         device_,
         [](void* self, ssize_t bytes, bool) {
@@ -91,12 +90,14 @@ class Embree final : public Accel {
           return true;
         },
         this);
-    build(primitives);
+    try {
+      build(primitives, monitor);
+    } catch (...) {
+      release();
+      throw;
+    }
   }
-  ~Embree() override {
-    if (state_.scene.scene != nullptr) rtcReleaseScene(state_.scene.scene);
-    if (device_ != nullptr) rtcReleaseDevice(device_);
-  }
+  ~Embree() override { release(); }
   Embree(const Embree&) = delete;
   Embree& operator=(const Embree&) = delete;
 
@@ -116,7 +117,12 @@ class Embree final : public Accel {
     return {nullptr, view.spheres, BoxFrame(view.spheres, all_but(apart, view.sphere_count)), std::move(apart), {}};
   }
 
-  void build(std::size_t primitives) {
+  void release() noexcept {
+    if (state_.scene.scene != nullptr) rtcReleaseScene(state_.scene.scene);
+    if (device_ != nullptr) rtcReleaseDevice(device_);
+  }
+
+  void build(std::size_t primitives, const BuildMonitor& monitor) {
     RTCScene scene = rtcNewScene(device_);
     state_.scene.scene = scene;
     state_.build.scene = &state_.scene;
@@ -129,8 +135,15 @@ class Embree final : public Accel {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
+    if (monitor)
+      rtcSetSceneProgressMonitorFunction(
+          scene, [](void* self, double fraction) { return (*static_cast<const BuildMonitor*>(self))(fraction); },
+          const_cast<BuildMonitor*>(&monitor));
     rtcCommitScene(scene);
-    if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) fail(device_, "Embree cannot build the scene");
+    const RTCError error = rtcGetDeviceError(device_);
+    if (error == RTC_ERROR_CANCELLED) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
+    if (error != RTC_ERROR_NONE) fail(error, "Embree cannot build the scene");
+    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
     if (state_.build.refused > 0)
       throw base::Error(base::ErrorKind::kInternal,
                         "Embree would drop " + std::to_string(state_.build.refused) + " spheres without a word");
@@ -166,9 +179,10 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
   return std::make_unique<SimdList>(scene, precision);
 }
 
-std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision) {
+std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
+                                   const BuildMonitor& monitor) {
   if (scene.sphere_count == 0) return make_list(scene, precision);  // nothing to build a hierarchy of
-  return std::make_unique<Embree>(scene, precision);
+  return std::make_unique<Embree>(scene, precision, monitor);
 }
 
 std::string embree_version() { return RTC_VERSION_STRING; }

@@ -137,6 +137,7 @@ void run_phases(const Job& job, JobReport& report) {
   settings.threads = job.threads > 0 ? job.threads : default_threads();
   settings.traversal = traversal_of(job);
   settings.on_progress = job.on_progress;
+  settings.on_build = job.on_build;
   settings.cancel = job.cancel;
   const render::Result result = render::render(world, settings);
   report.render = result.statistics;

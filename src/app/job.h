@@ -31,6 +31,7 @@ struct Job {
   std::string traversal = "auto";    ///< auto, packet or single; how rays go through the hierarchy, for comparison
   std::string isa;                   ///< "avx2": no better instruction set; empty: the processor's best
   std::function<void(const render::Progress&)> on_progress;
+  std::function<void(double fraction)> on_build;  ///< what is done of building the hierarchy; from any thread
   std::function<void(const base::Finding&)> on_warning;
   const std::atomic<bool>* cancel = nullptr;
 };

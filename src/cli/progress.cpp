@@ -42,6 +42,17 @@ void ProgressPrinter::update(const ProgressState& state) {
   }
 }
 
+void ProgressPrinter::building(double fraction) {
+  if (style_ != ProgressStyle::kBar) return;
+  const std::lock_guard lock(mutex_);
+  const int percent = static_cast<int>(fraction * 100);
+  if (finished_ || state_.done > 0 || percent <= last_percent_) return;
+  last_percent_ = percent;
+  std::fprintf(to_, "\rbuilding  %d %%\033[K", percent);
+  std::fflush(to_);
+  bar_shown_ = true;
+}
+
 void ProgressPrinter::finish() {
   {
     const std::lock_guard lock(mutex_);

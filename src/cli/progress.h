@@ -27,6 +27,9 @@ class ProgressPrinter {
   /// To be called from any thread.
   void update(const ProgressState& state);
 
+  /// What is done of building the hierarchy, 0..1, where a bar is shown; lines are of samples only. From any thread.
+  void building(double fraction);
+
   /// Takes the bar away, so that the next message has its line, and ends the heartbeat.
   void finish();
 

@@ -68,6 +68,7 @@ int render(RenderOptions& options) {
   job.cancel = &stop_on_signals();
   ProgressPrinter printer(style_of(options), stderr);
   job.on_progress = [&](const auto& p) { printer.update({p.samples_done, p.samples_total, p.seconds}); };
+  job.on_build = [&](double fraction) { printer.building(fraction); };
   job.on_warning = [&](const base::Finding& warning) {
     if (!options.quiet) std::fputs(base::formatted(warning).c_str(), stderr);
   };

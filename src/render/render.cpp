@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "base/error.h"
 #include "film/film.h"
 #include "kernel/isa.h"
 #include "kernel/render_tile.h"
@@ -123,11 +124,12 @@ int threads_of(const Settings& settings) { return settings.threads > 0 ? setting
 
 int available_threads() { return tbb::this_task_arena::max_concurrency(); }
 
-std::unique_ptr<accel::Accel> build(const compile::World& world, int threads) {
+std::unique_ptr<accel::Accel> build(const compile::World& world, int threads, const accel::BuildMonitor& monitor) {
   std::unique_ptr<accel::Accel> accel;
   Threads(threads).execute([&] {
-    accel = world.accelerator == compile::Accelerator::kList ? accel::make_list(world.view(), world.precision)
-                                                             : accel::make_embree(world.view(), world.precision);
+    accel = world.accelerator == compile::Accelerator::kList
+                ? accel::make_list(world.view(), world.precision)
+                : accel::make_embree(world.view(), world.precision, monitor);
   });
   return accel;
 }
@@ -177,7 +179,17 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
 
 Result render(const compile::World& world, const Settings& settings) {
   const auto start = Clock::now();
-  const std::unique_ptr<accel::Accel> accel = build(world, threads_of(settings));
+  const accel::BuildMonitor monitor = [&settings](double fraction) {
+    if (settings.on_build) settings.on_build(fraction);
+    return settings.cancel == nullptr || !settings.cancel->load(std::memory_order_relaxed);
+  };
+  std::unique_ptr<accel::Accel> accel;
+  try {
+    accel = build(world, threads_of(settings), monitor);
+  } catch (const base::Error& error) {
+    if (error.kind() != base::ErrorKind::kStopped) throw;
+    return {};
+  }
   const double build_s = seconds_since(start);
   Result result = render(world, *accel, settings);
   result.statistics.build_s = build_s;

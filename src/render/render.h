@@ -31,7 +31,9 @@ struct Settings {
   Traversal traversal = Traversal::kAuto;
   /// Called from one thread at a time, a few times a second at the most.
   std::function<void(const Progress&)> on_progress;
-  const std::atomic<bool>* cancel = nullptr;  ///< looked at between tiles; true stops the render
+  /// Called while the hierarchy is built, with what is done of it, 0..1, from any thread.
+  std::function<void(double fraction)> on_build;
+  const std::atomic<bool>* cancel = nullptr;  ///< looked at while building and between tiles; true stops the render
 };
 
 /// What a render did.
@@ -59,8 +61,8 @@ int available_threads();
 /// Builds what finds hits, as the world's accelerator and precision ask for it.
 ///
 /// Domain     the world's spheres outlive the result
-/// Errors     base::Error(kInternal) where it cannot be built
-std::unique_ptr<accel::Accel> build(const compile::World& world, int threads);
+/// Errors     base::Error(kInternal) where it cannot be built, kStopped where the monitor said so
+std::unique_ptr<accel::Accel> build(const compile::World& world, int threads, const accel::BuildMonitor& monitor = {});
 
 /// Renders a whole picture with hits of an `accel` that was built for this world's spheres and precision.
 ///

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
@@ -13,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "kernel/isa.h"
 #include "support/intersect_batch.h"
 
@@ -150,8 +152,11 @@ struct Way {
   std::unique_ptr<Accel> (*make)(const kernel::SceneView&, kernel::Precision);
   Traversal traversal;
 };
-constexpr Way kWays[] = {{"packet", make_embree, Traversal::kPacket},
-                         {"single", make_embree, Traversal::kSingle},
+std::unique_ptr<Accel> embree(const kernel::SceneView& view, kernel::Precision precision) {
+  return make_embree(view, precision);
+}
+constexpr Way kWays[] = {{"packet", embree, Traversal::kPacket},
+                         {"single", embree, Traversal::kSingle},
                          {"SIMD list", make_simd_list, Traversal::kPacket}};
 
 /// Counts of rays that the list and another way were both given.
@@ -207,6 +212,29 @@ TEST(AccelAccel, EmbreeFindsExactlyWhatTheListFinds) {
                                       << " lost of " << found.hits << " hits";
         EXPECT_GT(found.hits, found.rays / 10) << scene.name;
       }
+  }
+}
+
+TEST(AccelAccel, ABuildTellsHowFarItIsAndCanBeStopped) {
+  Random random;
+  const std::vector<Sphere> spheres = scattered(random, 200'000, 100, 0.1, 0);
+  kernel::SceneView view;
+  view.spheres = spheres.data();
+  view.sphere_count = spheres.size();
+  std::atomic<int> calls{0};
+  std::atomic<bool> outside{false};
+  make_embree(view, kernel::Precision::kExact, [&](double fraction) {
+    ++calls;
+    if (!(fraction >= 0 && fraction <= 1)) outside = true;
+    return true;
+  });
+  EXPECT_GT(calls, 1);
+  EXPECT_FALSE(outside);
+  try {
+    make_embree(view, kernel::Precision::kExact, [](double) { return false; });
+    FAIL() << "a build that was stopped";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kStopped);
   }
 }
 

@@ -44,6 +44,23 @@ TEST_F(CliProgress, AutoIsLinesWhereThereIsNoTerminal) {
   EXPECT_EQ(printed(), "42% done\n");
 }
 
+TEST_F(CliProgress, BuildingStandsWhereTheBarWillBe) {
+  {
+    ProgressPrinter printer(ProgressStyle::kBar, file_, kNever);
+    for (const double fraction : {0.1, 0.102, 0.05, 0.5}) printer.building(fraction);
+    printer.update({1, 2, 1});
+    printer.building(0.9);  // late, from another thread
+  }
+  const std::string text = printed();
+  EXPECT_EQ(text.find("\rbuilding  10 %\033[K\rbuilding  50 %\033[K\r["), 0u) << text;
+  EXPECT_EQ(text.find("90 %"), std::string::npos) << text;
+}
+
+TEST_F(CliProgress, LinesSayNothingOfBuilding) {
+  { ProgressPrinter(ProgressStyle::kArnold, file_, kNever).building(0.5); }
+  EXPECT_EQ(printed(), "");
+}
+
 TEST_F(CliProgress, NoneSaysNothing) {
   { ProgressPrinter(ProgressStyle::kNone, file_, 1ms).update({42, 100, 1}); }
   EXPECT_EQ(printed(), "");
