@@ -25,11 +25,6 @@ std::vector<Packet>& choose(render::RecordedRays<Packet>& rays, Rays which) {
   return which == Rays::kCamera ? rays.camera : rays.bounced;
 }
 
-void trace_packet(const kernel::Tracer& tracer, kernel::RayPacket& packet) { tracer.trace(tracer.self, packet); }
-void trace_packet(const kernel::Tracer& tracer, kernel::RayPacketFast& packet) {
-  tracer.trace_fast(tracer.self, packet);
-}
-
 /// One packet an iteration.
 template <class Packet>
 void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, Rays which, Traversal traversal) {
@@ -40,8 +35,8 @@ void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, 
   std::size_t next = 0;
   for (auto _ : state) {
     Packet& packet = packets[next];
-    render::forget_hits(packet);
-    trace_packet(tracer, packet);
+    kernel::forget_hits(packet);
+    kernel::trace(tracer, packet);
     rays += packet.count;
     next = next + 1 == packets.size() ? 0 : next + 1;
   }

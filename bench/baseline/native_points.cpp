@@ -4,43 +4,19 @@
 #include <cmath>
 
 #include "accel/embree_compat.h"
-#include "base/error.h"
+#include "accel/owned_scene.h"
 
 namespace orrery::bench::baseline {
 namespace {
 
-void require(bool holds) {
-  if (!holds) throw base::Error(base::ErrorKind::kInternal, "Embree cannot build sphere points");
-}
-
 class NativePoints final : public Hittable {
  public:
-  explicit NativePoints(std::vector<PlacedSphere> spheres)
-      : spheres_(std::move(spheres)), device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
-    require(scene_ != nullptr);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), spheres_.size()));
-    require(vertices != nullptr);
-    for (std::size_t i = 0; i < spheres_.size(); ++i) {
+  explicit NativePoints(std::vector<PlacedSphere> spheres) : spheres_(std::move(spheres)), scene_("threads=1") {
+    accel::build_sphere_points(scene_, spheres_.size(), [&](std::size_t i) {
       const PlacedSphere& s = spheres_[i];
-      vertices[4 * i] = static_cast<float>(s.center.x);
-      vertices[4 * i + 1] = static_cast<float>(s.center.y);
-      vertices[4 * i + 2] = static_cast<float>(s.center.z);
-      vertices[4 * i + 3] = static_cast<float>(std::abs(s.radius));
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-    require(rtcGetDeviceError(device_) == RTC_ERROR_NONE);
+      return kernel::Sphere{s.center.x, s.center.y, s.center.z, std::abs(s.radius)};
+    });
   }
-  ~NativePoints() override {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  NativePoints(const NativePoints&) = delete;
-  NativePoints& operator=(const NativePoints&) = delete;
 
   bool hit(const Ray& ray, Interval t, HitRecord& record) const override {
     RTCRayHit query{};
@@ -56,7 +32,7 @@ class NativePoints final : public Hittable {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     accel::EmbreeContext context;
     accel::init(context);
-    accel::intersect(scene_, context, query);
+    accel::intersect(scene_.get(), context, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
 
     const PlacedSphere& sphere = spheres_[query.hit.primID];
@@ -71,8 +47,7 @@ class NativePoints final : public Hittable {
 
  private:
   std::vector<PlacedSphere> spheres_;
-  RTCDevice device_;
-  RTCScene scene_;
+  accel::OwnedScene scene_;
 };
 
 }  // namespace

@@ -61,7 +61,7 @@ void nearest(benchmark::State& state, Precision precision, Lanes lanes) {
   const auto functions = functions_for(static_cast<const Packet*>(nullptr), precision, lanes);
   Packet packet = full_packets(work).front();
   for (auto _ : state) {
-    render::forget_hits(packet);
+    kernel::forget_hits(packet);
     functions.nearest(packet, work.world.spheres.data(), kSpheres);
     benchmark::ClobberMemory();
   }

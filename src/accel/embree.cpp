@@ -7,6 +7,7 @@
 
 #include "accel/accel.h"
 #include "accel/embree_scene.h"
+#include "accel/owned_scene.h"
 #include "base/error.h"
 
 namespace orrery::accel {
@@ -18,11 +19,6 @@ constexpr std::size_t kMostApart = 4;
 /// A sphere stands apart when it is so many times larger than all that is smaller: a ground under a scene. Its box
 /// would hold every other sphere, and its size would decide the padding of theirs.
 constexpr double kApartRatio = 4;
-
-[[noreturn]] void fail(RTCError code, const std::string& what) {
-  throw base::Error(base::ErrorKind::kInternal,
-                    what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
-}
 
 /// Ids, ascending, of spheres that dwarf the box around the rest.
 std::vector<std::uint32_t> find_apart(const kernel::Sphere* spheres, std::size_t count) {
@@ -78,81 +74,47 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
 class Embree final : public Accel {
  public:
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor)
-      : functions_(embree_functions(precision)), state_{make_scene(view), {}} {
-    const std::size_t primitives = view.sphere_count - state_.scene.apart.size();
-    if (primitives == 0) return;
-    device_ = rtcNewDevice(nullptr);
-    if (device_ == nullptr) fail(rtcGetDeviceError(nullptr), "Embree does not start");
-    rtcSetDeviceMemoryMonitorFunction(
-        device_,
-        [](void* self, ssize_t bytes, bool) {
-          static_cast<Embree*>(self)->bytes_.fetch_add(bytes, std::memory_order_relaxed);
-          return true;
-        },
-        this);
-    try {
-      build(primitives, monitor);
-    } catch (...) {
-      release();
-      throw;
-    }
+      : functions_(embree_functions(precision)), scene_(make_scene(view)) {
+    const std::size_t primitives = view.sphere_count - scene_.apart.size();
+    if (primitives > 0) build(primitives, monitor);
   }
-  ~Embree() override { release(); }
-  Embree(const Embree&) = delete;
-  Embree& operator=(const Embree&) = delete;
 
-  kernel::Tracer tracer() const noexcept override { return {functions_.trace, functions_.trace_fast, &state_.scene}; }
-  void use(Traversals traversals) noexcept override { state_.scene.traversals = traversals; }
+  kernel::Tracer tracer() const noexcept override { return {functions_.trace, functions_.trace_fast, &scene_}; }
+  void use(Traversals traversals) noexcept override { scene_.traversals = traversals; }
   std::string name() const override { return "embree " + embree_version(); }
-  std::size_t bytes() const noexcept override { return static_cast<std::size_t>(std::max<std::int64_t>(0, bytes_)); }
+  std::size_t bytes() const noexcept override { return embree_.bytes(); }
 
  private:
-  struct State {
-    EmbreeScene scene;
-    BuildState build;
-  };
-
   static EmbreeScene make_scene(const kernel::SceneView& view) {
     std::vector<std::uint32_t> apart = find_apart(view.spheres, view.sphere_count);
     return {nullptr, view.spheres, BoxFrame(view.spheres, all_but(apart, view.sphere_count)), std::move(apart), {}};
   }
 
-  void release() noexcept {
-    if (state_.scene.scene != nullptr) rtcReleaseScene(state_.scene.scene);
-    if (device_ != nullptr) rtcReleaseDevice(device_);
-  }
-
   void build(std::size_t primitives, const BuildMonitor& monitor) {
-    RTCScene scene = rtcNewScene(device_);
-    state_.scene.scene = scene;
-    state_.build.scene = &state_.scene;
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    BuildState state{&scene_};
+    RTCGeometry geometry = rtcNewGeometry(embree_.device(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
-    rtcSetGeometryUserData(geometry, &state_.build);
+    rtcSetGeometryUserData(geometry, &state);
     rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, functions_.intersect);
     rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
+    embree_.attach(geometry);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
-          scene, [](void* self, double fraction) { return (*static_cast<const BuildMonitor*>(self))(fraction); },
+          embree_.get(),
+          [](void* self, double fraction) { return (*static_cast<const BuildMonitor*>(self))(fraction); },
           const_cast<BuildMonitor*>(&monitor));
-    rtcCommitScene(scene);
-    const RTCError error = rtcGetDeviceError(device_);
-    if (error == RTC_ERROR_CANCELLED) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
-    if (error != RTC_ERROR_NONE) fail(error, "Embree cannot build the scene");
-    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
-    if (state_.build.refused > 0)
+    embree_.commit();
+    rtcSetSceneProgressMonitorFunction(embree_.get(), nullptr, nullptr);
+    if (state.refused > 0)
       throw base::Error(base::ErrorKind::kInternal,
-                        "Embree would drop " + std::to_string(state_.build.refused) + " spheres without a word");
+                        "Embree would drop " + std::to_string(state.refused) + " spheres without a word");
+    scene_.scene = embree_.get();
   }
 
   EmbreeFunctions functions_;
-  State state_;
-  RTCDevice device_ = nullptr;
-  std::atomic<std::int64_t> bytes_{0};
+  EmbreeScene scene_;
+  OwnedScene embree_;
 };
 
 /// Every sphere stands apart, and no hierarchy is left.

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <atomic>
 #include <memory>
 
 #include "accel/accel.h"
 #include "accel/embree_compat.h"
-#include "base/error.h"
+#include "accel/owned_scene.h"
 
 namespace orrery::accel {
 namespace {
-
-void require(bool holds) {
-  if (!holds) throw base::Error(base::ErrorKind::kInternal, "Embree cannot build sphere points");
-}
 
 /// Starts nearer than this do not count, lengths of the direction: without root exclusion a ray meets the sphere it
 /// left.
@@ -42,47 +37,16 @@ void trace_points(const void* self, kernel::RayPacketFast& packet) {
 
 class NativePoints final : public Accel {
  public:
-  explicit NativePoints(const kernel::SceneView& view) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-    require(scene_ != nullptr);
-    rtcSetDeviceMemoryMonitorFunction(
-        device_,
-        [](void* self, ssize_t bytes, bool) {
-          static_cast<NativePoints*>(self)->bytes_.fetch_add(bytes, std::memory_order_relaxed);
-          return true;
-        },
-        this);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), view.sphere_count));
-    require(vertices != nullptr);
-    for (std::size_t i = 0; i < view.sphere_count; ++i) {
-      const kernel::Sphere& s = view.spheres[i];
-      vertices[4 * i] = static_cast<float>(s.x);
-      vertices[4 * i + 1] = static_cast<float>(s.y);
-      vertices[4 * i + 2] = static_cast<float>(s.z);
-      vertices[4 * i + 3] = static_cast<float>(s.radius);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-    require(rtcGetDeviceError(device_) == RTC_ERROR_NONE);
+  explicit NativePoints(const kernel::SceneView& view) {
+    build_sphere_points(scene_, view.sphere_count, [&](std::size_t i) { return view.spheres[i]; });
   }
-  ~NativePoints() override {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  NativePoints(const NativePoints&) = delete;
-  NativePoints& operator=(const NativePoints&) = delete;
 
-  kernel::Tracer tracer() const noexcept override { return {nullptr, trace_points, scene_}; }
+  kernel::Tracer tracer() const noexcept override { return {nullptr, trace_points, scene_.get()}; }
   std::string name() const override { return "embree " + embree_version() + ", sphere points"; }
-  std::size_t bytes() const noexcept override { return static_cast<std::size_t>(bytes_); }
+  std::size_t bytes() const noexcept override { return scene_.bytes(); }
 
  private:
-  RTCDevice device_;
-  RTCScene scene_;
-  std::atomic<std::int64_t> bytes_{0};
+  OwnedScene scene_;
 };
 
 }  // namespace

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "app/bench_tracing.h"
+#include "app/choose_isa.h"
 #include "app/scene_hash.h"
 #include "app/text.h"
 #include "base/error.h"
-#include "base/suggestion.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
 #include "kernel/isa.h"
@@ -92,13 +92,9 @@ class Subject {
   double trace_alone(const Case& c) {
     prepare(c);
     const accel::Accel& with = accel(c);
-    const std::vector<kernel::Tile> rows = recorded_rows();
-    if (c.precision == Precision::kFast) {
-      if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(world_.view(), with, rows);
-      return seconds_a_path(with, fast_rays_);
-    }
+    if (c.precision == Precision::kFast) return seconds_a_path(with, fast_rays(with));
     auto& rays = rays_[c.precision];
-    if (rays.paths == 0) rays = render::record_rays(world_.view(), with, c.precision, rows);
+    if (rays.paths == 0) rays = render::record_rays(world_.view(), with, c.precision, recorded_rows());
     return seconds_a_path(with, rays);
   }
 
@@ -108,7 +104,8 @@ class Subject {
     fast.precision = Precision::kFast;
     fast.features = world_.features;
     prepare(fast);
-    return TracingBench(world_.view(), accel(fast), recorded_rows(), with_lists);
+    accel::Accel& with = accel(fast);
+    return TracingBench(world_.view(), with, fast_rays(with), with_lists);
   }
 
  private:
@@ -123,6 +120,11 @@ class Subject {
       rows.push_back(row);
     }
     return rows;
+  }
+
+  render::RecordedRays<kernel::RayPacketFast>& fast_rays(const accel::Accel& with) {
+    if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(world_.view(), with, recorded_rows());
+    return fast_rays_;
   }
 
   void prepare(const Case& c) {
@@ -221,10 +223,7 @@ BenchCase result_of(const Case& c, const std::vector<double>& reference) {
 }  // namespace
 
 Benchmark bench_scene(const BenchRequest& request) {
-  if (!request.isa.empty() && !kernel::limit_isa(request.isa))
-    throw base::Error(base::ErrorKind::kUsage, "no instruction set " + request.isa +
-                                                   " here; this processor and program have " +
-                                                   base::joined(kernel::available_isas()));
+  choose_isa(request.isa);
   Subject subject(request);
   const compile::World& world = subject.world();
   Benchmark out;

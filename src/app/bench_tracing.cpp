@@ -5,9 +5,9 @@
 
 namespace orrery::app {
 
-TracingBench::TracingBench(const kernel::SceneView& view, accel::Accel& fast, const std::vector<kernel::Tile>& tiles,
-                           bool with_list)
-    : points_(accel::make_native_points(view)), rays_(render::record_rays_fast(view, fast, tiles)) {
+TracingBench::TracingBench(const kernel::SceneView& view, accel::Accel& fast,
+                           render::RecordedRays<kernel::RayPacketFast>& rays, bool with_list)
+    : points_(accel::make_native_points(view)), rays_(rays) {
   for (const auto* packets : {&rays_.camera, &rays_.bounced})
     for (const kernel::RayPacketFast& packet : *packets) ray_count_ += packet.count;
   ways_ = {{"packets", &fast, accel::Traversal::kPacket, {}},

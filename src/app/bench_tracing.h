@@ -15,8 +15,8 @@ namespace orrery::app {
 /// geometry, single rays through Embree's own sphere points, and a list in all lanes.
 class TracingBench {
  public:
-  /// Domain     view and `fast`, its hierarchy for that precision, outlive this; one sphere or more
-  TracingBench(const kernel::SceneView& view, accel::Accel& fast, const std::vector<kernel::Tile>& tiles,
+  /// Domain     view, `fast`, its hierarchy for that precision, and rays outlive this; one sphere or more
+  TracingBench(const kernel::SceneView& view, accel::Accel& fast, render::RecordedRays<kernel::RayPacketFast>& rays,
                bool with_list);
 
   /// Measures every way once; each round begins with another one.
@@ -33,7 +33,7 @@ class TracingBench {
   };
 
   std::unique_ptr<accel::Accel> points_, list_;
-  render::RecordedRays<kernel::RayPacketFast> rays_;
+  render::RecordedRays<kernel::RayPacketFast>& rays_;
   double ray_count_ = 0;
   std::vector<Way> ways_;
 };

@@ -23,20 +23,18 @@ std::vector<Feature> features_of(const compile::World& world) {
   const auto of = [&](kernel::MaterialKind kind) {
     return some([kind](const kernel::Material& m) { return m.kind == kind; });
   };
-  const bool lens = world.features.lens, sky = world.features.sky;
-  const bool paths = world.shading == kernel::Shading::kPath;
-  std::vector<Feature> out = {
-      {"thin lens", lens, lens ? "camera.defocus_angle is above 0" : "pinhole: no lens is sampled"},
-      {"lambertian", of(kernel::MaterialKind::kLambertian), "no such sphere"},
-      {"hemisphere", of(kernel::MaterialKind::kHemisphere), "no such sphere"},
-      {"metal", of(kernel::MaterialKind::kMetal), "no such sphere"},
-      {"fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "mirrors are sharp"},
-      {"dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"},
-      {"gradient sky", sky, "one colour: no direction is looked at"},
-      {"light paths", paths, "render.shading asks for the first hit only"}};
-  for (Feature& f : out)
-    if (f.required && f.name != "thin lens") f.note.clear();
-  return out;
+  const auto feature = [](const char* name, bool required, const char* why_not, const char* why = "") {
+    return Feature{name, required, required ? why : why_not};
+  };
+  return {
+      feature("thin lens", world.features.lens, "pinhole: no lens is sampled", "camera.defocus_angle is above 0"),
+      feature("lambertian", of(kernel::MaterialKind::kLambertian), "no such sphere"),
+      feature("hemisphere", of(kernel::MaterialKind::kHemisphere), "no such sphere"),
+      feature("metal", of(kernel::MaterialKind::kMetal), "no such sphere"),
+      feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "mirrors are sharp"),
+      feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
+      feature("gradient sky", world.features.sky, "one colour: no direction is looked at"),
+      feature("light paths", world.shading == kernel::Shading::kPath, "render.shading asks for the first hit only")};
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::World& world) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 
+#include "app/choose_isa.h"
 #include "app/memory.h"
 #include "app/output_files.h"
 #include "app/picture_header.h"
@@ -12,7 +13,6 @@
 #include "app/threads.h"
 #include "base/error.h"
 #include "base/exit_status.h"
-#include "base/suggestion.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
 #include "image/format.h"
@@ -55,10 +55,7 @@ void check_request(const Job& job) {
   check_output_files(job.outputs, job.bits, others, job.scene);
   traversal_of(job);
   image::check_compression(job.exr.compression);
-  if (!job.isa.empty() && !kernel::limit_isa(job.isa))
-    throw base::Error(base::ErrorKind::kUsage, "no instruction set " + job.isa +
-                                                   " here; this processor and program have " +
-                                                   base::joined(kernel::available_isas()));
+  choose_isa(job.isa);
 }
 
 void stop_if_asked(const Job& job) {
@@ -117,9 +114,7 @@ void run_phases(const Job& job, JobReport& report) {
   report.phases.read_s = watch.lap();
   stop_if_asked(job);
 
-  std::uint64_t spheres = read.scene.spheres.size();
-  for (const scene::Points& points : read.scene.points) spheres += points.centers.size();
-  require_memory(estimate_memory(read.scene.image.width, read.scene.image.height, spheres,
+  require_memory(estimate_memory(read.scene.image.width, read.scene.image.height, read.scene.sphere_count(),
                                  read.scene.render.accelerator == scene::Accelerator::kEmbree),
                  job.memory_limit);
 

@@ -15,7 +15,6 @@
 namespace orrery::cli {
 namespace {
 
-constexpr std::uint64_t kMostThreads = 4096;
 constexpr std::uint64_t kMostRounds = 1000;
 constexpr double kLongest = 3600;  // seconds of one measurement
 

@@ -9,6 +9,9 @@
 
 namespace orrery::cli {
 
+/// More threads than any machine has; a number of another kind was meant.
+inline constexpr std::uint64_t kMostThreads = 4096;
+
 // Checks of what is given to an option, in our own words: those of the library differ between its versions.
 
 /// Refuses a word that is not among `names`, and says which one was meant.

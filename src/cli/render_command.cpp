@@ -13,9 +13,6 @@
 namespace orrery::cli {
 namespace {
 
-/// More than any machine has; a number of another kind was meant.
-constexpr std::uint64_t kMostThreads = 4096;
-
 struct RenderOptions {
   app::Job job;
   SceneOptions scene;

@@ -101,8 +101,7 @@ void add_sphere(World& world, MaterialTable& table, Vec3d center, double radius,
 }
 
 void add_spheres(const scene::Scene& scene, World& world) {
-  std::size_t count = scene.spheres.size();
-  for (const scene::Points& points : scene.points) count += points.centers.size();
+  const std::size_t count = scene.sphere_count();
   world.spheres.reserve(count);
   world.sphere_materials.reserve(count);
   MaterialTable table(scene, world);
@@ -150,11 +149,6 @@ kernel::SceneView World::view() const noexcept {
   v.max_depth = max_depth;
   v.seed = seed;
   return v;
-}
-
-std::size_t World::bytes() const noexcept {
-  return spheres.capacity() * sizeof(kernel::Sphere) + sphere_materials.capacity() * sizeof(std::uint32_t) +
-         materials.capacity() * sizeof(kernel::Material);
 }
 
 World compile(const scene::Scene& scene) {

@@ -43,9 +43,6 @@ struct World {
 
   /// The same for the inner loops; valid as long as this World is neither changed nor destroyed.
   kernel::SceneView view() const noexcept;
-
-  /// Bytes of the arrays held here.
-  std::size_t bytes() const noexcept;
 };
 
 }  // namespace orrery::compile

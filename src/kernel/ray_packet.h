@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "kernel/sphere.h"
 
@@ -41,5 +43,15 @@ struct Tracer {
   void (*trace_fast)(const void* self, RayPacketFast& packet) = nullptr;
   const void* self = nullptr;
 };
+
+inline void trace(const Tracer& tracer, RayPacket& packet) { tracer.trace(tracer.self, packet); }
+inline void trace(const Tracer& tracer, RayPacketFast& packet) { tracer.trace_fast(tracer.self, packet); }
+
+/// Nothing is hit yet, at any distance.
+template <class T, class Id>
+inline void forget_hits(RayPacketOf<T, Id>& packet) {
+  std::fill_n(packet.distance, kPacketSize, std::numeric_limits<T>::max());
+  std::fill_n(packet.hit, kPacketSize, Id{kNoSphere});
+}
 
 }  // namespace orrery::kernel

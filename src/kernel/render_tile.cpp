@@ -117,17 +117,6 @@ HWY_INLINE void load_bounced_rays(D d, Stream& stream, int first, int count, Car
   }
 }
 
-/// Nothing is hit yet, at any distance.
-template <class Packet>
-HWY_INLINE void forget_hits(Packet& packet) {
-  std::fill_n(packet.distance, kPacketSize,
-              std::numeric_limits<std::remove_reference_t<decltype(packet.distance[0])>>::max());
-  std::fill_n(packet.hit, kPacketSize, kNoSphere);
-}
-
-HWY_INLINE void trace(const Tracer& tracer, RayPacket& packet) { tracer.trace(tracer.self, packet); }
-HWY_INLINE void trace(const Tracer& tracer, RayPacketFast& packet) { tracer.trace_fast(tracer.self, packet); }
-
 template <class D, Precision kPrecision, class Stream>
 TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, Stream& stream) {
   const D d;

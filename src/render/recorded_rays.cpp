@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/recorded_rays.h"
 
-#include <algorithm>
 #include <chrono>
-#include <limits>
 #include <memory>
-#include <type_traits>
+#include <utility>
 
 namespace orrery::render {
 namespace {
@@ -52,17 +50,12 @@ RecordedRays<Packet> record(const kernel::SceneView& view, const accel::Accel& a
   return std::move(recorder.rays);
 }
 
-void trace_packet(const kernel::Tracer& tracer, kernel::RayPacket& packet) { tracer.trace(tracer.self, packet); }
-void trace_packet(const kernel::Tracer& tracer, kernel::RayPacketFast& packet) {
-  tracer.trace_fast(tracer.self, packet);
-}
-
 template <class Packet>
 double seconds_to_trace(const kernel::Tracer& tracer, std::vector<Packet>& packets) {
   const auto begin = std::chrono::steady_clock::now();
   for (Packet& packet : packets) {
-    forget_hits(packet);
-    trace_packet(tracer, packet);
+    kernel::forget_hits(packet);
+    kernel::trace(tracer, packet);
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -78,16 +71,6 @@ RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& vi
                                                      const std::vector<kernel::Tile>& tiles) {
   return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, tiles, kernel::render_tile_fast_function());
 }
-
-template <class Packet>
-void forget_hits(Packet& packet) {
-  using T = std::remove_reference_t<decltype(packet.distance[0])>;
-  std::fill_n(packet.distance, kernel::kPacketSize, std::numeric_limits<T>::max());
-  std::fill_n(packet.hit, kernel::kPacketSize, kernel::kNoSphere);
-}
-
-template void forget_hits(kernel::RayPacket& packet);
-template void forget_hits(kernel::RayPacketFast& packet);
 
 double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket>& packets) {
   return seconds_to_trace(tracer, packets);

@@ -29,13 +29,6 @@ RecordedRays<kernel::RayPacket> record_rays(const kernel::SceneView& view, const
 RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& view, const accel::Accel& accel,
                                                      const std::vector<kernel::Tile>& tiles);
 
-/// Makes a traced packet one that was not traced yet, as the renderer does before each trace.
-template <class Packet>
-void forget_hits(Packet& packet);
-
-extern template void forget_hits(kernel::RayPacket& packet);
-extern template void forget_hits(kernel::RayPacketFast& packet);
-
 /// Traces packets once more and does nothing else: what a renderer whose shading costs nothing would need.
 ///
 /// Result     seconds

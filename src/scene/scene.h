@@ -108,6 +108,13 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Sphere> spheres;
   std::vector<Points> points;
+
+  /// Of tables and of points files.
+  std::size_t sphere_count() const {
+    std::size_t count = spheres.size();
+    for (const Points& p : points) count += p.centers.size();
+    return count;
+  }
 };
 
 }  // namespace orrery::scene

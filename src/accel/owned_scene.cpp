@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "accel/owned_scene.h"
+
+#include <algorithm>
+#include <string>
+
+#include "base/error.h"
+
+namespace orrery::accel {
+namespace {
+
+[[noreturn]] void fail(RTCError code, const std::string& what) {
+  throw base::Error(base::ErrorKind::kInternal,
+                    what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
+}
+
+}  // namespace
+
+OwnedScene::OwnedScene(const char* settings) : device_(rtcNewDevice(settings)) {
+  if (device_ == nullptr) fail(rtcGetDeviceError(nullptr), "Embree does not start");
+  rtcSetDeviceMemoryMonitorFunction(
+      device_,
+      [](void* self, ssize_t bytes, bool) {
+        static_cast<OwnedScene*>(self)->bytes_.fetch_add(bytes, std::memory_order_relaxed);
+        return true;
+      },
+      this);
+  scene_ = rtcNewScene(device_);
+}
+
+OwnedScene::~OwnedScene() {
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
+}
+
+std::size_t OwnedScene::bytes() const noexcept {
+  return static_cast<std::size_t>(std::max<std::int64_t>(0, bytes_.load(std::memory_order_relaxed)));
+}
+
+void OwnedScene::attach(RTCGeometry geometry) {
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+void OwnedScene::commit() {
+  rtcCommitScene(scene_);
+  const RTCError error = rtcGetDeviceError(device_);
+  if (error == RTC_ERROR_CANCELLED) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
+  if (error != RTC_ERROR_NONE) fail(error, "Embree cannot build the scene");
+}
+
+void build_sphere_points(OwnedScene& scene, std::size_t count,
+                         const std::function<kernel::Sphere(std::size_t i)>& sphere_at) {
+  RTCGeometry geometry = rtcNewGeometry(scene.device(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  auto* const vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), count));
+  for (std::size_t i = 0; vertices != nullptr && i < count; ++i) {
+    const kernel::Sphere s = sphere_at(i);
+    vertices[4 * i] = static_cast<float>(s.x);
+    vertices[4 * i + 1] = static_cast<float>(s.y);
+    vertices[4 * i + 2] = static_cast<float>(s.z);
+    vertices[4 * i + 3] = static_cast<float>(s.radius);
+  }
+  scene.attach(geometry);
+  scene.commit();
+}
+
+}  // namespace orrery::accel
