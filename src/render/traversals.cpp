@@ -18,7 +18,7 @@ constexpr double kMostTrialPaths = 32 * 1024;
 constexpr int kFewestTrialTiles = 4;
 
 /// Without a trial: bounced rays of larger scenes part too soon for packets.
-constexpr std::size_t kManySpheres = 2000;
+constexpr std::size_t kManySpheres = 1000;
 
 /// Tiles all over the picture, the same ones in every run. Each is one stream of paths: fewer would leave bounced
 /// packets emptier than they are in a render. As in a render, a packet of camera rays holds as many pixels as it needs.
