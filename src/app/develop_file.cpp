@@ -29,7 +29,8 @@ DevelopReport develop_file(const Development& development) {
   DevelopReport report;
   report.display = display::choose(development.display);
   const film::Picture picture = image::read(development.input);
-  report.bad_values = film::count_bad_values(picture);
+  for (const char* name : {"R", "G", "B"})  // no other plane is developed
+    if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
   const film::EncodedPicture developed =
       display::develop(picture, development.display, development.bits == 0 ? 8 : development.bits);
   for (const auto& output : development.outputs) image::write_encoded(output, developed, "orrery " + program_version());

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/job.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
 #include "app/choose_isa.h"
+#include "app/layers.h"
+#include "app/matte_manifest.h"
 #include "app/memory.h"
 #include "app/output_files.h"
 #include "app/picture_header.h"
@@ -14,6 +17,7 @@
 #include "base/error.h"
 #include "base/exit_status.h"
 #include "compile/compile.h"
+#include "film/layer_film.h"
 #include "format/read_scene.h"
 #include "image/format.h"
 #include "kernel/isa.h"
@@ -105,6 +109,28 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
   }
 }
 
+/// The layers that some file of the job will hold; what no file holds is not computed.
+Layers layers_for(const Job& job, const scene::Scene& scene, const compile::World& world) {
+  Layers layers = choose_layers(scene, world);
+  image::check_lossless(film::planes_of(layers.request), job.exr);
+  const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
+  if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) return layers;
+  Layers none;
+  none.request.coverage = layers.request.coverage;
+  return none;
+}
+
+void count_bad_values(const film::Picture& picture, JobReport& report) {
+  for (const film::Plane& plane : picture.planes) {
+    const film::BadValues bad = film::count_bad_values(plane);
+    if (!bad.any()) continue;
+    report.bad_values += bad;
+    const std::string layer = plane.layer().empty() ? "beauty" : plane.layer();
+    if (report.bad_layers.empty() || report.bad_layers.back().first != layer) report.bad_layers.push_back({layer, {}});
+    report.bad_layers.back().second += bad;
+  }
+}
+
 /// The way data takes.
 void run_phases(const Job& job, JobReport& report) {
   Stopwatch watch;
@@ -119,6 +145,7 @@ void run_phases(const Job& job, JobReport& report) {
                  job.memory_limit);
 
   const compile::World world = compile::compile(read.scene);
+  const Layers layers = layers_for(job, read.scene, world);
   read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
   report.scene_hash = scene_hash(world);
   report.width = world.width;
@@ -131,6 +158,7 @@ void run_phases(const Job& job, JobReport& report) {
   render::Settings settings;
   settings.threads = job.threads > 0 ? job.threads : default_threads();
   settings.traversal = traversal_of(job);
+  settings.layers = layers.request;
   settings.on_progress = job.on_progress;
   settings.on_build = job.on_build;
   settings.cancel = job.cancel;
@@ -141,8 +169,9 @@ void run_phases(const Job& job, JobReport& report) {
   watch.lap();
   if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written");
 
-  report.bad_values = film::count_bad_values(result.picture);
-  const image::Header header = picture_header(read, world, report, job.reproducible);
+  count_bad_values(result.picture, report);
+  image::Header header = picture_header(read, world, report, job.reproducible);
+  header.matte_attributes = matte_attributes(layers.mattes);
   image::set_threads(settings.threads);
   write_outputs(job, display, result.picture, header, report);
   report.phases.write_s = watch.lap();

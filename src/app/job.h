@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/finding.h"
@@ -45,8 +46,9 @@ struct Phases {
 struct JobReport {
   render::Statistics render;
   Phases phases;
-  film::BadValues bad_values;  ///< of the picture, before any display transform
-  image::WriteReport written;  ///< changed so that it fits into the files
+  film::BadValues bad_values;                                       ///< of the picture, before any display transform
+  std::vector<std::pair<std::string, film::BadValues>> bad_layers;  ///< the same of each layer that has any
+  image::WriteReport written;                                       ///< changed so that it fits into the files
   int width = 0, height = 0, samples = 0;
   std::size_t spheres = 0;
   std::string scene_hash;

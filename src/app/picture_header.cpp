@@ -56,6 +56,11 @@ image::Header picture_header(const format::ReadResult& read, const compile::Worl
   for (const format::Setting& setting : read.settings)
     if (setting.key == "render.precision" || setting.key == "render.shading")
       header.attributes.push_back({"orrery/" + setting.key.substr(7), scene::unquoted(setting.value)});
+  for (const auto& [layer, bad] : report.bad_layers)
+    header.attributes.push_back({"orrery/badValues/" + layer, std::to_string(bad.nan) + " nan, " +
+                                                                  std::to_string(bad.infinite) + " infinite, " +
+                                                                  std::to_string(bad.negative) + " negative, " +
+                                                                  std::to_string(bad.above_half) + " above half"});
   header.attributes.push_back({"orrery/settings", settings_lines(read.settings, reproducible)});
   if (reproducible) return header;
   header.capture_date = local_time();

@@ -17,6 +17,14 @@ std::size_t peak_memory() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
 }
 
+namespace {
+
+nlohmann::json bad_values_json(const film::BadValues& bad) {
+  return {{"nan", bad.nan}, {"infinite", bad.infinite}, {"negative", bad.negative}, {"above_half", bad.above_half}};
+}
+
+}  // namespace
+
 std::string statistics_json(const JobReport& report, const Outcome& outcome) {
   using nlohmann::json;
   const render::Statistics& r = report.render;
@@ -43,17 +51,14 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
                 {"write", report.phases.write_s}}},
               {"peak_memory_bytes", peak_memory()},
               {"bad_samples", r.bad_samples},
-              {"bad_pixels",
-               {{"nan", report.bad_values.nan},
-                {"infinite", report.bad_values.infinite},
-                {"negative", report.bad_values.negative},
-                {"above_half", report.bad_values.above_half}}},
+              {"bad_pixels", bad_values_json(report.bad_values)},
               {"written", {{"clamped", report.written.clamped}, {"not_finite", report.written.not_finite}}},
               {"threads", r.threads},
               {"isa", r.isa},
               {"traversal", r.traversal},
               {"accelerator", r.accelerator},
               {"versions", versions}};
+  for (const auto& [layer, bad] : report.bad_layers) out["bad_pixels"]["layers"][layer] = bad_values_json(bad);
   if (!outcome.error.empty()) out["error"] = outcome.error;
   return json_text(out);
 }

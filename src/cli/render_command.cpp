@@ -86,6 +86,7 @@ void add_picture_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--compression", options.job.exr.compression, "EXR compression, zips by default: zip, dwaa:45 ...")
       ->type_name("NAME");
+  command.add_flag("--multipart", options.job.exr.multipart, "Give each layer of an EXR a part of its own");
   command.add_flag("--reproducible", options.job.reproducible, "Leave out of headers what changes between runs");
 }
 

@@ -23,6 +23,7 @@ class SceneOptions {
     const char* key;
     std::string value;
     const CLI::Option* flag;
+    bool is_list;  ///< words between commas
   };
   std::vector<std::string> set_;
   std::deque<Short> short_forms_;  ///< a deque: the parser holds on to where the values are

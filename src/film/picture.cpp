@@ -5,18 +5,24 @@
 
 namespace orrery::film {
 
-BadValues count_bad_values(const Picture& picture) {
+BadValues& BadValues::operator+=(const BadValues& other) {
+  nan += other.nan;
+  infinite += other.infinite;
+  negative += other.negative;
+  above_half += other.above_half;
+  return *this;
+}
+
+BadValues count_bad_values(const Plane& plane) {
   BadValues bad;
-  for (const Plane& plane : picture.planes) {
-    for (const float v : plane.values) {
-      if (std::isnan(v)) {
-        ++bad.nan;
-      } else if (std::isinf(v)) {
-        ++bad.infinite;
-      } else {
-        if (v < 0) ++bad.negative;
-        if (std::abs(v) > kLargestHalf) ++bad.above_half;
-      }
+  for (const float v : plane.values) {
+    if (std::isnan(v)) {
+      ++bad.nan;
+    } else if (std::isinf(v)) {
+      ++bad.infinite;
+    } else if (plane.kind != PlaneKind::kData) {
+      if (v < 0 && plane.kind == PlaneKind::kLight) ++bad.negative;
+      if (std::abs(v) > kLargestHalf) ++bad.above_half;
     }
   }
   return bad;

@@ -7,10 +7,21 @@
 
 namespace orrery::film {
 
+/// What the numbers of a plane are good for.
+enum class PlaneKind : std::uint8_t {
+  kLight,   ///< colours: half is enough, below 0 is wrong
+  kVector,  ///< half is enough, any sign
+  kData,    ///< distances, ids, counts: every bit counts
+};
+
 /// One channel of a picture.
 struct Plane {
   std::string name;           ///< as in the EXR header: "R", "G", "B", "A", "variance.R"
   std::vector<float> values;  ///< width * height, rows from the top, left to right
+  PlaneKind kind = PlaneKind::kLight;
+
+  /// What stands before the last dot of its name; empty for R, G, B, A and Z.
+  std::string layer() const { return name.substr(0, name.rfind('.') == std::string::npos ? 0 : name.rfind('.')); }
 };
 
 /// A finished picture: scene-linear planes of one size.
@@ -35,9 +46,12 @@ struct BadValues {
   std::uint64_t infinite = 0;
   std::uint64_t negative = 0;
   std::uint64_t above_half = 0;  ///< finite but beyond the largest half
+
+  bool any() const { return nan + infinite + negative + above_half > 0; }
+  BadValues& operator+=(const BadValues& other);
 };
 
-/// Counts what is not fit to be shown in all planes of a picture.
-BadValues count_bad_values(const Picture& picture);
+/// Counts what is not fit to be shown in a plane: of data only what is no finite number, of vectors no sign.
+BadValues count_bad_values(const Plane& plane);
 
 }  // namespace orrery::film

@@ -94,6 +94,31 @@ std::optional<Value> read_text(Reading& reading, const toml::node& node, const s
   return text;
 }
 
+/// Each wrong word is a finding of its own.
+std::optional<Value> read_words(Reading& reading, const toml::node& node, const std::string& name,
+                                const std::vector<std::string>& choices) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr) {
+    wrong_type(reading, node, name, "a list like [\"" + choices.front() + "\"]");
+    return {};
+  }
+  std::vector<std::string> words;
+  bool good = true;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const toml::node& element = *array->get(i);
+    const std::string element_name = name + "[" + std::to_string(i) + "]";
+    const auto word = read_text(reading, element, element_name, choices);
+    good = good && word.has_value();
+    if (!word) continue;
+    if (std::find(words.begin(), words.end(), std::get<std::string>(*word)) != words.end()) {
+      reading.error(place_of(element), element_name + " stands there twice", "leave one out");
+      good = false;
+    }
+    words.push_back(std::get<std::string>(*word));
+  }
+  return good ? std::optional<Value>(words) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Value> read_value(Reading& reading, const toml::node& node, const std::string& name, ValueType type,
@@ -107,6 +132,7 @@ std::optional<Value> read_value(Reading& reading, const toml::node& node, const 
     case ValueType::kVector: return read_vector(reading, node, name, range);
     case ValueType::kText: return read_text(reading, node, name, {});
     case ValueType::kChoice: return read_text(reading, node, name, choices);
+    case ValueType::kChoices: return read_words(reading, node, name, choices);
   }
   return {};
 }

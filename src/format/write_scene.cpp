@@ -78,12 +78,15 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   for (const scene::Sphere& sphere : scene.spheres) {
     out += "[[sphere]]\n";
     if (!sphere.name.empty()) out += "name = " + string_text(sphere.name) + "\n";
+    if (!sphere.group.empty()) out += "group = " + string_text(sphere.group) + "\n";
     out += "center = " + vector_text(sphere.center) + "\nradius = " + number_text(sphere.radius) +
            "\nmaterial = " + string_text(material_name(scene, sphere.material)) + "\n\n";
   }
   for (const scene::Points& points : scene.points) {
     out += "[[points]]\nfile = " + string_text(points.file.string()) +
            "\nmaterial = " + string_text(material_name(scene, points.material)) + "\n";
+    if (!points.name.empty()) out += "name = " + string_text(points.name) + "\n";
+    if (!points.group.empty()) out += "group = " + string_text(points.group) + "\n";
     if (points.radius) out += "radius = " + number_text(*points.radius) + "\n";
     out += '\n';
   }

@@ -19,44 +19,60 @@ namespace {
 /// Hands all pixels to OpenImageIO.
 ///
 /// Result     what it complained of, or nothing. Asked for always: what nobody asks for it prints.
-std::string encode(OIIO::ImageOutput& out, const std::string& name, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                   const void* pixels) {
+std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDesc type,
+                   const std::vector<WholePart>& parts) {
   const auto complaint = [&](const char* step) {
     const std::string text = out.geterror();
     return text.empty() ? std::string(step) + " failed" : text;
   };
-  if (!out.open(name, spec)) return complaint("opening");
-  const bool written = out.write_image(type, pixels);
-  const std::string write_complaint = written ? "" : complaint("encoding");
-  if (!out.close() && written) return complaint("closing");
+  std::vector<OIIO::ImageSpec> specs;
+  for (const WholePart& part : parts) specs.push_back(part.spec);
+  const bool opened =
+      specs.size() == 1 ? out.open(name, specs[0]) : out.open(name, static_cast<int>(specs.size()), specs.data());
+  if (!opened) return complaint("opening");
+  std::string first_complaint;
+  for (std::size_t i = 0; i < parts.size() && first_complaint.empty(); ++i) {
+    if (i > 0 && !out.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) return complaint("opening a part");
+    if (!out.write_image(type, parts[i].pixels)) first_complaint = complaint("encoding");
+  }
+  if (!out.close() && first_complaint.empty()) return complaint("closing");
   out.geterror();
-  return write_complaint;
+  return first_complaint;
 }
 
-/// Opens what was written and decodes its end.
+/// Opens what was written and decodes the end of every part.
 ///
 /// Result     what is wrong with it, or nothing
-std::string read_back(const std::string& name, const std::string& format, const OIIO::ImageSpec& written) {
+std::string read_back(const std::string& name, const std::string& format, const std::vector<WholePart>& parts) {
   const auto in = OIIO::ImageInput::create(format);
   if (!in) return OIIO::geterror();
   OIIO::ImageSpec spec;
   if (!in->open(name, spec)) return "it cannot be read back: " + in->geterror();
-  std::string wrong;
-  if (spec.width != written.width || spec.height != written.height || spec.nchannels != written.nchannels) {
-    wrong = "it reads back as another picture";
-  } else {
-    std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
-    if (!in->read_scanline(spec.height - 1 + spec.y, 0, OIIO::TypeDesc::FLOAT, row.data()))
-      wrong = "its end cannot be read back";
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const OIIO::ImageSpec& written = parts[i].spec;
+    const int part = static_cast<int>(i);
+    std::string wrong;
+    if (!in->seek_subimage(part, 0)) {
+      wrong = "a part cannot be read back";
+    } else if (spec = in->spec();
+               spec.width != written.width || spec.height != written.height || spec.nchannels != written.nchannels) {
+      wrong = "it reads back as another picture";
+    } else {
+      std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
+      if (!in->read_scanlines(part, 0, spec.y + spec.height - 1, spec.y + spec.height, 0, 0, spec.nchannels,
+                              OIIO::TypeDesc::FLOAT, row.data()))
+        wrong = "its end cannot be read back";
+    }
+    const std::string reason = in->geterror();
+    if (!wrong.empty()) return reason.empty() ? wrong : wrong + ": " + reason;
   }
-  const std::string reason = in->geterror();
-  return wrong.empty() || reason.empty() ? wrong : wrong + ": " + reason;
+  return {};
 }
 
 }  // namespace
 
-void write_whole(const std::filesystem::path& file, const std::string& format, const OIIO::ImageSpec& spec,
-                 OIIO::TypeDesc type, const void* pixels) {
+void write_whole(const std::filesystem::path& file, const std::string& format, OIIO::TypeDesc type,
+                 const std::vector<WholePart>& parts) {
   prepare_library();
   base::AtomicFile target(file);
   const std::string name = target.temporary().string();
@@ -67,10 +83,10 @@ void write_whole(const std::filesystem::path& file, const std::string& format, c
     throw base::Error(base::ErrorKind::kInternal,
                       "this OpenImageIO cannot write " + format + " files " + OIIO::geterror());
   out->set_ioproxy(&bytes);
-  const std::string complaint = encode(*out, name, spec, type, pixels);
+  const std::string complaint = encode(*out, name, type, parts);
   if (const int error = bytes.finish(); error != 0) io_failed(file, std::strerror(error));
   if (!complaint.empty()) io_failed(file, complaint);
-  if (const std::string wrong = read_back(name, format, spec); !wrong.empty()) io_failed(file, wrong);
+  if (const std::string wrong = read_back(name, format, parts); !wrong.empty()) io_failed(file, wrong);
   target.commit();
 }
 

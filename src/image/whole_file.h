@@ -5,16 +5,22 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace orrery::image {
 
-/// Writes a picture through OpenImageIO: under a temporary name, every byte checked, read back, synced, renamed.
+/// One picture of a file, which may hold several of one size.
+struct WholePart {
+  OIIO::ImageSpec spec;
+  const void* pixels = nullptr;  ///< spec's width x height x channels values, rows from the top
+};
+
+/// Writes pictures through OpenImageIO: under a temporary name, every byte checked, read back, synced, renamed.
 ///
-/// Shape      pixels: spec's width x height x channels values of `type`, rows from the top
-/// Domain     format is OpenImageIO's own name of it
+/// Domain     format is OpenImageIO's own name of it; `type` is that of the pixels; one part, or a format that has more
 /// Errors     base::Error: kCannotCreate, kIo; what stood under the name before stands there still
-void write_whole(const std::filesystem::path& file, const std::string& format, const OIIO::ImageSpec& spec,
-                 OIIO::TypeDesc type, const void* pixels);
+void write_whole(const std::filesystem::path& file, const std::string& format, OIIO::TypeDesc type,
+                 const std::vector<WholePart>& parts);
 
 /// Keeps OpenImageIO from writing the time of day into a file.
 void leave_out_date(OIIO::ImageSpec& spec);

@@ -30,8 +30,8 @@ constexpr Range kFloatRange{std::numeric_limits<float>::lowest(), std::numeric_l
 constexpr Range kRadianceRange{0, 0x1.fep126f};
 
 /// Planes side by side, pixel by pixel, fit for the file.
-std::vector<float> interleaved(const film::Picture& picture, const std::vector<const film::Plane*>& planes, Range range,
-                               WriteReport& report) {
+std::vector<float> interleaved(const film::Picture& picture, const std::vector<const film::Plane*>& planes,
+                               const std::vector<Range>& ranges, WriteReport& report) {
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
   std::vector<float> out(pixels * planes.size());
   for (std::size_t c = 0; c < planes.size(); ++c) {
@@ -42,14 +42,22 @@ std::vector<float> interleaved(const film::Picture& picture, const std::vector<c
       if (!std::isfinite(v)) {
         v = 0;
         ++report.not_finite;
-      } else if (v < range.smallest || v > range.largest) {
-        v = std::clamp(v, range.smallest, range.largest);
+      } else if (v < ranges[c].smallest || v > ranges[c].largest) {
+        v = std::clamp(v, ranges[c].smallest, ranges[c].largest);
         ++report.clamped;
       }
       out[i * planes.size() + c] = v;
     }
   }
   return out;
+}
+
+void add_attributes(ImageSpec& spec, const std::vector<Attribute>& attributes) {
+  for (const Attribute& a : attributes) {
+    if (const auto* text = std::get_if<std::string>(&a.value)) spec.attribute(a.name, *text);
+    if (const int* whole = std::get_if<int>(&a.value)) spec.attribute(a.name, *whole);
+    if (const float* number = std::get_if<float>(&a.value)) spec.attribute(a.name, *number);
+  }
 }
 
 void add_header(ImageSpec& spec, const Header& header) {
@@ -68,11 +76,48 @@ void add_header(ImageSpec& spec, const Header& header) {
   if (header.chromaticities)
     spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), header.chromaticities->data());
   if (!header.color_interop_id.empty()) spec.attribute("colorInteropID", header.color_interop_id);
-  for (const Attribute& a : header.attributes) {
-    if (const auto* text = std::get_if<std::string>(&a.value)) spec.attribute(a.name, *text);
-    if (const int* whole = std::get_if<int>(&a.value)) spec.attribute(a.name, *whole);
-    if (const float* number = std::get_if<float>(&a.value)) spec.attribute(a.name, *number);
+  add_attributes(spec, header.attributes);
+}
+
+bool is_lossy(const std::string& compression) { return compression.rfind("dwa", 0) == 0; }
+
+bool is_matte(const std::string& layer) { return layer.rfind("Crypto", 0) == 0; }
+
+/// The channels of one part.
+struct Part {
+  std::string name;
+  std::vector<const film::Plane*> planes;
+};
+
+/// All planes in one part, or a part for each layer. The layers of one matte stay together.
+std::vector<Part> make_parts(const film::Picture& picture, bool multipart) {
+  std::vector<Part> parts;
+  for (const film::Plane& plane : picture.planes) {
+    std::string name = plane.layer();
+    if (is_matte(name)) name.resize(name.size() - 2);
+    if (name.empty()) name = plane.name == "Z" ? "Z" : "rgba";
+    if (parts.empty() || (multipart && parts.back().name != name)) parts.push_back({name, {}});
+    parts.back().planes.push_back(&plane);
   }
+  return parts;
+}
+
+ImageSpec spec_of(const film::Picture& picture, const Part& part, const ExrOptions& options) {
+  ImageSpec spec(picture.width, picture.height, static_cast<int>(part.planes.size()), TypeDesc::HALF);
+  spec.channelnames.clear();
+  bool has_data = false;
+  for (const film::Plane* plane : part.planes) {
+    if (plane->name == "A") spec.alpha_channel = static_cast<int>(spec.channelnames.size());
+    if (plane->name == "Z") spec.z_channel = static_cast<int>(spec.channelnames.size());
+    const bool is_data = plane->kind == film::PlaneKind::kData;
+    has_data = has_data || is_data;
+    spec.channelnames.push_back(plane->name);
+    spec.channelformats.push_back(is_data || options.as_float ? TypeDesc::FLOAT : TypeDesc::HALF);
+  }
+  const bool keep_data = has_data && options.multipart && is_lossy(options.compression);
+  spec.attribute("compression", keep_data ? "zips" : options.compression);
+  if (options.multipart) spec.attribute("oiio:subimagename", part.name);
+  return spec;
 }
 
 bool is_level(std::string_view text) {
@@ -95,23 +140,37 @@ void check_compression(const std::string& name) {
                                                  ", the last two also with a level, as in dwaa:45");
 }
 
+void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& options) {
+  if (options.multipart || !is_lossy(options.compression)) return;
+  for (const film::Plane& plane : planes) {
+    // These are the channels that the compression takes for colours, by the last part of their names.
+    const char last = plane.name.back();
+    if (plane.kind == film::PlaneKind::kData && (last == 'R' || last == 'G' || last == 'B'))
+      throw base::Error(base::ErrorKind::kUsage,
+                        "compression " + options.compression + " would damage layer " + plane.layer() +
+                            "; take zip, zips or piz, or --multipart, where data have parts without loss");
+  }
+}
+
 WriteReport write_exr(const std::filesystem::path& file, const film::Picture& picture, const Header& header,
                       const ExrOptions& options) {
   check_compression(options.compression);
-  ImageSpec spec(picture.width, picture.height, static_cast<int>(picture.planes.size()),
-                 options.as_float ? TypeDesc::FLOAT : TypeDesc::HALF);
-  std::vector<const film::Plane*> planes;
-  spec.channelnames.clear();
-  for (const film::Plane& plane : picture.planes) {
-    if (plane.name == "A") spec.alpha_channel = static_cast<int>(planes.size());
-    planes.push_back(&plane);
-    spec.channelnames.push_back(plane.name);
-  }
-  spec.attribute("compression", options.compression);
-  add_header(spec, header);
+  check_lossless(picture.planes, options);
   WriteReport report;
-  write_whole(file, "openexr", spec, TypeDesc::FLOAT,
-              interleaved(picture, planes, options.as_float ? kFloatRange : kHalfRange, report).data());
+  std::vector<WholePart> parts;
+  std::vector<std::vector<float>> pixels;
+  for (const Part& part : make_parts(picture, options.multipart)) {
+    ImageSpec spec = spec_of(picture, part, options);
+    add_header(spec, header);
+    if (parts.empty() || is_matte(part.name)) add_attributes(spec, header.matte_attributes);
+    std::vector<Range> ranges;
+    for (const TypeDesc& type : spec.channelformats)
+      ranges.push_back(type == TypeDesc::HALF ? kHalfRange : kFloatRange);
+    pixels.push_back(interleaved(picture, part.planes, ranges, report));
+    parts.push_back({std::move(spec), nullptr});
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i].pixels = pixels[i].data();
+  write_whole(file, "openexr", TypeDesc::FLOAT, parts);
   return report;
 }
 
@@ -124,7 +183,8 @@ WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& pi
   }
   WriteReport report;
   const ImageSpec spec(picture.width, picture.height, 3, TypeDesc::FLOAT);
-  write_whole(file, "hdr", spec, TypeDesc::FLOAT, interleaved(picture, planes, kRadianceRange, report).data());
+  const std::vector<float> pixels = interleaved(picture, planes, {3, kRadianceRange}, report);
+  write_whole(file, "hdr", TypeDesc::FLOAT, {{spec, pixels.data()}});
   return report;
 }
 

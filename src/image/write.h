@@ -32,11 +32,14 @@ struct Header {
   std::optional<std::array<float, 8>> chromaticities;  ///< x, y of red, green, blue, white
   std::string color_interop_id;
   std::vector<Attribute> attributes;
+  std::vector<Attribute>
+      matte_attributes;  ///< Cryptomatte's; a file of several parts has them where the mattes are, too
 };
 
 struct ExrOptions {
   bool as_float = false;             ///< half otherwise
   std::string compression = "zips";  ///< as check_compression takes it
+  bool multipart = false;            ///< a part for each layer, instead of one with all channels
 };
 
 /// What had to be changed to fit into the file.
@@ -51,10 +54,18 @@ struct WriteReport {
 /// Errors     base::Error(kUsage) listing the known ones
 void check_compression(const std::string& name);
 
-/// Writes scene-linear planes as EXR: one part, scanlines, display window and data window the whole frame.
+/// Refuses to store mattes and other data by a compression that keeps only what eyes see. With a part for each layer
+/// there is no need to: those of data are then compressed without loss.
+///
+/// Errors     base::Error(kUsage) with the remedy
+void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& options);
+
+/// Writes scene-linear planes as EXR, scanlines. Data are float whatever the options say; colours and vectors are half
+/// unless asked for as float.
 ///
 /// Result     the file stands under its name whole and synced, or an error is thrown and nothing has changed
-/// Errors     base::Error: kUsage for an unknown compression, kCannotCreate, kIo, kInternal for planes that do not fit
+/// Errors     base::Error: kUsage for an unknown compression or a lossy one
+///            of data, kCannotCreate, kIo, kInternal for planes that do not fit
 WriteReport write_exr(const std::filesystem::path& file, const film::Picture& picture, const Header& header,
                       const ExrOptions& options);
 

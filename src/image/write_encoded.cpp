@@ -52,9 +52,9 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
   const char* const name = add_format(format, spec);
   if (picture.bits == 8) {
     const std::vector<std::uint8_t> bytes(picture.values.begin(), picture.values.end());
-    write_whole(file, name, spec, TypeDesc::UINT8, bytes.data());
+    write_whole(file, name, TypeDesc::UINT8, {{spec, bytes.data()}});
   } else {
-    write_whole(file, name, spec, TypeDesc::UINT16, picture.values.data());
+    write_whole(file, name, TypeDesc::UINT16, {{spec, picture.values.data()}});
   }
 }
 

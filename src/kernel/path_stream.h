@@ -23,6 +23,7 @@ struct alignas(64) PathStreamOf {
   Id self[kCapacity];          ///< sphere that the ray leaves
   Id pixel[kCapacity];         ///< y << 16 | x
   Id sample[kCapacity];
+  Id history[kCapacity];      ///< in use only where paths are recorded
   RayPacketOf<T, Id> packet;  ///< the rays that are being traced
 };
 

@@ -46,7 +46,7 @@ class PathCounter {
 };
 
 /// Fills the packet with the first rays of the next paths.
-template <class D, class Packet, class Carried>
+template <class D, bool kRecords, class Packet, class Carried>
 HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& counter, int count, Packet& packet,
                                  Carried& carried) {
   using T = hn::TFromD<D>;
@@ -81,11 +81,12 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
     hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
+    if constexpr (kRecords) hn::Store(hn::Set(du, static_cast<Id>(kOnlySharpBit)), du, carried.history + v);
   }
 }
 
 /// Fills the packet with the next rays of paths first .. first + count of the stream.
-template <class D, class Stream, class Carried>
+template <class D, bool kRecords, class Stream, class Carried>
 HWY_INLINE void load_bounced_rays(D d, Stream& stream, int first, int count, Carried& carried) {
   using T = hn::TFromD<D>;
   const IdTag<D> du;
@@ -114,10 +115,11 @@ HWY_INLINE void load_bounced_rays(D d, Stream& stream, int first, int count, Car
     hn::Store(hn::LoadU(du, stream.self + i), du, packet.self + v);
     hn::Store(hn::LoadU(du, stream.pixel + i), du, carried.pixel + v);
     hn::Store(hn::LoadU(du, stream.sample + i), du, carried.sample + v);
+    if constexpr (kRecords) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
   }
 }
 
-template <class D, Precision kPrecision, class Stream>
+template <class D, Precision kPrecision, bool kRecords = false, class Stream>
 TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, Stream& stream) {
   const D d;
   using T = hn::TFromD<D>;
@@ -134,21 +136,21 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     forget_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);
     trace(tracer, stream.packet);
-    return shade<D, kPrecision>(d, scene, tile, depth, carried, stream, alive, counts);
+    return shade<D, kPrecision, kRecords>(d, scene, tile, depth, carried, stream, alive, counts);
   };
   while (to_start > 0) {
     const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
     to_start -= static_cast<std::uint64_t>(batch);
     int alive = 0;
     for (int i = 0; i < batch; i += kPacketSize) {
-      load_camera_rays(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet, carried);
+      load_camera_rays<D, kRecords>(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet, carried);
       alive = trace_and_shade(0, alive);
     }
     for (std::uint32_t depth = 1; alive > 0; ++depth) {
       // Survivors are written over paths that were already read: a packet never grows.
       int survivors = 0;
       for (int i = 0; i < alive; i += kPacketSize) {
-        load_bounced_rays(d, stream, i, std::min(kPacketSize, alive - i), carried);
+        load_bounced_rays<D, kRecords>(d, stream, i, std::min(kPacketSize, alive - i), carried);
         survivors = trace_and_shade(depth, survivors);
       }
       alive = survivors;
@@ -177,6 +179,16 @@ TileCounts render_fast(const SceneView& v, const Tracer& r, const Tile& t, PathS
   return render_tile<AllFast, Precision::kFast>(v, r, t, s);
 }
 
+TileCounts record_exact(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
+  return render_tile<All, Precision::kExact, true>(v, r, t, s);
+}
+TileCounts record_book(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
+  return render_tile<All, Precision::kBook, true>(v, r, t, s);
+}
+TileCounts record_fast(const SceneView& v, const Tracer& r, const Tile& t, PathStreamFast& s) {
+  return render_tile<AllFast, Precision::kFast, true>(v, r, t, s);
+}
+
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -188,6 +200,9 @@ HWY_EXPORT(render_exact_all);
 HWY_EXPORT(render_book_one);
 HWY_EXPORT(render_book_all);
 HWY_EXPORT(render_fast);
+HWY_EXPORT(record_exact);
+HWY_EXPORT(record_book);
+HWY_EXPORT(record_fast);
 
 RenderTile render_tile_function(Precision precision, Lanes lanes) {
   const bool one = lanes == Lanes::kOne;
@@ -196,6 +211,11 @@ RenderTile render_tile_function(Precision precision, Lanes lanes) {
 }
 
 RenderTileFast render_tile_fast_function() { return ORRERY_BEST(render_fast); }
+
+RenderTile record_tile_function(Precision precision) {
+  return precision == Precision::kBook ? ORRERY_BEST(record_book) : ORRERY_BEST(record_exact);
+}
+RenderTileFast record_tile_fast_function() { return ORRERY_BEST(record_fast); }
 
 }  // namespace orrery::kernel
 #endif

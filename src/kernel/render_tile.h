@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/pixel_sum.h"
 #include "kernel/precision.h"
@@ -21,6 +22,8 @@ struct Tile {
   std::uint32_t sample_begin = 0, sample_end = 0;
   PixelSum* sums = nullptr;     ///< of the upper left pixel
   std::int64_t row_stride = 0;  ///< from a pixel's sum to the one below
+  /// A record for every path: the samples of a pixel, then the pixel to the right. Null: nobody asks for them.
+  PathRecord* records = nullptr;
 };
 
 struct TileCounts {
@@ -43,8 +46,15 @@ enum class Lanes : std::uint8_t {
 
 /// The path loop for the best instruction set that is enabled on this processor.
 ///
-/// Result     bit-identical pictures for both lane counts, and on every instruction set with fused multiply-add
+/// Result     bit-identical pictures for both lane counts, with records or without, and on every instruction set with
+///            fused multiply-add
 RenderTile render_tile_function(Precision precision, Lanes lanes = Lanes::kAll);
 RenderTileFast render_tile_fast_function();
+
+/// The same loop, which also fills the tile's records.
+///
+/// Domain     tiles have records
+RenderTile record_tile_function(Precision precision);
+RenderTileFast record_tile_fast_function();
 
 }  // namespace orrery::kernel

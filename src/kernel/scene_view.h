@@ -39,6 +39,7 @@ struct SceneView {
   Shading shading = Shading::kPath;
   std::uint32_t max_depth = 50;  ///< scattering events; a path that has not left the scene after them brings no light
   std::uint32_t seed = 1;
+  bool background_visible = true;  ///< false: camera rays that leave the scene bring no light
 };
 
 }  // namespace orrery::kernel

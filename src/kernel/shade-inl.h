@@ -16,6 +16,7 @@
 #include "kernel/gather-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/path_stream.h"
+#include "kernel/record-inl.h"
 #include "kernel/render_tile.h"
 #include "kernel/scatter-inl.h"
 
@@ -29,6 +30,7 @@ struct alignas(64) Passengers {
   T throughput[3][kPacketSize];
   Id pixel[kPacketSize];
   Id sample[kPacketSize];
+  Id history[kPacketSize];  ///< where paths are recorded; see record-inl.h
 };
 
 /// Adds finished paths to their pixels. A sample that is not a number never enters a sum: it is counted.
@@ -175,10 +177,16 @@ class Compactor {
   hn::Vec<IdTag<D>> order_{};
 };
 
+/// Stands where nothing is recorded.
+struct Nothing {
+  template <class... Any>
+  HWY_INLINE explicit Nothing(const Any&...) {}
+};
+
 /// Shades a traced packet: what left the scene adds its light, what goes on is appended to the stream.
 ///
 /// Result     number of paths in the stream, `alive` before the call
-template <class D, Precision kPrecision, class Stream, class Carried>
+template <class D, Precision kPrecision, bool kRecords, class Stream, class Carried>
 HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_t depth, const Carried& carried,
                      Stream& stream, int alive, TileCounts& counts) {
   const IdTag<D> du;
@@ -193,28 +201,51 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     const auto missed = hn::AndNot(hit, active);
     const auto ray = load_rays(d, packet, v);
     const auto pixels = hn::Load(du, carried.pixel + v);
+    const auto samples = hn::Load(du, carried.sample + v);
     auto throughput = load3(d, carried.throughput[0] + v, carried.throughput[1] + v, carried.throughput[2] + v);
-    if (!hn::AllFalse(d, missed)) {
+    [[maybe_unused]] hn::Vec<IdTag<D>> history;
+    [[maybe_unused]] hn::Mask<D> guided;
+    [[maybe_unused]] std::conditional_t<kRecords, Recorder<D>, Nothing> record(d, tile, pixels, samples);
+    if constexpr (kRecords) {
+      history = hn::Load(du, carried.history + v);
+      const auto only_sharp = hn::Set(du, static_cast<Id>(kOnlySharpBit));
+      guided = hn::RebindMask(d, hn::And(history, only_sharp) == only_sharp);
+      if (depth == 0) record.begin(d, active);
+    }
+    if (!hn::AllFalse(d, missed) && (depth > 0 || scene.background_visible)) {
       const auto sky = background(d, scene.background, scene.features.sky, ray.direction);
-      add_light(d, missed, {sky.x * throughput.x, sky.y * throughput.y, sky.z * throughput.z}, pixels, tile, counts);
+      const Vec3<hn::Vec<D>> light = {sky.x * throughput.x, sky.y * throughput.y, sky.z * throughput.z};
+      add_light(d, missed, light, pixels, tile, counts);
+      if constexpr (kRecords) {
+        const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
+        record.light(d, missed, light, history);
+        record.guide(d, hn::And(missed, guided), {hn::Min(light.x, one), hn::Min(light.y, one), hn::Min(light.z, one)},
+                     {zero, zero, zero});
+      }
     }
     if (hn::AllFalse(d, hit)) continue;
 
-    if (scene.shading == Shading::kPath && depth >= scene.max_depth) continue;
+    const bool ends = scene.shading == Shading::kPath && depth >= scene.max_depth;
+    if (ends && !(kRecords && depth == 0)) continue;
     const auto at = reach_surface<D, kPrecision>(d, scene, ray, hits, hn::Load(d, packet.distance + v));
-    if (scene.shading == Shading::kFlat) {
-      add_light(d, hit, at.albedo, pixels, tile, counts);
-      continue;
+    const Vec3<hn::Vec<D>> tinted = {throughput.x * at.albedo.x, throughput.y * at.albedo.y,
+                                     throughput.z * at.albedo.z};
+    if constexpr (kRecords) {
+      if (depth == 0) record.first_hit(d, hit, hits, at.surface.offset);
+      record.guide(d, hn::AndNot(is_sharp(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
+      if (ends) continue;
     }
-    if (scene.shading == Shading::kNormal) {
+    if (scene.shading != Shading::kPath) {
       const auto half = hn::Set(d, static_cast<T>(0.5));
-      add_light(d, hit, mul_add(at.surface.normal, half, {half, half, half}), pixels, tile, counts);
+      const auto shown =
+          scene.shading == Shading::kFlat ? at.albedo : mul_add(at.surface.normal, half, {half, half, half});
+      add_light(d, hit, shown, pixels, tile, counts);
+      if constexpr (kRecords) record.light(d, hit, shown, history);
       continue;
     }
-    const auto samples = hn::Load(du, carried.sample + v);
     const auto random = random_at_vertex(d, scene.seed, pixels, samples, depth + 1);
     const auto scattered = scatter(d, scene.features, at.surface, random);
-    throughput = {throughput.x * at.albedo.x, throughput.y * at.albedo.y, throughput.z * at.albedo.z};
+    throughput = tinted;
     const auto goes_on = hn::And(hit, scattered.alive);
     const Compactor<D> compactor(d, goes_on);
     compactor.store3(d, at.sphere.center, stream.base, alive);
@@ -224,6 +255,8 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     compactor.store_ids(d, hits, stream.self + alive);
     compactor.store_ids(d, pixels, stream.pixel + alive);
     compactor.store_ids(d, samples, stream.sample + alive);
+    if constexpr (kRecords)
+      compactor.store_ids(d, continued(d, history, at.surface, scattered.direction, depth), stream.history + alive);
     alive += compactor.count();
   }
   return alive;

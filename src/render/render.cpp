@@ -8,18 +8,19 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cfenv>
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "accel/accel.h"
 #include "base/error.h"
 #include "film/film.h"
+#include "film/layer_film.h"
 #include "kernel/isa.h"
-#include "kernel/render_tile.h"
+#include "render/tile_renderer.h"
 #include "render/tiles.h"
 #include "render/traversals.h"
 
@@ -55,51 +56,6 @@ class ProgressReporter {
   std::mutex mutex_;
   Clock::time_point start_ = Clock::now();
   double last_ = 0;
-};
-
-/// One thread's own: nothing in the tile loop allocates.
-struct Worker {
-  std::unique_ptr<kernel::PathStream> stream;
-  std::unique_ptr<kernel::PathStreamFast> stream_fast;
-  kernel::TileCounts counts;
-};
-
-/// Runs one tile in the precision of the world.
-class TileRenderer {
- public:
-  TileRenderer(const compile::World& world, const accel::Accel& accel)
-      : view_(world.view()), tracer_(accel.tracer()), fast_(world.precision == compile::Precision::kFast) {
-    if (fast_) {
-      render_fast_ = kernel::render_tile_fast_function();
-    } else {
-      render_ = kernel::render_tile_function(world.precision);
-    }
-  }
-
-  void operator()(const kernel::Tile& tile, Worker& worker) const {
-    // The picture must not depend on what a host program did to this thread's rounding.
-    std::fenv_t before;
-    std::fegetenv(&before);
-    std::fesetenv(FE_DFL_ENV);
-    kernel::TileCounts counts;
-    if (fast_) {
-      if (!worker.stream_fast) worker.stream_fast = std::make_unique<kernel::PathStreamFast>();
-      counts = render_fast_(view_, tracer_, tile, *worker.stream_fast);
-    } else {
-      if (!worker.stream) worker.stream = std::make_unique<kernel::PathStream>();
-      counts = render_(view_, tracer_, tile, *worker.stream);
-    }
-    std::fesetenv(&before);
-    worker.counts.rays += counts.rays;
-    worker.counts.bad_samples += counts.bad_samples;
-  }
-
- private:
-  kernel::SceneView view_;
-  kernel::Tracer tracer_;
-  bool fast_;
-  kernel::RenderTile render_ = nullptr;
-  kernel::RenderTileFast render_fast_ = nullptr;
 };
 
 /// So many threads, whatever the number of processors: without the limit TBB makes no more than there are of those.
@@ -142,14 +98,16 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
 
   film::Film film(world.width, world.height);
   const std::vector<kernel::Tile> tiles = make_tiles(world.width, world.height, world.samples, film);
-  const TileRenderer render_tile(world, accel);
+  std::optional<film::LayerFilm> layers;
+  if (settings.layers.any()) layers.emplace(settings.layers, world.view(), world.width, world.height);
+  const TileRenderer render_tile(world, accel, settings.layers, layers ? &*layers : nullptr);
   const auto total = static_cast<std::uint64_t>(world.width) * static_cast<std::uint64_t>(world.height) *
                      static_cast<std::uint64_t>(world.samples);
   ProgressReporter progress(settings, total);
   const accel::Traversals traversals = choose_traversals(world, accel, settings.traversal);
   accel.use(traversals);
   result.statistics.traversal = name_of(traversals);
-  tbb::enumerable_thread_specific<Worker> workers;
+  tbb::enumerable_thread_specific<TileWorker> workers;
   const auto cancelled = [&] { return settings.cancel != nullptr && settings.cancel->load(std::memory_order_relaxed); };
   Threads(result.statistics.threads).execute([&] {
     tbb::parallel_for(
@@ -166,7 +124,7 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
         tbb::simple_partitioner());
   });
   result.statistics.render_s = progress.seconds();
-  for (const Worker& worker : workers) {
+  for (const TileWorker& worker : workers) {
     result.statistics.rays += worker.counts.rays;
     result.statistics.bad_samples += worker.counts.bad_samples;
   }
@@ -174,6 +132,7 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
   if (!result.completed) return result;
   result.statistics.paths = total;
   result.picture = film.picture();
+  if (layers) layers->move_to(result.picture);
   return result;
 }
 

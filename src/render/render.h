@@ -9,6 +9,7 @@
 
 #include "accel/accel.h"
 #include "compile/world.h"
+#include "film/layers.h"
 #include "film/picture.h"
 
 namespace orrery::render {
@@ -29,6 +30,7 @@ enum class Traversal : std::uint8_t {
 struct Settings {
   int threads = 0;  ///< 0: as many as available_threads()
   Traversal traversal = Traversal::kAuto;
+  film::LayerRequest layers;  ///< beside the beauty; none cost nothing
   /// Called from one thread at a time, a few times a second at the most.
   std::function<void(const Progress&)> on_progress;
   /// Called while the hierarchy is built, with what is done of it, 0..1, from any thread.
@@ -50,7 +52,7 @@ struct Statistics {
 };
 
 struct Result {
-  film::Picture picture;  ///< planes R, G, B, A; empty when not completed
+  film::Picture picture;  ///< planes R, G, B, A, then the layers; empty when not completed
   Statistics statistics;
   bool completed = false;  ///< false: stopped by `cancel`
 };

@@ -16,6 +16,7 @@ const char* type_name(ValueType type) {
     case ValueType::kVector: return "[x, y, z]";
     case ValueType::kText: return "string";
     case ValueType::kChoice: return "one of";
+    case ValueType::kChoices: return "list of";
   }
   return "";
 }
@@ -29,7 +30,8 @@ std::string range_text(const Key<Target>& key) {
     case ValueType::kNumber: return key.range.text();
     case ValueType::kVector: return "each " + key.range.text();
     case ValueType::kText: return "any";
-    case ValueType::kChoice: return "`" + base::joined(key.choices) + "`";
+    case ValueType::kChoice:
+    case ValueType::kChoices: return "`" + base::joined(key.choices) + "`";
   }
   return "";
 }

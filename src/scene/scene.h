@@ -38,6 +38,7 @@ struct Background {
   Vec3d bottom{1, 1, 1};   ///< gradient: looking straight down
   Vec3d top{0.5, 0.7, 1};  ///< gradient: looking straight up
   Vec3d color{1, 1, 1};    ///< constant
+  int alpha = 1;           ///< 0: where only the background is seen, the picture is empty
 };
 
 enum class Precision { kExact, kFast, kBook };
@@ -81,17 +82,25 @@ struct Sphere {
   Vec3d center;
   double radius = 1;           ///< negative: inward normal (hollow glass)
   std::uint32_t material = 0;  ///< index into Scene::materials
-  std::string name;            ///< optional, for mattes
+  std::string name = {};       ///< optional, for mattes
+  std::string group = {};      ///< optional, for mattes: spheres of one name are one thing
 };
 
 /// Spheres from a data file: flat arrays, since there may be ten million. Filled by format::read.
 struct Points {
   std::filesystem::path file;    ///< as written in the scene, relative to the scene file
   std::uint32_t material = 0;    ///< index into Scene::materials; where the file has none of its own
+  std::string name = {};         ///< optional, for mattes: all of them are one thing; default: the file's name
+  std::string group = {};        ///< optional, for mattes
   std::optional<double> radius;  ///< of every point, whatever the file says; default: the file's
   std::vector<Vec3d> centers;
   std::vector<double> radii;             ///< as many as centers
   std::vector<std::uint32_t> materials;  ///< as many as centers, or empty: `material` for all
+};
+
+/// What files hold beside the beauty.
+struct Output {
+  std::vector<std::string> layers;  ///< names out of the schema's choices
 };
 
 /// Colours of the scene file, and of the picture made of it.
@@ -105,6 +114,7 @@ struct Scene {
   Background background;
   Render render;
   Color color;
+  Output output;
   std::vector<Material> materials;
   std::vector<Sphere> spheres;
   std::vector<Points> points;

@@ -97,6 +97,13 @@ Key<Target> choice(const char* name, std::vector<std::string> choices, const Abo
             return string_text(choices[static_cast<std::size_t>(at(const_cast<Target&>(t)))]);
           }};
 }
+/// Some of the choices, in any order.
+template <class Target, class At>
+Key<Target> choices(const char* name, std::vector<std::string> choices, const About& about, At at) {
+  Key<Target> key = key_of<Target>(name, ValueType::kChoices, {}, about, at, list_text);
+  key.choices = std::move(choices);
+  return key;
+}
 template <class Target>
 Key<Target> required(Key<Target> key) {
   key.required = true;
@@ -144,7 +151,11 @@ Table background_table() {
        vector<S>("top", kLight, {unit, "gradient: light from straight above"},
                  [](S& s) -> Vec3d& { return s.background.top; }),
        vector<S>("color", kLight, {unit, "constant: light from everywhere"},
-                 [](S& s) -> Vec3d& { return s.background.color; })}};
+                 [](S& s) -> Vec3d& { return s.background.color; }),
+       integer<S>("alpha", {0, 1},
+                  {"", "1: the background is part of the picture; 0: the picture is empty where nothing else is seen",
+                   "0 as much as a layer"},
+                  [](S& s) -> int& { return s.background.alpha; })}};
 }
 
 Table render_table() {
@@ -173,6 +184,17 @@ Table render_table() {
                  {"", "`list`: each ray tries each sphere, for comparison; the picture is the same, bit for bit",
                   "`list`: time in proportion to the number of spheres"},
                  [](S& s) -> Accelerator& { return s.render.accelerator; })}};
+}
+
+Table output_table() {
+  return {"output",
+          {choices<S>("layers",
+                      {"Z", "depth", "N", "P", "albedo", "diffuse", "specular", "transmission", "background",
+                       "variance", "samples", "object_id", "material_id", "denoise.albedo", "denoise.normal",
+                       "CryptoObject", "CryptoMaterial", "CryptoGroup"},
+                      {"", "what an EXR holds beside the beauty",
+                       "some percent of the time for the first one, little for more"},
+                      [](S& s) -> std::vector<std::string>& { return s.output.layers; })}};
 }
 
 std::vector<MaterialType> make_material_types() {
@@ -223,7 +245,8 @@ const std::vector<Table>& tables() {
       render_table(),
       {"color",
        {text<S>("space", {"", "name of the colour space of all colours here, and of the EXR"},
-                [](S& s) -> std::string& { return s.color.space; })}}};
+                [](S& s) -> std::string& { return s.color.space; })}},
+      output_table()};
   return all;
 }
 
@@ -239,7 +262,10 @@ const std::vector<Key<Sphere>>& sphere_keys() {
       required(number<Sphere>("radius", kAnyLength,
                               {"scene units", "its size; not 0; below 0 the normal points inward: hollow glass"},
                               [](Sphere& s) -> double& { return s.radius; })),
-      text<Sphere>("name", {"", "for mattes"}, [](Sphere& s) -> std::string& { return s.name; })};
+      text<Sphere>("name", {"", "for mattes; default: `sphere.` and its number"},
+                   [](Sphere& s) -> std::string& { return s.name; }),
+      text<Sphere>("group", {"", "for mattes: what has the same name is one thing"},
+                   [](Sphere& s) -> std::string& { return s.group; })};
   return keys;
 }
 
@@ -251,7 +277,11 @@ const std::vector<Key<Points>>& points_keys() {
     return std::vector<Key<Points>>{
         file,
         optional_number<Points>("radius", kLength, {"scene units", "radius of every sphere, whatever the file says"},
-                                "as in the file", [](Points& p) -> std::optional<double>& { return p.radius; })};
+                                "as in the file", [](Points& p) -> std::optional<double>& { return p.radius; }),
+        text<Points>("name", {"", "for mattes: all spheres of the file are one thing; default: the file's name"},
+                     [](Points& p) -> std::string& { return p.name; }),
+        text<Points>("group", {"", "for mattes: what has the same name is one thing"},
+                     [](Points& p) -> std::string& { return p.group; })};
   }();
   return keys;
 }

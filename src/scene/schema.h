@@ -15,9 +15,9 @@
 namespace orrery::scene {
 
 /// What a key of the scene file can hold.
-using Value = std::variant<std::int64_t, double, Vec3d, std::string>;
+using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>>;
 
-enum class ValueType { kInteger, kNumber, kVector, kText, kChoice };
+enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices };
 
 /// Numbers from..to, ends included unless `open` says otherwise; for a vector each component.
 struct Range {
@@ -35,7 +35,7 @@ struct Key {
   std::string name;
   ValueType type;
   Range range;                       ///< numbers and vectors
-  std::vector<std::string> choices;  ///< kChoice
+  std::vector<std::string> choices;  ///< kChoice, kChoices
   std::string unit;                  ///< may be empty
   std::string doc;                   ///< what it is, one line of Markdown
   std::string cost;                  ///< what it costs in time or memory; may be empty

@@ -42,6 +42,12 @@ std::string string_text(const std::string& value) {
   return out + '"';
 }
 
+std::string list_text(const std::vector<std::string>& values) {
+  std::string out = "[";
+  for (const std::string& value : values) out += (out.size() > 1 ? ", " : "") + string_text(value);
+  return out + "]";
+}
+
 std::string unquoted(const std::string& text) {
   return text.size() >= 2 && text.front() == '"' ? text.substr(1, text.size() - 2) : text;
 }

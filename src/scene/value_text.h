@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "math/vec3.h"
 
@@ -16,6 +17,9 @@ std::string vector_text(math::Vec3d value);
 
 /// With quotes and escapes, as a scene file writes it.
 std::string string_text(const std::string& value);
+
+/// ["a", "b"].
+std::string list_text(const std::vector<std::string>& values);
 
 /// The word out of a string_text that has no escapes.
 std::string unquoted(const std::string& text);

@@ -18,20 +18,36 @@ TEST(FilmPicture, FindsAPlaneByItsName) {
   EXPECT_EQ(picture.find("G"), nullptr);
 }
 
-TEST(FilmPicture, CountsEachKindOfBadValueOnceInAllPlanes) {
-  const Picture picture{
-      3, 2, {{"R", {kNan, kInfinity, -kInfinity, -1, 65505, -70000}}, {"G", {kNan, kNan, -0.0f, 0, 1, 65504}}}};
-  const BadValues bad = count_bad_values(picture);
-  EXPECT_EQ(bad.nan, 3u);
+TEST(FilmPicture, CountsEachKindOfBadValueOnce) {
+  const BadValues bad = count_bad_values(Plane{"R", {kNan, kInfinity, -kInfinity, -1, 65505, -70000, -0.0f, 65504}});
+  EXPECT_EQ(bad.nan, 1u);
   EXPECT_EQ(bad.infinite, 2u);
   EXPECT_EQ(bad.negative, 2u);
   EXPECT_EQ(bad.above_half, 2u);
+  EXPECT_TRUE(bad.any());
 }
 
 TEST(FilmPicture, FindsNothingBadInLightThatAFileHolds) {
-  const Picture picture{2, 1, {{"R", {0, kLargestHalf}}, {"A", {1, 1}}}};
-  const BadValues bad = count_bad_values(picture);
-  EXPECT_EQ(bad.nan + bad.infinite + bad.negative + bad.above_half, 0u);
+  EXPECT_FALSE(count_bad_values(Plane{"R", {0, kLargestHalf, 1}}).any());
+}
+
+TEST(FilmPicture, LetsVectorsBeNegativeAndDataBeLarge) {
+  EXPECT_FALSE(count_bad_values(Plane{"N.X", {-1, 0.5f}, PlaneKind::kVector}).any());
+  EXPECT_EQ(count_bad_values(Plane{"N.X", {70000}, PlaneKind::kVector}).above_half, 1u);
+  EXPECT_FALSE(count_bad_values(Plane{"Z", {1e30f, -5}, PlaneKind::kData}).any());
+  EXPECT_EQ(count_bad_values(Plane{"Z", {kNan}, PlaneKind::kData}).nan, 1u);
+}
+
+TEST(FilmPicture, AddsCounts) {
+  BadValues sum{1, 2, 3, 4};
+  sum += BadValues{10, 20, 30, 40};
+  EXPECT_EQ(sum.nan + sum.infinite + sum.negative + sum.above_half, 110u);
+  EXPECT_EQ(sum.nan, 11u);
+}
+
+TEST(FilmPicture, TellsTheLayerOfAPlane) {
+  EXPECT_EQ((Plane{"R", {}}.layer()), "");
+  EXPECT_EQ((Plane{"denoise.albedo.R", {}}.layer()), "denoise.albedo");
 }
 
 }  // namespace

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film/layer_film.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace orrery::film {
+namespace {
+
+using kernel::Int128;
+using kernel::kLightGroups;
+
+double mean(Int128 sum, std::int64_t weight) {
+  return weight > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(weight) : 0.0;
+}
+
+/// What must be added to `from` so that single precision makes `to` of it.
+float step(float from, float to) {
+  const float guess = to - from;
+  if (from + guess == to) return guess;
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  const float more = std::nextafter(guess, kFar);
+  return from + more == to ? more : std::nextafter(guess, -kFar);
+}
+
+/// The groups of light as floats that add up, in their order and in single precision, to the very beauty.
+struct Lights {
+  float rgb[kLightGroups][3];
+
+  explicit Lights(const LayerPixel& p) {
+    for (int c = 0; c < 3; ++c) {
+      Int128 sum = 0;
+      float so_far = 0;
+      for (int g = 0; g < kLightGroups; ++g) {
+        sum += p.light[g][c];
+        const float next = static_cast<float>(mean(sum, p.lit));
+        rgb[g][c] = step(so_far, next);
+        so_far = next;
+      }
+    }
+  }
+};
+
+/// Of the mean of the light: the squared standard error of the pixel.
+float variance(const LayerPixel& p, int c, Int128 sum) {
+  if (p.paths < 2) return 0;
+  const auto n = static_cast<double>(p.paths);
+  const double of_squares = static_cast<double>(p.squares[c]) * kSquareUnit / n;
+  const double average = kernel::from_fixed_point(sum) / n;
+  return static_cast<float>(std::max(0.0, of_squares - average * average) / (n - 1));
+}
+
+/// A thing and its share of a pixel.
+struct Share {
+  std::uint32_t id;
+  std::int64_t weight;
+};
+
+/// The things of a matte, the largest first; of two as large that with the smaller id.
+std::vector<Share> ranked(const Matte& matte, const LayerPixel& p) {
+  std::vector<Share> shares;
+  for (const SphereShare& s : p.shares) {
+    const std::uint32_t id = matte.id_of_sphere(s.sphere);
+    if (id == 0) continue;
+    const auto known = std::find_if(shares.begin(), shares.end(), [id](const Share& share) { return share.id == id; });
+    if (known == shares.end()) {
+      shares.push_back({id, s.weight});
+    } else {
+      known->weight += s.weight;
+    }
+  }
+  std::sort(shares.begin(), shares.end(),
+            [](const Share& a, const Share& b) { return a.weight != b.weight ? a.weight > b.weight : a.id < b.id; });
+  while (!shares.empty() && shares.back().weight <= 0) shares.pop_back();
+  return shares;
+}
+
+float as_float(std::uint32_t bits) {
+  float f;
+  std::memcpy(&f, &bits, sizeof(f));
+  return f;
+}
+
+/// Calls `f(layer, channel, kind, value)` for every channel that was asked for, in the order in which they stand in
+/// files.
+template <class F>
+void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::SceneView& view, F f) {
+  const bool hit = p.sphere != kernel::kNoSphere;
+  using enum PlaneKind;
+  const auto vector = [&](const char* layer, const char* letters, PlaneKind kind, auto value) {
+    for (int k = 0; k < 3; ++k) f(layer, letters[k], kind, value(k));
+  };
+  const auto means = [&](const char* layer, const char* letters, PlaneKind kind, const Int128(&sum)[3]) {
+    vector(layer, letters, kind, [&](int k) { return static_cast<float>(mean(sum[k], p.weight)); });
+  };
+  if (r.z) f("", 'Z', kData, hit ? static_cast<float>(p.z) : kNothingHit);
+  if (r.depth) f("depth", 'X', kData, hit ? static_cast<float>(p.depth) : kNothingHit);
+  if (r.normal) means("N", "XYZ", kVector, p.normal);
+  if (r.position) vector("P", "XYZ", kData, [&](int k) { return static_cast<float>(p.position[k]); });
+  if (r.albedo) means("albedo", "RGB", kLight, p.albedo);
+  if (r.lights()) {
+    const Lights lights(p);
+    const auto light = [&](const char* layer, kernel::LightGroup group) {
+      vector(layer, "RGB", kLight, [&](int k) { return lights.rgb[static_cast<int>(group)][k]; });
+    };
+    using kernel::LightGroup;
+    if (r.background) light("background", LightGroup::kBackground);
+    if (r.diffuse) light("diffuse_direct", LightGroup::kDiffuseDirect);
+    if (r.diffuse) light("diffuse_indirect", LightGroup::kDiffuseIndirect);
+    if (r.specular) light("specular_direct", LightGroup::kSpecularDirect);
+    if (r.specular) light("specular_indirect", LightGroup::kSpecularIndirect);
+    if (r.transmission) light("transmission_direct", LightGroup::kTransmissionDirect);
+    if (r.transmission) light("transmission_indirect", LightGroup::kTransmissionIndirect);
+  }
+  if (r.variance) {
+    vector("variance", "RGB", kData, [&](int c) {
+      Int128 sum = 0;
+      for (const auto& group : p.light) sum += group[c];
+      return variance(p, c, sum);
+    });
+  }
+  if (r.samples) f("samples", 'X', kData, static_cast<float>(p.paths));
+  // Counted from 1, so that 0 is nothing.
+  if (r.object_id) f("object_id", 'X', kData, hit ? static_cast<float>(p.sphere) + 1 : 0.0F);
+  if (r.material_id)
+    f("material_id", 'X', kData, hit ? static_cast<float>(r.material_numbers[view.sphere_materials[p.sphere]]) : 0.0F);
+  if (r.guide_albedo) means("denoise.albedo", "RGB", kLight, p.guide_albedo);
+  if (r.guide_normal) means("denoise.normal", "XYZ", kVector, p.guide_normal);
+  for (const Matte& matte : r.mattes) {
+    const std::vector<Share> shares = ranked(matte, p);
+    // Two ranks in a layer of four channels: id, share, id, share.
+    for (int rank = 0; rank < r.matte_ranks + r.matte_ranks % 2; ++rank) {
+      const char name[] = {static_cast<char>('0' + rank / 20), static_cast<char>('0' + rank / 2 % 10), 0};
+      const bool there = rank < r.matte_ranks && static_cast<std::size_t>(rank) < shares.size() && p.weight > 0;
+      const Share share = there ? shares[static_cast<std::size_t>(rank)] : Share{0, 0};
+      f(matte.name + name, rank % 2 == 0 ? 'R' : 'B', kData, as_float(share.id));
+      f(matte.name + name, rank % 2 == 0 ? 'G' : 'A', kData,
+        there ? static_cast<float>(static_cast<double>(share.weight) / static_cast<double>(p.weight)) : 0.0F);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Plane> planes_of(const LayerRequest& request) {
+  std::vector<Plane> planes;
+  each_channel(request, LayerPixel{}, {}, [&](const std::string& layer, char channel, PlaneKind kind, float) {
+    planes.push_back({(layer.empty() ? "" : layer + ".") + channel, {}, kind});
+  });
+  return planes;
+}
+
+LayerFilm::LayerFilm(const LayerRequest& request, const kernel::SceneView& view, int width_px, int height_px)
+    : request_(request), view_(view), planes_(planes_of(request)) {
+  const std::size_t pixels = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+  for (Plane& plane : planes_) plane.values.resize(pixels);
+  if (request_.coverage) coverage_.resize(pixels);
+}
+
+void LayerFilm::set(std::size_t pixel, const LayerPixel& sums) {
+  std::size_t plane = 0;
+  each_channel(request_, sums, view_,
+               [&](const auto&, char, PlaneKind, float v) { planes_[plane++].values[pixel] = v; });
+  if (request_.coverage && sums.weight > 0)
+    coverage_[pixel] = static_cast<float>(static_cast<double>(sums.covered) / static_cast<double>(sums.weight));
+}
+
+void LayerFilm::move_to(Picture& picture) {
+  for (Plane& plane : picture.planes)
+    if (plane.name == "A" && request_.coverage) plane.values = std::move(coverage_);
+  for (Plane& plane : planes_) picture.planes.push_back(std::move(plane));
+}
+
+}  // namespace orrery::film

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "film/layers.h"
+#include "kernel/path_record.h"
+#include "kernel/pixel_sum.h"
+#include "kernel/scene_view.h"
+
+namespace orrery::film {
+
+/// Paths of a pixel that met one sphere first.
+struct SphereShare {
+  std::uint32_t sphere;
+  std::int64_t weight;
+};
+
+/// What the paths of one pixel say about its layers, in whole numbers, so that no order of adding changes a bit.
+class LayerPixel {
+ public:
+  /// Adds a path; its light only if it `counts`: what is no number enters no sum.
+  void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path,
+           std::int64_t weight);
+
+  using Int128 = kernel::Int128;
+  Int128 light[kernel::kLightGroups][3] = {};
+  Int128 squares[3] = {};  ///< of the light, in units of kSquareUnit
+  Int128 normal[3] = {}, albedo[3] = {}, guide_albedo[3] = {}, guide_normal[3] = {};
+  std::int64_t weight = 0;   ///< of all paths; 1 each unless the pixel filter has negative lobes
+  std::int64_t lit = 0;      ///< of those whose light is a number
+  std::int64_t paths = 0;    ///< whose light is a number, whatever their weight
+  std::int64_t covered = 0;  ///< of those that met a sphere
+  /// The path that met a sphere nearest to the camera.
+  double depth = std::numeric_limits<double>::infinity(), z = 0;
+  double position[3] = {0, 0, 0};
+  std::uint32_t sphere = kernel::kNoSphere;
+  std::vector<SphereShare> shares;  ///< by ascending sphere; only for mattes
+};
+
+/// Squares above 2^48 are cut to it: a variance that large is told by its light.
+inline constexpr double kLargestSquare = 0x1p48;
+inline constexpr double kSquareUnit = 0x1p-48;
+
+}  // namespace orrery::film
