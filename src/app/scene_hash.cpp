@@ -57,6 +57,7 @@ std::string scene_hash(const compile::World& world) {
                                 std::uint64_t{world.max_depth}, std::uint64_t{world.seed}, std::uint64_t(world.shading),
                                 std::uint64_t(world.precision)})
     hash.add_bits(v);
+  for (const double v : world.filter.above) hash.add(v);
   return hash.text();
 }
 

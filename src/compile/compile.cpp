@@ -148,6 +148,7 @@ kernel::SceneView World::view() const noexcept {
   v.shading = shading;
   v.max_depth = max_depth;
   v.seed = seed;
+  v.filter = filter.view();
   return v;
 }
 
@@ -175,6 +176,7 @@ World compile(const scene::Scene& scene) {
   world.camera = compile_camera(scene.camera, scene.image);
   world.features.lens = scene.camera.defocus_angle > 0;
   set_background(scene.background, world);
+  world.filter = compile_filter(scene.render);
   add_spheres(scene, world);
   world.bounds = bounds_of(world.spheres);
   return world;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "compile/pixel_filter.h"
 #include "kernel/precision.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
@@ -35,6 +36,7 @@ struct World {
   Precision precision = Precision::kExact;
   Accelerator accelerator = Accelerator::kEmbree;
   Bounds bounds;
+  FilterTables filter;
   int width = 0;                ///< px
   int height = 0;               ///< px
   int samples = 0;              ///< per pixel

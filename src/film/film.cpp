@@ -19,8 +19,8 @@ Picture Film::picture() const {
     Plane plane{names[c], std::vector<float>(sums_.size(), 0.0f)};
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const kernel::PixelSum& sum = sums_[i];
-      if (sum.samples > 0)
-        plane.values[i] = static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.samples));
+      if (sum.weight > 0)
+        plane.values[i] = static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.weight));
     }
     out.planes.push_back(std::move(plane));
   }

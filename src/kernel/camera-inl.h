@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 #include "kernel/random-inl.h"
 #include "kernel/sample-inl.h"
 #include "kernel/scene_view.h"
@@ -22,6 +24,46 @@ struct CameraRay {
   Vec3<V> offset;     ///< on the lens; zero for a pinhole
   Vec3<V> direction;  ///< unit
 };
+
+/// Moves the two numbers that choose a path's place in its pixel to where the filter wants it: 0..1 is the pixel.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void filter_place(D d, const PixelFilter& filter, hn::Vec<hn::RebindToUnsigned<D>> samples,
+                             Four<V>& random) {
+  using T = hn::TFromD<D>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  HWY_ALIGN hn::TFromD<hn::RebindToUnsigned<D>> sample[kMax];
+  HWY_ALIGN T u[2][kMax];
+  hn::Store(samples, hn::RebindToUnsigned<D>(), sample);
+  hn::Store(random.v[0], d, u[0]);
+  hn::Store(random.v[1], d, u[1]);
+  const auto place = [](const double* table, double x) {
+    const double at = x * PixelFilter::kSteps;
+    const auto step = std::min(static_cast<int>(at), PixelFilter::kSteps - 1);
+    return table[step] + (table[step + 1] - table[step]) * (at - step);
+  };
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    auto x = static_cast<double>(u[0][i]);
+    const auto y = static_cast<double>(u[1][i]);
+    const double *along_x = filter.above, *along_y = filter.above;
+    // The first number chooses between two parts, and what is left of it the place.
+    const auto choose = [&](double share, const double* low_x, const double* low_y, const double* high_x,
+                            const double* high_y) {
+      const bool low = x < share;
+      along_x = low ? low_x : high_x;
+      along_y = low ? low_y : high_y;
+      x = low ? x / share : (x - share) / (1 - share);
+    };
+    if (filter.weight(sample[i], sample[i] + 1) < 0) {
+      choose(0.5, filter.above, filter.below, filter.below, filter.above);
+    } else if (filter.below != nullptr) {
+      choose(filter.below_twice, filter.below, filter.below, filter.above, filter.above);
+    }
+    u[0][i] = static_cast<T>(0.5 + place(along_x, x));
+    u[1][i] = static_cast<T>(0.5 + place(along_y, y));
+  }
+  random.v[0] = hn::Load(d, u[0]);
+  random.v[1] = hn::Load(d, u[1]);
+}
 
 /// The ray of a path through its pixel.
 ///

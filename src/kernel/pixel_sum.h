@@ -14,7 +14,7 @@ __extension__ using Int128 = __int128;
 /// of integers does not. 2^67 is the largest sum: 2^31 samples of at most kLargestSample.
 struct PixelSum {
   Int128 rgb[3] = {0, 0, 0};
-  std::uint64_t samples = 0;  ///< that were added
+  std::int64_t weight = 0;  ///< of all samples, those left out apart: 1 each, but for PixelFilter's negative ones
 };
 
 /// A sample above this is counted as bad: it would not leave room for 2^31 of its kind.

@@ -63,7 +63,8 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
   for (int v = 0; v < kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
     const auto pixels = hn::Load(du, carried.pixel + v);
     const auto samples = hn::Load(du, carried.sample + v);
-    const auto random = random_at_vertex(d, scene.seed, pixels, samples, 0);
+    auto random = random_at_vertex(d, scene.seed, pixels, samples, 0);
+    if (scene.filter.above != nullptr) filter_place(d, scene.filter, samples, random);
     const auto x = to_real(d, hn::And(pixels, hn::Set(du, Id{0xffff})));
     const auto y = to_real(d, hn::template ShiftRight<16>(pixels));
     const auto ray = camera_ray(d, scene.camera, scene.features.lens, x, y, random);
@@ -126,8 +127,9 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   Passengers<T, IdFor<T>> carried;
   TileCounts counts;
   const std::uint32_t samples = tile.sample_end - tile.sample_begin;
+  const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);
   for (int y = 0; y < tile.height; ++y)
-    for (int x = 0; x < tile.width; ++x) tile.sums[y * tile.row_stride + x].samples += samples;
+    for (int x = 0; x < tile.width; ++x) tile.sums[y * tile.row_stride + x].weight += weight;
 
   PathCounter counter(tile);
   std::uint64_t to_start =

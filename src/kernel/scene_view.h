@@ -6,6 +6,7 @@
 
 #include "kernel/camera.h"
 #include "kernel/material.h"
+#include "kernel/pixel_filter.h"
 #include "kernel/sphere.h"
 
 namespace orrery::kernel {
@@ -39,6 +40,7 @@ struct SceneView {
   Shading shading = Shading::kPath;
   std::uint32_t max_depth = 50;  ///< scattering events; a path that has not left the scene after them brings no light
   std::uint32_t seed = 1;
+  PixelFilter filter;
   bool background_visible = true;  ///< false: camera rays that leave the scene bring no light
 };
 

@@ -75,7 +75,8 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker) co
     trace(part, worker);
     const kernel::PathRecord* record = part.records;
     for (film::LayerPixel& pixel : worker.pixels)
-      for (std::uint32_t s = 0; s < samples; ++s) pixel.add(request_, view_, *record++, 1);
+      for (std::uint32_t s = begin; s < part.sample_end; ++s)
+        pixel.add(request_, view_, *record++, view_.filter.weight(s, s + 1));
   }
   for (int y = 0; y < tile.height; ++y)
     for (int x = 0; x < tile.width; ++x)

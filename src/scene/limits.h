@@ -18,6 +18,9 @@ inline constexpr int kLargestSide = 65536;
 /// Keeps the sum of a pixel's samples inside its 128 bits whatever the background.
 inline constexpr double kBrightestBackground = 1e6;
 
+/// A wider filter is a blur, px.
+inline constexpr double kWidestFilter = 32;
+
 /// A path of more scattering events would only be a program that does not end.
 inline constexpr int kDeepestPath = 10000;
 

@@ -44,6 +44,7 @@ struct Background {
 enum class Precision { kExact, kFast, kBook };
 enum class Shading { kPath, kNormal, kFlat };
 enum class Accelerator { kEmbree, kList };
+enum class Filter { kBox, kGaussian, kBlackmanHarris, kMitchell };
 
 struct Render {
   int samples = 100;   ///< per pixel
@@ -52,6 +53,8 @@ struct Render {
   Precision precision = Precision::kExact;
   Shading shading = Shading::kPath;
   Accelerator accelerator = Accelerator::kEmbree;
+  Filter filter = Filter::kBox;
+  std::optional<double> filter_width;  ///< px, from end to end; default: 1, 3, 3 or 4, by filter
 };
 
 struct Lambertian {

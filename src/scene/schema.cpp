@@ -183,7 +183,15 @@ Table render_table() {
        choice<S>("accelerator", {"embree", "list"},
                  {"", "`list`: each ray tries each sphere, for comparison; the picture is the same, bit for bit",
                   "`list`: time in proportion to the number of spheres"},
-                 [](S& s) -> Accelerator& { return s.render.accelerator; })}};
+                 [](S& s) -> Accelerator& { return s.render.accelerator; }),
+       choice<S>("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
+                 {"",
+                  "how a pixel weighs what is around its middle: `box`, as in the book: its own square; `gaussian` and "
+                  "`blackman-harris` softer; `mitchell` sharper, with negative lobes"},
+                 [](S& s) -> Filter& { return s.render.filter; }),
+       optional_number<S>("filter_width", {0, kWidestFilter, true, false}, {"px", "width of the filter from end to end"},
+                          "1 for box, 3 for gaussian and blackman-harris, 4 for mitchell",
+                          [](S& s) -> std::optional<double>& { return s.render.filter_width; })}};
 }
 
 Table output_table() {

@@ -11,7 +11,7 @@ TEST(FilmFilm, GivesTheMeanOfWhatWasAdded) {
   kernel::PixelSum& sum = *film.at(2, 1);
   for (const double v : {0.25, 0.5, 3.0}) {
     sum.rgb[0] += kernel::to_fixed_point(v);
-    ++sum.samples;
+    ++sum.weight;
   }
   const Picture picture = film.picture();
   ASSERT_EQ(picture.planes.size(), 4u);
