@@ -63,6 +63,8 @@ compile::World small_world(const BenchRequest& request) {
   format::ReadResult read = format::read_scene(request.scene, request.overrides);
   scene::Image& image = read.scene.image;
   const double scale = std::min(1.0, std::sqrt(kPixels / (static_cast<double>(image.width) * image.height)));
+  image.crop.reset();
+  image.overscan = 0;
   image.width = std::max(1, static_cast<int>(std::lround(image.width * scale)));
   image.height = std::max(1, static_cast<int>(std::lround(image.height * scale)));
   return compile::compile(read.scene);

@@ -140,7 +140,8 @@ void run_phases(const Job& job, JobReport& report) {
   report.phases.read_s = watch.lap();
   stop_if_asked(job);
 
-  require_memory(estimate_memory(read.scene.image.width, read.scene.image.height, read.scene.sphere_count(),
+  const scene::Window window = read.scene.image.data_window();
+  require_memory(estimate_memory(window.width, window.height, read.scene.sphere_count(),
                                  read.scene.render.accelerator == scene::Accelerator::kEmbree),
                  job.memory_limit);
 

@@ -50,6 +50,8 @@ std::string scene_hash(const compile::World& world) {
     hash.add_bits(static_cast<std::uint64_t>(m.kind) << 32 | static_cast<std::uint64_t>(m.fresnel));
   }
   const kernel::Camera& c = world.camera;
+  hash.add(c.half_width);
+  hash.add(c.half_height);
   for (const auto* v : {&c.origin, &c.forward, &c.right, &c.down, &c.lens_u, &c.lens_v}) add_all(hash, *v);
   add_all(hash, world.background.bottom);
   add_all(hash, world.background.top);

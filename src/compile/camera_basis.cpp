@@ -39,12 +39,12 @@ kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& i
   kernel::Camera out;
   set(out.origin, camera.look_from);
   set(out.forward, axes.z * -focus);
-  set(out.right, axes.x * pixel);
+  set(out.right, axes.x * (pixel * image.pixel_aspect));
   set(out.down, axes.y * -pixel);
   set(out.lens_u, axes.x * lens_radius);
   set(out.lens_v, axes.y * lens_radius);
-  out.half_width = image.width / 2.0;
-  out.half_height = image.height / 2.0;
+  out.half_width = image.width / 2.0 - image.data_window().x;
+  out.half_height = image.height / 2.0 - image.data_window().y;
   return out;
 }
 

@@ -149,13 +149,21 @@ kernel::SceneView World::view() const noexcept {
   v.max_depth = max_depth;
   v.seed = seed;
   v.filter = filter.view();
+  v.window_x = static_cast<std::uint32_t>(window_x) & 0xffff;
+  v.window_y = static_cast<std::uint32_t>(window_y) & 0xffff;
   return v;
 }
 
 World compile(const scene::Scene& scene) {
   World world;
-  world.width = scene.image.width;
-  world.height = scene.image.height;
+  const scene::Window window = scene.image.data_window();
+  world.window_x = window.x;
+  world.window_y = window.y;
+  world.frame_width = scene.image.width;
+  world.frame_height = scene.image.height;
+  world.pixel_aspect = scene.image.pixel_aspect;
+  world.width = window.width;
+  world.height = window.height;
   world.samples = scene.render.samples;
   world.max_depth = static_cast<std::uint32_t>(scene.render.max_depth);
   world.seed = scene.render.seed;

@@ -4,7 +4,10 @@
 #include <vector>
 
 #include "kernel/pixel_filter.h"
-#include "scene/scene.h"
+
+namespace orrery::scene {
+struct Render;
+}
 
 namespace orrery::compile {
 

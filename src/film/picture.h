@@ -29,6 +29,9 @@ struct Picture {
   int width = 0;   ///< px
   int height = 0;  ///< px
   std::vector<Plane> planes;
+  int x = 0, y = 0;                       ///< px, where its upper left pixel stands within the frame
+  int frame_width = 0, frame_height = 0;  ///< px; 0: the picture is the frame
+  double pixel_aspect = 1;                ///< a pixel's width by its height
 
   const Plane* find(const std::string& name) const {
     for (const Plane& plane : planes)

@@ -94,6 +94,22 @@ std::optional<Value> read_text(Reading& reading, const toml::node& node, const s
   return text;
 }
 
+std::optional<Value> read_window(Reading& reading, const toml::node& node, const std::string& name,
+                                 const scene::Range& range) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->size() != 4) {
+    wrong_type(reading, node, name, "four whole numbers like [0, 0, 640, 360]: x, y, width, height");
+    return {};
+  }
+  std::int64_t v[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto x = read_integer(reading, *array->get(i), name + "[" + std::to_string(i) + "]", range);
+    if (!x) return {};
+    v[i] = std::get<std::int64_t>(*x);
+  }
+  return scene::Window{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
+}
+
 /// Each wrong word is a finding of its own.
 std::optional<Value> read_words(Reading& reading, const toml::node& node, const std::string& name,
                                 const std::vector<std::string>& choices) {
@@ -132,6 +148,7 @@ std::optional<Value> read_value(Reading& reading, const toml::node& node, const 
     case ValueType::kVector: return read_vector(reading, node, name, range);
     case ValueType::kText: return read_text(reading, node, name, {});
     case ValueType::kChoice: return read_text(reading, node, name, choices);
+    case ValueType::kWindow: return read_window(reading, node, name, range);
     case ValueType::kChoices: return read_words(reading, node, name, choices);
   }
   return {};

@@ -104,6 +104,13 @@ std::vector<Part> make_parts(const film::Picture& picture, bool multipart) {
 
 ImageSpec spec_of(const film::Picture& picture, const Part& part, const ExrOptions& options) {
   ImageSpec spec(picture.width, picture.height, static_cast<int>(part.planes.size()), TypeDesc::HALF);
+  spec.x = picture.x;
+  spec.y = picture.y;
+  if (picture.frame_width > 0) {
+    spec.full_width = picture.frame_width;
+    spec.full_height = picture.frame_height;
+  }
+  if (picture.pixel_aspect != 1) spec.attribute("PixelAspectRatio", static_cast<float>(picture.pixel_aspect));
   spec.channelnames.clear();
   bool has_data = false;
   for (const film::Plane* plane : part.planes) {

@@ -15,8 +15,8 @@ struct Camera {
   double down[3] = {0, -1, 0};     ///< one pixel down on the focus plane
   double lens_u[3] = {0, 0, 0};    ///< lens radius along right; zero for a pinhole
   double lens_v[3] = {0, 0, 0};    ///< lens radius along up
-  double half_width = 0;           ///< px
-  double half_height = 0;          ///< px
+  double half_width = 0;           ///< px, from the left edge of the rendered window to the middle of the frame
+  double half_height = 0;          ///< px, the same from the upper edge
 };
 
 }  // namespace orrery::kernel

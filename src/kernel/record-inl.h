@@ -29,16 +29,17 @@ class Recorder {
   using Ids = hn::Vec<IdTag<D>>;
   using Id = hn::TFromD<IdTag<D>>;
 
-  HWY_INLINE Recorder(D d, const Tile& tile, Ids pixels, Ids samples) : lanes_(static_cast<int>(hn::Lanes(d))) {
+  HWY_INLINE Recorder(D d, const SceneView& scene, const Tile& tile, Ids pixels, Ids samples)
+      : lanes_(static_cast<int>(hn::Lanes(d))) {
     const IdTag<D> du;
     HWY_ALIGN Id pixel[kMax], sample[kMax];
     hn::Store(pixels, du, pixel);
     hn::Store(samples, du, sample);
     const auto count = static_cast<std::int64_t>(tile.sample_end - tile.sample_begin);
     for (int i = 0; i < lanes_; ++i) {
-      const auto x = static_cast<int>(pixel[i] & 0xffff) - tile.x, y = static_cast<int>(pixel[i] >> 16) - tile.y;
+      const PixelPlace at = place_of(pixel[i], scene);
       const auto s = static_cast<std::int64_t>(sample[i]) - tile.sample_begin;
-      record_[i] = tile.records + (std::int64_t{y} * tile.width + x) * count + s;
+      record_[i] = tile.records + (std::int64_t{at.y - tile.y} * tile.width + (at.x - tile.x)) * count + s;
     }
   }
 

@@ -25,12 +25,13 @@ using IdFor = hwy::MakeUnsigned<T>;
 /// packet lie close together.
 class PathCounter {
  public:
-  explicit PathCounter(const Tile& tile) : tile_(tile), sample_(tile.sample_begin) {}
+  PathCounter(const Tile& tile, const SceneView& scene) : tile_(tile), scene_(scene), sample_(tile.sample_begin) {}
 
   template <class Id>
   void take(Id& pixel, Id& sample) {
-    pixel =
-        static_cast<Id>((static_cast<std::uint32_t>(tile_.y + y_) << 16) | static_cast<std::uint32_t>(tile_.x + x_));
+    const std::uint32_t x = static_cast<std::uint32_t>(tile_.x + x_) + scene_.window_x;
+    const std::uint32_t y = static_cast<std::uint32_t>(tile_.y + y_) + scene_.window_y;
+    pixel = static_cast<Id>(y << 16 | (x & 0xffff));
     sample = static_cast<Id>(sample_);
     if (++sample_ < tile_.sample_end) return;
     sample_ = tile_.sample_begin;
@@ -41,6 +42,7 @@ class PathCounter {
 
  private:
   const Tile& tile_;
+  const SceneView& scene_;
   std::uint32_t sample_;
   int x_ = 0, y_ = 0;
 };
@@ -65,8 +67,11 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     const auto samples = hn::Load(du, carried.sample + v);
     auto random = random_at_vertex(d, scene.seed, pixels, samples, 0);
     if (scene.filter.above != nullptr) filter_place(d, scene.filter, samples, random);
-    const auto x = to_real(d, hn::And(pixels, hn::Set(du, Id{0xffff})));
-    const auto y = to_real(d, hn::template ShiftRight<16>(pixels));
+    const auto place = [&](hn::Vec<IdTag<D>> at, std::uint32_t begin) {
+      return to_real(d, hn::And(at - hn::Set(du, static_cast<Id>(begin)), hn::Set(du, Id{0xffff})));
+    };
+    const auto x = place(pixels, scene.window_x);
+    const auto y = place(hn::template ShiftRight<16>(pixels), scene.window_y);
     const auto ray = camera_ray(d, scene.camera, scene.features.lens, x, y, random);
     const auto origin = camera_origin + ray.offset;
     const auto low = sum_error(camera_origin, ray.offset, origin);
@@ -131,7 +136,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   for (int y = 0; y < tile.height; ++y)
     for (int x = 0; x < tile.width; ++x) tile.sums[y * tile.row_stride + x].weight += weight;
 
-  PathCounter counter(tile);
+  PathCounter counter(tile, scene);
   std::uint64_t to_start =
       std::uint64_t{samples} * static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
   const auto trace_and_shade = [&](std::uint32_t depth, int alive) {

@@ -15,9 +15,18 @@ namespace orrery::kernel {
 /// The largest width and height of a picture: a pixel's name is y << 16 | x.
 inline constexpr int kLargestSide = 65536;
 
+/// A pixel by its name, y << 16 | x within the frame, as its place in the rendered window.
+struct PixelPlace {
+  int x, y;
+};
+inline PixelPlace place_of(std::uint64_t name, const SceneView& scene) noexcept {
+  return {static_cast<int>((name - scene.window_x) & 0xffff),
+          static_cast<int>(((name >> 16) - scene.window_y) & 0xffff)};
+}
+
 /// A rectangle of pixels and the samples that each of them shall get.
 struct Tile {
-  int x = 0, y = 0;  ///< px, upper left corner
+  int x = 0, y = 0;  ///< px, upper left corner, within the rendered window
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
   PixelSum* sums = nullptr;     ///< of the upper left pixel

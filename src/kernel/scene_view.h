@@ -41,6 +41,9 @@ struct SceneView {
   std::uint32_t max_depth = 50;  ///< scattering events; a path that has not left the scene after them brings no light
   std::uint32_t seed = 1;
   PixelFilter filter;
+  /// Where the rendered window begins within the frame, modulo 65536. A pixel's name, which chooses its random numbers,
+  /// is its place in the frame, so that a window's pixels are the frame's.
+  std::uint32_t window_x = 0, window_y = 0;
   bool background_visible = true;  ///< false: camera rays that leave the scene bring no light
 };
 

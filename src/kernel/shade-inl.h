@@ -36,7 +36,7 @@ struct alignas(64) Passengers {
 /// Adds finished paths to their pixels. A sample that is not a number never enters a sum: it is counted.
 template <class D>
 HWY_INLINE void add_light(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, hn::Vec<IdTag<D>> pixels,
-                          hn::Vec<IdTag<D>> samples, const PixelFilter& filter, const Tile& tile, TileCounts& counts) {
+                          hn::Vec<IdTag<D>> samples, const SceneView& scene, const Tile& tile, TileCounts& counts) {
   using T = hn::TFromD<D>;
   HWY_ALIGN T rgb[3][hn::MaxLanes(D())];
   HWY_ALIGN hn::TFromD<IdTag<D>> pixel[hn::MaxLanes(D())], sample[hn::MaxLanes(D())];
@@ -49,11 +49,11 @@ HWY_INLINE void add_light(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light,
   hn::Store(hn::IfThenElseZero(lanes, hn::Set(d, T(1))), d, in);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
     if (in[i] == T(0)) continue;
-    const auto x = static_cast<int>(pixel[i] & 0xffff), y = static_cast<int>(pixel[i] >> 16);
-    PixelSum& sum = tile.sums[(y - tile.y) * tile.row_stride + (x - tile.x)];
+    const PixelPlace at = place_of(pixel[i], scene);
+    PixelSum& sum = tile.sums[(at.y - tile.y) * tile.row_stride + (at.x - tile.x)];
     const auto r = static_cast<double>(rgb[0][i]), g = static_cast<double>(rgb[1][i]),
                b = static_cast<double>(rgb[2][i]);
-    const bool negative = filter.negative_share != 0 && filter.weight(sample[i], sample[i] + 1) < 0;
+    const bool negative = scene.filter.negative_share != 0 && scene.filter.weight(sample[i], sample[i] + 1) < 0;
     if (!(std::abs(r) <= kLargestSample && std::abs(g) <= kLargestSample && std::abs(b) <= kLargestSample)) {
       sum.weight -= negative ? -1 : 1;
       ++counts.bad_samples;
@@ -211,7 +211,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     auto throughput = load3(d, carried.throughput[0] + v, carried.throughput[1] + v, carried.throughput[2] + v);
     [[maybe_unused]] hn::Vec<IdTag<D>> history;
     [[maybe_unused]] hn::Mask<D> guided;
-    [[maybe_unused]] std::conditional_t<kRecords, Recorder<D>, Nothing> record(d, tile, pixels, samples);
+    [[maybe_unused]] std::conditional_t<kRecords, Recorder<D>, Nothing> record(d, scene, tile, pixels, samples);
     if constexpr (kRecords) {
       history = hn::Load(du, carried.history + v);
       const auto only_sharp = hn::Set(du, static_cast<Id>(kOnlySharpBit));
@@ -221,7 +221,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     if (!hn::AllFalse(d, missed) && (depth > 0 || scene.background_visible)) {
       const auto sky = background(d, scene.background, scene.features.sky, ray.direction);
       const Vec3<hn::Vec<D>> light = {sky.x * throughput.x, sky.y * throughput.y, sky.z * throughput.z};
-      add_light(d, missed, light, pixels, samples, scene.filter, tile, counts);
+      add_light(d, missed, light, pixels, samples, scene, tile, counts);
       if constexpr (kRecords) {
         const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
         record.light(d, missed, light, history);
@@ -245,7 +245,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       const auto half = hn::Set(d, static_cast<T>(0.5));
       const auto shown =
           scene.shading == Shading::kFlat ? at.albedo : mul_add(at.surface.normal, half, {half, half, half});
-      add_light(d, hit, shown, pixels, samples, scene.filter, tile, counts);
+      add_light(d, hit, shown, pixels, samples, scene, tile, counts);
       if constexpr (kRecords) record.light(d, hit, shown, history);
       continue;
     }

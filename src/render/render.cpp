@@ -132,6 +132,11 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
   if (!result.completed) return result;
   result.statistics.paths = total;
   result.picture = film.picture();
+  result.picture.x = world.window_x;
+  result.picture.y = world.window_y;
+  result.picture.frame_width = world.frame_width;
+  result.picture.frame_height = world.frame_height;
+  result.picture.pixel_aspect = world.pixel_aspect;
   if (layers) layers->move_to(result.picture);
   return result;
 }

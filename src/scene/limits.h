@@ -18,6 +18,9 @@ inline constexpr int kLargestSide = 65536;
 /// Keeps the sum of a pixel's samples inside its 128 bits whatever the background.
 inline constexpr double kBrightestBackground = 1e6;
 
+/// More than this around a frame is another frame, px.
+inline constexpr int kWidestOverscan = 4096;
+
 /// A wider filter is a blur, px.
 inline constexpr double kWidestFilter = 32;
 

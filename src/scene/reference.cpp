@@ -17,6 +17,7 @@ const char* type_name(ValueType type) {
     case ValueType::kText: return "string";
     case ValueType::kChoice: return "one of";
     case ValueType::kChoices: return "list of";
+    case ValueType::kWindow: return "[x, y, width, height]";
   }
   return "";
 }
@@ -28,6 +29,7 @@ std::string range_text(const Key<Target>& key) {
       return std::to_string(static_cast<std::int64_t>(key.range.from)) + ".." +
              std::to_string(static_cast<std::int64_t>(key.range.to));
     case ValueType::kNumber: return key.range.text();
+    case ValueType::kWindow: return "inside of the frame";
     case ValueType::kVector: return "each " + key.range.text();
     case ValueType::kText: return "any";
     case ValueType::kChoice:

@@ -17,9 +17,23 @@ namespace orrery::scene {
 
 using math::Vec3d;
 
+/// A rectangle of pixels.
+struct Window {
+  int x = 0, y = 0;  ///< px, upper left corner; 0, 0 is that of the frame
+  int width = 0, height = 0;
+};
+
 struct Image {
-  int width = 1200;  ///< px
-  int height = 675;  ///< px
+  int width = 1200;                 ///< px, of the frame
+  int height = 675;                 ///< px
+  double pixel_aspect = 1;          ///< a pixel's width by its height
+  std::optional<Window> crop = {};  ///< what is rendered of the frame; default: all
+  int overscan = 0;                 ///< px beyond each edge of the frame that are rendered, too
+
+  /// What is rendered.
+  Window data_window() const {
+    return crop ? *crop : Window{-overscan, -overscan, width + 2 * overscan, height + 2 * overscan};
+  }
 };
 
 struct Camera {

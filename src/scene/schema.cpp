@@ -97,6 +97,23 @@ Key<Target> choice(const char* name, std::vector<std::string> choices, const Abo
             return string_text(choices[static_cast<std::size_t>(at(const_cast<Target&>(t)))]);
           }};
 }
+/// A rectangle that may be left out, and then is what `otherwise` says.
+template <class Target, class At>
+Key<Target> optional_window(const char* name, const About& about, const char* otherwise, At at) {
+  Key<Target> key;
+  key.name = name;
+  key.type = ValueType::kWindow;
+  key.range = {0, kLargestSide};
+  key.unit = about.unit;
+  key.doc = about.doc;
+  key.cost = about.cost;
+  key.set = [at](Target& t, const Value& v) { at(t) = std::get<Window>(v); };
+  key.text = [at, otherwise](const Target& t) -> std::string {
+    const std::optional<Window>& w = at(const_cast<Target&>(t));
+    return w ? window_text(*w) : otherwise;
+  };
+  return key;
+}
 /// Some of the choices, in any order.
 template <class Target, class At>
 Key<Target> choices(const char* name, std::vector<std::string> choices, const About& about, At at) {
@@ -117,7 +134,16 @@ Table image_table() {
   return {"image",
           {integer<S>("width", {1, kLargestSide}, {"px", "pixels in a row", cost},
                       [](S& s) -> int& { return s.image.width; }),
-           integer<S>("height", {1, kLargestSide}, {"px", "rows", cost}, [](S& s) -> int& { return s.image.height; })}};
+           integer<S>("height", {1, kLargestSide}, {"px", "rows", cost}, [](S& s) -> int& { return s.image.height; }),
+           number<S>("pixel_aspect", {0.1, 10}, {"", "width of a pixel by its height, as the screen will show it"},
+                     [](S& s) -> double& { return s.image.pixel_aspect; }),
+           optional_window<S>("crop",
+                              {"px",
+                               "[x, y, width, height]: only this part of the frame is rendered; its pixels are "
+                               "those of the whole, bit for bit"},
+                              "the whole frame", [](S& s) -> std::optional<Window>& { return s.image.crop; }),
+           integer<S>("overscan", {0, kWidestOverscan}, {"px", "rows and columns beyond each edge of the frame", cost},
+                      [](S& s) -> int& { return s.image.overscan; })}};
 }
 
 Table camera_table() {
@@ -189,7 +215,8 @@ Table render_table() {
                   "how a pixel weighs what is around its middle: `box`, as in the book: its own square; `gaussian` and "
                   "`blackman-harris` softer; `mitchell` sharper, with negative lobes"},
                  [](S& s) -> Filter& { return s.render.filter; }),
-       optional_number<S>("filter_width", {0, kWidestFilter, true, false}, {"px", "width of the filter from end to end"},
+       optional_number<S>("filter_width", {0, kWidestFilter, true, false},
+                          {"px", "width of the filter from end to end"},
                           "1 for box, 3 for gaussian and blackman-harris, 4 for mitchell",
                           [](S& s) -> std::optional<double>& { return s.render.filter_width; })}};
 }
@@ -238,6 +265,11 @@ std::vector<MaterialType> make_material_types() {
 }
 
 }  // namespace
+
+std::string window_text(const Window& w) {
+  return "[" + std::to_string(w.x) + ", " + std::to_string(w.y) + ", " + std::to_string(w.width) + ", " +
+         std::to_string(w.height) + "]";
+}
 
 std::string Range::text() const {
   if (!from_open && !to_open) return number_text(from) + ".." + number_text(to);

@@ -15,9 +15,9 @@
 namespace orrery::scene {
 
 /// What a key of the scene file can hold.
-using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>>;
+using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window>;
 
-enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices };
+enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWindow };
 
 /// Numbers from..to, ends included unless `open` says otherwise; for a vector each component.
 struct Range {
@@ -28,6 +28,9 @@ struct Range {
   /// "0..1", "above 0, below 180".
   std::string text() const;
 };
+
+/// "[0, 0, 640, 360]".
+std::string window_text(const Window& window);
 
 /// One key of a table of the scene file.
 template <class Target>

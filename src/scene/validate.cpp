@@ -35,6 +35,21 @@ bool in_domain(Vec3d c) {
 }
 bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
 
+void check_image(const Image& image, Problems& problems) {
+  if (image.crop) {
+    const Window& w = *image.crop;
+    if (w.width < 1 || w.height < 1 || w.x < 0 || w.y < 0 || w.width > image.width - w.x ||
+        w.height > image.height - w.y)
+      problems.error("image.crop", "is not a part of the frame, which is " + std::to_string(image.width) + " x " +
+                                       std::to_string(image.height) + "; it is [x, y, width, height]");
+    if (image.overscan > 0) problems.error("image.overscan", "there is a crop already; leave one of them out");
+  }
+  const Window all = image.data_window();
+  if (all.width > kLargestSide || all.height > kLargestSide)
+    problems.error("image.overscan", "the frame and its overscan have more than " + std::to_string(kLargestSide) +
+                                         " pixels along a side");
+}
+
 void check_camera(const Camera& camera, Problems& problems) {
   bool usable = true;
   for (const auto& [name, v] :
@@ -143,6 +158,7 @@ void check_coincident(const Scene& scene, Problems& problems) {
 
 std::vector<Problem> validate(const Scene& scene) {
   Problems problems;
+  check_image(scene.image, problems);
   check_camera(scene.camera, problems);
   check_lens(scene.camera, problems);
   check_spheres(scene, problems);
