@@ -12,6 +12,7 @@
 #include "app/choose_isa.h"
 #include "app/scene_hash.h"
 #include "app/text.h"
+#include "app/working_space.h"
 #include "base/error.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
@@ -67,6 +68,7 @@ compile::World small_world(const BenchRequest& request) {
   image.overscan = 0;
   image.width = std::max(1, static_cast<int>(std::lround(image.width * scale)));
   image.height = std::max(1, static_cast<int>(std::lround(image.height * scale)));
+  to_working_space({}, read.scene);
   return compile::compile(read.scene);
 }
 

@@ -31,8 +31,10 @@ DevelopReport develop_file(const Development& development) {
   const film::Picture picture = image::read(development.input);
   for (const char* name : {"R", "G", "B"})  // no other plane is developed
     if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
-  const film::EncodedPicture developed =
-      display::develop(picture, development.display, development.bits == 0 ? 8 : development.bits);
+  const film::EncodedPicture developed = display::develop(picture, development.display,
+                                                          development.bits != 0   ? development.bits
+                                                          : report.display.is_hdr ? 16
+                                                                                  : 8);
   for (const auto& output : development.outputs) image::write_encoded(output, developed, "orrery " + program_version());
   return report;
 }

@@ -9,6 +9,7 @@
 #include "app/precision_advice.h"
 #include "app/scene_hash.h"
 #include "app/text.h"
+#include "app/working_space.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
 #include "kernel/isa.h"
@@ -51,6 +52,7 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 
 SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
   format::ReadResult read = format::read_scene(scene, overrides);
+  to_working_space({}, read.scene);
   const compile::World world = compile::compile(read.scene);
   SceneInfo info;
   info.scene_hash = scene_hash(world);

@@ -14,6 +14,7 @@
 #include "app/scene_hash.h"
 #include "app/statistics.h"
 #include "app/threads.h"
+#include "app/working_space.h"
 #include "base/error.h"
 #include "base/exit_status.h"
 #include "compile/compile.h"
@@ -71,12 +72,28 @@ void warn(const Job& job, const base::Finding& finding) {
   if (job.on_warning) job.on_warning(finding);
 }
 
+/// Bits in a channel of display formats: steps of 8 bits are seen on a display of high dynamic range.
+int bits_of(const display::Choice& display, const Job& job) {
+  if (job.bits != 0) return job.bits;
+  return display.is_hdr ? 16 : 8;
+}
+
+void require_bits(const display::Choice& display, const Job& job) {
+  for (const auto& output : job.outputs) {
+    const image::Format format = image::format_of(output);
+    if (display.is_hdr && image::is_display_format(format) && image::most_bits(format) < 16)
+      throw base::Error(base::ErrorKind::kUsage, output.string() + " holds 8 bits in a channel, too few for display " +
+                                                     display.display + "; PNG and TIFF hold 16");
+  }
+}
+
 /// The display that display formats are developed for; nothing is looked up where there is none.
 display::Settings choose_display(const Job& job, const scene::Scene& scene, JobReport& report) {
   display::Settings display = job.display;
-  display.working_space = scene.color.space;
+  display.working_space = scene.color.working_space();
   if (!wants_display(job)) return display;
   report.display = display::choose(display);
+  require_bits(report.display, job);
   for (const std::string& text : report.display.warnings) {
     base::Finding finding;
     finding.severity = base::Severity::kWarning;
@@ -102,7 +119,7 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
       case image::Format::kTiff:
       case image::Format::kJpeg:
       case image::Format::kPpm:
-        if (!developed) developed = display::develop(picture, display, job.bits == 0 ? 8 : job.bits);
+        if (!developed) developed = display::develop(picture, display, bits_of(report.display, job));
         image::write_encoded(output, *developed, header.software);
         break;
     }
@@ -137,6 +154,14 @@ void run_phases(const Job& job, JobReport& report) {
   format::ReadResult read = format::read_scene(job.scene, job.overrides);
   for (const base::Finding& warning : read.warnings) warn(job, warning);
   const display::Settings display = choose_display(job, read.scene, report);
+  if (const int moved = to_working_space(job.display.config, read.scene); moved > 0) {
+    base::Finding finding;
+    finding.severity = base::Severity::kWarning;
+    finding.file = job.scene.string();
+    finding.text = std::to_string(moved) + " colours are out of range in " + read.scene.color.working_space() +
+                   " and were moved to its edge";
+    warn(job, finding);
+  }
   report.phases.read_s = watch.lap();
   stop_if_asked(job);
 

@@ -5,6 +5,7 @@
 
 #include "app/camera_matrices.h"
 #include "app/version.h"
+#include "display/color_space.h"
 #include "scene/value_text.h"
 
 namespace orrery::app {
@@ -17,17 +18,6 @@ std::string local_time() {
   char text[32];
   std::strftime(text, sizeof(text), "%Y:%m:%d %H:%M:%S", &local);
   return text;
-}
-
-/// Primaries and white of the working spaces whose names we know; a config's own spaces are not guessed at.
-void add_color(const std::string& space, image::Header& header) {
-  if (space == "lin_rec709" || space == "scene_linear") {
-    header.chromaticities = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
-    header.color_interop_id = "lin_rec709_scene";
-  } else if (space == "acescg" || space == "ACEScg") {
-    header.chromaticities = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
-    header.color_interop_id = "lin_ap1_scene";
-  }
 }
 
 /// All settings as lines of a scene file: "camera.vfov = 20".
@@ -47,7 +37,10 @@ image::Header picture_header(const format::ReadResult& read, const compile::Worl
   const CameraMatrices matrices = camera_matrices(read.scene.camera, read.scene.image);
   header.world_to_camera = matrices.world_to_camera;
   header.world_to_ndc = matrices.world_to_ndc;
-  add_color(read.scene.color.space, header);
+  if (const display::KnownSpace* space = display::known_space(read.scene.color.working_space())) {
+    header.chromaticities = space->chromaticities;
+    header.color_interop_id = space->interop_id;
+  }
   header.attributes = {{"orrery/version", program_version()},
                        {"orrery/sceneHash", report.scene_hash},
                        {"orrery/samples", world.samples},
@@ -61,6 +54,7 @@ image::Header picture_header(const format::ReadResult& read, const compile::Worl
                                                                   std::to_string(bad.infinite) + " infinite, " +
                                                                   std::to_string(bad.negative) + " negative, " +
                                                                   std::to_string(bad.above_half) + " above half"});
+  if (!report.display.config_id.empty()) header.attributes.push_back({"orrery/ocioConfigId", report.display.config_id});
   header.attributes.push_back({"orrery/settings", settings_lines(read.settings, reproducible)});
   if (reproducible) return header;
   header.capture_date = local_time();

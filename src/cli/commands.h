@@ -20,6 +20,7 @@ void add_info(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action);
 void add_develop(CLI::App& program, Action& action);
+void add_bake(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 

@@ -36,6 +36,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_check(program, action);
   add_generate(program, action);
   add_develop(program, action);
+  add_bake(program, action);
   add_compare(program, action);
   add_bench(program, action);
   program.footer("orrery COMMAND --help tells more, with examples.");

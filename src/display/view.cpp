@@ -6,29 +6,14 @@
 
 #include "base/error.h"
 #include "base/suggestion.h"
+#include "display/color_space.h"
 #include "display/config.h"
+#include "display/names.h"
 
 namespace orrery::display {
 namespace {
 
 namespace ocio = OCIO_NAMESPACE;
-using Names = std::vector<std::string>;
-
-/// Names handed out one by one by OCIO.
-template <class Get>
-Names names(int count, Get get) {
-  Names out;
-  for (int i = 0; i < count; ++i) out.emplace_back(get(i));
-  return out;
-}
-
-[[noreturn]] void unknown(const Config& config, const std::string& what, const std::string& name, const Names& known) {
-  const std::string near = base::did_you_mean(name, known);
-  throw base::Error(base::ErrorKind::kUsage, "the OCIO config (" + config.source + ") has no " + what + " `" + name +
-                                                 "`; " + (near.empty() ? "" : near + " ") +
-                                                 (known.empty() ? "it has none" : "it has " + base::joined(known)));
-}
-
 void require(const Config& config, const std::string& what, const std::string& name, const Names& known) {
   if (std::find(known.begin(), known.end(), name) == known.end()) unknown(config, what, name, known);
 }
@@ -45,34 +30,39 @@ void choose_names(const Config& source, const Settings& settings, Choice& choice
   if (!settings.look.empty())
     require(source, "look", settings.look,
             names(config.getNumLooks(), [&](int i) { return config.getLookNameByIndex(i); }));
-  if (config.getColorSpace(settings.working_space.c_str()) == nullptr)
-    unknown(source, "colour space", settings.working_space,
-            names(config.getNumColorSpaces(), [&](int i) { return config.getColorSpaceNameByIndex(i); }));
+  choice.working_space = find_color_space(source, settings.working_space);
 }
 
-/// Whether the view ends in the encoding that files without a profile are taken to have.
-bool ends_in_srgb(const ocio::Config& config, const Choice& choice) {
-  std::string space = config.getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str());
-  if (space == "<USE_DISPLAY_NAME>") space = choice.display;
-  return space.find("sRGB") != std::string::npos;
+/// The colour space that the view ends in.
+std::string final_space(const ocio::Config& config, const Choice& choice) {
+  const std::string space = config.getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str());
+  return space == "<USE_DISPLAY_NAME>" ? choice.display : space;
 }
 
-ocio::ConstCPUProcessorRcPtr processor(const ocio::Config& config, const Settings& settings, const Choice& choice) {
+/// Whether a space is for displays of high dynamic range: by what the config says of it, and by name where it says
+/// nothing.
+bool is_hdr(const ocio::Config& config, const std::string& space) {
+  const ocio::ConstColorSpaceRcPtr found = config.getColorSpace(space.c_str());
+  const std::string encoding = found ? found->getEncoding() : "";
+  if (!encoding.empty()) return encoding == "hdr-video";
+  return space.find("2100") != std::string::npos || space.find("ST2084") != std::string::npos;
+}
+
+ocio::ConstProcessorRcPtr transform(const ocio::Config& config, const Settings& settings, const Choice& choice) {
   auto group = ocio::GroupTransform::Create();
   if (!settings.look.empty()) {
     auto look = ocio::LookTransform::Create();
-    look->setSrc(settings.working_space.c_str());
-    look->setDst(settings.working_space.c_str());
+    look->setSrc(choice.working_space.c_str());
+    look->setDst(choice.working_space.c_str());
     look->setLooks(settings.look.c_str());
     group->appendTransform(look);
   }
   auto view = ocio::DisplayViewTransform::Create();
-  view->setSrc(settings.working_space.c_str());
+  view->setSrc(choice.working_space.c_str());
   view->setDisplay(choice.display.c_str());
   view->setView(choice.view.c_str());
   group->appendTransform(view);
-  // Lossless: the default trades accuracy for tables.
-  return config.getProcessor(group)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+  return config.getProcessor(group);
 }
 
 }  // namespace
@@ -87,8 +77,12 @@ View find_view(const Settings& settings) {
     out.choice.config_id = source.config->getCacheID();
     out.choice.warnings = source.warnings;
     choose_names(source, settings, out.choice);
-    out.processor = processor(*source.config, settings, out.choice);
-    out.is_srgb = ends_in_srgb(*source.config, out.choice);
+    out.transform = transform(*source.config, settings, out.choice);
+    // Lossless: the default trades accuracy for tables.
+    out.processor = out.transform->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+    const std::string space = final_space(*source.config, out.choice);
+    out.is_srgb = space.find("sRGB") != std::string::npos;
+    out.choice.is_hdr = is_hdr(*source.config, space);
   } catch (const ocio::ExceptionMissingFile& error) {
     throw base::Error(base::ErrorKind::kMissingInput,
                       "the OCIO config " + source.source + " names a file that is not there: " + error.what());

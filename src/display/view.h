@@ -11,6 +11,7 @@ namespace orrery::display {
 struct View {
   Choice choice;
   OCIO_NAMESPACE::ConstCPUProcessorRcPtr processor;  ///< look and view; exposure is not in it
+  OCIO_NAMESPACE::ConstProcessorRcPtr transform;     ///< the same, as OCIO's own steps
   bool is_srgb = false;                              ///< what comes out is encoded for an sRGB display
 };
 

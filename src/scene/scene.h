@@ -123,6 +123,9 @@ struct Output {
 /// Colours of the scene file, and of the picture made of it.
 struct Color {
   std::string space = "lin_rec709";
+  std::string working;  ///< of light and of the picture; empty: `space`
+
+  const std::string& working_space() const { return working.empty() ? space : working; }
 };
 
 struct Scene {

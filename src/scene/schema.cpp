@@ -284,8 +284,10 @@ const std::vector<Table>& tables() {
       background_table(),
       render_table(),
       {"color",
-       {text<S>("space", {"", "name of the colour space of all colours here, and of the EXR"},
-                [](S& s) -> std::string& { return s.color.space; })}},
+       {text<S>("space", {"", "name of the colour space of all colours here: any scene-linear one of the OCIO config"},
+                [](S& s) -> std::string& { return s.color.space; }),
+        text<S>("working", {"", "colour space in which light is reckoned, and of the EXR; default: `space`"},
+                [](S& s) -> std::string& { return s.color.working; })}},
       output_table()};
   return all;
 }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/bake_file.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+namespace orrery::app {
+
+void bake_file(const display::Settings& display, int cube_size, const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension != ".cube" && extension != ".clf")
+    throw base::Error(base::ErrorKind::kUsage,
+                      file.string() + " has no extension of a display transform; known are .cube and .clf");
+  base::check_creatable(file);
+  base::write_text_file(
+      file, extension == ".cube" ? display::bake_cube(display, cube_size) : display::bake_clf(display, cube_size));
+}
+
+}  // namespace orrery::app

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "display/bake.h"
+
+namespace orrery::app {
+
+/// Writes a display transform as a file for other programs: .cube or .clf.
+///
+/// Errors     base::Error: as display::choose; kUsage for another extension, kCannotCreate, kIo
+void bake_file(const display::Settings& display, int cube_size, const std::filesystem::path& file);
+
+}  // namespace orrery::app

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/bake.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include "display/view.h"
+
+namespace orrery::display {
+namespace {
+
+namespace ocio = OCIO_NAMESPACE;
+
+/// Light that the shaper tells apart: from black on in even stops around mid grey, so that highlights keep their
+/// colour.
+constexpr double kMidGrey = 0.18;
+constexpr double kStopsBelow = 10, kStopsAbove = 8;
+constexpr int kShaperSize = 4096;
+
+/// What stands at the share `x` of the cube's edge. Near black it is linear, so that 0 is 0.
+double light_at(double x) {
+  const double darkest = std::exp2(-kStopsBelow), brightest = std::exp2(kStopsAbove);
+  // a (b^x - 1) reaches from 0 to `brightest` and begins as steep as `darkest` a stop would have it.
+  const double base = brightest / darkest;
+  return kMidGrey * darkest * (std::pow(base, x) - 1) * brightest / (brightest - darkest);
+}
+
+/// The share of the cube's edge where light stands; the inverse of light_at.
+double place_of(double light) {
+  const double darkest = std::exp2(-kStopsBelow), brightest = std::exp2(kStopsAbove);
+  const double scaled = light * (brightest - darkest) / (kMidGrey * darkest * brightest);
+  return std::log(scaled + 1) / std::log(brightest / darkest);
+}
+
+void add_number(std::string& out, double v) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof(text), static_cast<float>(v), std::chars_format::fixed, 7).ptr;
+  out.append(text, end);
+}
+
+void add_row(std::string& out, double r, double g, double b) {
+  add_number(out, r);
+  out += ' ';
+  add_number(out, g);
+  out += ' ';
+  add_number(out, b);
+  out += '\n';
+}
+
+std::string title(const View& view, const Settings& settings) {
+  return settings.working_space + " to " + view.choice.display + ", " + view.choice.view;
+}
+
+/// A view as tables: light times `scale` goes through the shaper into the cube.
+struct Tables {
+  double scale;
+  std::vector<double> shaper;
+  int size;                 ///< points along each edge of the cube
+  std::vector<float> cube;  ///< R G B, red changes first
+};
+
+Tables tabulated(const View& view, const Settings& settings, int size) {
+  const double end = light_at(1), gain = std::exp2(settings.exposure);
+  Tables out{1 / end, {}, size, {}};
+  for (int i = 0; i < kShaperSize; ++i)
+    out.shaper.push_back(std::clamp(place_of(end * i / (kShaperSize - 1)), 0.0, 1.0));
+  const auto at = [&](int i) { return static_cast<float>(light_at(static_cast<double>(i) / (size - 1)) * gain); };
+  for (int b = 0; b < size; ++b)
+    for (int g = 0; g < size; ++g)
+      for (int r = 0; r < size; ++r) out.cube.insert(out.cube.end(), {at(r), at(g), at(b)});
+  ocio::PackedImageDesc all(out.cube.data(), size, static_cast<long>(size) * size, 3);
+  view.processor->apply(all);
+  return out;
+}
+
+/// The steps as they are; where a step has no words in the format, as tables.
+ocio::GroupTransformRcPtr steps(const View& view, const Settings& settings) {
+  auto group = view.transform->getOptimizedProcessor(ocio::OPTIMIZATION_LOSSLESS)->createGroupTransform();
+  const double gain = std::exp2(settings.exposure);
+  auto matrix = ocio::MatrixTransform::Create();
+  const double m[16] = {gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, 1};
+  matrix->setMatrix(m);
+  if (settings.exposure != 0) group->prependTransform(matrix);
+  return group;
+}
+
+ocio::GroupTransformRcPtr tables_as_steps(const Tables& tables) {
+  auto group = ocio::GroupTransform::Create();
+  auto matrix = ocio::MatrixTransform::Create();
+  const double s = tables.scale;
+  const double m[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, 0, 0, 0, 1};
+  matrix->setMatrix(m);
+  group->appendTransform(matrix);
+  auto shaper = ocio::Lut1DTransform::Create(tables.shaper.size(), false);
+  for (std::size_t i = 0; i < tables.shaper.size(); ++i) {
+    const auto v = static_cast<float>(tables.shaper[i]);
+    shaper->setValue(i, v, v, v);
+  }
+  group->appendTransform(shaper);
+  const auto size = static_cast<unsigned long>(tables.size);
+  auto cube = ocio::Lut3DTransform::Create(size);
+  cube->setInterpolation(ocio::INTERP_TETRAHEDRAL);
+  const float* rgb = tables.cube.data();
+  for (unsigned long b = 0; b < size; ++b)
+    for (unsigned long g = 0; g < size; ++g)
+      for (unsigned long r = 0; r < size; ++r, rgb += 3) cube->setValue(r, g, b, rgb[0], rgb[1], rgb[2]);
+  group->appendTransform(cube);
+  return group;
+}
+
+std::string clf_text(const ocio::GroupTransformRcPtr& group, const std::string& description) {
+  group->getFormatMetadata().addAttribute(ocio::METADATA_ID, "orrery");
+  group->getFormatMetadata().addChildElement(ocio::METADATA_DESCRIPTION, description.c_str());
+  std::ostringstream out;
+  group->write(ocio::Config::CreateRaw(), "Academy/ASC Common LUT Format", out);
+  return out.str();
+}
+
+}  // namespace
+
+std::string bake_cube(const Settings& settings, int size) {
+  const View view = find_view(settings);
+  const Tables tables = tabulated(view, settings, size);
+  std::string out =
+      "# " + title(view, settings) + "\nLUT_1D_SIZE " + std::to_string(kShaperSize) + "\nLUT_1D_INPUT_RANGE 0.0 ";
+  add_number(out, 1 / tables.scale);
+  out += "\nLUT_3D_SIZE " + std::to_string(size) + "\n";
+  for (const double v : tables.shaper) add_row(out, v, v, v);
+  for (std::size_t i = 0; i < tables.cube.size(); i += 3)
+    add_row(out, tables.cube[i], tables.cube[i + 1], tables.cube[i + 2]);
+  return out;
+}
+
+std::string bake_clf(const Settings& settings, int size) {
+  const View view = find_view(settings);
+  const std::string description = title(view, settings);
+  try {
+    return clf_text(steps(view, settings), description);
+  } catch (const ocio::Exception&) {
+    return clf_text(tables_as_steps(tabulated(view, settings, size)), description);
+  }
+}
+
+}  // namespace orrery::display

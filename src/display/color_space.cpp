@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/color_space.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "display/names.h"
+
+namespace orrery::display {
+namespace {
+
+namespace ocio = OCIO_NAMESPACE;
+
+/// A space, and what it is called: here, and in the configs of the ACES project from the first to the last.
+struct Entry {
+  Names names;
+  KnownSpace space;
+};
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> all = {
+      {{"lin_rec709", "lin_rec709_scene", "Linear Rec.709 (sRGB)", "lin_srgb", "Utility - Linear - sRGB",
+        "Utility - Linear - Rec.709"},
+       {"lin_rec709_scene", {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F}}},
+      {{"acescg", "ACEScg", "lin_ap1", "lin_ap1_scene", "ACES - ACEScg"},
+       {"lin_ap1_scene", {0.713F, 0.293F, 0.165F, 0.830F, 0.128F, 0.044F, 0.32168F, 0.33767F}}},
+      {{"aces2065_1", "ACES2065-1", "lin_ap0", "lin_ap0_scene", "ACES - ACES2065-1"},
+       {"lin_ap0_scene", {0.7347F, 0.2653F, 0.0F, 1.0F, 0.0001F, -0.077F, 0.32168F, 0.33767F}}},
+      {{"lin_rec2020", "lin_rec2020_scene", "Linear Rec.2020", "Utility - Linear - Rec.2020"},
+       {"lin_rec2020_scene", {0.708F, 0.292F, 0.170F, 0.797F, 0.131F, 0.046F, 0.3127F, 0.3290F}}},
+      {{"lin_p3d65", "lin_p3d65_scene", "Linear P3-D65", "Utility - Linear - P3-D65"},
+       {"lin_p3d65_scene", {0.680F, 0.320F, 0.265F, 0.690F, 0.150F, 0.060F, 0.3127F, 0.3290F}}}};
+  return all;
+}
+
+const Entry* entry_of(const std::string& name) {
+  for (const Entry& entry : entries())
+    if (std::find(entry.names.begin(), entry.names.end(), name) != entry.names.end()) return &entry;
+  return nullptr;
+}
+
+/// Spaces of data, of cameras' logarithms and of displays hold no light that could be traced.
+std::string require_scene_linear(const Config& config, const std::string& name) {
+  const std::string found = find_color_space(config, name);
+  const ocio::ConstColorSpaceRcPtr space = config.config->getColorSpace(found.c_str());
+  const std::string encoding = space->getEncoding();
+  if (space->isData() || (!encoding.empty() && encoding != "scene-linear"))
+    throw base::Error(base::ErrorKind::kUsage, "colour space `" + name + "` of the OCIO config (" + config.source +
+                                                   ") is not scene-linear, so no light can be reckoned with in it");
+  return found;
+}
+
+}  // namespace
+
+std::string find_color_space(const Config& config, const std::string& name) {
+  Names tried = {name};
+  if (const Entry* entry = entry_of(name)) tried.insert(tried.end(), entry->names.begin(), entry->names.end());
+  for (const std::string& candidate : tried)  // OCIO itself looks for names, aliases and roles
+    if (const auto space = config.config->getColorSpace(candidate.c_str())) return space->getName();
+  tried.erase(std::unique(tried.begin(), tried.end()), tried.end());
+  const std::string also =
+      tried.size() > 1 ? ", nor under the names " + base::joined(Names(tried.begin() + 1, tried.end())) : "";
+  unknown(config, "colour space", name,
+          names(config.config->getNumColorSpaces(), [&](int i) { return config.config->getColorSpaceNameByIndex(i); }),
+          also);
+}
+
+void convert_colors(const std::string& config_file, const std::string& from, const std::string& to,
+                    std::vector<std::array<double, 3>>& colors) {
+  const Config source = load_config(config_file);
+  try {
+    const ocio::ConstCPUProcessorRcPtr processor =
+        source.config
+            ->getProcessor(require_scene_linear(source, from).c_str(), require_scene_linear(source, to).c_str())
+            ->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+    for (std::array<double, 3>& color : colors) {
+      float rgb[3] = {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
+      processor->applyRGB(rgb);
+      for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<double>(rgb[k]);
+    }
+  } catch (const ocio::Exception& error) {
+    throw base::Error(base::ErrorKind::kBadData,
+                      "the OCIO config " + source.source + " cannot be used: " + error.what());
+  }
+}
+
+const KnownSpace* known_space(const std::string& name) {
+  const Entry* entry = entry_of(name == "scene_linear" ? "lin_rec709" : name);
+  return entry != nullptr ? &entry->space : nullptr;
+}
+
+}  // namespace orrery::display
