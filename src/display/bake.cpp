@@ -17,8 +17,8 @@ namespace ocio = OCIO_NAMESPACE;
 /// Light that the shaper tells apart: from black on in even stops around mid grey, so that highlights keep their
 /// colour.
 constexpr double kMidGrey = 0.18;
-constexpr double kStopsBelow = 10, kStopsAbove = 8;
-constexpr int kShaperSize = 4096;
+constexpr double kStopsBelow = 7, kStopsAbove = 7;
+constexpr int kShaperSize = 65536;
 
 /// What stands at the share `x` of the cube's edge. Near black it is linear, so that 0 is 0.
 double light_at(double x) {
