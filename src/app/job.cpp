@@ -57,6 +57,9 @@ render::Traversal traversal_of(const Job& job) {
 void check_request(const Job& job) {
   std::vector<std::filesystem::path> others;
   if (!job.statistics.empty()) others.push_back(job.statistics);
+  if (!job.deep.empty()) others.push_back(job.deep);
+  if (!job.deep.empty() && image::format_of(job.deep) != image::Format::kExr)
+    throw base::Error(base::ErrorKind::kUsage, job.deep.string() + " cannot hold samples in depth; EXR can");
   check_output_files(job.outputs, job.bits, others, job.scene);
   traversal_of(job);
   image::check_compression(job.exr.compression);
@@ -129,11 +132,13 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
 /// The layers that some file of the job will hold; what no file holds is not computed.
 Layers layers_for(const Job& job, const scene::Scene& scene, const compile::World& world) {
   Layers layers = choose_layers(scene, world);
+  layers.request.deep = !job.deep.empty();
   image::check_lossless(film::planes_of(layers.request), job.exr);
   const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
   if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) return layers;
   Layers none;
   none.request.coverage = layers.request.coverage;
+  none.request.deep = layers.request.deep;
   return none;
 }
 
@@ -200,6 +205,10 @@ void run_phases(const Job& job, JobReport& report) {
   header.matte_attributes = matte_attributes(layers.mattes);
   image::set_threads(settings.threads);
   write_outputs(job, display, result.picture, header, report);
+  if (!job.deep.empty()) {
+    header.matte_attributes.clear();
+    image::write_deep(job.deep, result.deep, result.picture, header);
+  }
   report.phases.write_s = watch.lap();
 }
 

@@ -26,6 +26,7 @@ struct Job {
   int bits = 0;                                ///< of display formats; 0: 8
   image::ExrOptions exr;
   bool reproducible = false;         ///< leave out of headers what changes between runs
+  std::filesystem::path deep;        ///< EXR of samples in depth; empty: none
   std::filesystem::path statistics;  ///< empty: none
   int threads = 0;                   ///< 0: default_threads()
   std::uint64_t memory_limit = 0;    ///< bytes; 0: what is free

@@ -86,6 +86,9 @@ void add_picture_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--compression", options.job.exr.compression, "EXR compression, zips by default: zip, dwaa:45 ...")
       ->type_name("NAME");
+  command
+      .add_option("--deep", options.job.deep, "Write also an EXR of samples in depth, one for each sphere in a pixel")
+      ->type_name("FILE");
   command.add_flag("--multipart", options.job.exr.multipart, "Give each layer of an EXR a part of its own");
   command.add_flag("--reproducible", options.job.reproducible, "Leave out of headers what changes between runs");
 }

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "compile/camera_basis.h"
+#include "compile/pixel_filter.h"
 
 namespace orrery::compile {
 namespace {

@@ -5,17 +5,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/scene.h"
-
 namespace orrery::compile {
 namespace {
 
 using kernel::PixelFilter;
 
-/// Parts of the filter's width that are summed: far finer than the table that comes of it.
+/// Parts of half the filter's width that are summed: far finer than the table that comes of it.
 constexpr int kParts = 1 << 16;
 
-/// The filter at -0.5 .. 0.5 of its width; any scale.
+/// The middle of a part, 0 .. 0.5 of the width.
+double place(int part) { return (part + 0.5) / kParts / 2; }
+
+/// The filter at 0 .. 0.5 of its width; any scale.
 double box(double) { return 1; }
 double gaussian(double x) { return std::exp(-18 * x * x); }  // the width is six standard deviations
 double blackman_harris(double x) {
@@ -39,23 +40,26 @@ double (*function_of(scene::Filter filter))(double) {
   return box;
 }
 
-/// Where the integral of `density` over -0.5 .. 0.5 reaches even steps of its whole, in pixels.
+/// Where the integral of `density` from the middle to 0.5 reaches even steps of its whole, in pixels.
 template <class Density>
-std::vector<double> inverse(Density density, double width, double total) {
-  std::vector<double> table(PixelFilter::kSteps + 1);
-  double sum = 0;
-  std::size_t step = 0;
+std::vector<double> inverse(Density density, double width) {
+  double total = 0;
+  for (int i = 0; i < kParts; ++i) total += density(place(i));
+  std::vector<double> table;
+  double sum = 0, end = 0;
   for (int i = 0; i < kParts; ++i) {
-    const double part = density((i + 0.5) / kParts - 0.5);
-    while (step < table.size() && (sum + part) * PixelFilter::kSteps >= total * static_cast<double>(step)) {
-      const double missing = total * static_cast<double>(step) / PixelFilter::kSteps - sum;
-      const double inside = part > 0 ? std::clamp(missing / part, 0.0, 1.0) : 0;
+    const double part = density(place(i));
+    if (part <= 0) continue;
+    while (table.size() <= PixelFilter::kSteps) {
+      const double missing = total * static_cast<double>(table.size()) / PixelFilter::kSteps - sum;
+      if (missing > part) break;
       // On a grid that no library's last bit reaches: pictures are the same everywhere.
-      table[step++] = std::round(((i + inside) / kParts - 0.5) * width * 0x1p24) * 0x1p-24;
+      table.push_back(std::round((i + missing / part) / kParts / 2 * width * 0x1p24) * 0x1p-24);
     }
     sum += part;
+    end = (i + 1.0) / kParts / 2 * width;
   }
-  while (step < table.size()) table[step++] = width / 2;
+  table.resize(PixelFilter::kSteps + 1, end);
   return table;
 }
 
@@ -93,12 +97,12 @@ FilterTables compile_filter(const scene::Render& render) {
   const auto below = [f](double x) { return std::max(-f(x), 0.0); };
   double sum_above = 0, sum_below = 0;
   for (int i = 0; i < kParts; ++i) {
-    sum_above += above((i + 0.5) / kParts - 0.5);
-    sum_below += below((i + 0.5) / kParts - 0.5);
+    sum_above += above(place(i));
+    sum_below += below(place(i));
   }
-  out.above = inverse(above, width, sum_above);
+  out.above = inverse(above, width);
   if (render.filter != scene::Filter::kMitchell) return out;
-  out.below = inverse(below, width, sum_below);
+  out.below = inverse(below, width);
   out.below_mass = std::round(sum_below / sum_above * 0x1p32) * 0x1p-32;
   return out;
 }

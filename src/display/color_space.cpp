@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "display/find_color_space.h"
 #include "display/names.h"
 
 namespace orrery::display {

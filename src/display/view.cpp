@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "base/suggestion.h"
-#include "display/color_space.h"
 #include "display/config.h"
+#include "display/find_color_space.h"
 #include "display/names.h"
 
 namespace orrery::display {

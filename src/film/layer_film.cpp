@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <utility>
 
 namespace orrery::film {
@@ -17,27 +16,23 @@ double mean(Int128 sum, std::int64_t weight) {
   return weight > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(weight) : 0.0;
 }
 
-/// What must be added to `from` so that single precision makes `to` of it.
-float step(float from, float to) {
-  const float guess = to - from;
-  if (from + guess == to) return guess;
-  constexpr float kFar = std::numeric_limits<float>::infinity();
-  const float more = std::nextafter(guess, kFar);
-  return from + more == to ? more : std::nextafter(guess, -kFar);
-}
-
-/// The groups of light as floats that add up, in their order and in single precision, to the very beauty.
+/// The groups of light as floats that add up to the very beauty, in single precision and in any order: each is a
+/// multiple of the beauty's last bit, which no sum of them exceeds. (Negative lobes of a filter may exceed it.)
 struct Lights {
-  float rgb[kLightGroups][3];
+  float rgb[kLightGroups][3] = {};
 
   explicit Lights(const LayerPixel& p) {
     for (int c = 0; c < 3; ++c) {
       Int128 sum = 0;
-      float so_far = 0;
-      for (int g = 0; g < kLightGroups; ++g) {
+      for (const auto& group : p.light) sum += group[c];
+      const auto beauty = static_cast<double>(static_cast<float>(mean(sum, p.lit)));
+      const double last_bit = std::ldexp(1.0, std::ilogb(beauty) - 23);
+      double so_far = 0;
+      sum = 0;
+      for (int g = 0; g < kLightGroups && beauty != 0; ++g) {
         sum += p.light[g][c];
-        const float next = static_cast<float>(mean(sum, p.lit));
-        rgb[g][c] = step(so_far, next);
+        const double next = g + 1 < kLightGroups ? std::nearbyint(mean(sum, p.lit) / last_bit) * last_bit : beauty;
+        rgb[g][c] = static_cast<float>(next - so_far);
         so_far = next;
       }
     }
@@ -63,6 +58,7 @@ struct Share {
 std::vector<Share> ranked(const Matte& matte, const LayerPixel& p) {
   std::vector<Share> shares;
   for (const SphereShare& s : p.shares) {
+    if (s.sphere == kernel::kNoSphere) continue;
     const std::uint32_t id = matte.id_of_sphere(s.sphere);
     if (id == 0) continue;
     const auto known = std::find_if(shares.begin(), shares.end(), [id](const Share& share) { return share.id == id; });
@@ -143,6 +139,28 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Scen
   }
 }
 
+/// The shares of a pixel as samples that hide each other in the way in which the paths were shared out.
+std::vector<DeepSample> deep_samples(const LayerPixel& p, bool background_visible) {
+  std::vector<DeepSample> out;
+  if (p.weight <= 0) return out;
+  std::vector<SphereShare> shares = p.shares;
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const SphereShare& a, const SphereShare& b) { return a.front < b.front; });
+  std::int64_t left = p.weight;  // of the paths, those that went past all samples so far
+  for (const SphereShare& share : shares) {
+    if (left <= 0 || share.weight <= 0 || (share.sphere == kernel::kNoSphere && !background_visible)) continue;
+    const auto seen = static_cast<double>(left);
+    DeepSample sample{};
+    sample.front = static_cast<float>(share.front);
+    sample.back = static_cast<float>(share.back);
+    sample.alpha = static_cast<float>(std::min(1.0, static_cast<double>(share.weight) / seen));
+    for (int c = 0; c < 3; ++c) sample.rgb[c] = static_cast<float>(kernel::from_fixed_point(share.light[c]) / seen);
+    out.push_back(sample);
+    left -= share.weight;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Plane> planes_of(const LayerRequest& request) {
@@ -158,15 +176,22 @@ LayerFilm::LayerFilm(const LayerRequest& request, const kernel::SceneView& view,
   const std::size_t pixels = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
   for (Plane& plane : planes_) plane.values.resize(pixels);
   if (request_.coverage) coverage_.resize(pixels);
+  if (!request_.deep) return;
+  deep_.width = width_px;
+  deep_.height = height_px;
+  deep_.pixels.resize(pixels);
 }
 
 void LayerFilm::set(std::size_t pixel, const LayerPixel& sums) {
   std::size_t plane = 0;
   each_channel(request_, sums, view_,
                [&](const auto&, char, PlaneKind, float v) { planes_[plane++].values[pixel] = v; });
+  if (request_.deep) deep_.pixels[pixel] = deep_samples(sums, !request_.coverage);
   if (request_.coverage && sums.weight > 0)
     coverage_[pixel] = static_cast<float>(static_cast<double>(sums.covered) / static_cast<double>(sums.weight));
 }
+
+DeepPicture LayerFilm::take_deep() { return std::move(deep_); }
 
 void LayerFilm::move_to(Picture& picture) {
   for (Plane& plane : picture.planes)

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "film/deep_picture.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "film/picture.h"
@@ -28,11 +29,15 @@ class LayerFilm {
   /// Appends the layers to a picture of R, G, B, A; A becomes the coverage where that was asked for.
   void move_to(Picture& picture);
 
+  /// The deep picture, where that was asked for.
+  DeepPicture take_deep();
+
  private:
   const LayerRequest& request_;
   kernel::SceneView view_;
   std::vector<Plane> planes_;
   std::vector<float> coverage_;
+  DeepPicture deep_;
 };
 
 }  // namespace orrery::film

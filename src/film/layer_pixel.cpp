@@ -26,14 +26,43 @@ void add3(kernel::Int128 (&sum)[3], const T& value, std::int64_t weight) {
   for (int k = 0; k < 3; ++k) sum[k] += kernel::to_fixed_point(static_cast<double>(value[k])) * weight;
 }
 
-void add_share(std::vector<SphereShare>& shares, std::uint32_t sphere, std::int64_t weight) {
+/// The share of a sphere, which is made if need be.
+SphereShare& share_of(std::vector<SphereShare>& shares, std::uint32_t sphere) {
   const auto at = std::lower_bound(shares.begin(), shares.end(), sphere,
                                    [](const SphereShare& share, std::uint32_t id) { return share.sphere < id; });
-  if (at != shares.end() && at->sphere == sphere) {
-    at->weight += weight;
-  } else {
-    shares.insert(at, {sphere, weight});
+  if (at != shares.end() && at->sphere == sphere) return *at;
+  SphereShare fresh;
+  fresh.sphere = sphere;
+  return *shares.insert(at, fresh);
+}
+
+/// Where a path's first hit is.
+struct Hit {
+  double distance;  ///< from the camera, scene units
+  double z;         ///< along the view
+  double exit_z;    ///< where the ray leaves the sphere again
+};
+
+Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
+  const kernel::Sphere& s = scene.spheres[path.sphere];
+  const double center[3] = {s.x, s.y, s.z};
+  const double* const forward = scene.camera.forward;
+  Hit hit{};
+  double far = 0, length = 0, along = 0, through = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double from_camera = center[k] - scene.camera.origin[k] + path.offset[k];
+    far += from_camera * from_camera;
+    length += forward[k] * forward[k];
+    hit.z += from_camera * forward[k];
+    along += path.direction[k] * forward[k];
+    through += path.direction[k] * path.offset[k];
   }
+  length = std::sqrt(length);
+  hit.distance = std::sqrt(far);
+  hit.z /= length;
+  // The chord's other end; a camera within the sphere meets it where it leaves.
+  hit.exit_z = hit.z + std::max(0.0, -2 * through) * along / length;
+  return hit;
 }
 
 }  // namespace
@@ -50,34 +79,36 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   }
   if (request.guide_albedo) add3(guide_albedo, path.guide_albedo, path_weight);
   if (request.guide_normal) add3(guide_normal, path.guide_normal, path_weight);
-  if (path.sphere == kernel::kNoSphere) return;
+  const bool hits = path.sphere != kernel::kNoSphere;
+  Hit hit{};
+  if (hits && (request.nearest() || request.deep)) hit = locate(scene, path);
+  if (request.deep || (hits && !request.mattes.empty())) {
+    SphereShare& share = share_of(shares, path.sphere);
+    share.weight += path_weight;
+    if (request.deep && is_good(path.light)) add3(share.light, path.light, path_weight);
+    share.front = std::min(share.front, hits ? hit.z : double{kNothingHit});
+    share.back = std::max(share.back, hits ? hit.exit_z : double{kNothingHit});
+  }
+  if (!hits) return;
 
   covered += path_weight;
-  if (!request.mattes.empty()) add_share(shares, path.sphere, path_weight);
   if (request.albedo) add3(albedo, scene.materials[scene.sphere_materials[path.sphere]].albedo, path_weight);
-  if (!request.normal && !request.nearest()) return;
   const kernel::Sphere& s = scene.spheres[path.sphere];
   const double center[3] = {s.x, s.y, s.z};
-  double to_center = 0, from_camera[3], far = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double away = center[k] - scene.camera.origin[k];
-    from_camera[k] = away + path.offset[k];
-    to_center += away * away;
-    far += from_camera[k] * from_camera[k];
-  }
   if (request.normal) {
-    const double inward = to_center < s.radius * s.radius ? -1 / s.radius : 1 / s.radius;
-    const double n[3] = {path.offset[0] * inward, path.offset[1] * inward, path.offset[2] * inward};
+    double to_center = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double away = center[k] - scene.camera.origin[k];
+      to_center += away * away;
+    }
+    const double outward = to_center < s.radius * s.radius ? -1 / s.radius : 1 / s.radius;
+    const double n[3] = {path.offset[0] * outward, path.offset[1] * outward, path.offset[2] * outward};
     add3(normal, n, path_weight);
   }
-  if (!request.nearest()) return;
-  const double distance = std::sqrt(far);
-  if (!(distance < depth)) return;
-  depth = distance;
+  if (!request.nearest() || !(hit.distance < depth)) return;
+  depth = hit.distance;
+  z = hit.z;
   sphere = path.sphere;
-  const double* const forward = scene.camera.forward;
-  const double length = std::sqrt(forward[0] * forward[0] + forward[1] * forward[1] + forward[2] * forward[2]);
-  z = (from_camera[0] * forward[0] + from_camera[1] * forward[1] + from_camera[2] * forward[2]) / length;
   for (int k = 0; k < 3; ++k) position[k] = center[k] + path.offset[k];
 }
 

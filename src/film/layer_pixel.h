@@ -14,8 +14,12 @@ namespace orrery::film {
 
 /// Paths of a pixel that met one sphere first.
 struct SphereShare {
-  std::uint32_t sphere;
-  std::int64_t weight;
+  std::uint32_t sphere = kernel::kNoSphere;
+  std::int64_t weight = 0;
+  // What follows is kept for deep pictures only.
+  kernel::Int128 light[3] = {0, 0, 0};
+  double front = std::numeric_limits<double>::infinity();  ///< nearest entry of a path, along the view
+  double back = 0;                                         ///< farthest exit
 };
 
 /// What the paths of one pixel say about its layers, in whole numbers, so that no order of adding changes a bit.
@@ -37,7 +41,7 @@ class LayerPixel {
   double depth = std::numeric_limits<double>::infinity(), z = 0;
   double position[3] = {0, 0, 0};
   std::uint32_t sphere = kernel::kNoSphere;
-  std::vector<SphereShare> shares;  ///< by ascending sphere; only for mattes
+  std::vector<SphereShare> shares;  ///< by ascending sphere, the background last; only for mattes and deep pictures
 };
 
 /// Squares above 2^48 are cut to it: a variance that large is told by its light.

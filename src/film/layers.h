@@ -21,6 +21,7 @@ struct LayerRequest {
   bool variance = false, samples = false, object_id = false, material_id = false;
   bool guide_albedo = false, guide_normal = false;
   bool coverage = false;                        ///< A is the share of the pixel that spheres cover, not 1
+  bool deep = false;                            ///< a picture of samples in depth, beside the flat one
   int matte_ranks = 6;                          ///< things in a pixel that a matte tells apart
   std::vector<std::uint32_t> material_numbers;  ///< what material_id tells, by the compiled scene's materials
   std::vector<Matte> mattes;
@@ -29,7 +30,7 @@ struct LayerRequest {
   bool nearest() const { return z || depth || position || object_id || material_id; }
   bool any() const {
     return lights() || nearest() || normal || albedo || variance || samples || guide_albedo || guide_normal ||
-           coverage || !mattes.empty();
+           coverage || deep || !mattes.empty();
   }
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/whole_file.h"
 
+#include <OpenImageIO/deepdata.h>
+
 #include <cstring>
 #include <vector>
 
@@ -33,11 +35,24 @@ std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDe
   std::string first_complaint;
   for (std::size_t i = 0; i < parts.size() && first_complaint.empty(); ++i) {
     if (i > 0 && !out.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) return complaint("opening a part");
-    if (!out.write_image(type, parts[i].pixels)) first_complaint = complaint("encoding");
+    const bool written =
+        parts[i].deep != nullptr ? out.write_deep_image(*parts[i].deep) : out.write_image(type, parts[i].pixels);
+    if (!written) first_complaint = complaint("encoding");
   }
   if (!out.close() && first_complaint.empty()) return complaint("closing");
   out.geterror();
   return first_complaint;
+}
+
+/// Decodes the last row of a part.
+bool read_end(OIIO::ImageInput& in, int part, const OIIO::ImageSpec& spec) {
+  const int end = spec.y + spec.height;
+  if (spec.deep) {
+    OIIO::DeepData row;
+    return in.read_native_deep_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, row);
+  }
+  std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
+  return in.read_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data());
 }
 
 /// Opens what was written and decodes the end of every part.
@@ -58,10 +73,7 @@ std::string read_back(const std::string& name, const std::string& format, const 
                spec.width != written.width || spec.height != written.height || spec.nchannels != written.nchannels) {
       wrong = "it reads back as another picture";
     } else {
-      std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
-      if (!in->read_scanlines(part, 0, spec.y + spec.height - 1, spec.y + spec.height, 0, 0, spec.nchannels,
-                              OIIO::TypeDesc::FLOAT, row.data()))
-        wrong = "its end cannot be read back";
+      if (!read_end(*in, part, spec)) wrong = "its end cannot be read back";
     }
     const std::string reason = in->geterror();
     if (!wrong.empty()) return reason.empty() ? wrong : wrong + ": " + reason;

@@ -12,7 +12,8 @@ namespace orrery::image {
 /// One picture of a file, which may hold several of one size.
 struct WholePart {
   OIIO::ImageSpec spec;
-  const void* pixels = nullptr;  ///< spec's width x height x channels values, rows from the top
+  const void* pixels = nullptr;          ///< spec's width x height x channels values, rows from the top
+  const OIIO::DeepData* deep = nullptr;  ///< in place of pixels, where the spec says so
 };
 
 /// Writes pictures through OpenImageIO: under a temporary name, every byte checked, read back, synced, renamed.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/write.h"
 
+#include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -102,8 +103,8 @@ std::vector<Part> make_parts(const film::Picture& picture, bool multipart) {
   return parts;
 }
 
-ImageSpec spec_of(const film::Picture& picture, const Part& part, const ExrOptions& options) {
-  ImageSpec spec(picture.width, picture.height, static_cast<int>(part.planes.size()), TypeDesc::HALF);
+/// The part of its frame that a picture is.
+void add_windows(ImageSpec& spec, const film::Picture& picture) {
   spec.x = picture.x;
   spec.y = picture.y;
   if (picture.frame_width > 0) {
@@ -111,6 +112,11 @@ ImageSpec spec_of(const film::Picture& picture, const Part& part, const ExrOptio
     spec.full_height = picture.frame_height;
   }
   if (picture.pixel_aspect != 1) spec.attribute("PixelAspectRatio", static_cast<float>(picture.pixel_aspect));
+}
+
+ImageSpec spec_of(const film::Picture& picture, const Part& part, const ExrOptions& options) {
+  ImageSpec spec(picture.width, picture.height, static_cast<int>(part.planes.size()), TypeDesc::HALF);
+  add_windows(spec, picture);
   spec.channelnames.clear();
   bool has_data = false;
   for (const film::Plane* plane : part.planes) {
@@ -179,6 +185,34 @@ WriteReport write_exr(const std::filesystem::path& file, const film::Picture& pi
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i].pixels = pixels[i].data();
   write_whole(file, "openexr", TypeDesc::FLOAT, parts);
   return report;
+}
+
+void write_deep(const std::filesystem::path& file, const film::DeepPicture& deep, const film::Picture& flat,
+                const Header& header) {
+  ImageSpec spec(deep.width, deep.height, 6, TypeDesc::FLOAT);
+  spec.channelnames = {"R", "G", "B", "A", "Z", "ZBack"};
+  spec.alpha_channel = 3;
+  spec.z_channel = 4;
+  spec.deep = true;
+  add_windows(spec, flat);
+  spec.attribute("compression", "zips");
+  add_header(spec, header);
+  OIIO::DeepData data(spec);
+  for (std::size_t i = 0; i < deep.pixels.size(); ++i)
+    data.set_samples(static_cast<std::int64_t>(i), static_cast<int>(deep.pixels[i].size()));
+  for (std::size_t i = 0; i < deep.pixels.size(); ++i) {
+    int s = 0;
+    for (const film::DeepSample& sample : deep.pixels[i]) {
+      int channel = 0;
+      for (const float v : {sample.rgb[0], sample.rgb[1], sample.rgb[2], sample.alpha, sample.front, sample.back})
+        data.set_deep_value(static_cast<std::int64_t>(i), channel++, s, v);
+      ++s;
+    }
+  }
+  WholePart part;
+  part.spec = spec;
+  part.deep = &data;
+  write_whole(file, "openexr", TypeDesc::FLOAT, {part});
 }
 
 WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& picture) {

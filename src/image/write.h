@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "film/deep_picture.h"
 #include "film/encoded_picture.h"
 #include "film/picture.h"
 #include "image/library.h"
@@ -68,6 +69,13 @@ void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& op
 ///            of data, kCannotCreate, kIo, kInternal for planes that do not fit
 WriteReport write_exr(const std::filesystem::path& file, const film::Picture& picture, const Header& header,
                       const ExrOptions& options);
+
+/// Writes a deep picture as EXR: Z, ZBack, R, G, B, A, all float, scanlines, zips. Its windows are those of `flat`.
+///
+/// Result     as write_exr
+/// Errors     base::Error: kCannotCreate, kIo
+void write_deep(const std::filesystem::path& file, const film::DeepPicture& deep, const film::Picture& flat,
+                const Header& header);
 
 /// Writes planes R, G, B as Radiance HDR, which has no negative values and shares one exponent in a pixel.
 ///

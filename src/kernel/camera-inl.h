@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "kernel/random-inl.h"
 #include "kernel/sample-inl.h"
@@ -37,9 +38,9 @@ HWY_INLINE void filter_place(D d, const PixelFilter& filter, hn::Vec<hn::RebindT
   hn::Store(random.v[0], d, u[0]);
   hn::Store(random.v[1], d, u[1]);
   const auto place = [](const double* table, double x) {
-    const double at = x * PixelFilter::kSteps;
+    const double at = std::abs(2 * x - 1) * PixelFilter::kSteps;
     const auto step = std::min(static_cast<int>(at), PixelFilter::kSteps - 1);
-    return table[step] + (table[step + 1] - table[step]) * (at - step);
+    return std::copysign(table[step] + (table[step + 1] - table[step]) * (at - step), x - 0.5);
   };
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
     auto x = static_cast<double>(u[0][i]);

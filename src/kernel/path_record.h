@@ -24,6 +24,7 @@ inline constexpr int kLightGroups = 7;
 struct PathRecord {
   double light[3] = {0, 0, 0};        ///< what it brought to its pixel: nothing, unless it left the scene
   double offset[3] = {0, 0, 0};       ///< first hit: from the sphere's centre to the point, scene units
+  double direction[3] = {0, 0, 0};    ///< of the camera ray that hit it, unit
   float guide_albedo[3] = {0, 0, 0};  ///< of the first surface that is no sharp mirror or glass, tinted by those before
   float guide_normal[3] = {0, 0, 0};  ///< its normal, unit, against the ray; world space
   std::uint32_t sphere = kNoSphere;   ///< first hit; kNoSphere: the background

@@ -13,8 +13,9 @@ namespace orrery::kernel {
 struct PixelFilter {
   static constexpr int kSteps = 1024;
 
-  /// The filter is the product of one along x and one along y. Distances in pixels at kSteps + 1 even steps of the
-  /// probability, for the part above zero and for that below. Null: the pixel's own square.
+  /// The filter is the product of one along x and one along y, and symmetric. Distances from the middle in pixels at
+  /// kSteps + 1 even steps of the probability, for the part above zero and for that below. Null: the pixel's own
+  /// square.
   const double* above = nullptr;
   const double* below = nullptr;
   std::uint32_t negative_share = 0;  ///< of all samples, those with the weight -1, in units of 2^-32

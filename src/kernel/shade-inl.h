@@ -237,7 +237,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     const Vec3<hn::Vec<D>> tinted = {throughput.x * at.albedo.x, throughput.y * at.albedo.y,
                                      throughput.z * at.albedo.z};
     if constexpr (kRecords) {
-      if (depth == 0) record.first_hit(d, hit, hits, at.surface.offset);
+      if (depth == 0) record.first_hit(d, hit, hits, at.surface.offset, ray.direction);
       record.guide(d, hn::AndNot(is_sharp(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
       if (ends) continue;
     }

@@ -137,7 +137,10 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
   result.picture.frame_width = world.frame_width;
   result.picture.frame_height = world.frame_height;
   result.picture.pixel_aspect = world.pixel_aspect;
-  if (layers) layers->move_to(result.picture);
+  if (layers) {
+    layers->move_to(result.picture);
+    result.deep = layers->take_deep();
+  }
   return result;
 }
 

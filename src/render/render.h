@@ -9,6 +9,7 @@
 
 #include "accel/accel.h"
 #include "compile/world.h"
+#include "film/deep_picture.h"
 #include "film/layers.h"
 #include "film/picture.h"
 
@@ -52,7 +53,8 @@ struct Statistics {
 };
 
 struct Result {
-  film::Picture picture;  ///< planes R, G, B, A, then the layers; empty when not completed
+  film::Picture picture;   ///< planes R, G, B, A, then the layers; empty when not completed
+  film::DeepPicture deep;  ///< empty unless it was asked for
   Statistics statistics;
   bool completed = false;  ///< false: stopped by `cancel`
 };

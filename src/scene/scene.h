@@ -68,7 +68,7 @@ struct Render {
   Shading shading = Shading::kPath;
   Accelerator accelerator = Accelerator::kEmbree;
   Filter filter = Filter::kBox;
-  std::optional<double> filter_width;  ///< px, from end to end; default: 1, 3, 3 or 4, by filter
+  std::optional<double> filter_width = {};  ///< px, from end to end; default: 1, 3, 3 or 4, by filter
 };
 
 struct Lambertian {

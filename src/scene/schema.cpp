@@ -103,6 +103,7 @@ Key<Target> optional_window(const char* name, const About& about, const char* ot
   Key<Target> key;
   key.name = name;
   key.type = ValueType::kWindow;
+  key.required = false;
   key.range = {0, kLargestSide};
   key.unit = about.unit;
   key.doc = about.doc;

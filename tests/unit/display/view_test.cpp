@@ -176,5 +176,37 @@ TEST_F(DisplayView, ATableThatAConfigNamesAndLacksIsAMissingInput) {
   expect_error(settings, base::ErrorKind::kMissingInput, {"curve.spi1d"});
 }
 
+TEST_F(DisplayView, TheWorkingSpaceIsFoundByNameAliasRoleAndByWhatOtherConfigsCallIt) {
+  Settings settings;
+  for (const char* name : {"lin_rec709", "lin_srgb", "scene_linear", "lin_rec709_scene", "Utility - Linear - sRGB"}) {
+    settings.working_space = name;
+    EXPECT_EQ(choose(settings).working_space, "lin_rec709") << name;
+  }
+  settings.working_space = "lin_ap1_scene";
+  EXPECT_EQ(choose(settings).working_space, "acescg");
+}
+
+TEST_F(DisplayView, AWorkingSpaceThatIsNotThereIsToldWithAllThatWasTried) {
+  Settings settings;
+  settings.working_space = "lin_p3d65";
+  expect_error(settings, base::ErrorKind::kUsage, {"`lin_p3d65`, nor under the names", "Linear P3-D65", "it has "});
+}
+
+TEST_F(DisplayView, KnowsADisplayOfHighDynamicRange) {
+  Settings settings;
+  EXPECT_FALSE(choose(settings).is_hdr);
+  settings.display = "Rec.2100-PQ";
+  EXPECT_TRUE(choose(settings).is_hdr);
+}
+
+/// 1.0 is 100 cd/m2, which PQ puts at 0.508.
+TEST_F(DisplayView, PqIsPq) {
+  Settings settings;
+  settings.display = "Rec.2100-PQ";
+  film::Picture picture{1, 1, {{"R", {1}}, {"G", {1}}, {"B", {1}}}};
+  const film::EncodedPicture shown = develop(picture, settings, 16);
+  for (const std::uint16_t v : shown.values) EXPECT_NEAR(v / 65535.0, 0.5081, 2e-4);
+}
+
 }  // namespace
 }  // namespace orrery::display

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/write.h"
 
+#include <OpenImageIO/deepdata.h>
+#include <OpenImageIO/imageio.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
@@ -231,6 +234,100 @@ TEST_F(ImageWrite, OtherProgramsReadTheExr) {
   EXPECT_NE(info.find("8 x    8, 4 channel, half openexr"), std::string::npos) << info;
   EXPECT_NE(info.find("channel list: R, G, B, A"), std::string::npos) << info;
   EXPECT_NE(info.find("Constant: Yes"), std::string::npos) << info;
+}
+
+/// A picture with colours, vectors and data, as renders have them.
+film::Picture layered_picture() {
+  film::Picture picture = test_picture(6, 4, {"R", "G", "B", "A", "Z", "N.X", "CryptoObject00.R", "CryptoObject01.R"});
+  for (film::Plane& plane : picture.planes) {
+    if (plane.name == "Z" || plane.name.starts_with("Crypto")) plane.kind = film::PlaneKind::kData;
+    if (plane.name == "N.X") plane.kind = film::PlaneKind::kVector;
+  }
+  return picture;
+}
+
+TEST_F(ImageWrite, DataKeepEveryBitBesideHalves) {
+  film::Picture picture = layered_picture();
+  picture.planes[4].values[0] = 1e30f;
+  picture.planes[6].values[1] = -0x1.234567p-100f;
+  EXPECT_EQ(write_exr(folder_ / "a.exr", picture, {}, {}).clamped, 0u);
+  const film::Picture back = read(folder_ / "a.exr");
+  for (const film::Plane& plane : picture.planes) EXPECT_EQ(back.find(plane.name)->values, plane.values) << plane.name;
+}
+
+TEST_F(ImageWrite, LossyCompressionOfDataIsRefusedUnlessTheyHaveTheirParts) {
+  ExrOptions options;
+  options.compression = "dwaa:45";
+  expect_error(base::ErrorKind::kUsage, {"dwaa:45", "CryptoObject00", "--multipart"},
+               [&] { write_exr(folder_ / "a.exr", layered_picture(), {}, options); });
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+  options.multipart = true;
+  EXPECT_NO_THROW(write_exr(folder_ / "a.exr", layered_picture(), {}, options));
+  options.multipart = false;
+  EXPECT_NO_THROW(write_exr(folder_ / "a.exr", test_picture(4, 4), {}, options));
+}
+
+TEST_F(ImageWrite, PartsHaveTheLayersNamesAndAMatteStaysTogether) {
+  ExrOptions options;
+  options.multipart = true;
+  Header header;
+  header.attributes = {{"orrery/seed", std::string("1")}};
+  header.matte_attributes = {{"cryptomatte/3ae39a5/name", std::string("CryptoObject")}};
+  write_exr(folder_ / "a.exr", layered_picture(), header, options);
+  const auto in = OIIO::ImageInput::open((folder_ / "a.exr").string());
+  ASSERT_TRUE(in) << OIIO::geterror();
+  std::string parts;
+  for (int part = 0; in->seek_subimage(part, 0); ++part) {
+    const OIIO::ImageSpec spec = in->spec();
+    parts += std::string(spec.get_string_attribute("oiio:subimagename")) + ":" + std::to_string(spec.nchannels) +
+             (spec.find_attribute("cryptomatte/3ae39a5/name") != nullptr ? "m " : " ");
+    EXPECT_EQ(spec.get_string_attribute("orrery/seed"), "1") << part;
+  }
+  EXPECT_EQ(parts, "rgba:4m Z:1 N:1 CryptoObject:2m ");
+}
+
+TEST_F(ImageWrite, AWindowOfAFrameIsInTheHeader) {
+  film::Picture picture = test_picture(6, 4);
+  picture.x = -2;
+  picture.y = 3;
+  picture.frame_width = 20;
+  picture.frame_height = 10;
+  picture.pixel_aspect = 2;
+  write_exr(folder_ / "a.exr", picture, {}, {});
+  const auto in = OIIO::ImageInput::open((folder_ / "a.exr").string());
+  ASSERT_TRUE(in);
+  const OIIO::ImageSpec spec = in->spec();
+  EXPECT_EQ(spec.x, -2);
+  EXPECT_EQ(spec.y, 3);
+  EXPECT_EQ(spec.full_width, 20);
+  EXPECT_EQ(spec.full_height, 10);
+  EXPECT_EQ(spec.get_float_attribute("PixelAspectRatio"), 2);
+  // Read back, it is the frame, and what is outside of it is gone.
+  const film::Picture back = read(folder_ / "a.exr");
+  EXPECT_EQ(back.width, 20);
+  EXPECT_EQ(back.planes[0].values[3 * 20], picture.planes[0].values[2]);
+  EXPECT_EQ(back.planes[0].values[0], 0);
+}
+
+TEST_F(ImageWrite, DeepPixelsComeBack) {
+  film::DeepPicture deep{2, 1, {{{1, 2, {0.1f, 0.2f, 0.3f}, 0.5f}, {4, 6, {0.5f, 0, 0}, 1}}, {}}};
+  film::Picture flat{2, 1, {}};
+  write_deep(folder_ / "a.exr", deep, flat, {});
+  const auto in = OIIO::ImageInput::open((folder_ / "a.exr").string());
+  ASSERT_TRUE(in);
+  OIIO::DeepData data;
+  ASSERT_TRUE(in->read_native_deep_image(0, 0, data)) << in->geterror();
+  EXPECT_EQ(data.samples(0), 2);
+  EXPECT_EQ(data.samples(1), 0);
+  const auto value = [&](const char* channel, int sample) {
+    for (int c = 0; c < data.channels(); ++c)
+      if (data.channelname(c) == channel) return data.deep_value(0, c, sample);
+    return -1.0f;
+  };
+  EXPECT_EQ(value("Z", 0), 1);
+  EXPECT_EQ(value("ZBack", 0), 2);
+  EXPECT_EQ(value("B", 0), 0.3f);
+  EXPECT_EQ(value("A", 1), 1);
 }
 
 }  // namespace

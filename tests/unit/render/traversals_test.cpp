@@ -60,7 +60,7 @@ scene::Scene balls(int count) {
 }
 
 TEST(RenderTraversals, WithoutATrialTheNumberOfSpheresDecides) {
-  for (const auto& [count, name] : {std::pair{1000, "packet"}, std::pair{4000, "packet, bounced single"}}) {
+  for (const auto& [count, name] : {std::pair{900, "packet"}, std::pair{4000, "packet, bounced single"}}) {
     const compile::World world = compile::compile(balls(count));
     const std::unique_ptr<accel::Accel> accel = build(world, 1);
     EXPECT_EQ(name_of(choose_traversals(world, *accel, Traversal::kAuto)), name);

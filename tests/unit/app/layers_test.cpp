@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/layers.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/matte_manifest.h"
+#include "base/error.h"
+#include "compile/compile.h"
+#include "film/cryptomatte.h"
+#include "film/layer_film.h"
+#include "scene/schema.h"
+#include "support/everything.h"
+
+namespace orrery::app {
+namespace {
+
+Layers layers_of(const scene::Scene& scene) {
+  static std::vector<std::unique_ptr<compile::World>> worlds;  // layers point into them
+  worlds.push_back(std::make_unique<compile::World>(compile::compile(scene)));
+  return choose_layers(scene, *worlds.back());
+}
+
+scene::Scene with_layers(std::vector<std::string> layers) {
+  scene::Scene s = test::everything();
+  s.output.layers = std::move(layers);
+  return s;
+}
+
+TEST(AppLayers, EachNameOfTheSchemaIsALayer) {
+  for (const scene::Table& table : scene::tables())
+    for (const auto& key : table.keys)
+      for (const std::string& name : table.name == "output" ? key.choices : std::vector<std::string>{}) {
+        const Layers layers = layers_of(with_layers({name}));
+        EXPECT_TRUE(layers.request.any()) << name;
+        EXPECT_FALSE(film::planes_of(layers.request).empty()) << name;
+      }
+  EXPECT_FALSE(layers_of(with_layers({})).request.any());
+}
+
+TEST(AppLayers, AnEmptyBackgroundAsksForCoverage) {
+  scene::Scene s = with_layers({});
+  s.background.alpha = 0;
+  EXPECT_TRUE(layers_of(s).request.coverage);
+}
+
+TEST(AppLayers, ObjectsAreNamedSpheresNumberedSpheresAndFiles) {
+  scene::Scene s = with_layers({"CryptoObject"});
+  s.spheres.resize(3);
+  s.spheres[1].name = "bunny";
+  s.spheres[2].name = "bunny";  // one thing of two spheres
+  scene::Points points;
+  points.file = "cloud/dust.ply";
+  points.centers.resize(2);
+  points.radii = {1, 1};
+  s.points = {points, points};
+  s.points[1].name = "named";
+  const Layers layers = layers_of(s);
+  ASSERT_EQ(layers.mattes.size(), 1u);
+  std::string names;
+  for (const auto& [name, id] : layers.mattes[0].things) {
+    names += name + " ";
+    EXPECT_EQ(id, film::matte_id(name));
+  }
+  EXPECT_EQ(names, "sphere.0 bunny dust named ");
+  const auto& id_of = layers.request.mattes[0].id_of_sphere;
+  const char* const wanted[] = {"sphere.0", "bunny", "bunny", "dust", "dust", "named", "named"};
+  for (std::uint32_t i = 0; i < 7; ++i) EXPECT_EQ(id_of(i), film::matte_id(wanted[i])) << i;
+}
+
+TEST(AppLayers, GroupsHoldOnlyThoseThatHaveOne) {
+  scene::Scene s = with_layers({"CryptoGroup"});
+  s.spheres[1].group = "left";
+  s.spheres[3].group = "left";
+  const Layers layers = layers_of(s);
+  EXPECT_EQ(layers.mattes[0].things.size(), 1u);
+  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(0), 0u);
+  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(1), film::matte_id("left"));
+  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(2), 0u);
+  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(3), film::matte_id("left"));
+}
+
+/// Glass inside out is another material to the kernel, and the same to its author.
+TEST(AppLayers, MaterialsAreTheAuthors) {
+  const Layers layers = layers_of(with_layers({"CryptoMaterial", "material_id"}));
+  const scene::Scene s = test::everything();
+  for (std::uint32_t i = 0; i < s.spheres.size(); ++i)
+    EXPECT_EQ(layers.request.mattes[0].id_of_sphere(i), film::matte_id(s.materials[s.spheres[i].material].name)) << i;
+  const compile::World world = compile::compile(s);
+  for (std::size_t i = 0; i < s.spheres.size(); ++i)
+    EXPECT_EQ(layers.request.material_numbers[world.sphere_materials[i]], s.spheres[i].material + 1) << i;
+}
+
+TEST(AppLayers, LightBySurfaceNeedsLightPaths) {
+  scene::Scene s = with_layers({"diffuse"});
+  s.render.shading = scene::Shading::kNormal;
+  try {
+    layers_of(s);
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+    EXPECT_NE(std::string(error.what()).find("render.shading"), std::string::npos) << error.what();
+  }
+  s.output.layers = {"N"};
+  EXPECT_NO_THROW(layers_of(s));
+}
+
+TEST(AppMatteManifest, SaysHowNamesBecameNumbers) {
+  const std::vector<image::Attribute> attributes = matte_attributes(
+      {{"CryptoObject", {{"bunny", film::matte_id("bunny")}, {"a \"b\"", film::matte_id("a \"b\"")}}}});
+  ASSERT_EQ(attributes.size(), 4u);
+  EXPECT_EQ(attributes[0].name, "cryptomatte/3ae39a5/name");
+  EXPECT_EQ(std::get<std::string>(attributes[0].value), "CryptoObject");
+  EXPECT_EQ(attributes[1].name, "cryptomatte/3ae39a5/hash");
+  EXPECT_EQ(std::get<std::string>(attributes[1].value), "MurmurHash3_32");
+  EXPECT_EQ(std::get<std::string>(attributes[2].value), "uint32_to_float32");
+  const auto manifest = nlohmann::json::parse(std::get<std::string>(attributes[3].value));
+  EXPECT_EQ(manifest["bunny"], "13851a76");
+  EXPECT_EQ(manifest.size(), 2u);
+  EXPECT_TRUE(manifest.contains("a \"b\""));
+}
+
+}  // namespace
+}  // namespace orrery::app

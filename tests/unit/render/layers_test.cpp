@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layers as a render makes them, beside a beauty that does not change by them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compile/compile.h"
+#include "film/layers.h"
+#include "kernel/isa.h"
+#include "render/render.h"
+#include "support/everything.h"
+
+namespace orrery::render {
+namespace {
+
+film::LayerRequest all_layers() {
+  film::LayerRequest r;
+  r.z = r.depth = r.normal = r.position = r.albedo = true;
+  r.diffuse = r.specular = r.transmission = r.background = true;
+  r.variance = r.samples = r.object_id = r.material_id = r.guide_albedo = r.guide_normal = r.deep = true;
+  r.material_numbers.assign(16, 1);
+  r.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return 0x3f000000u + sphere; }}};
+  return r;
+}
+
+Result render_with(const scene::Scene& scene, const film::LayerRequest& request, int threads = 0) {
+  const compile::World world = compile::compile(scene);
+  Settings settings;
+  settings.threads = threads;
+  settings.layers = request;
+  return render(world, settings);
+}
+
+const std::vector<float>& plane(const Result& result, const char* name) {
+  static const std::vector<float> none;
+  const film::Plane* found = result.picture.find(name);
+  EXPECT_NE(found, nullptr) << name;
+  return found != nullptr ? found->values : none;
+}
+
+void expect_equal(const Result& a, const Result& b) {
+  ASSERT_EQ(a.picture.planes.size(), b.picture.planes.size());
+  for (std::size_t i = 0; i < a.picture.planes.size(); ++i)
+    EXPECT_EQ(a.picture.planes[i].values, b.picture.planes[i].values) << a.picture.planes[i].name;
+}
+
+TEST(RenderLayers, TheBeautyIsTheSameBitForBit) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+    scene::Scene s = test::everything();
+    s.render.precision = precision;
+    const Result with = render_with(s, all_layers()), without = render_with(s, {});
+    for (const char* name : {"R", "G", "B", "A"}) EXPECT_EQ(plane(with, name), plane(without, name)) << name;
+    EXPECT_EQ(with.statistics.rays, without.statistics.rays);
+  }
+}
+
+TEST(RenderLayers, ThreadsAcceleratorAndInstructionSetChangeNoBit) {
+  scene::Scene s = test::everything();
+  const Result one = render_with(s, all_layers(), 1);
+  expect_equal(render_with(s, all_layers(), 3), one);
+  s.render.accelerator = scene::Accelerator::kList;
+  expect_equal(render_with(s, all_layers()), one);
+}
+
+TEST(RenderLayers, LightGroupsAddUpToTheBeauty) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
+    scene::Scene s = test::everything();
+    s.render.precision = precision;
+    const Result r = render_with(s, all_layers());
+    for (const char* c : {"R", "G", "B"}) {
+      std::vector<float> sum(plane(r, c).size());
+      for (const char* group : {"background", "diffuse_direct", "diffuse_indirect", "specular_direct",
+                                "specular_indirect", "transmission_direct", "transmission_indirect"}) {
+        const auto& values = plane(r, (std::string(group) + "." + c).c_str());
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+      }
+      EXPECT_EQ(sum, plane(r, c)) << c;
+    }
+  }
+}
+
+/// A scene of one material has light in its groups only.
+TEST(RenderLayers, LightIsInTheGroupOfTheFirstSurface) {
+  const auto groups_of = [](scene::MaterialModel model) {
+    scene::Scene s;
+    s.image = {32, 32};
+    s.camera.look_from = {0, 0, 4};
+    s.camera.look_at = {0, 0, 0};
+    s.camera.vfov = 40;
+    s.render.samples = 8;
+    s.materials = {{"one", model}};
+    s.spheres = {{{0, 0, 0}, 1, 0, ""}};
+    const Result r = render_with(s, all_layers());
+    std::string out;
+    for (const char* group : {"background", "diffuse_direct", "diffuse_indirect", "specular_direct",
+                              "specular_indirect", "transmission_direct", "transmission_indirect"})
+      for (const float v : plane(r, (std::string(group) + ".G").c_str()))
+        if (v > 0) {
+          out += std::string(group) + " ";
+          break;
+        }
+    return out;
+  };
+  EXPECT_EQ(groups_of(scene::Lambertian{{0.5, 0.5, 0.5}}), "background diffuse_direct ");
+  EXPECT_EQ(groups_of(scene::Metal{{0.5, 0.5, 0.5}, 0}), "background specular_direct ");
+  // Straight through both sides is direct; light that went round inside before it left is not.
+  EXPECT_EQ(groups_of(scene::Dielectric{1.5, scene::Fresnel::kExact}),
+            "background specular_direct transmission_direct transmission_indirect ");
+}
+
+TEST(RenderLayers, DistancesNormalsAndPlacesAreThoseOfTheSphere) {
+  scene::Scene s;
+  s.image = {33, 33};
+  s.camera.look_from = {0, 0, 5};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 30;
+  s.render.samples = 4;
+  s.materials = {{"one", scene::Lambertian{{0.5, 0.25, 0.125}}}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}};
+  const Result r = render_with(s, all_layers());
+  int inside = 0;
+  for (std::size_t i = 0; i < plane(r, "Z").size(); ++i) {
+    if (plane(r, "object_id.X")[i] == 0) {
+      EXPECT_EQ(plane(r, "Z")[i], film::kNothingHit);
+      continue;
+    }
+    const double x = plane(r, "P.X")[i], y = plane(r, "P.Y")[i], z = plane(r, "P.Z")[i];
+    EXPECT_NEAR(std::sqrt(x * x + y * y + z * z), 1, 1e-6);
+    EXPECT_NEAR(plane(r, "Z")[i], 5 - z, 1e-6);
+    EXPECT_NEAR(plane(r, "depth.X")[i], std::sqrt(x * x + y * y + (5 - z) * (5 - z)), 1e-6);
+    if (plane(r, "CryptoObject00.G")[i] < 1) continue;  // an edge
+    ++inside;
+    EXPECT_NEAR(plane(r, "N.X")[i], x, 0.1);  // the mean of a pixel beside one of its points
+    EXPECT_EQ(plane(r, "albedo.R")[i], 0.5F);
+    EXPECT_EQ(plane(r, "denoise.albedo.G")[i], 0.25F);
+    EXPECT_FLOAT_EQ(plane(r, "denoise.normal.Z")[i], plane(r, "N.Z")[i]);
+  }
+  EXPECT_GT(inside, 300);
+}
+
+/// Through a mirror a denoiser is told of what stands in it.
+TEST(RenderLayers, GuidesFollowMirrorsToTheFirstDiffuseSurface) {
+  scene::Scene s;
+  s.image = {9, 9};
+  s.camera.look_from = {0, 0, 5};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 5;
+  s.render.samples = 4;
+  s.materials = {{"mirror", scene::Metal{{0.5, 0.5, 0.5}, 0}}, {"wall", scene::Lambertian{{0.8, 0.4, 0.2}}}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{0, 0, 30}, 20, 1, ""}};  // the second stands behind the camera
+  const Result r = render_with(s, all_layers());
+  EXPECT_FLOAT_EQ(plane(r, "denoise.albedo.R")[40], 0.4F);
+  EXPECT_FLOAT_EQ(plane(r, "denoise.albedo.B")[40], 0.1F);
+  EXPECT_NEAR(plane(r, "denoise.normal.Z")[40], -1, 1e-3);
+  EXPECT_FLOAT_EQ(plane(r, "albedo.R")[40], 0.5F);  // the mirror's own
+}
+
+/// A matte picks light without a halo: what it leaves out, laid over another sky, is what that sky would have given.
+TEST(RenderLayers, AnEmptyBackgroundLeavesNoHaloAtADefocusedEdge) {
+  scene::Scene s = test::everything();
+  s.render.samples = 64;
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0.25, 0.5, 0.75};
+  const Result opaque = render_with(s, {});
+  film::LayerRequest cut_out;
+  cut_out.coverage = true;
+  const Result empty = render_with(s, cut_out);
+  double worst = 0;
+  int edges = 0;
+  for (std::size_t i = 0; i < plane(empty, "A").size(); ++i) {
+    const double alpha = plane(empty, "A")[i];
+    edges += alpha > 0 && alpha < 1 ? 1 : 0;
+    const double over = plane(empty, "R")[i] + (1 - alpha) * 0.25;
+    worst = std::max(worst, std::abs(over - plane(opaque, "R")[i]));
+  }
+  EXPECT_GT(edges, 20);
+  EXPECT_LT(worst, 1e-6);
+}
+
+TEST(RenderLayers, DeepSamplesFlattenToTheBeauty) {
+  const Result r = render_with(test::everything(), all_layers());
+  for (std::size_t i = 0; i < r.deep.pixels.size(); ++i) {
+    double color = 0, through = 1;
+    float last = 0;
+    for (const film::DeepSample& sample : r.deep.pixels[i]) {
+      EXPECT_LE(last, sample.front);
+      EXPECT_LE(sample.front, sample.back);
+      last = sample.front;
+      color += static_cast<double>(sample.rgb[0]) * through;
+      through *= 1 - static_cast<double>(sample.alpha);
+    }
+    EXPECT_NEAR(color, static_cast<double>(plane(r, "R")[i]), 1e-6) << i;
+    EXPECT_NEAR(through, 0, 1e-6);
+  }
+}
+
+/// Many samples are taken in parts; nothing may be lost between them.
+TEST(RenderLayers, SamplesBeyondOnePartAreThereToo) {
+  scene::Scene s = test::everything();
+  s.image = {4, 4};
+  s.render.samples = 10000;
+  const Result r = render_with(s, all_layers());
+  for (const float n : plane(r, "samples.X")) EXPECT_EQ(n, 10000);
+}
+
+TEST(RenderLayers, VarianceForecastsTheSpreadOverSeeds) {
+  scene::Scene s = test::everything();
+  s.image = {12, 8};
+  s.render.samples = 64;
+  constexpr int kSeeds = 40;
+  std::vector<double> sum(96), squares(96), forecast(96);
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    s.render.seed = static_cast<std::uint32_t>(seed);
+    const Result r = render_with(s, all_layers());
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      const double v = plane(r, "G")[i];
+      sum[i] += v;
+      squares[i] += v * v;
+      forecast[i] += plane(r, "variance.G")[i] / kSeeds;
+    }
+  }
+  double seen = 0, told = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    seen += (squares[i] - sum[i] * sum[i] / kSeeds) / (kSeeds - 1);
+    told += forecast[i];
+  }
+  // 96 pixels of 39 degrees of freedom: a standard error of about 3 %.
+  EXPECT_NEAR(seen / told, 1, 0.1);
+}
+
+/// A filter may be as sharp as it likes: what is flat stays flat.
+TEST(RenderFilter, AFlatSkyIsFlatUnderEveryFilter) {
+  using enum scene::Filter;
+  for (const auto filter : {kBox, kGaussian, kBlackmanHarris, kMitchell}) {
+    scene::Scene s;
+    s.image = {5, 4};
+    s.background.type = scene::BackgroundType::kConstant;
+    s.background.color = {0.3, 0.6, 0.9};
+    s.render.filter = filter;
+    for (const int samples : {1, 2, 17, 100}) {
+      s.render.samples = samples;
+      const Result r = render_with(s, {});
+      for (const float v : plane(r, "R")) EXPECT_FLOAT_EQ(v, 0.3F) << samples;
+    }
+  }
+}
+
+/// The edge of a sphere so large that it is a line: coverage across it is the filter's integral.
+TEST(RenderFilter, AnEdgeShowsTheFiltersIntegral) {
+  using enum scene::Filter;
+  for (const auto& [filter, width] : {std::pair{kBox, 1.0}, {kBox, 2.0}, {kGaussian, 3.0}, {kMitchell, 4.0}}) {
+    scene::Scene s;
+    s.image = {8, 1};
+    s.camera.look_from = {0, 0, 0};
+    s.camera.look_at = {0, 0, -1};
+    s.camera.vfov = 0.02;
+    // Its edge stands in the middle of the picture, on the camera's axis, upright.
+    s.materials = {{"one", scene::Lambertian{}}};
+    s.spheres = {{{-1e6, 0, -1e6}, 1e6, 0, ""}};
+    s.render.samples = 1 << 16;
+    s.render.filter = filter;
+    s.render.filter_width = width;
+    film::LayerRequest request;
+    request.coverage = true;
+    const Result r = render_with(s, request);
+    // The same integral by brute force, from the formulas.
+    const auto f = [filter = filter, width = width](double x) {
+      const double t = std::abs(x);
+      if (t > width / 2) return 0.0;
+      if (filter == kGaussian) return std::exp(-18 * x * x / (width * width));
+      if (filter == kMitchell) {
+        return t < 1 ? (7 * t * t * t - 12 * t * t + 16.0 / 3) / 6
+                     : (-7.0 / 3 * t * t * t + 12 * t * t - 20 * t + 32.0 / 3) / 6;
+      }
+      return 1.0;
+    };
+    for (int x = 0; x < 8; ++x) {
+      double below = 0, all = 0;
+      for (double at = -2.5 + 0.0005; at < 2.5; at += 0.001) {
+        all += f(at);
+        below += x + 0.5 + at < 4 ? f(at) : 0;
+      }
+      EXPECT_NEAR(plane(r, "A")[static_cast<std::size_t>(x)], below / all, 0.01)
+          << "pixel " << x << " of filter " << static_cast<int>(filter);
+    }
+  }
+}
+
+TEST(RenderWindow, ACropIsAPartOfTheWholeBitForBit) {
+  scene::Scene s = test::everything();
+  const Result whole = render_with(s, all_layers());
+  s.image.crop = scene::Window{20, 9, 31, 17};
+  const Result part = render_with(s, all_layers());
+  EXPECT_EQ(part.picture.x, 20);
+  EXPECT_EQ(part.picture.width, 31);
+  EXPECT_EQ(part.picture.frame_width, 61);
+  for (const film::Plane& p : part.picture.planes)
+    for (int y = 0; y < 17; ++y)
+      for (int x = 0; x < 31; ++x)
+        ASSERT_EQ(p.values[static_cast<std::size_t>(y * 31 + x)],
+                  plane(whole, p.name.c_str())[static_cast<std::size_t>((y + 9) * 61 + x + 20)])
+            << p.name << " at " << x << ", " << y;
+}
+
+TEST(RenderWindow, OverscanSurroundsTheFrameAndLeavesItAsItIs) {
+  scene::Scene s = test::everything();
+  const Result frame = render_with(s, {});
+  s.image.overscan = 5;
+  const Result wide = render_with(s, {});
+  EXPECT_EQ(wide.picture.x, -5);
+  EXPECT_EQ(wide.picture.width, 71);
+  for (int y = 0; y < 37; ++y)
+    for (int x = 0; x < 61; ++x)
+      ASSERT_EQ(plane(wide, "G")[static_cast<std::size_t>((y + 5) * 71 + x + 5)],
+                plane(frame, "G")[static_cast<std::size_t>(y * 61 + x)])
+          << x << ", " << y;
+}
+
+TEST(RenderWindow, APixelMayBeWiderThanHigh) {
+  scene::Scene s = test::everything();
+  s.image = {20, 20};
+  s.camera.defocus_angle = 0;
+  s.image.pixel_aspect = 2;
+  const compile::World world = compile::compile(s);
+  const auto length = [](const double(&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
+  EXPECT_NEAR(length(world.camera.right) / length(world.camera.down), 2, 1e-12);
+}
+
+}  // namespace
+}  // namespace orrery::render
