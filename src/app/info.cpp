@@ -7,10 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/precision_advice.h"
+#include "app/layers.h"
 #include "app/scene_hash.h"
 #include "app/text.h"
 #include "app/working_space.h"
 #include "compile/compile.h"
+#include "film/layer_film.h"
 #include "format/read_scene.h"
 #include "kernel/isa.h"
 #include "render/traversals.h"
@@ -19,7 +21,7 @@
 namespace orrery::app {
 namespace {
 
-std::vector<Feature> features_of(const compile::World& world) {
+std::vector<Feature> features_of(const compile::World& world, bool has_layers) {
   const auto some = [&](auto holds) { return std::any_of(world.materials.begin(), world.materials.end(), holds); };
   const auto of = [&](kernel::MaterialKind kind) {
     return some([kind](const kernel::Material& m) { return m.kind == kind; });
@@ -35,6 +37,7 @@ std::vector<Feature> features_of(const compile::World& world) {
       feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "mirrors are sharp"),
       feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
       feature("gradient sky", world.features.sky, "one colour: no direction is looked at"),
+      feature("layers", has_layers, "[output] asks for none: no path is written down"),
       feature("light paths", world.shading == kernel::Shading::kPath, "render.shading asks for the first hit only")};
 }
 
@@ -72,7 +75,7 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
     info.largest_radius = largest->radius;
   }
   info.materials = count_materials(world);
-  info.features = features_of(world);
+  info.features = features_of(world, choose_layers(read.scene, world).request.any());
   for (const format::Setting& s : read.settings) {
     info.settings.push_back({s.key, s.value, s.origin});
     if (s.key == "render.precision") info.precision = scene::unquoted(s.value);
@@ -80,7 +83,9 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
   }
   info.isa = kernel::isa_name();
   info.traversal = render::planned_traversal(world);
-  info.memory = estimate_memory(world.width, world.height, info.spheres, info.accelerator == "embree");
+  info.memory =
+      estimate_memory(world.width, world.height, film::planes_of(choose_layers(read.scene, world).request).size(),
+                      info.spheres, info.accelerator == "embree");
   info.warnings = std::move(read.warnings);
   for (const std::string& advice : precision_advice(world)) {
     base::Finding warning;

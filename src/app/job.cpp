@@ -108,7 +108,7 @@ display::Settings choose_display(const Job& job, const scene::Scene& scene, JobR
 }
 
 void write_outputs(const Job& job, const display::Settings& display, const film::Picture& picture,
-                   const image::Header& header, JobReport& report) {
+                   const image::Header& header, const std::vector<MatteNames>& mattes, JobReport& report) {
   std::optional<film::EncodedPicture> developed;  // once for all display formats
   const auto add = [&](const image::WriteReport& one) {
     report.written.clamped += one.clamped;
@@ -116,7 +116,13 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
   };
   for (const auto& output : job.outputs) {
     switch (image::format_of(output)) {
-      case image::Format::kExr: add(image::write_exr(output, picture, header, job.exr)); break;
+      case image::Format::kExr: {
+        image::Header own = header;
+        own.matte_attributes = matte_attributes(mattes, output);
+        write_manifests(mattes, output);  // first: no picture shall name a file that is not there
+        add(image::write_exr(output, picture, own, job.exr));
+        break;
+      }
       case image::Format::kHdr: add(image::write_hdr(output, picture)); break;
       case image::Format::kPng:
       case image::Format::kTiff:
@@ -170,13 +176,11 @@ void run_phases(const Job& job, JobReport& report) {
   report.phases.read_s = watch.lap();
   stop_if_asked(job);
 
-  const scene::Window window = read.scene.image.data_window();
-  require_memory(estimate_memory(window.width, window.height, read.scene.sphere_count(),
-                                 read.scene.render.accelerator == scene::Accelerator::kEmbree),
-                 job.memory_limit);
-
   const compile::World world = compile::compile(read.scene);
   const Layers layers = layers_for(job, read.scene, world);
+  require_memory(estimate_memory(world.width, world.height, film::planes_of(layers.request).size(),
+                                 world.spheres.size(), world.accelerator == compile::Accelerator::kEmbree),
+                 job.memory_limit);
   read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
   report.scene_hash = scene_hash(world);
   report.width = world.width;
@@ -201,14 +205,10 @@ void run_phases(const Job& job, JobReport& report) {
   if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written");
 
   count_bad_values(result.picture, report);
-  image::Header header = picture_header(read, world, report, job.reproducible);
-  header.matte_attributes = matte_attributes(layers.mattes);
+  const image::Header header = picture_header(read, world, report, job.reproducible);
   image::set_threads(settings.threads);
-  write_outputs(job, display, result.picture, header, report);
-  if (!job.deep.empty()) {
-    header.matte_attributes.clear();
-    image::write_deep(job.deep, result.deep, result.picture, header);
-  }
+  write_outputs(job, display, result.picture, header, layers.mattes, report);
+  if (!job.deep.empty()) image::write_deep(job.deep, result.deep, result.picture, header);
   report.phases.write_s = watch.lap();
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
+#include <cstddef>
+#include <filesystem>
 #include <vector>
 
 #include "app/layers.h"
@@ -9,9 +10,18 @@
 
 namespace orrery::app {
 
-/// What a Cryptomatte's header says: its name, how names became numbers, and the names.
+/// More names than this stand in a file of their own, beside the picture: headers are read whole by everybody.
+inline constexpr std::size_t kMostNamesInHeader = 10000;
+
+/// What a Cryptomatte's header says: its name, how names became numbers, and the names, or the file that has them.
 ///
 /// Reference  cryptomatte-1.2
-std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& mattes);
+std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& mattes,
+                                               const std::filesystem::path& picture);
+
+/// Writes the files that the header names, PICTURE.CryptoObject.json; none for few names.
+///
+/// Errors     base::Error: kCannotCreate, kIo
+void write_manifests(const std::vector<MatteNames>& mattes, const std::filesystem::path& picture);
 
 }  // namespace orrery::app

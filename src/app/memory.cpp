@@ -23,6 +23,9 @@ constexpr std::uint64_t kBytesPerSphere = sizeof(kernel::Sphere) + sizeof(std::u
 /// A pixel's sum, and the four floats of the finished picture.
 constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
 
+/// A layer's value, and its copy that is handed to the encoder.
+constexpr std::uint64_t kBytesPerLayerPlane = 2 * sizeof(float);
+
 /// The number after a line's key, in a file of "key number unit" lines; of a file of one number: `key` is empty.
 std::optional<std::uint64_t> number_in(const std::filesystem::path& file, const std::string& key) {
   std::ifstream in(file);
@@ -49,9 +52,10 @@ std::optional<std::uint64_t> granted_by(const std::filesystem::path& group) {
 
 }  // namespace
 
-MemoryEstimate estimate_memory(int width, int height, std::uint64_t spheres, bool embree) {
+MemoryEstimate estimate_memory(int width, int height, std::uint64_t layer_planes, std::uint64_t spheres, bool embree) {
   MemoryEstimate m;
-  m.film = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * kFilmBytesPerPixel;
+  m.film = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
+           (kFilmBytesPerPixel + layer_planes * kBytesPerLayerPlane);
   m.spheres = spheres * kBytesPerSphere;
   m.accelerator = embree ? spheres * kAcceleratorBytesPerSphere : 0;
   return m;

@@ -15,8 +15,8 @@ struct MemoryEstimate {
   std::uint64_t total() const { return film + spheres + accelerator; }
 };
 
-/// Domain     `spheres` counts those of tables and of points files
-MemoryEstimate estimate_memory(int width, int height, std::uint64_t spheres, bool embree);
+/// Domain     `layer_planes` beside R, G, B, A; `spheres` counts those of tables and of points files
+MemoryEstimate estimate_memory(int width, int height, std::uint64_t layer_planes, std::uint64_t spheres, bool embree);
 
 /// Bytes that this process may still take: what the machine has free or can free at once, and no more than its control
 /// group still grants. Nothing where neither can be told.

@@ -5,6 +5,7 @@
 
 #include "app/camera_matrices.h"
 #include "app/version.h"
+#include "compile/camera_basis.h"
 #include "display/color_space.h"
 #include "scene/value_text.h"
 
@@ -37,6 +38,8 @@ image::Header picture_header(const format::ReadResult& read, const compile::Worl
   const CameraMatrices matrices = camera_matrices(read.scene.camera, read.scene.image);
   header.world_to_camera = matrices.world_to_camera;
   header.world_to_ndc = matrices.world_to_ndc;
+  if (read.scene.camera.defocus_angle > 0)
+    header.focus = static_cast<float>(compile::focus_distance(read.scene.camera));
   if (const display::KnownSpace* space = display::known_space(read.scene.color.working_space())) {
     header.chromaticities = space->chromaticities;
     header.color_interop_id = space->interop_id;

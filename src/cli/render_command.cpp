@@ -32,8 +32,16 @@ void print_bad_values(const app::JobReport& report) {
     if (count > 0) std::fprintf(stderr, "warning: %llu %s\n", static_cast<unsigned long long>(count), what);
   };
   tell(report.render.bad_samples, "samples were not finite and were left out of their pixels");
-  tell(report.bad_values.nan, "values of the picture are not a number");
-  tell(report.bad_values.infinite, "values of the picture are infinite");
+  for (const auto& [layer, bad] : report.bad_layers) {
+    const auto tell_of = [&, &name = layer](std::uint64_t count, const char* what) {
+      if (count > 0)
+        std::fprintf(stderr, "warning: %s: %llu values are %s\n", name.c_str(), static_cast<unsigned long long>(count),
+                     what);
+    };
+    tell_of(bad.nan, "not a number");
+    tell_of(bad.infinite, "infinite");
+    tell_of(bad.negative, "negative");
+  }
   tell(report.written.not_finite, "values that are not finite were written as 0");
   tell(report.written.clamped, "values do not fit into their file and were clamped; EXR with --type float keeps them");
 }

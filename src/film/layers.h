@@ -28,6 +28,8 @@ struct LayerRequest {
 
   bool lights() const { return diffuse || specular || transmission || background; }
   bool nearest() const { return z || depth || position || object_id || material_id; }
+  bool paths_light() const { return lights() || variance || samples || deep; }
+  bool guides() const { return guide_albedo || guide_normal; }
   bool any() const {
     return lights() || nearest() || normal || albedo || variance || samples || guide_albedo || guide_normal ||
            coverage || deep || !mattes.empty();

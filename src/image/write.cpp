@@ -74,6 +74,7 @@ void add_header(ImageSpec& spec, const Header& header) {
   // OpenImageIO translates some lower-case names into OpenEXR's own, but not that of the second.
   if (header.world_to_camera) spec.attribute("worldtocamera", matrix, header.world_to_camera->data());
   if (header.world_to_ndc) spec.attribute("worldToNDC", matrix, header.world_to_ndc->data());
+  if (header.focus) spec.attribute("focus", *header.focus);
   if (header.chromaticities)
     spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), header.chromaticities->data());
   if (!header.color_interop_id.empty()) spec.attribute("colorInteropID", header.color_interop_id);

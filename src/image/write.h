@@ -30,6 +30,7 @@ struct Header {
   std::optional<std::array<int, 2>> frames_per_second;  ///< numerator, denominator
   /// 4x4, row vectors times matrix as OpenEXR has it; see docs/output.md.
   std::optional<std::array<float, 16>> world_to_camera, world_to_ndc;
+  std::optional<float> focus;  ///< distance of what is sharp; scene units, which OpenEXR takes for metres
   std::optional<std::array<float, 8>> chromaticities;  ///< x, y of red, green, blue, white
   std::string color_interop_id;
   std::vector<Attribute> attributes;

@@ -30,17 +30,10 @@ class Recorder {
   using Id = hn::TFromD<IdTag<D>>;
 
   HWY_INLINE Recorder(D d, const SceneView& scene, const Tile& tile, Ids pixels, Ids samples)
-      : lanes_(static_cast<int>(hn::Lanes(d))) {
-    const IdTag<D> du;
-    HWY_ALIGN Id pixel[kMax], sample[kMax];
-    hn::Store(pixels, du, pixel);
-    hn::Store(samples, du, sample);
-    const auto count = static_cast<std::int64_t>(tile.sample_end - tile.sample_begin);
-    for (int i = 0; i < lanes_; ++i) {
-      const PixelPlace at = place_of(pixel[i], scene);
-      const auto s = static_cast<std::int64_t>(sample[i]) - tile.sample_begin;
-      record_[i] = tile.records + (std::int64_t{at.y - tile.y} * tile.width + (at.x - tile.x)) * count + s;
-    }
+      : scene_(scene), tile_(tile) {
+    hn::Store(pixels, IdTag<D>(), pixel_);
+    hn::Store(samples, IdTag<D>(), sample_);
+    (void)d;
   }
 
   /// Paths begin: whatever the records held is forgotten.
@@ -98,16 +91,26 @@ class Recorder {
       hn::Store(from.z, d, v[2]);
     }
   };
+  HWY_INLINE PathRecord& record(int lane) {
+    const PixelPlace at = place_of(pixel_[lane], scene_);
+    const auto count = static_cast<std::int64_t>(tile_.sample_end - tile_.sample_begin);
+    const auto sample = static_cast<std::int64_t>(sample_[lane]) - tile_.sample_begin;
+    return tile_.records[(std::int64_t{at.y - tile_.y} * tile_.width + (at.x - tile_.x)) * count + sample];
+  }
   template <class Do>
   HWY_INLINE void each(D d, hn::Mask<D> lanes, Do what) {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, lanes, bits);
-    for (int i = 0; i < lanes_; ++i)
-      if ((bits[i / 8] >> (i % 8) & 1) != 0) what(*record_[i], i);
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, lanes, bytes);
+    for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8; bits != 0; bits &= bits - 1) {
+      const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
+      what(record(lane), lane);
+    }
   }
 
-  int lanes_;
-  PathRecord* record_[kMax];
+  const SceneView& scene_;
+  const Tile& tile_;
+  HWY_ALIGN Id pixel_[kMax];
+  HWY_ALIGN Id sample_[kMax];
 };
 
 /// Lanes whose surface sends light on in one direction only.

@@ -33,6 +33,8 @@ struct Tile {
   std::int64_t row_stride = 0;  ///< from a pixel's sum to the one below
   /// A record for every path: the samples of a pixel, then the pixel to the right. Null: nobody asks for them.
   PathRecord* records = nullptr;
+  bool record_light = true;   ///< false: nobody reads light and group of the records
+  bool record_guides = true;  ///< the same of the guides
 };
 
 struct TileCounts {

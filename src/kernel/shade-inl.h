@@ -224,9 +224,10 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       add_light(d, missed, light, pixels, samples, scene, tile, counts);
       if constexpr (kRecords) {
         const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
-        record.light(d, missed, light, history);
-        record.guide(d, hn::And(missed, guided), {hn::Min(light.x, one), hn::Min(light.y, one), hn::Min(light.z, one)},
-                     {zero, zero, zero});
+        if (tile.record_light) record.light(d, missed, light, history);
+        if (tile.record_guides)
+          record.guide(d, hn::And(missed, guided),
+                       {hn::Min(light.x, one), hn::Min(light.y, one), hn::Min(light.z, one)}, {zero, zero, zero});
       }
     }
     if (hn::AllFalse(d, hit)) continue;
@@ -238,7 +239,8 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
                                      throughput.z * at.albedo.z};
     if constexpr (kRecords) {
       if (depth == 0) record.first_hit(d, hit, hits, at.surface.offset, ray.direction);
-      record.guide(d, hn::AndNot(is_sharp(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
+      if (tile.record_guides)
+        record.guide(d, hn::AndNot(is_sharp(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
       if (ends) continue;
     }
     if (scene.shading != Shading::kPath) {

@@ -66,6 +66,8 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker) co
   const std::uint32_t samples_at_a_time = std::max(1u, kMostRecords / pixels);
   worker.pixels.assign(pixels, {});
   kernel::Tile part = tile;
+  part.record_light = request_.paths_light();
+  part.record_guides = request_.guides();
   for (std::uint32_t begin = tile.sample_begin; begin < tile.sample_end; begin = part.sample_end) {
     part.sample_begin = begin;
     part.sample_end = begin + std::min(samples_at_a_time, tile.sample_end - begin);

@@ -12,6 +12,7 @@
 #include "film/layer_film.h"
 #include "scene/schema.h"
 #include "support/everything.h"
+#include "support/scratch_folder.h"
 
 namespace orrery::app {
 namespace {
@@ -108,7 +109,7 @@ TEST(AppLayers, LightBySurfaceNeedsLightPaths) {
 
 TEST(AppMatteManifest, SaysHowNamesBecameNumbers) {
   const std::vector<image::Attribute> attributes = matte_attributes(
-      {{"CryptoObject", {{"bunny", film::matte_id("bunny")}, {"a \"b\"", film::matte_id("a \"b\"")}}}});
+      {{"CryptoObject", {{"bunny", film::matte_id("bunny")}, {"a \"b\"", film::matte_id("a \"b\"")}}}}, "x/shot.exr");
   ASSERT_EQ(attributes.size(), 4u);
   EXPECT_EQ(attributes[0].name, "cryptomatte/3ae39a5/name");
   EXPECT_EQ(std::get<std::string>(attributes[0].value), "CryptoObject");
@@ -119,6 +120,29 @@ TEST(AppMatteManifest, SaysHowNamesBecameNumbers) {
   EXPECT_EQ(manifest["bunny"], "13851a76");
   EXPECT_EQ(manifest.size(), 2u);
   EXPECT_TRUE(manifest.contains("a \"b\""));
+}
+
+TEST(AppMatteManifest, ManyNamesStandInAFileBesideThePicture) {
+  MatteNames matte;
+  matte.layer = "CryptoObject";
+  for (std::size_t i = 0; i <= kMostNamesInHeader; ++i) {
+    const std::string name = "sphere." + std::to_string(i);
+    matte.things.emplace_back(name, film::matte_id(name));
+  }
+  const support::ScratchFolder folder;
+  const std::vector<image::Attribute> attributes = matte_attributes({matte}, folder / "shot.exr");
+  ASSERT_EQ(attributes.size(), 4u);
+  EXPECT_EQ(attributes[3].name, "cryptomatte/3ae39a5/manif_file");
+  EXPECT_EQ(std::get<std::string>(attributes[3].value), "shot.CryptoObject.json");
+  write_manifests({matte}, folder / "shot.exr");
+  const auto manifest = nlohmann::json::parse(support::file_bytes(folder / "shot.CryptoObject.json"));
+  EXPECT_EQ(manifest.size(), kMostNamesInHeader + 1);
+  EXPECT_EQ(manifest["sphere.7"], film::matte_id_text(film::matte_id("sphere.7")));
+
+  matte.things.pop_back();
+  EXPECT_EQ(matte_attributes({matte}, folder / "other.exr")[3].name, "cryptomatte/3ae39a5/manifest");
+  write_manifests({matte}, folder / "other.exr");
+  EXPECT_FALSE(std::filesystem::exists(folder / "other.CryptoObject.json"));
 }
 
 }  // namespace

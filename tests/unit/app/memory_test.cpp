@@ -53,14 +53,15 @@ TEST_F(AppMemory, TheGroupOfTheWholeMachineCountsToo) {
 }
 
 TEST(AppMemoryEstimate, GrowsWithPixelsAndSpheres) {
-  EXPECT_EQ(estimate_memory(10, 10, 0, true).total(), estimate_memory(10, 10, 0, false).total());
-  EXPECT_EQ(estimate_memory(20, 10, 0, true).film, 2 * estimate_memory(10, 10, 0, true).film);
-  EXPECT_EQ(estimate_memory(1, 1, 100, false).accelerator, 0u);
-  EXPECT_EQ(estimate_memory(1, 1, 100, true).accelerator, 100 * estimate_memory(1, 1, 1, true).accelerator);
+  EXPECT_EQ(estimate_memory(10, 10, 0, 0, true).total(), estimate_memory(10, 10, 0, 0, false).total());
+  EXPECT_EQ(estimate_memory(20, 10, 0, 0, true).film, 2 * estimate_memory(10, 10, 0, 0, true).film);
+  EXPECT_GT(estimate_memory(10, 10, 3, 0, true).film, estimate_memory(10, 10, 0, 0, true).film);
+  EXPECT_EQ(estimate_memory(1, 1, 0, 100, false).accelerator, 0u);
+  EXPECT_EQ(estimate_memory(1, 1, 0, 100, true).accelerator, 100 * estimate_memory(1, 1, 0, 1, true).accelerator);
 }
 
 TEST(AppMemoryEstimate, WhatDoesNotFitIsRefusedWithTheFigure) {
-  const MemoryEstimate million = estimate_memory(1, 1, 1'000'000, true);
+  const MemoryEstimate million = estimate_memory(1, 1, 0, 1'000'000, true);
   EXPECT_NO_THROW(require_memory(million, million.total()));
   try {
     require_memory(million, million.total() - 1);

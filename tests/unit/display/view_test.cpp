@@ -208,5 +208,15 @@ TEST_F(DisplayView, PqIsPq) {
   for (const std::uint16_t v : shown.values) EXPECT_NEAR(v / 65535.0, 0.5081, 2e-4);
 }
 
+TEST_F(DisplayView, TheAcesProjectsConfigsLoad) {
+  Settings settings;
+  settings.config = "ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1";
+  if (ocio_version() < "2.2") GTEST_SKIP() << "OpenColorIO " << ocio_version() << " brings no configs of its own";
+  EXPECT_EQ(choose(settings).working_space, "Linear Rec.709 (sRGB)");
+  EXPECT_EQ(choose(settings).display, "sRGB - Display");
+  settings.working_space = "acescg";
+  EXPECT_EQ(choose(settings).working_space, "ACEScg");
+}
+
 }  // namespace
 }  // namespace orrery::display
