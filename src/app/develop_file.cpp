@@ -27,11 +27,14 @@ DevelopReport develop_file(const Development& development) {
   check_kinds(development);
   check_output_files(development.outputs, development.bits, {}, development.input);
   DevelopReport report;
-  report.display = display::choose(development.display);
   const film::Picture picture = image::read(development.input);
+  display::Settings display = development.display;
+  if (display.working_space.empty()) display.working_space = picture.color_interop_id;
+  if (display.working_space.empty()) display.working_space = "lin_rec709";
+  report.display = display::choose(display);
   for (const char* name : {"R", "G", "B"})  // no other plane is developed
     if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
-  const film::EncodedPicture developed = display::develop(picture, development.display,
+  const film::EncodedPicture developed = display::develop(picture, display,
                                                           development.bits != 0   ? development.bits
                                                           : report.display.is_hdr ? 16
                                                                                   : 8);

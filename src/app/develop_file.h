@@ -13,8 +13,8 @@ namespace orrery::app {
 struct Development {
   std::filesystem::path input;                 ///< scene-linear light
   std::vector<std::filesystem::path> outputs;  ///< display formats
-  display::Settings display;
-  int bits = 0;  ///< 0: 8
+  display::Settings display;                   ///< working space empty: what the picture says, else lin_rec709
+  int bits = 0;                                ///< 0: 8
 };
 
 struct DevelopReport {

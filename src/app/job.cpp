@@ -93,7 +93,18 @@ void require_bits(const display::Choice& display, const Job& job) {
 /// The display that display formats are developed for; nothing is looked up where there is none.
 display::Settings choose_display(const Job& job, const scene::Scene& scene, JobReport& report) {
   display::Settings display = job.display;
-  display.working_space = scene.color.working_space();
+  const scene::Color& color = scene.color;
+  const auto otherwise = [](std::string& flag, const std::string& key) {
+    if (flag.empty()) flag = key;
+  };
+  // OpenColorIO's own configs, "ocio://...", are no files.
+  const bool is_file = !color.config.empty() && color.config.string().rfind("ocio://", 0) != 0;
+  otherwise(display.config, is_file ? (job.scene.parent_path() / color.config).string() : color.config.string());
+  otherwise(display.display, color.display);
+  otherwise(display.view, color.view);
+  otherwise(display.look, color.look);
+  if (!display.exposure) display.exposure = color.exposure;
+  display.working_space = color.working_space();
   if (!wants_display(job)) return display;
   report.display = display::choose(display);
   require_bits(report.display, job);
@@ -165,7 +176,7 @@ void run_phases(const Job& job, JobReport& report) {
   format::ReadResult read = format::read_scene(job.scene, job.overrides);
   for (const base::Finding& warning : read.warnings) warn(job, warning);
   const display::Settings display = choose_display(job, read.scene, report);
-  if (const int moved = to_working_space(job.display.config, read.scene); moved > 0) {
+  if (const int moved = to_working_space(display.config, read.scene); moved > 0) {
     base::Finding finding;
     finding.severity = base::Severity::kWarning;
     finding.file = job.scene.string();

@@ -32,6 +32,7 @@ int develop(const DevelopOptions& options) {
 void add_develop(CLI::App& program, Action& action) {
   const auto options = std::make_shared<DevelopOptions>();
   app::Development& development = options->development;
+  development.display.working_space.clear();
   CLI::App& command = *program.add_subcommand("develop", "Develop an EXR on disk for a display, through OCIO");
   command.add_option("IN", development.input, "Picture with scene-linear light: EXR or HDR")
       ->required()
@@ -41,7 +42,9 @@ void add_develop(CLI::App& program, Action& action) {
            ->required()
            ->type_name("FILE"));
   add_display_options(command, development.display, development.bits);
-  command.add_option("--space", development.display.working_space, "Colour space of the picture; default lin_rec709")
+  command
+      .add_option("--space", development.display.working_space,
+                  "Colour space of the picture; default: what it says itself, else lin_rec709")
       ->type_name("NAME");
   command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
   command.footer(

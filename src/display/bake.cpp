@@ -63,7 +63,7 @@ struct Tables {
 };
 
 Tables tabulated(const View& view, const Settings& settings, int size) {
-  const double end = light_at(1), gain = std::exp2(settings.exposure);
+  const double end = light_at(1), gain = std::exp2(settings.stops());
   Tables out{1 / end, {}, size, {}};
   for (int i = 0; i < kShaperSize; ++i)
     out.shaper.push_back(std::clamp(place_of(end * i / (kShaperSize - 1)), 0.0, 1.0));
@@ -79,11 +79,11 @@ Tables tabulated(const View& view, const Settings& settings, int size) {
 /// The steps as they are; where a step has no words in the format, as tables.
 ocio::GroupTransformRcPtr steps(const View& view, const Settings& settings) {
   auto group = view.transform->getOptimizedProcessor(ocio::OPTIMIZATION_LOSSLESS)->createGroupTransform();
-  const double gain = std::exp2(settings.exposure);
+  const double gain = std::exp2(settings.stops());
   auto matrix = ocio::MatrixTransform::Create();
   const double m[16] = {gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, 1};
   matrix->setMatrix(m);
-  if (settings.exposure != 0) group->prependTransform(matrix);
+  if (settings.stops() != 0) group->prependTransform(matrix);
   return group;
 }
 

@@ -63,7 +63,7 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
   out.is_srgb = view.is_srgb;
   out.values.resize(pixels * 3);
   const double largest = bits == 8 ? 255 : 65535;
-  const float gain = static_cast<float>(std::exp2(std::clamp(settings.exposure, -kMostStops, kMostStops)));
+  const float gain = static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMostStops, kMostStops)));
   std::vector<float> rgb(std::min(pixels, kPixelsAtATime) * 3);
   for (std::size_t begin = 0; begin < pixels; begin += kPixelsAtATime) {
     const std::size_t count = std::min(kPixelsAtATime, pixels - begin);

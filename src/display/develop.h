@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ struct Settings {
   std::string display;                       ///< empty: the config's default
   std::string view;                          ///< empty: the display's default
   std::string look;                          ///< empty: none but the view's own
-  double exposure = 0;                       ///< stops
+  std::optional<double> exposure;            ///< stops; empty: none
+
+  double stops() const { return exposure.value_or(0); }
 };
 
 /// What was chosen, by name.

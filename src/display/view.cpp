@@ -68,7 +68,7 @@ ocio::ConstProcessorRcPtr transform(const ocio::Config& config, const Settings& 
 }  // namespace
 
 View find_view(const Settings& settings) {
-  if (!std::isfinite(settings.exposure))
+  if (!std::isfinite(settings.stops()))
     throw base::Error(base::ErrorKind::kUsage, "the exposure must be a finite number of stops");
   const Config source = load_config(settings.config);
   View out;

@@ -31,6 +31,7 @@ struct Picture {
   std::vector<Plane> planes;
   int x = 0, y = 0;                       ///< px, where its upper left pixel stands within the frame
   int frame_width = 0, frame_height = 0;  ///< px; 0: the picture is the frame
+  std::string color_interop_id = {};      ///< the space of its light, "lin_rec709_scene"; empty: not told
   double pixel_aspect = 1;                ///< a pixel's width by its height
 
   const Plane* find(const std::string& name) const {

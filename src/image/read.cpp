@@ -117,6 +117,7 @@ film::Picture decode_all(const std::filesystem::path& file, ImageInput& in, cons
   film::Picture picture;
   picture.width = spec.full_width;
   picture.height = spec.full_height;
+  picture.color_interop_id = std::string(spec.get_string_attribute("colorInteropID"));
   for (const std::string& name : spec.channelnames) picture.planes.push_back({name, {}});
   const auto append_empty = [&](int rows) {
     const std::size_t more = static_cast<std::size_t>(std::max(rows, 0)) * static_cast<std::size_t>(picture.width);

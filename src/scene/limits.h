@@ -21,6 +21,9 @@ inline constexpr double kBrightestBackground = 1e6;
 /// More than this around a frame is another frame, px.
 inline constexpr int kWidestOverscan = 4096;
 
+/// More stops than any scene has: 2^100 would only be infinity by another name.
+inline constexpr double kMostStops = 100;
+
 /// A wider filter is a blur, px.
 inline constexpr double kWidestFilter = 32;
 

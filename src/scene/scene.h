@@ -120,10 +120,13 @@ struct Output {
   std::vector<std::string> layers;  ///< names out of the schema's choices
 };
 
-/// Colours of the scene file, and of the picture made of it.
+/// Colours of the scene file, of the picture made of it, and of what a display shows of that.
 struct Color {
   std::string space = "lin_rec709";
-  std::string working;  ///< of light and of the picture; empty: `space`
+  std::string working;              ///< of light and of the picture; empty: `space`
+  std::filesystem::path config;     ///< of OCIO, relative to the scene file; empty: $OCIO, without it the built-in one
+  std::string display, view, look;  ///< names of the config; empty: its defaults, and no look
+  double exposure = 0;              ///< stops
 
   const std::string& working_space() const { return working.empty() ? space : working; }
 };

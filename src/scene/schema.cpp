@@ -288,7 +288,18 @@ const std::vector<Table>& tables() {
        {text<S>("space", {"", "name of the colour space of all colours here: any scene-linear one of the OCIO config"},
                 [](S& s) -> std::string& { return s.color.space; }),
         text<S>("working", {"", "colour space in which light is reckoned, and of the EXR; default: `space`"},
-                [](S& s) -> std::string& { return s.color.working; })}},
+                [](S& s) -> std::string& { return s.color.working; }),
+        text<S>("config",
+                {"", "OCIO config, relative to the scene file; default: `$OCIO`, and without it the built-in one"},
+                [](S& s) -> std::filesystem::path& { return s.color.config; }),
+        text<S>("display", {"", "display for PNG, TIFF, JPEG and PPM; default: the config's"},
+                [](S& s) -> std::string& { return s.color.display; }),
+        text<S>("view", {"", "view of that display; default: the display's"},
+                [](S& s) -> std::string& { return s.color.view; }),
+        text<S>("look", {"", "look to apply before the view"}, [](S& s) -> std::string& { return s.color.look; }),
+        number<S>("exposure", {-kMostStops, kMostStops},
+                  {"stops", "to brighten what a display shows; an EXR stays as it is"},
+                  [](S& s) -> double& { return s.color.exposure; })}},
       output_table()};
   return all;
 }

@@ -87,5 +87,20 @@ TEST_F(AppDevelopFile, CountsWhatTheDisplayWouldHide) {
   EXPECT_EQ(bad.above_half, 3u);
 }
 
+/// ACEScg's red is redder than any sRGB screen's; what the header says decides unless somebody says otherwise.
+TEST_F(AppDevelopFile, ThePictureSaysWhatItsColoursAre) {
+  film::Picture red{1, 1, {{"R", {0.5f}}, {"G", {0.1f}}, {"B", {0.1f}}}};
+  image::Header header;
+  header.color_interop_id = "lin_ap1_scene";
+  image::write_exr(folder_ / "in.exr", red, header, {true, "zips"});
+  development_.display.working_space.clear();
+  development_.outputs = {folder_ / "out.png"};
+  EXPECT_EQ(develop_file(development_).display.working_space, "acescg");
+  EXPECT_GT(image::read(folder_ / "out.png").planes[0].values[0], 0.8f);  // the square root of 0.5 is 0.71
+  development_.display.working_space = "lin_rec709";
+  EXPECT_EQ(develop_file(development_).display.working_space, "lin_rec709");
+  EXPECT_NEAR(image::read(folder_ / "out.png").planes[0].values[0], 0.707, 0.003);
+}
+
 }  // namespace
 }  // namespace orrery::app

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 
@@ -152,6 +153,61 @@ TEST_F(AppJob, WarningsReachTheCaller) {
   run_job(job_);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].severity, base::Severity::kWarning);
+}
+
+TEST_F(AppJob, TheSceneChoosesTheDisplayAndFlagsWin) {
+  support::write_bytes(folder_ / "scene.toml",
+                       std::string(kScene) + "[color]\ndisplay = \"Gamma 2.0 Rec.709\"\nexposure = -2\n");
+  job_.outputs = {folder_ / "a.png"};
+  EXPECT_EQ(run_job(job_).display.display, "Gamma 2.0 Rec.709");
+  const float dark = image::read(folder_ / "a.png").planes[0].values[0];
+  job_.display.exposure = 0;
+  run_job(job_);
+  EXPECT_NEAR(image::read(folder_ / "a.png").planes[0].values[0], 2 * dark, 0.01);
+  job_.display.display = "sRGB";
+  EXPECT_EQ(run_job(job_).display.display, "sRGB");
+}
+
+TEST_F(AppJob, AConfigOfTheSceneIsBesideTheScene) {
+  support::write_bytes(folder_ / "scene.toml", std::string(kScene) + "[color]\nconfig = \"none.ocio\"\n");
+  job_.outputs = {folder_ / "a.png"};
+  const base::Error missing = error();
+  EXPECT_EQ(missing.kind(), base::ErrorKind::kMissingInput);
+  EXPECT_NE(std::string(missing.what()).find((folder_ / "none.ocio").string()), std::string::npos) << missing.what();
+  EXPECT_FALSE(rendered_);
+}
+
+TEST_F(AppJob, LayersAreInTheExrAndCostNothingWhereThereIsNone) {
+  job_.overrides = {"output.layers=[\"Z\", \"CryptoObject\"]"};
+  job_.outputs = {folder_ / "a.exr", folder_ / "a.png"};
+  job_.deep = folder_ / "deep.exr";
+  run_job(job_);
+  EXPECT_NE(image::read(folder_ / "a.exr").find("Z"), nullptr);
+  EXPECT_NE(image::read(folder_ / "a.exr").find("CryptoObject02.A"), nullptr);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "deep.exr"));
+  EXPECT_EQ(image::read(folder_ / "a.png").planes.size(), 3u);
+  job_.deep = folder_ / "deep.png";
+  EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
+}
+
+TEST_F(AppJob, LossOfDataIsRefusedBeforeRendering) {
+  job_.overrides = {"output.layers=[\"CryptoObject\"]"};
+  job_.outputs = {folder_ / "a.exr"};
+  job_.exr.compression = "dwaa";
+  EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
+  EXPECT_FALSE(rendered_);
+}
+
+TEST_F(AppJob, ADisplayOfHighDynamicRangeHasSixteenBits) {
+  job_.display.display = "Rec.2100-PQ";
+  job_.outputs = {folder_ / "a.png"};
+  run_job(job_);
+  bool between = false;  // of 8 bits
+  for (const float v : image::read(folder_ / "a.png").planes[0].values)
+    between = between || std::abs(v * 255 - std::round(v * 255)) > 0.01f;
+  EXPECT_TRUE(between);
+  job_.outputs = {folder_ / "a.jpg"};
+  EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class DisplayBake : public testing::Test {
     const auto file =
         ocio::Config::CreateRaw()->getProcessor(transform)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
     const View view = find_view(settings);
-    const float gain = static_cast<float>(std::exp2(settings.exposure));
+    const float gain = static_cast<float>(std::exp2(settings.stops()));
     double worst = 0;
     for (int r = 0; r < 12; ++r)
       for (int g = 0; g < 12; ++g)

@@ -66,7 +66,8 @@ TEST(FormatReadKeys, EachWrongComponentIsAFinding) {
 }
 
 TEST(FormatReadKeys, UnknownKeysWithNothingNearAreToldWhatThereIs) {
-  EXPECT_EQ(text_of("color.gamma = 2.2"), "unknown key `gamma` in color; known are space, working");
+  EXPECT_EQ(text_of("color.gamma = 2.2"),
+            "unknown key `gamma` in color; known are space, working, config, display, view, look, exposure");
   EXPECT_EQ(text_of("image.Width = 2"), "unknown key `Width` in image; did you mean `width`?");
 }
 
