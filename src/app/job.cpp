@@ -153,6 +153,9 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Worl
   image::check_lossless(film::planes_of(layers.request), job.exr);
   const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
   if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) return layers;
+  const auto is_explicit = [](const std::string& setting) { return setting.rfind("output.layers=", 0) == 0; };
+  if (!scene.output.layers.empty() && std::any_of(job.overrides.begin(), job.overrides.end(), is_explicit))
+    throw base::Error(base::ErrorKind::kUsage, "layers were asked for, and no output can hold them; add -o FILE.exr");
   Layers none;
   none.request.coverage = layers.request.coverage;
   none.request.deep = layers.request.deep;

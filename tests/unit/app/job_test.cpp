@@ -188,6 +188,9 @@ TEST_F(AppJob, LayersAreInTheExrAndCostNothingWhereThereIsNone) {
   EXPECT_EQ(image::read(folder_ / "a.png").planes.size(), 3u);
   job_.deep = folder_ / "deep.png";
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
+  job_.deep.clear();
+  job_.outputs = {folder_ / "a.png"};  // who asks for layers in so many words wants to have them
+  EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
 }
 
 TEST_F(AppJob, LossOfDataIsRefusedBeforeRendering) {

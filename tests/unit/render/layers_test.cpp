@@ -164,13 +164,18 @@ TEST(RenderLayers, AnEmptyBackgroundLeavesNoHaloAtADefocusedEdge) {
   const Result opaque = render_with(s, {});
   film::LayerRequest cut_out;
   cut_out.coverage = true;
+  cut_out.mattes = all_layers().mattes;
   const Result empty = render_with(s, cut_out);
   double worst = 0;
   int edges = 0;
   for (std::size_t i = 0; i < plane(empty, "A").size(); ++i) {
     const double alpha = plane(empty, "A")[i];
     edges += alpha > 0 && alpha < 1 ? 1 : 0;
-    const double over = plane(empty, "R")[i] + (1 - alpha) * 0.25;
+    double matte = 0;  // of all things in the pixel
+    for (const char* rank : {"00.G", "00.A", "01.G", "01.A", "02.G", "02.A"})
+      matte += static_cast<double>(plane(empty, (std::string("CryptoObject") + rank).c_str())[i]);
+    EXPECT_NEAR(matte, alpha, 1e-6);
+    const double over = plane(empty, "R")[i] + (1 - matte) * 0.25;
     worst = std::max(worst, std::abs(over - plane(opaque, "R")[i]));
   }
   EXPECT_GT(edges, 20);
