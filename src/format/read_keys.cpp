@@ -98,7 +98,9 @@ std::optional<Value> read_window(Reading& reading, const toml::node& node, const
                                  const scene::Range& range) {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 4) {
-    wrong_type(reading, node, name, "four whole numbers like [0, 0, 640, 360]: x, y, width, height");
+    reading.error(place_of(node),
+                  name + " must be x, y, width and height like [0, 0, 640, 360], this is " +
+                      (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
   std::int64_t v[4];

@@ -39,5 +39,11 @@ TEST(CliSceneOptions, AnEmptyValueIsNotNone) {
   EXPECT_EQ(overrides_of({"--samples", ""}), (std::vector<std::string>{"render.samples="}));
 }
 
+TEST(CliSceneOptions, LayersAreWordsBetweenCommas) {
+  EXPECT_EQ(overrides_of({"--layers", "Z,denoise.albedo"}),
+            (std::vector<std::string>{"output.layers=[\"Z\",\"denoise.albedo\"]"}));
+  EXPECT_EQ(overrides_of({"--layers", ""}), (std::vector<std::string>{"output.layers=[]"}));
+}
+
 }  // namespace
 }  // namespace orrery::cli

@@ -65,6 +65,26 @@ TEST(FormatReadKeys, EachWrongComponentIsAFinding) {
             "     ^~~\n");
 }
 
+TEST(FormatReadKeys, ListsOfWords) {
+  EXPECT_EQ(text_of("output.layers = []"), "");
+  EXPECT_EQ(text_of("output.layers = \"Z\""), "output.layers must be a list like [\"Z\"], this is a string");
+  EXPECT_EQ(text_of("output.layers = [1]").substr(0, 31), "output.layers[0] must be one of");
+  EXPECT_EQ(text_of("output.layers = [\"Z\", \"Z\"]"), "output.layers[1] stands there twice; leave one out");
+  const std::string near = text_of("output.layers = [\"albdo\"]");
+  EXPECT_EQ(near.substr(near.find("; did")), "; did you mean `albedo`?");
+}
+
+TEST(FormatReadKeys, Windows) {
+  EXPECT_EQ(text_of("image.crop = [0, 0, 8, 8]"), "");
+  EXPECT_EQ(text_of("image.crop = [0, 0, 8]"),
+            "image.crop must be x, y, width and height like [0, 0, 640, 360], this is a list of 3");
+  EXPECT_EQ(text_of("image.crop = 8"),
+            "image.crop must be x, y, width and height like [0, 0, 640, 360], this is a whole number");
+  EXPECT_EQ(text_of("image.crop = [0, 0, 8, 1.5]"),
+            "image.crop[3] must be a whole number, this is a floating-point number");
+  EXPECT_EQ(text_of("image.crop = [-1, 0, 8, 8]"), "image.crop[0] is -1; allowed is 0..65536");
+}
+
 TEST(FormatReadKeys, UnknownKeysWithNothingNearAreToldWhatThereIs) {
   EXPECT_EQ(text_of("color.gamma = 2.2"),
             "unknown key `gamma` in color; known are space, working, config, display, view, look, exposure");

@@ -109,6 +109,52 @@ material = "glass"
   EXPECT_EQ(s.spheres[1].material, 3u);
 }
 
+TEST(FormatReadScene, ReadsWhatFilesShallHold) {
+  SceneFiles files;
+  const auto read = files.read(R"(
+[image]
+pixel_aspect = 2
+crop = [1, 2, 30, 40]
+[background]
+alpha = 0
+[render]
+filter = "blackman-harris"
+filter_width = 2.5
+[color]
+space = "lin_rec709"
+working = "ACEScg"
+config = "show.ocio"
+display = "Rec.2100-PQ"
+view = "Raw"
+look = "warm"
+exposure = -1.5
+[output]
+layers = ["N", "Z", "CryptoGroup"]
+[material.a]
+type = "dielectric"
+[[sphere]]
+center = [0, 0, 0]
+radius = 1
+material = "a"
+group = "left"
+)");
+  const scene::Scene& s = read.scene;
+  EXPECT_EQ(s.image.pixel_aspect, 2);
+  EXPECT_EQ(s.image.data_window().x, 1);
+  EXPECT_EQ(s.image.data_window().y, 2);
+  EXPECT_EQ(s.image.data_window().width, 30);
+  EXPECT_EQ(s.image.data_window().height, 40);
+  EXPECT_EQ(s.background.alpha, 0);
+  EXPECT_EQ(s.render.filter, scene::Filter::kBlackmanHarris);
+  EXPECT_EQ(s.render.filter_width, 2.5);
+  EXPECT_EQ(s.color.working_space(), "ACEScg");
+  EXPECT_EQ(s.color.config, "show.ocio");
+  EXPECT_EQ(s.color.display + s.color.view + s.color.look, "Rec.2100-PQRawwarm");
+  EXPECT_EQ(s.color.exposure, -1.5);
+  EXPECT_EQ(s.output.layers, (std::vector<std::string>{"N", "Z", "CryptoGroup"}));
+  EXPECT_EQ(s.spheres[0].group, "left");
+}
+
 TEST(FormatReadScene, AllFindingsInOneRunInTheOrderOfTheFile) {
   SceneFiles files;
   EXPECT_EQ(

@@ -31,6 +31,32 @@ using Told = std::vector<std::string>;
 
 TEST(SceneValidate, ASceneWithoutAnythingIsAllRight) { EXPECT_EQ(told({}), Told{}); }
 
+TEST(SceneValidate, ACropIsAPartOfTheFrame) {
+  Scene scene;
+  scene.image = {100, 50};
+  for (const Window& good : {Window{0, 0, 100, 50}, {99, 49, 1, 1}}) {
+    scene.image.crop = good;
+    EXPECT_EQ(told(scene), Told{});
+  }
+  for (const Window& bad :
+       {Window{0, 0, 101, 50}, {1, 0, 100, 50}, {0, 0, 0, 5}, {0, 50, 1, 1}, {65536, 0, 65536, 1}}) {
+    scene.image.crop = bad;
+    EXPECT_EQ(told(scene),
+              Told{"image.crop: is not a part of the frame, which is 100 x 50; it is [x, y, width, height]"});
+  }
+  scene.image.crop = Window{0, 0, 10, 10};
+  scene.image.overscan = 1;
+  EXPECT_EQ(told(scene), Told{"image.overscan: there is a crop already; leave one of them out"});
+}
+
+TEST(SceneValidate, AFrameAndItsOverscanHaveRoomForTheirPixels) {
+  Scene scene;
+  scene.image = {65536, 10};
+  EXPECT_EQ(told(scene), Told{});
+  scene.image.overscan = 1;
+  EXPECT_EQ(told(scene), Told{"image.overscan: the frame and its overscan have more than 65536 pixels along a side"});
+}
+
 TEST(SceneValidate, CameraThatLooksNowhere) {
   Scene scene;
   scene.camera.look_at = scene.camera.look_from;
