@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "compile/compile.h"
 #include "film/layers.h"
@@ -106,6 +109,32 @@ TEST(RenderLayers, LightIsInTheGroupOfTheFirstSurface) {
   // Straight through both sides is direct; light that went round inside before it left is not.
   EXPECT_EQ(groups_of(scene::Dielectric{1.5, scene::Fresnel::kExact}),
             "background specular_direct transmission_direct transmission_indirect ");
+}
+
+/// Whatever light meets behind it, it stays in the group of the first surface.
+TEST(RenderLayers, TheFirstSurfaceDecidesTheGroup) {
+  const scene::MaterialModel mirror = scene::Metal{{0.9, 0.9, 0.9}, 0}, clay = scene::Lambertian{{0.5, 0.5, 0.5}},
+                             glass = scene::Dielectric{1.5, scene::Fresnel::kExact};
+  const std::tuple<scene::MaterialModel, scene::MaterialModel, std::string> cases[] = {
+      {mirror, clay, "specular"}, {clay, mirror, "diffuse"}, {clay, glass, "diffuse"}};
+  for (const auto& [first, second, group] : cases) {
+    scene::Scene s;
+    s.image = {9, 9};
+    s.camera.look_from = {0, 0, 5};
+    s.camera.look_at = {0, 0, 0};
+    s.camera.vfov = 5;  // sees nothing but the first
+    s.render.samples = 64;
+    s.materials = {{"first", first}, {"second", second}};
+    s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{0, 0, 30}, 20, 1, ""}};  // the second stands behind the camera
+    const Result r = render_with(s, all_layers());
+    double indirect = 0;
+    for (std::size_t i = 0; i < 81; ++i) {
+      EXPECT_EQ(plane(r, (group + "_direct.G").c_str())[i] + plane(r, (group + "_indirect.G").c_str())[i],
+                plane(r, "G")[i]);
+      indirect += static_cast<double>(plane(r, (group + "_indirect.G").c_str())[i]);
+    }
+    EXPECT_GT(indirect, 0.1) << group;
+  }
 }
 
 TEST(RenderLayers, DistancesNormalsAndPlacesAreThoseOfTheSphere) {
@@ -245,7 +274,8 @@ TEST(RenderFilter, AFlatSkyIsFlatUnderEveryFilter) {
     for (const int samples : {1, 2, 17, 100}) {
       s.render.samples = samples;
       const Result r = render_with(s, {});
-      for (const float v : plane(r, "R")) EXPECT_FLOAT_EQ(v, 0.3F) << samples;
+      for (const auto& [name, light] : {std::pair{"R", 0.3F}, {"G", 0.6F}, {"B", 0.9F}})
+        for (const float v : plane(r, name)) EXPECT_FLOAT_EQ(v, light) << name << ", samples " << samples;
     }
   }
 }
