@@ -33,5 +33,7 @@ tile Z Z,Z,Z --mulc 0.04
 tile P P.X,P.Y,P.Z --mulc 0.1
 tile variance variance.R,variance.G,variance.B --mulc 300
 tile CryptoObject CryptoObject00.G,CryptoObject00.A,CryptoObject01.G
-oiiotool "${tiles[@]}" --mosaic:pad=4 4x4 --resize 1200x0 --compression jpeg:85 -o "$root/docs/layers.jpg"
+# Only the picture: commands, and with them this machine's paths, stay out of it.
+oiiotool --nosoftwareattrib "${tiles[@]}" --mosaic:pad=4 4x4 --resize 1200x0 --eraseattrib '.*' --compression jpeg:85 \
+  -o "$root/docs/layers.jpg"
 echo "docs/layers.jpg"

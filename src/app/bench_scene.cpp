@@ -68,7 +68,7 @@ compile::World small_world(const BenchRequest& request) {
   image.overscan = 0;
   image.width = std::max(1, static_cast<int>(std::lround(image.width * scale)));
   image.height = std::max(1, static_cast<int>(std::lround(image.height * scale)));
-  to_working_space({}, read.scene);
+  to_working_space(config_of(request.scene, read.scene.color), read.scene);
   return compile::compile(read.scene);
 }
 

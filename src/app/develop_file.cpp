@@ -34,10 +34,8 @@ DevelopReport develop_file(const Development& development) {
   report.display = display::choose(display);
   for (const char* name : {"R", "G", "B"})  // no other plane is developed
     if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
-  const film::EncodedPicture developed = display::develop(picture, display,
-                                                          development.bits != 0   ? development.bits
-                                                          : report.display.is_hdr ? 16
-                                                                                  : 8);
+  const film::EncodedPicture developed =
+      display::develop(picture, display, development.bits != 0 ? development.bits : report.display.default_bits());
   for (const auto& output : development.outputs) image::write_encoded(output, developed, "orrery " + program_version());
   return report;
 }

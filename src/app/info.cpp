@@ -55,8 +55,9 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 
 SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
   format::ReadResult read = format::read_scene(scene, overrides);
-  to_working_space({}, read.scene);
+  to_working_space(config_of(scene, read.scene.color), read.scene);
   const compile::World world = compile::compile(read.scene);
+  const film::LayerRequest layers = choose_layers(read.scene, world).request;
   SceneInfo info;
   info.scene_hash = scene_hash(world);
   info.width = world.width;
@@ -75,7 +76,7 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
     info.largest_radius = largest->radius;
   }
   info.materials = count_materials(world);
-  info.features = features_of(world, choose_layers(read.scene, world).request.any());
+  info.features = features_of(world, layers.any());
   for (const format::Setting& s : read.settings) {
     info.settings.push_back({s.key, s.value, s.origin});
     if (s.key == "render.precision") info.precision = scene::unquoted(s.value);
@@ -83,9 +84,8 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
   }
   info.isa = kernel::isa_name();
   info.traversal = render::planned_traversal(world);
-  info.memory =
-      estimate_memory(world.width, world.height, film::planes_of(choose_layers(read.scene, world).request).size(),
-                      info.spheres, info.accelerator == "embree");
+  info.memory = estimate_memory(world.width, world.height, film::planes_of(layers).size(), info.spheres,
+                                info.accelerator == "embree");
   info.warnings = std::move(read.warnings);
   for (const std::string& advice : precision_advice(world)) {
     base::Finding warning;

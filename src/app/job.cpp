@@ -75,12 +75,6 @@ void warn(const Job& job, const base::Finding& finding) {
   if (job.on_warning) job.on_warning(finding);
 }
 
-/// Bits in a channel of display formats: steps of 8 bits are seen on a display of high dynamic range.
-int bits_of(const display::Choice& display, const Job& job) {
-  if (job.bits != 0) return job.bits;
-  return display.is_hdr ? 16 : 8;
-}
-
 void require_bits(const display::Choice& display, const Job& job) {
   for (const auto& output : job.outputs) {
     const image::Format format = image::format_of(output);
@@ -97,9 +91,7 @@ display::Settings choose_display(const Job& job, const scene::Scene& scene, JobR
   const auto otherwise = [](std::string& flag, const std::string& key) {
     if (flag.empty()) flag = key;
   };
-  // OpenColorIO's own configs, "ocio://...", are no files.
-  const bool is_file = !color.config.empty() && color.config.string().rfind("ocio://", 0) != 0;
-  otherwise(display.config, is_file ? (job.scene.parent_path() / color.config).string() : color.config.string());
+  otherwise(display.config, config_of(job.scene, color));
   otherwise(display.display, color.display);
   otherwise(display.view, color.view);
   otherwise(display.look, color.look);
@@ -139,7 +131,8 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
       case image::Format::kTiff:
       case image::Format::kJpeg:
       case image::Format::kPpm:
-        if (!developed) developed = display::develop(picture, display, bits_of(report.display, job));
+        if (!developed)
+          developed = display::develop(picture, display, job.bits != 0 ? job.bits : report.display.default_bits());
         image::write_encoded(output, *developed, header.software);
         break;
     }

@@ -35,6 +35,12 @@ std::vector<Colored> colors_of(scene::Scene& scene) {
 
 }  // namespace
 
+std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color) {
+  // OpenColorIO's own configs, "ocio://...", are no files.
+  const bool is_file = !color.config.empty() && color.config.string().rfind("ocio://", 0) != 0;
+  return is_file ? (scene_file.parent_path() / color.config).string() : color.config.string();
+}
+
 int to_working_space(const std::string& ocio, scene::Scene& scene) {
   if (scene.color.working_space() == scene.color.space) return 0;
   const std::vector<Colored> colors = colors_of(scene);

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "scene/scene.h"
 
 namespace orrery::app {
+
+/// The OCIO config that a scene names, as display::Settings has it; empty: none.
+std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color);
 
 /// Brings all colours of a scene into its working space. A reflectance that is beyond 0..1 there, and light below 0,
 /// become the nearest that a surface and a sky can have.

@@ -27,8 +27,11 @@ struct Choice {
   std::string config;     ///< "built-in", or the config's file
   std::string config_id;  ///< OCIO's own digest of the config: another text gives another id
   std::string display, view;
-  std::string working_space;          ///< the config's own name of it
-  bool is_hdr = false;                ///< what comes out is for a display of high dynamic range
+  std::string working_space;  ///< the config's own name of it
+  bool is_hdr = false;        ///< what comes out is for a display of high dynamic range
+
+  /// Bits in a channel where nobody asked: steps of 8 are seen on a display of high dynamic range.
+  int default_bits() const { return is_hdr ? 16 : 8; }
   std::vector<std::string> warnings;  ///< what OCIO remarked about the config
 };
 

@@ -23,9 +23,8 @@ struct SphereShare {
 };
 
 /// What the paths of one pixel say about its layers, in whole numbers, so that no order of adding changes a bit.
-class LayerPixel {
- public:
-  /// Adds a path; its light only if it `counts`: what is no number enters no sum.
+struct LayerPixel {
+  /// Adds a path; light that is no number enters no sum.
   void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path,
            std::int64_t weight);
 

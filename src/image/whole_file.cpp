@@ -72,8 +72,8 @@ std::string read_back(const std::string& name, const std::string& format, const 
     } else if (spec = in->spec();
                spec.width != written.width || spec.height != written.height || spec.nchannels != written.nchannels) {
       wrong = "it reads back as another picture";
-    } else {
-      if (!read_end(*in, part, spec)) wrong = "its end cannot be read back";
+    } else if (!read_end(*in, part, spec)) {
+      wrong = "its end cannot be read back";
     }
     const std::string reason = in->geterror();
     if (!wrong.empty()) return reason.empty() ? wrong : wrong + ": " + reason;

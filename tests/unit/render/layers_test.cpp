@@ -82,6 +82,19 @@ TEST(RenderLayers, LightGroupsAddUpToTheBeauty) {
   }
 }
 
+/// A narrow view of a ball that fills the picture; another one stands behind the camera and is seen in it, if at all.
+scene::Scene ball_before_another(const scene::MaterialModel& first, const scene::MaterialModel& second, int samples) {
+  scene::Scene s;
+  s.image = {9, 9};
+  s.camera.look_from = {0, 0, 5};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 5;
+  s.render.samples = samples;
+  s.materials = {{"first", first}, {"second", second}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{0, 0, 30}, 20, 1, ""}};
+  return s;
+}
+
 /// A scene of one material has light in its groups only.
 TEST(RenderLayers, LightIsInTheGroupOfTheFirstSurface) {
   const auto groups_of = [](scene::MaterialModel model) {
@@ -118,15 +131,7 @@ TEST(RenderLayers, TheFirstSurfaceDecidesTheGroup) {
   const std::tuple<scene::MaterialModel, scene::MaterialModel, std::string> cases[] = {
       {mirror, clay, "specular"}, {clay, mirror, "diffuse"}, {clay, glass, "diffuse"}};
   for (const auto& [first, second, group] : cases) {
-    scene::Scene s;
-    s.image = {9, 9};
-    s.camera.look_from = {0, 0, 5};
-    s.camera.look_at = {0, 0, 0};
-    s.camera.vfov = 5;  // sees nothing but the first
-    s.render.samples = 64;
-    s.materials = {{"first", first}, {"second", second}};
-    s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{0, 0, 30}, 20, 1, ""}};  // the second stands behind the camera
-    const Result r = render_with(s, all_layers());
+    const Result r = render_with(ball_before_another(first, second, 64), all_layers());
     double indirect = 0;
     for (std::size_t i = 0; i < 81; ++i) {
       EXPECT_EQ(plane(r, (group + "_direct.G").c_str())[i] + plane(r, (group + "_indirect.G").c_str())[i],
@@ -169,15 +174,8 @@ TEST(RenderLayers, DistancesNormalsAndPlacesAreThoseOfTheSphere) {
 
 /// Through a mirror a denoiser is told of what stands in it.
 TEST(RenderLayers, GuidesFollowMirrorsToTheFirstDiffuseSurface) {
-  scene::Scene s;
-  s.image = {9, 9};
-  s.camera.look_from = {0, 0, 5};
-  s.camera.look_at = {0, 0, 0};
-  s.camera.vfov = 5;
-  s.render.samples = 4;
-  s.materials = {{"mirror", scene::Metal{{0.5, 0.5, 0.5}, 0}}, {"wall", scene::Lambertian{{0.8, 0.4, 0.2}}}};
-  s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{0, 0, 30}, 20, 1, ""}};  // the second stands behind the camera
-  const Result r = render_with(s, all_layers());
+  const Result r = render_with(
+      ball_before_another(scene::Metal{{0.5, 0.5, 0.5}, 0}, scene::Lambertian{{0.8, 0.4, 0.2}}, 4), all_layers());
   EXPECT_FLOAT_EQ(plane(r, "denoise.albedo.R")[40], 0.4F);
   EXPECT_FLOAT_EQ(plane(r, "denoise.albedo.B")[40], 0.1F);
   EXPECT_NEAR(plane(r, "denoise.normal.Z")[40], -1, 1e-3);
