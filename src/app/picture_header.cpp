@@ -48,9 +48,9 @@ image::Header picture_header(const format::ReadResult& read, const compile::Worl
                        {"orrery/sceneHash", report.scene_hash},
                        {"orrery/samples", world.samples},
                        {"orrery/maxDepth", static_cast<int>(world.max_depth)},
-                       {"orrery/seed", std::to_string(world.seed)}};
+                       {"orrery/seed", std::to_string(world.sampler.seed)}};
   for (const format::Setting& setting : read.settings)
-    if (setting.key == "render.precision" || setting.key == "render.shading")
+    if (setting.key == "render.precision" || setting.key == "render.shading" || setting.key == "render.sampler")
       header.attributes.push_back({"orrery/" + setting.key.substr(7), scene::unquoted(setting.value)});
   for (const auto& [layer, bad] : report.bad_layers)
     header.attributes.push_back({"orrery/badValues/" + layer, std::to_string(bad.nan) + " nan, " +

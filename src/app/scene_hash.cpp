@@ -55,9 +55,10 @@ std::string scene_hash(const compile::World& world) {
   for (const auto* v : {&c.origin, &c.forward, &c.right, &c.down, &c.lens_u, &c.lens_v}) add_all(hash, *v);
   add_all(hash, world.background.bottom);
   add_all(hash, world.background.top);
-  for (const std::uint64_t v : {std::uint64_t(world.width), std::uint64_t(world.height), std::uint64_t(world.samples),
-                                std::uint64_t{world.max_depth}, std::uint64_t{world.seed}, std::uint64_t(world.shading),
-                                std::uint64_t(world.precision)})
+  for (const std::uint64_t v :
+       {std::uint64_t(world.width), std::uint64_t(world.height), std::uint64_t(world.samples),
+        std::uint64_t{world.max_depth}, std::uint64_t{world.roulette_depth}, std::uint64_t{world.sampler.seed},
+        std::uint64_t(world.sampler.kind), std::uint64_t(world.shading), std::uint64_t(world.precision)})
     hash.add_bits(v);
   for (const double v : world.filter.above) hash.add(v);
   return hash.text();

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
 #include "compile/camera_basis.h"
 #include "compile/pixel_filter.h"
+#include "kernel/sobol_columns.h"
 
 namespace orrery::compile {
 namespace {
@@ -135,6 +137,21 @@ void set_background(const scene::Background& from, World& world) {
   world.features.sky = gradient && !(from.bottom == from.top);
 }
 
+/// With blue noise a pixel takes as many points of a sequence as it has samples, up to the next power of two, and
+/// leaves the others to its neighbours.
+kernel::Sampler compile_sampler(const scene::Render& render) {
+  kernel::Sampler out;
+  out.seed = render.seed;
+  switch (render.sampler) {
+    case scene::Sampler::kIndependent: out.kind = kernel::SamplerKind::kIndependent; break;
+    case scene::Sampler::kSobol: out.kind = kernel::SamplerKind::kSobol; break;
+    case scene::Sampler::kBlueNoise: out.kind = kernel::SamplerKind::kBlueNoise; break;
+  }
+  const auto samples = static_cast<unsigned>(render.samples);
+  out.blue_noise_bits = std::min(static_cast<int>(std::bit_width(samples - 1)), kernel::kSobolBits);
+  return out;
+}
+
 }  // namespace
 
 kernel::SceneView World::view() const noexcept {
@@ -148,7 +165,8 @@ kernel::SceneView World::view() const noexcept {
   v.features = features;
   v.shading = shading;
   v.max_depth = max_depth;
-  v.seed = seed;
+  v.roulette_depth = roulette_depth;
+  v.sampler = sampler;
   v.filter = filter.view();
   v.window_x = static_cast<std::uint32_t>(window_x) & 0xffff;
   v.window_y = static_cast<std::uint32_t>(window_y) & 0xffff;
@@ -167,7 +185,8 @@ World compile(const scene::Scene& scene) {
   world.height = window.height;
   world.samples = scene.render.samples;
   world.max_depth = static_cast<std::uint32_t>(scene.render.max_depth);
-  world.seed = scene.render.seed;
+  if (scene.render.roulette_depth > 0) world.roulette_depth = static_cast<std::uint32_t>(scene.render.roulette_depth);
+  world.sampler = compile_sampler(scene.render);
   switch (scene.render.precision) {
     case scene::Precision::kExact: world.precision = Precision::kExact; break;
     case scene::Precision::kFast: world.precision = Precision::kFast; break;

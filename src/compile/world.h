@@ -46,7 +46,8 @@ struct World {
   double pixel_aspect = 1;      ///< a pixel's width by its height
   int samples = 0;              ///< per pixel
   std::uint32_t max_depth = 0;  ///< scattering events
-  std::uint32_t seed = 0;
+  std::uint32_t roulette_depth = kernel::kNoRoulette;  ///< scattering events before Russian roulette begins
+  kernel::Sampler sampler;
 
   /// The same for the inner loops; valid as long as this World is neither changed nor destroyed.
   kernel::SceneView view() const noexcept;

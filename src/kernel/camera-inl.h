@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/random-inl.h"
+#include "kernel/sampler-inl.h"
 #include "kernel/sample-inl.h"
 #include "kernel/scene_view.h"
 

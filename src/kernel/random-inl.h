@@ -77,16 +77,13 @@ HWY_INLINE hn::Vec<D> to_unit(D d, hn::Vec<hn::RebindToUnsigned<D>> bits) {
   }
 }
 
-/// The four numbers in 0..1 that one path takes at one of its vertices.
+/// Four numbers that have nothing to do with those of any other (seed, pixel, sample, vertex).
 ///
-/// They are named by (seed, pixel, sample, vertex) alone, so that the picture does not depend on who asks, or when.
-template <class D>
-HWY_INLINE Four<hn::Vec<D>> random_at_vertex(D d, std::uint32_t seed, hn::Vec<hn::RebindToUnsigned<D>> pixel,
-                                             hn::Vec<hn::RebindToUnsigned<D>> sample, std::uint32_t vertex) {
-  const hn::RebindToUnsigned<D> du;
-  const auto bits = philox(du, Four<hn::Vec<decltype(du)>>{{pixel, sample, hn::Set(du, vertex), hn::Zero(du)}}, seed,
-                           0x6f727279u /* names this use of the seed */);
-  return {{to_unit(d, bits.v[0]), to_unit(d, bits.v[1]), to_unit(d, bits.v[2]), to_unit(d, bits.v[3])}};
+/// Result     as of philox
+template <class DU, class V = hn::Vec<DU>>
+HWY_INLINE Four<V> independent_at_vertex(DU du, std::uint32_t seed, V pixel, V sample, std::uint32_t vertex) {
+  return philox(du, Four<V>{{pixel, sample, hn::Set(du, vertex), hn::Zero(du)}}, seed,
+                0x6f727279u /* names this use of the seed */);
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

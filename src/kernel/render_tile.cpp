@@ -65,7 +65,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
   for (int v = 0; v < kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
     const auto pixels = hn::Load(du, carried.pixel + v);
     const auto samples = hn::Load(du, carried.sample + v);
-    auto random = random_at_vertex(d, scene.seed, pixels, samples, 0);
+    auto random = random_at_vertex(d, scene.sampler, pixels, samples, 0, scene.features.lens);
     if (scene.filter.above != nullptr) filter_place(d, scene.filter, samples, random);
     const auto place = [&](hn::Vec<IdTag<D>> at, std::uint32_t begin) {
       return to_real(d, hn::And(at - hn::Set(du, static_cast<Id>(begin)), hn::Set(du, Id{0xffff})));

@@ -11,8 +11,8 @@
 
 #include "kernel/intersect-inl.h"
 #include "kernel/material.h"
-#include "kernel/random-inl.h"
 #include "kernel/sample-inl.h"
+#include "kernel/sampler-inl.h"
 #include "kernel/scene_view.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -119,6 +119,12 @@ HWY_INLINE Vec3<V> scatter_dielectric(D d, const Surface<D>& at, V u) {
   const auto refracted = select(at.other_side(d, w), w, negated(at.normal));
   const auto reflects = hn::Or(leaving2 < zero, u < reflectance(d, at, cos_arriving, cos_leaving));
   return select(reflects, mirrored(d, at), refracted);
+}
+
+/// Lanes that need no more than two numbers to be sent on.
+template <class D>
+HWY_INLINE hn::Mask<D> is_diffuse(D d, const Surface<D>& at) {
+  return hn::Or(is_kind(d, at.kind, MaterialKind::kLambertian), is_kind(d, at.kind, MaterialKind::kHemisphere));
 }
 
 /// Sends every ray on by its material.

@@ -7,6 +7,7 @@
 #include "kernel/camera.h"
 #include "kernel/material.h"
 #include "kernel/pixel_filter.h"
+#include "kernel/sampler.h"
 #include "kernel/sphere.h"
 
 namespace orrery::kernel {
@@ -28,6 +29,13 @@ struct Features {
   bool sky = false;         ///< the background depends on the direction
 };
 
+/// Russian roulette leaves paths alone that still have one part in so many of their light: what they save would not
+/// outweigh their noise.
+inline constexpr double kRouletteGain = 8;
+
+/// More scattering events than any path has.
+inline constexpr std::uint32_t kNoRoulette = 0xffffffffu;
+
 /// The compiled scene as the inner loops see it: pointers into arrays that somebody else owns.
 struct SceneView {
   const Sphere* spheres = nullptr;
@@ -39,7 +47,9 @@ struct SceneView {
   Features features;
   Shading shading = Shading::kPath;
   std::uint32_t max_depth = 50;  ///< scattering events; a path that has not left the scene after them brings no light
-  std::uint32_t seed = 1;
+  /// Scattering events after which Russian roulette ends paths that have little to bring, and strengthens the others.
+  std::uint32_t roulette_depth = kNoRoulette;
+  Sampler sampler;
   PixelFilter filter;
   /// Where the rendered window begins within the frame, modulo 65536. A pixel's name, which chooses its random numbers,
   /// is its place in the frame, so that a window's pixels are the frame's.

@@ -189,6 +189,20 @@ struct Nothing {
   HWY_INLINE explicit Nothing(const Any&...) {}
 };
 
+/// Ends paths by chance, the darker the likelier, and makes the others brighter for it: on average nothing is lost.
+///
+/// Reference  arvo1990
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> survives_roulette(D d, V u, Vec3<V>& throughput) {
+  using T = hn::TFromD<D>;
+  const V brightest = hn::Max(throughput.x, hn::Max(throughput.y, throughput.z));
+  const V chance = hn::Min(brightest * hn::Set(d, static_cast<T>(kRouletteGain)), hn::Set(d, T(1)));
+  const auto stronger = hn::Set(d, hn::TFromD<D>(1)) / chance;
+  const auto survives = u < chance;
+  throughput = {throughput.x * stronger, throughput.y * stronger, throughput.z * stronger};
+  return survives;
+}
+
 /// Shades a traced packet: what left the scene adds its light, what goes on is appended to the stream.
 ///
 /// Result     number of paths in the stream, `alive` before the call
@@ -251,10 +265,13 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       if constexpr (kRecords) record.light(d, hit, shown, history);
       continue;
     }
-    const auto random = random_at_vertex(d, scene.seed, pixels, samples, depth + 1);
+    const bool plays_roulette = depth + 1 >= scene.roulette_depth;
+    const bool chooses = plays_roulette || !hn::AllTrue(d, hn::Or(is_diffuse(d, at.surface), hn::Not(hit)));
+    const auto random = random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, chooses);
     const auto scattered = scatter(d, scene.features, at.surface, random);
     throughput = tinted;
-    const auto goes_on = hn::And(hit, scattered.alive);
+    auto goes_on = hn::And(hit, scattered.alive);
+    if (plays_roulette) goes_on = hn::And(goes_on, survives_roulette(d, random.v[3], throughput));
     const Compactor<D> compactor(d, goes_on);
     compactor.store3(d, at.sphere.center, stream.base, alive);
     compactor.store3(d, at.surface.offset, stream.offset, alive);

@@ -58,6 +58,7 @@ struct Background {
 enum class Precision { kExact, kFast, kBook };
 enum class Shading { kPath, kNormal, kFlat };
 enum class Accelerator { kEmbree, kList };
+enum class Sampler { kIndependent, kSobol, kBlueNoise };
 enum class Filter { kBox, kGaussian, kBlackmanHarris, kMitchell };
 
 struct Render {
@@ -69,6 +70,8 @@ struct Render {
   Accelerator accelerator = Accelerator::kEmbree;
   Filter filter = Filter::kBox;
   std::optional<double> filter_width = {};  ///< px, from end to end; default: 1, 3, 3 or 4, by filter
+  int roulette_depth = 3;                   ///< scattering events before Russian roulette begins; 0: never
+  Sampler sampler = Sampler::kSobol;
 };
 
 struct Lambertian {

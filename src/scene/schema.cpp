@@ -195,6 +195,18 @@ Table render_table() {
                   {"scattering events", "a path that has been scattered more often than this brings no light",
                    "a bound only: most paths leave the scene earlier"},
                   [](S& s) -> int& { return s.render.max_depth; }),
+       integer<S>("roulette_depth", {0, kDeepestPath},
+                  {"scattering events",
+                   "from here on a path is ended by chance, the less light it can still bring the likelier, and counts "
+                   "for more if it is not; without bias; 0: never",
+                   "a quarter of the time in final.toml, up to two thirds where much is dark"},
+                  [](S& s) -> int& { return s.render.roulette_depth; }),
+       choice<S>("sampler", {"independent", "sobol", "blue-noise"},
+                 {"",
+                  "how the random numbers of a pixel's paths go together: `independent`: not at all, as in the book; "
+                  "`sobol`: evenly spread; `blue-noise`: so that neighbouring pixels' errors differ, too",
+                  "`sobol` and `blue-noise` need fewer samples for the same error"},
+                 [](S& s) -> Sampler& { return s.render.sampler; }),
        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},
                   {"", "chooses the random numbers; the same seed gives the same picture, bit for bit"},
                   [](S& s) -> std::uint32_t& { return s.render.seed; }),

@@ -70,7 +70,7 @@ std::vector<double> z_scores(double albedo_factor) {
       for (int x = 0; x < kSide; ++x) truth.push_back(expected(world, x, y, c));
   for (int seed = 0; seed < kSeeds; ++seed) {
     compile::World seeded = world;
-    seeded.seed = static_cast<std::uint32_t>(seed + 1);
+    seeded.sampler.seed = static_cast<std::uint32_t>(seed + 1);
     const render::Result result = render::render(seeded, {});
     std::size_t i = 0;
     for (std::size_t c = 0; c < 3; ++c)

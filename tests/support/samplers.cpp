@@ -45,8 +45,8 @@ void draw_all(Shape shape, std::uint32_t first, std::size_t count, double* x, do
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const std::uint32_t index = first + static_cast<std::uint32_t>(i);
     const auto name = hn::Add(hn::Iota(du, 0), hn::Set(du, index));
-    const auto random =
-        k::random_at_vertex(d, 7, hn::ShiftRight<8>(name), hn::And(name, hn::Set(du, kSamplesPerPixel - 1)), 1);
+    const auto random = k::random_at_vertex(d, {kernel::SamplerKind::kIndependent, 7}, hn::ShiftRight<8>(name),
+                                            hn::And(name, hn::Set(du, kSamplesPerPixel - 1)), 1, true);
     const auto p = sample(d, shape, random);
     hn::StoreU(p.x, d, x + i);
     hn::StoreU(p.y, d, y + i);

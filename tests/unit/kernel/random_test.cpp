@@ -9,7 +9,7 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
-#include "kernel/random-inl.h"
+#include "kernel/sampler-inl.h"
 #include "math/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -53,7 +53,8 @@ void numbers_of_a_path(double* out) {
   const hn::FixedTag<double, 1> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   for (std::uint32_t vertex = 0; vertex < 4; ++vertex) {
-    const auto four = random_at_vertex(d, 1, hn::Set(du, 5u), hn::Set(du, 6u), vertex);
+    const auto four =
+        random_at_vertex(d, {SamplerKind::kIndependent, 1}, hn::Set(du, 5u), hn::Set(du, 6u), vertex, true);
     for (int i = 0; i < 4; ++i) *out++ = hn::GetLane(four.v[i]);
   }
 }

@@ -26,6 +26,7 @@ scene::Scene grey_sphere() {
 TEST(RenderLight, APathInAClosedSphereScattersAsOftenAsItMay) {
   scene::Scene s = grey_sphere();
   s.spheres[0].radius = 10;
+  s.render.roulette_depth = 0;
   for (int depth = 0; depth < 5; ++depth) {
     s.render.max_depth = depth;
     const Result result = render(compile::compile(s), {});

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sobol's sequence in four dimensions, scrambled as Owen does it, by hashing. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_SOBOL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_SOBOL_INL_H_
+#undef ORRERY_KERNEL_SOBOL_INL_H_
+#else
+#define ORRERY_KERNEL_SOBOL_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "kernel/sobol_columns.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The bits of each 32-bit lane in opposite order.
+template <class D32, class V = hn::Vec<D32>>
+HWY_INLINE V reversed_bits(D32 d32, V v) {
+  if constexpr (hn::MaxLanes(D32()) * 4 >= 16) {
+    const hn::Repartition<std::uint8_t, D32> d8;
+    alignas(16) static constexpr std::uint8_t kNibble[16] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+    alignas(16) static constexpr std::uint8_t kBytes[16] = {3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12};
+    const auto table = hn::LoadDup128(d8, kNibble);
+    const auto low_mask = hn::Set(d8, std::uint8_t{15});
+    const auto bytes = hn::TableLookupBytes(hn::BitCast(d8, v), hn::LoadDup128(d8, kBytes));
+    const auto high = hn::And(hn::BitCast(d8, hn::ShiftRight<4>(hn::BitCast(d32, bytes))), low_mask);
+    const auto low = hn::TableLookupBytes(table, hn::And(bytes, low_mask));
+    return hn::Or(hn::BitCast(d32, hn::TableLookupBytes(table, high)), hn::ShiftLeft<4>(hn::BitCast(d32, low)));
+  } else {
+    const auto swap = [&](V x, auto shift, std::uint32_t mask) {
+      constexpr int kShift = decltype(shift)::value;
+      const V m = hn::Set(d32, mask);
+      return hn::Or(hn::And(hn::ShiftRight<kShift>(x), m), hn::ShiftLeft<kShift>(hn::And(x, m)));
+    };
+    v = swap(v, std::integral_constant<int, 1>(), 0x55555555u);
+    v = swap(v, std::integral_constant<int, 2>(), 0x33333333u);
+    v = swap(v, std::integral_constant<int, 4>(), 0x0f0f0f0fu);
+    v = swap(v, std::integral_constant<int, 8>(), 0x00ff00ffu);
+    return hn::Or(hn::ShiftRight<16>(v), hn::ShiftLeft<16>(v));
+  }
+}
+
+/// Flips every bit by chance, the chance named by the seed and the bits below it: Owen's scrambling of the number that
+/// is `v` with its bits in opposite order.
+///
+/// Reference  laine2011 (the idea), vegdahl2021 (these constants)
+template <class D32, class V = hn::Vec<D32>>
+HWY_INLINE V flipped_by_lower_bits(D32 d32, V v, V seed) {
+  v = hn::Xor(v, v * hn::Set(d32, 0x3d20adeau));
+  v = v + seed;
+  v = v * hn::Or(hn::ShiftRight<16>(seed), hn::Set(d32, 1u));
+  v = hn::Xor(v, v * hn::Set(d32, 0x05526c56u));
+  return hn::Xor(v, v * hn::Set(d32, 0x53a22864u));
+}
+
+/// All bits of a number stirred into all.
+///
+/// Reference  appleby2011, the end of MurmurHash3
+template <class D32, class V = hn::Vec<D32>>
+HWY_INLINE V stirred(D32 d32, V v) {
+  v = hn::Xor(v, hn::ShiftRight<16>(v)) * hn::Set(d32, 0x85ebca6bu);
+  v = hn::Xor(v, hn::ShiftRight<13>(v)) * hn::Set(d32, 0xc2b2ae35u);
+  return hn::Xor(v, hn::ShiftRight<16>(v));
+}
+
+/// Point `index` of the sequence that `name` names: four coordinates as 32-bit fractions.
+///
+/// Sequences of different names are independent. Points 2^k n .. 2^k (n + 1) are a net in base 2 in the first two
+/// coordinates, and nearly one in all four, for every n and k: the picture may stop at any count.
+///
+/// Domain     index < 2^kSobolBits; without `last_two` these are 0, and the time for them is saved; 64-bit lanes: both
+/// in the low halves, the high ones 0 Result     in 64-bit lanes in the low halves, the high ones 0 Reference  joe2008
+/// (directions), burley2020 (shuffled indices, scrambling by a hash)
+template <class DU, class V = hn::Vec<DU>>
+HWY_INLINE Four<V> sobol(DU du, V index, V name, bool last_two) {
+  const hn::Repartition<std::uint32_t, DU> d32;
+  using V32 = hn::Vec<decltype(d32)>;
+  // 64-bit lanes hold two coordinates at a time, one in each half.
+  constexpr bool kPaired = sizeof(hn::TFromD<DU>) == 8;
+  const auto both = [&](V v) {
+    if constexpr (kPaired)
+      return hn::BitCast(d32, hn::Or(v, hn::ShiftLeft<32>(v)));
+    else
+      return v;
+  };
+  const auto pair = [&](std::uint32_t low, [[maybe_unused]] std::uint32_t high) {
+    if constexpr (kPaired)
+      return hn::BitCast(d32, hn::Set(du, std::uint64_t{high} << 32 | low));
+    else
+      return hn::Set(d32, low);
+  };
+  const V32 seed = stirred(d32, both(name));
+  // The order of the points by chance, too: so the coordinates of two vertices of a path do not go together.
+  const V32 order = flipped_by_lower_bits(d32, reversed_bits(d32, both(index)), seed);
+  const V32 at = reversed_bits(d32, hn::And(order, hn::Set(d32, ~0u << (32 - kSobolBits))));
+
+  // Coordinates with their bits in opposite order. The first is the index itself; in the second bit j of it stands for
+  // the polynomial (1 + t)^j over two elements, whatever is known of t^(2^b) gives all in five steps.
+  V32 second = at;
+  const auto expand = [&](auto shift, std::uint32_t mask) {
+    second = hn::Xor(second, hn::ShiftRight<decltype(shift)::value>(hn::And(second, hn::Set(d32, mask))));
+  };
+  expand(std::integral_constant<int, 1>(), 0xaaaaaaaau);
+  expand(std::integral_constant<int, 2>(), 0xccccccccu);
+  expand(std::integral_constant<int, 4>(), 0xf0f0f0f0u);
+  expand(std::integral_constant<int, 8>(), 0xff00ff00u);
+  static_assert(kSobolBits <= 16, "one more step");
+  // Any four odd numbers far from each other.
+  constexpr std::uint32_t kSeeds[4] = {0x9e3779b1u, 0x7feb352du, 0xb5297a4du, 0x68e31da5u};
+  const auto scrambled = [&](V32 v, int low, int high) {
+    const V32 own = hn::Xor(seed, hn::ShiftRight<15>(seed)) * pair(kSeeds[low], kSeeds[high]);
+    return reversed_bits(d32, flipped_by_lower_bits(d32, v, hn::Xor(own, hn::ShiftRight<16>(own))));
+  };
+  Four<V> out;
+  [[maybe_unused]] const V low_half = hn::Set(du, hn::TFromD<DU>{0xffffffffu});
+  const auto put = [&](V32 v, int to) {
+    if constexpr (kPaired) {
+      out.v[to] = hn::And(hn::BitCast(du, v), low_half);
+      out.v[to + 1] = hn::ShiftRight<32>(hn::BitCast(du, v));
+    } else {
+      out.v[to] = v;
+    }
+  };
+  if constexpr (kPaired) {
+    const V32 mask = hn::BitCast(d32, low_half);
+    put(scrambled(hn::Or(hn::And(at, mask), hn::AndNot(mask, second)), 0, 1), 0);
+  } else {
+    put(scrambled(at, 0, 0), 0);
+    put(scrambled(second, 1, 1), 1);
+  }
+  out.v[2] = out.v[3] = hn::Zero(du);
+  if (!last_two) return out;
+
+  V32 third = hn::Zero(d32);
+  [[maybe_unused]] V32 fourth = third;
+  const hn::RebindToSigned<decltype(d32)> ds;
+  V32 bits = hn::ShiftLeft<32 - kSobolBits>(at);
+  HWY_UNROLL(kSobolBits)
+  for (int j = kSobolBits - 1; j >= 0; --j) {
+    const V32 is_set = hn::BitCast(d32, hn::BroadcastSignBit(hn::BitCast(ds, bits)));
+    third = hn::Xor(third, hn::And(is_set, pair(kSobolColumns.third[j], kSobolColumns.fourth[j])));
+    if constexpr (!kPaired) fourth = hn::Xor(fourth, hn::And(is_set, hn::Set(d32, kSobolColumns.fourth[j])));
+    bits = bits + bits;
+  }
+  put(scrambled(third, 2, 3), 2);
+  if constexpr (!kPaired) put(scrambled(fourth, 3, 3), 3);
+  return out;
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
