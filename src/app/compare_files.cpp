@@ -1,79 +1,217 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/compare_files.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <nlohmann/json.hpp>
 
 #include "app/text.h"
+#include "app/version.h"
 #include "base/error.h"
+#include "base/suggestion.h"
 #include "image/format.h"
 #include "image/read.h"
+#include "image/write.h"
+#include "metrics/false_color.h"
+#include "metrics/flip.h"
+#include "metrics/srgb.h"
+#include "metrics/ssim.h"
 
 namespace orrery::app {
 namespace {
+
+using metrics::ColorView;
 
 std::string size_text(const film::Picture& picture) {
   return std::to_string(picture.width) + " x " + std::to_string(picture.height);
 }
 
-/// Sums over values; the mean is taken at the end.
-struct Sums {
-  double squares = 0, relative = 0;
-  std::uint64_t count = 0;
+base::Error bad_data(const std::string& text) { return {base::ErrorKind::kBadData, text}; }
+
+/// The channels that a comparison is of: a layer's, up to three; one alone stands for all.
+struct Compared {
+  ColorView view;
+  std::vector<std::string> names;
 };
 
-void compare_planes(const film::Plane& a, const film::Plane& b, Comparison& out, Sums& sums) {
-  for (std::size_t i = 0; i < a.values.size(); ++i) {
-    const double x = a.values[i], y = b.values[i];
-    if (!std::isfinite(x) || !std::isfinite(y)) {
-      ++out.not_finite;
+Compared channels_of(const film::Picture& picture, const film::Picture& other, const std::string& layer) {
+  Compared out;
+  out.view = {picture.width, picture.height, {}};
+  const auto add = [&](const film::Plane& plane) {
+    if (out.names.size() == 3 || other.find(plane.name) == nullptr) return;
+    out.view.channel[out.names.size()] = plane.values.data();
+    out.names.push_back(plane.name);
+  };
+  if (layer.empty()) {
+    for (const char* name : {"R", "G", "B"})
+      if (const film::Plane* plane = picture.find(name)) add(*plane);
+    if (out.names.empty())
+      for (const film::Plane& plane : picture.planes)
+        if (plane.layer().empty()) add(plane);
+  } else {
+    for (const film::Plane& plane : picture.planes)
+      if (plane.layer() == layer || plane.name == layer) add(plane);
+  }
+  for (std::size_t c = std::max<std::size_t>(out.names.size(), 1); c < 3; ++c)
+    out.view.channel[c] = out.view.channel[c - 1];
+  return out;
+}
+
+void count_differing(const film::Picture& picture, const film::Picture& reference, Comparison& out) {
+  for (const film::Plane& plane : picture.planes) {
+    const film::Plane* const other = reference.find(plane.name);
+    if (other == nullptr) {
+      out.only_in_picture.push_back(plane.name);
       continue;
     }
-    const double difference = std::abs(x - y);
-    sums.squares += difference * difference;
-    sums.relative += difference * difference / (y * y + kRelativeFloor);
-    ++sums.count;
-    if (difference > 0) ++out.differing;
-    if (difference <= out.max) continue;
-    out.max = difference;
-    out.max_channel = a.name;
-    out.max_x = static_cast<int>(i % static_cast<std::size_t>(out.width));
-    out.max_y = static_cast<int>(i / static_cast<std::size_t>(out.width));
+    out.values += plane.values.size();
+    for (std::size_t i = 0; i < plane.values.size(); ++i)
+      if (plane.values[i] != other->values[i] && !(std::isnan(plane.values[i]) && std::isnan(other->values[i])))
+        ++out.differing;
+  }
+  for (const film::Plane& plane : reference.planes)
+    if (picture.find(plane.name) == nullptr) out.only_in_reference.push_back(plane.name);
+}
+
+/// Codes of an sRGB screen that shows light without exposure, for metrics that ask for codes.
+struct Codes {
+  std::vector<float> values[3];
+  ColorView view;
+
+  Codes(const ColorView& from, Encoding encoding) : view(from) {
+    for (int c = 0; c < 3; ++c) {
+      values[c].assign(from.channel[c], from.channel[c] + from.pixels());
+      for (float& v : values[c]) {
+        v = std::isfinite(v) ? std::clamp(v, 0.0f, 1.0f) : 0.0f;
+        if (encoding == Encoding::kLight) v = metrics::srgb_encoded(v);
+      }
+      view.channel[c] = values[c].data();
+    }
+  }
+};
+
+/// The same light without what is no number, which would spread over its surroundings.
+struct Finite {
+  std::vector<float> values[3];
+  ColorView view;
+
+  explicit Finite(const ColorView& from) : view(from) {
+    for (int c = 0; c < 3; ++c) {
+      values[c].assign(from.channel[c], from.channel[c] + from.pixels());
+      for (float& v : values[c])
+        if (!std::isfinite(v)) v = 0;
+      view.channel[c] = values[c].data();
+    }
+  }
+};
+
+film::Picture difference_picture(const Compared& a, const Compared& b, bool for_display) {
+  film::Picture out;
+  out.width = a.view.width;
+  out.height = a.view.height;
+  const char* const names[3] = {"R", "G", "B"};
+  for (int c = 0; c < 3; ++c) {
+    film::Plane plane{names[c], std::vector<float>(a.view.pixels())};
+    for (std::size_t i = 0; i < plane.values.size(); ++i) {
+      const float d = a.view.channel[c][i] - b.view.channel[c][i];
+      plane.values[i] = for_display ? 0.5f + d / 2 : d;
+    }
+    plane.kind = film::PlaneKind::kVector;  // below 0 is as good as above
+    out.planes.push_back(std::move(plane));
+  }
+  return out;
+}
+
+film::EncodedPicture encoded(const film::Picture& codes) {
+  film::EncodedPicture out;
+  out.width = codes.width;
+  out.height = codes.height;
+  out.is_srgb = true;
+  for (std::size_t i = 0; i < codes.planes[0].values.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      out.values.push_back(
+          static_cast<std::uint16_t>(std::lround(std::clamp(codes.planes[c].values[i], 0.0f, 1.0f) * 255)));
+  return out;
+}
+
+void write_codes(const std::filesystem::path& file, const film::Picture& codes) {
+  image::write_encoded(file, encoded(codes), program_version());
+}
+
+void write_numbers(const std::filesystem::path& file, const film::Picture& numbers) {
+  if (image::format_of(file) == image::Format::kHdr)
+    throw base::Error(base::ErrorKind::kUsage, file.string() + " cannot hold numbers below 0; write an EXR");
+  image::ExrOptions options;
+  options.as_float = true;
+  image::write_exr(file, numbers, {}, options);
+}
+
+void write_map(const std::filesystem::path& file, const metrics::Map& map, double full) {
+  if (file.empty()) return;
+  if (image::is_display_format(image::format_of(file))) {
+    write_codes(file, metrics::false_color(map, full));
+  } else {
+    write_numbers(file, metrics::grey(map));
   }
 }
 
 }  // namespace
 
-double Comparison::psnr_db() const {
-  return rmse > 0 ? -20 * std::log10(rmse) : std::numeric_limits<double>::infinity();
+const std::vector<std::string>& limitable_metrics() {
+  static const std::vector<std::string> names = {"rmse", "relmse", "mae", "max", "display", "flip", "bias", "z"};
+  return names;
 }
 
-Comparison compare(const film::Picture& picture, const film::Picture& reference) {
+double Comparison::metric(const std::string& name) const {
+  if (name == "rmse") return errors.rmse;
+  if (name == "relmse") return errors.relative_mse;
+  if (name == "mae") return errors.mae;
+  if (name == "max") return errors.max;
+  if (name == "display") return errors.display;
+  if (name == "bias") return std::abs(errors.bias);
+  if (name == "flip" && flip) return *flip;
+  if (name == "z" && z_test) return std::abs(z_test->largest_z);
+  throw base::Error(base::ErrorKind::kUsage,
+                    "--fail-above " + name + ": these pictures have none" +
+                        (name == "z" ? "; render with --layers variance" : "; it is of colours only"));
+}
+
+Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
+                   const std::string& layer) {
   if (picture.width != reference.width || picture.height != reference.height)
-    throw base::Error(base::ErrorKind::kBadData, "pictures of different sizes cannot be compared: " +
-                                                     size_text(picture) + " and " + size_text(reference));
+    throw bad_data("pictures of different sizes cannot be compared: " + size_text(picture) + " and " +
+                   size_text(reference));
   Comparison out;
   out.width = picture.width;
   out.height = picture.height;
-  Sums sums;
-  for (const film::Plane& plane : picture.planes) {
-    const film::Plane* const other = reference.find(plane.name);
-    if (other == nullptr) continue;
-    out.channels.push_back(plane.name);
-    compare_planes(plane, *other, out, sums);
+  count_differing(picture, reference, out);
+  const Compared a = channels_of(picture, reference, layer), b = channels_of(reference, picture, layer);
+  if (a.names.empty() && layer.empty()) throw bad_data("the pictures have no channel of the same name");
+  if (a.names.empty()) {
+    std::vector<std::string> names;
+    for (const film::Plane& plane : picture.planes) {
+      const std::string name = plane.layer().empty() ? plane.name : plane.layer();
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    throw bad_data("layer " + layer + " is not in both pictures; the first has " + base::joined(names));
   }
-  if (out.channels.empty())
-    throw base::Error(base::ErrorKind::kBadData, "the pictures have no channel of the same name");
-  if (sums.count > 0) {
-    out.rmse = std::sqrt(sums.squares / static_cast<double>(sums.count));
-    out.relative_mse = sums.relative / static_cast<double>(sums.count);
-  }
+  out.channels = a.names;
+  out.errors = metrics::pixel_errors(a.view, b.view);
+  out.display_map = metrics::display_error_map(a.view, b.view);
+  if (!layer.empty() || a.names.size() < 3) return out;
+  const Codes code_a(a.view, encoding), code_b(b.view, encoding);
+  out.ssim = metrics::ssim(code_a.view, code_b.view);
+  out.flip_map = encoding == Encoding::kDisplay ? metrics::flip(code_a.view, code_b.view)
+                                                : metrics::hdr_flip(Finite(a.view).view, Finite(b.view).view);
+  out.flip = out.flip_map.mean();
+  out.z_test =
+      metrics::z_test(a.view, metrics::color_of(picture, "variance"), b.view, metrics::color_of(reference, "variance"));
   return out;
 }
 
-Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference) {
+Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
+                         const std::string& layer, const ComparisonPictures& pictures) {
   const bool developed = image::is_display_format(image::format_of(picture));
   if (developed != image::is_display_format(image::format_of(reference))) {
     const auto& linear = developed ? reference : picture;
@@ -81,46 +219,105 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
                       linear.string() + " holds scene-linear light and the other picture what " +
                           "a display shows; develop it first: orrery develop " + linear.string() + " -o developed.png");
   }
-  return compare(image::read(picture), image::read(reference));
+  for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
+    if (!file.empty()) image::format_of(file);  // an unknown extension is told before work begins
+  if (!layer.empty() && !pictures.flip.empty())
+    throw base::Error(base::ErrorKind::kUsage, "--flip is of colours; leave --layer out");
+  const film::Picture a = image::read(picture), b = image::read(reference);
+  Comparison out = compare(a, b, developed ? Encoding::kDisplay : Encoding::kLight, layer);
+  if (!pictures.difference.empty()) {
+    const Compared left = channels_of(a, b, layer), right = channels_of(b, a, layer);
+    if (image::is_display_format(image::format_of(pictures.difference))) {
+      write_codes(pictures.difference, difference_picture(left, right, true));
+    } else {
+      write_numbers(pictures.difference, difference_picture(left, right, false));
+    }
+  }
+  write_map(pictures.heat, out.display_map, kHottest);
+  write_map(pictures.flip, out.flip_map, 1);
+  return out;
 }
 
 std::string comparison_text(const Comparison& c) {
-  std::string channels;
-  for (const std::string& name : c.channels) channels += (channels.empty() ? "" : ", ") + name;
   std::string out;
-  append(out, "pictures    %d x %d, channels %s\n", c.width, c.height, channels.c_str());
-  append(out, "rmse        %.6g\n", c.rmse);
-  append(out, "relmse      %.6g\n", c.relative_mse);
-  append(out, "max         %.6g", c.max);
-  if (!c.max_channel.empty()) append(out, " in %s at %d, %d", c.max_channel.c_str(), c.max_x, c.max_y);
-  if (std::isfinite(c.psnr_db())) {
-    append(out, "\npsnr        %.2f dB\n", c.psnr_db());
+  const metrics::PixelErrors& e = c.errors;
+  append(out, "pictures    %d x %d, channels %s\n", c.width, c.height, base::joined(c.channels).c_str());
+  append(out, "rmse        %.6g\n", e.rmse);
+  append(out, "relmse      %.6g\n", e.relative_mse);
+  append(out, "mae         %.6g\n", e.mae);
+  append(out, "max         %.6g", e.max);
+  if (e.max_channel >= 0)
+    append(out, " in %s at %d, %d",
+           c.channels[std::min(static_cast<std::size_t>(e.max_channel), c.channels.size() - 1)].c_str(), e.max_x,
+           e.max_y);
+  if (std::isfinite(e.psnr_db())) {
+    append(out, "\npsnr        %.2f dB\n", e.psnr_db());
   } else {
     out += "\npsnr        infinite\n";
   }
+  append(out, "display     %.6g relative, as --noise means it\n", e.display);
+  append(out, "bias        %+.3g of the mean\n", e.bias);
+  if (c.ssim) append(out, "ssim        %.6g\n", *c.ssim);
+  if (c.flip) append(out, "flip        %.6g\n", *c.flip);
+  if (c.z_test) {
+    const metrics::ZTest& z = *c.z_test;
+    append(out, "noise       rmse %.6g explained by the variances; %.6g beyond it\n", z.noise, z.bias);
+    append(out, "mean        %+.3g of it, standard error %.2g\n", z.mean_bias, z.mean_bias_error);
+    append(out, "z-test      %s: %d of %d squares of %d px beyond |z| = %.2f; largest %+.2f in %s at %d, %d\n",
+           z.differ() ? "the pictures differ by more than noise" : "no difference but noise", z.rejected, z.tests,
+           metrics::kTestedSide, z.critical_z, z.largest_z, c.channels[static_cast<std::size_t>(z.channel)].c_str(),
+           z.x, z.y);
+  }
   append(out, "differing   %llu of %llu values\n", static_cast<unsigned long long>(c.differing),
-         static_cast<unsigned long long>(c.channels.size()) * static_cast<unsigned long long>(c.width) *
-             static_cast<unsigned long long>(c.height));
-  if (c.not_finite > 0)
-    append(out, "left out    %llu values that are not finite\n", static_cast<unsigned long long>(c.not_finite));
+         static_cast<unsigned long long>(c.values));
+  if (e.not_finite > 0)
+    append(out, "left out    %llu values that are not finite\n", static_cast<unsigned long long>(e.not_finite));
   return out;
 }
 
 std::string comparison_json(const Comparison& c) {
   using nlohmann::json;
-  json out = {{"schema", "orrery.compare/1"},
+  const metrics::PixelErrors& e = c.errors;
+  json out = {{"schema", "orrery.compare/2"},
               {"width", c.width},
               {"height", c.height},
               {"channels", c.channels},
-              {"rmse", c.rmse},
-              {"relmse", c.relative_mse},
-              {"max", c.max},
+              {"rmse", e.rmse},
+              {"relmse", e.relative_mse},
+              {"mae", e.mae},
+              {"max", e.max},
               {"max_at", nullptr},
               {"psnr_db", nullptr},
+              {"display", e.display},
+              {"bias", e.bias},
+              {"ssim", nullptr},
+              {"flip", nullptr},
+              {"z_test", nullptr},
+              {"values", c.values},
               {"differing", c.differing},
-              {"not_finite", c.not_finite}};
-  if (!c.max_channel.empty()) out["max_at"] = {{"channel", c.max_channel}, {"x", c.max_x}, {"y", c.max_y}};
-  if (std::isfinite(c.psnr_db())) out["psnr_db"] = c.psnr_db();
+              {"not_finite", e.not_finite},
+              {"only_in_a", c.only_in_picture},
+              {"only_in_b", c.only_in_reference}};
+  if (e.max_channel >= 0)
+    out["max_at"] = {{"channel", c.channels[std::min(static_cast<std::size_t>(e.max_channel), c.channels.size() - 1)]},
+                     {"x", e.max_x},
+                     {"y", e.max_y}};
+  if (std::isfinite(e.psnr_db())) out["psnr_db"] = e.psnr_db();
+  if (c.ssim) out["ssim"] = *c.ssim;
+  if (c.flip) out["flip"] = *c.flip;
+  if (c.z_test) {
+    const metrics::ZTest& z = *c.z_test;
+    out["z_test"] = {{"tests", z.tests},
+                     {"rejected", z.rejected},
+                     {"critical_z", z.critical_z},
+                     {"largest_z", z.largest_z},
+                     {"at", {{"channel", c.channels[static_cast<std::size_t>(z.channel)]}, {"x", z.x}, {"y", z.y}}},
+                     {"family_wise_error", metrics::kFamilyWiseError},
+                     {"noise_rmse", z.noise},
+                     {"bias_rmse", z.bias},
+                     {"mean_bias", z.mean_bias},
+                     {"mean_bias_error", z.mean_bias_error}};
+  }
   return json_text(out);
 }
 

@@ -3,43 +3,71 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "film/picture.h"
+#include "metrics/pixel_errors.h"
+#include "metrics/z_test.h"
 
 namespace orrery::app {
 
-/// How much a picture differs from a reference, over all values of the channels that both have.
-struct Comparison {
-  std::vector<std::string> channels;  ///< that were compared
-  int width = 0, height = 0;          ///< px
-  double rmse = 0;                    ///< root of the mean squared difference
-  double relative_mse = 0;            ///< mean of (a - b)^2 / (b^2 + kRelativeFloor)
-  double max = 0;                     ///< largest absolute difference
-  std::string max_channel;            ///< where it is; empty where nothing differs
-  int max_x = 0, max_y = 0;           ///< px, from the upper left
-  std::uint64_t differing = 0;        ///< values that are not equal
-  std::uint64_t not_finite = 0;       ///< values left out, since a or b is NaN or infinite
+/// Whether a picture holds light, or the codes of a display.
+enum class Encoding : std::uint8_t { kLight, kDisplay };
 
-  /// Peak signal to noise, decibels, for a peak of 1; infinite where nothing differs.
-  double psnr_db() const;
+/// How much a picture differs from a reference.
+struct Comparison {
+  int width = 0, height = 0;          ///< px
+  std::vector<std::string> channels;  ///< that the errors are of
+  metrics::PixelErrors errors;
+  std::optional<double> ssim;               ///< of colours
+  std::optional<double> flip;               ///< the mean, of colours; of light the one for high dynamic range
+  std::optional<metrics::ZTest> z_test;     ///< where the picture has a layer `variance`
+  std::uint64_t values = 0, differing = 0;  ///< of all common channels, and those not equal
+  std::vector<std::string> only_in_picture, only_in_reference;  ///< channels that the other has not
+
+  // As pictures, of colours.
+  metrics::Map flip_map, display_map;
+
+  /// A metric by the name that `--fail-above` gives it.
+  ///
+  /// Domain     one of limitable_metrics()
+  /// Errors     base::Error(kUsage) where these pictures have no such metric
+  double metric(const std::string& name) const;
 };
 
-/// Keeps black from making the relative error infinite: a tenth of white, squared.
-inline constexpr double kRelativeFloor = 0.01;
+/// The metrics that grow with the difference, so that a largest value makes sense.
+const std::vector<std::string>& limitable_metrics();
 
-/// Errors     base::Error(kBadData) where sizes differ or no channel is common
-Comparison compare(const film::Picture& picture, const film::Picture& reference);
+/// Compares the colours R, G, B, or the channels of another layer, which must be in both.
+///
+/// `layer`    empty: the beauty
+/// Errors     base::Error(kBadData) where sizes differ or the channels are not in both; it names what differs
+Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
+                   const std::string& layer = {});
+
+/// Pictures of a comparison that were asked for; empty: none.
+struct ComparisonPictures {
+  std::filesystem::path difference, heat, flip;
+};
 
 /// The same for files. Scene-linear light is not comparable to what was developed for a display.
 ///
-/// Errors     base::Error: as compare and image::read; kUsage for one file of each kind
-Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference);
+/// Of a difference a file of light holds the numbers themselves, a display format half of them above mid-grey; heat is
+/// the display error, up to the fiftieth part in false colours, and FLIP's map up to 1.
+///
+/// Errors     base::Error: as compare, image::read and image::write; kUsage for one file of each kind
+Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
+                         const std::string& layer, const ComparisonPictures& pictures);
+
+/// The largest display error that the heat map tells apart.
+inline constexpr double kHottest = 0.1;
 
 /// For people.
 std::string comparison_text(const Comparison& comparison);
-/// As JSON, "orrery.compare/1"; a PSNR that is infinite is null.
+/// As JSON, "orrery.compare/2"; what does not apply is null.
 std::string comparison_json(const Comparison& comparison);
 
 }  // namespace orrery::app

@@ -13,6 +13,7 @@
 #include "app/picture_header.h"
 #include "app/scene_hash.h"
 #include "app/statistics.h"
+#include "app/text.h"
 #include "app/threads.h"
 #include "app/working_space.h"
 #include "base/error.h"
@@ -166,9 +167,26 @@ void count_bad_values(const film::Picture& picture, JobReport& report) {
   }
 }
 
+/// When to stop sampling. The samples of the scene limit what is asked for otherwise only if they were asked for, too.
+void set_target(const Job& job, double seconds_so_far, render::Settings& settings) {
+  constexpr double kLeastTime = 1e-3;  // nothing left is not no limit
+  settings.noise = job.noise;
+  if (job.seconds > 0) settings.seconds = std::max(job.seconds - seconds_so_far, kLeastTime);
+  const auto is_samples = [](const std::string& setting) { return setting.rfind("render.samples=", 0) == 0; };
+  settings.unlimited = std::none_of(job.overrides.begin(), job.overrides.end(), is_samples);
+}
+
+std::string missed_target(const Job& job, const render::Statistics& statistics) {
+  std::string out;
+  if (job.noise > 0 && statistics.noise && *statistics.noise > job.noise)
+    append(out, "noise %.3g instead of %.3g: %s", *statistics.noise, job.noise,
+           statistics.ended_by == "time" ? "time was over" : "every pixel that needs more has had all its samples");
+  return out;
+}
+
 /// The way data takes.
 void run_phases(const Job& job, JobReport& report) {
-  Stopwatch watch;
+  Stopwatch watch, total;
   format::ReadResult read = format::read_scene(job.scene, job.overrides);
   for (const base::Finding& warning : read.warnings) warn(job, warning);
   const display::Settings display = choose_display(job, read.scene, report);
@@ -204,6 +222,7 @@ void run_phases(const Job& job, JobReport& report) {
   settings.on_progress = job.on_progress;
   settings.on_build = job.on_build;
   settings.cancel = job.cancel;
+  set_target(job, total.lap(), settings);
   const render::Result result = render::render(world, settings);
   report.render = result.statistics;
   report.phases.build_s = result.statistics.build_s;
@@ -211,6 +230,7 @@ void run_phases(const Job& job, JobReport& report) {
   watch.lap();
   if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written");
 
+  report.target_missed = missed_target(job, result.statistics);
   count_bad_values(result.picture, report);
   const image::Header header = picture_header(read, world, report, job.reproducible);
   image::set_threads(settings.threads);

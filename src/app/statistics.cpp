@@ -29,6 +29,7 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
   using nlohmann::json;
   const render::Statistics& r = report.render;
   const auto per_second = [&](std::uint64_t n) { return r.render_s > 0 ? static_cast<double>(n) / r.render_s : 0.0; };
+  const double pixels = static_cast<double>(report.width) * report.height;
   json versions = {{"orrery", program_version()}};
   for (const auto& [name, version] : library_versions()) versions[name] = version;
   json out = {{"schema", "orrery.stats/1"},
@@ -37,7 +38,12 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"scene_hash", report.scene_hash},
               {"width", report.width},
               {"height", report.height},
-              {"samples", report.samples},
+              {"samples", pixels > 0 ? static_cast<double>(r.paths) / pixels : 0.0},
+              {"samples_fewest", r.fewest_samples},
+              {"samples_most", r.most_samples},
+              {"noise", nullptr},
+              {"ended_by", r.ended_by},
+              {"target_missed", report.target_missed},
               {"spheres", report.spheres},
               {"paths", r.paths},
               {"rays", r.rays},
@@ -58,6 +64,7 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"traversal", r.traversal},
               {"accelerator", r.accelerator},
               {"versions", versions}};
+  if (r.noise) out["noise"] = *r.noise;
   for (const auto& [layer, bad] : report.bad_layers) out["bad_pixels"]["layers"][layer] = bad_values_json(bad);
   if (!outcome.error.empty()) out["error"] = outcome.error;
   return json_text(out);

@@ -28,11 +28,10 @@ struct Limit {
 struct CompareOptions {
   std::filesystem::path picture, reference;
   std::vector<std::string> limits;
+  std::string layer;
+  app::ComparisonPictures pictures;
   bool json = false, quiet = false;
 };
-
-/// The metrics that grow with the difference, so that a largest value makes sense.
-const std::vector<std::string> kLimitable = {"rmse", "relmse", "max"};
 
 Limit limit_of(const std::string& text) {
   const auto wrong = [&](const std::string& reason) {
@@ -45,34 +44,42 @@ Limit limit_of(const std::string& text) {
   const auto [stopped, error] = std::from_chars(text.data() + equals + 1, end, limit.value);
   if (error != std::errc() || stopped != end || !(limit.value >= 0))
     throw wrong("the value must be a number of 0 or more");
-  if (limit.metric == "psnr") throw wrong("psnr falls as pictures differ more; limit rmse instead");
-  if (std::find(kLimitable.begin(), kLimitable.end(), limit.metric) == kLimitable.end()) {
-    const std::string remedy = base::did_you_mean(limit.metric, kLimitable);
-    throw wrong("there is no such metric; " + (remedy.empty() ? "there are " + base::joined(kLimitable) : remedy));
+  const std::vector<std::string>& known = app::limitable_metrics();
+  if (limit.metric == "psnr" || limit.metric == "ssim")
+    throw wrong(limit.metric + " falls as pictures differ more; limit rmse or flip instead");
+  if (std::find(known.begin(), known.end(), limit.metric) == known.end()) {
+    const std::string remedy = base::did_you_mean(limit.metric, known);
+    throw wrong("there is no such metric; " + (remedy.empty() ? "there are " + base::joined(known) : remedy));
   }
   return limit;
 }
 
-double value_of(const app::Comparison& comparison, const std::string& metric) {
-  if (metric == "rmse") return comparison.rmse;
-  return metric == "relmse" ? comparison.relative_mse : comparison.max;
+void warn_of_layers(const CompareOptions& options, const app::Comparison& found) {
+  if (options.quiet) return;
+  const auto tell = [](const std::vector<std::string>& channels, const std::filesystem::path& file) {
+    if (!channels.empty())
+      std::fprintf(stderr, "warning: only in %s: %s\n", file.c_str(), base::joined(channels).c_str());
+  };
+  tell(found.only_in_picture, options.picture);
+  tell(found.only_in_reference, options.reference);
 }
 
 int compare(const CompareOptions& options) {
   std::vector<Limit> limits;
   for (const std::string& text : options.limits) limits.push_back(limit_of(text));
-  const app::Comparison found = app::compare_files(options.picture, options.reference);
+  const app::Comparison found = app::compare_files(options.picture, options.reference, options.layer, options.pictures);
+  if (!found.only_in_picture.empty() || !found.only_in_reference.empty()) warn_of_layers(options, found);
   if (!options.quiet) print_result(options.json ? app::comparison_json(found) : app::comparison_text(found));
   int status = 0;
   for (const Limit& limit : limits) {
-    const double value = value_of(found, limit.metric);
+    const double value = found.metric(limit.metric);
     if (value <= limit.value) continue;
     std::fprintf(stderr, "orrery: %s is %g, above %g\n", limit.metric.c_str(), value, limit.value);
     status = kDiffer;
   }
-  if (!limits.empty() && found.not_finite > 0) {
+  if (!limits.empty() && found.errors.not_finite > 0) {
     std::fprintf(stderr, "orrery: %llu values are not finite and cannot be compared\n",
-                 static_cast<unsigned long long>(found.not_finite));
+                 static_cast<unsigned long long>(found.errors.not_finite));
     status = kDiffer;
   }
   return status;
@@ -87,14 +94,21 @@ void add_compare(CLI::App& program, Action& action) {
   command.add_option("B", options->reference, "Picture to judge it by")->required()->type_name("FILE");
   repeatable(
       *command
-           .add_option("--fail-above", options->limits, "Exit with 1 if rmse, relmse or max is larger; can be repeated")
+           .add_option(
+               "--fail-above", options->limits,
+               "Exit with 1 if a metric is larger: rmse, relmse, mae, max, display, flip, bias or z; can be repeated")
            ->type_name("METRIC=VALUE"));
+  command.add_option("--layer", options->layer, "Compare this layer, not the beauty")->type_name("NAME");
+  command.add_option("--difference", options->pictures.difference, "Write A - B as a picture")->type_name("FILE");
+  command.add_option("--heat", options->pictures.heat, "Write the display error as a heat map")->type_name("FILE");
+  command.add_option("--flip", options->pictures.flip, "Write where eyes notice a difference")->type_name("FILE");
   command.add_flag("--json", options->json, "As JSON");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing but errors and what is above its limit");
   command.footer(
       "Examples:\n"
       "  orrery compare fast.exr exact.exr\n"
-      "  orrery compare new.exr reference.exr --quiet --fail-above rmse=0.001 --fail-above max=0.1");
+      "  orrery compare new.exr reference.exr --quiet --fail-above rmse=0.001 --fail-above max=0.1\n"
+      "  orrery compare adaptive.exr reference.exr --heat heat.png --flip flip.png");
   command.callback([options, &action] { action = [options] { return compare(*options); }; });
 }
 

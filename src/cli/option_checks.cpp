@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 #include <cstdio>
 #include <functional>
 #include <string_view>
@@ -87,6 +88,27 @@ CLI::Validator byte_size() {
         return "must be a size with its unit, as 512M or 1.5G, not `" + text + "`";
       },
       "byte_size");
+}
+
+CLI::Validator duration() {
+  return check(
+      [](std::string& text) -> std::string {
+        constexpr std::string_view kUnits = "smh";
+        const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
+        double value = 0;
+        if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
+          value *= unit == 0 ? 1 : unit == 1 ? 60 : 3600;
+          if (value >= 0.01 && value <= kLongestTime) {
+            std::ostringstream seconds;
+            seconds.precision(17);
+            seconds << value;
+            text = seconds.str();
+            return {};
+          }
+        }
+        return "must be a time with its unit, as 90s, 5m or 1.5h, not `" + text + "`";
+      },
+      "duration");
 }
 
 void repeatable(CLI::Option& option) { option.take_all()->expected(1)->allow_extra_args(false); }

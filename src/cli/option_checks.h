@@ -28,6 +28,12 @@ CLI::Validator real_number(double from, double to);
 /// Refuses what is no size, as 512M or 1.5G; leaves bytes behind. K, M, G and T are powers of 1024.
 CLI::Validator byte_size();
 
+/// A year: who asks for more has mistaken the unit.
+inline constexpr double kLongestTime = 365.0 * 24 * 3600;
+
+/// Refuses what is no time, as 90s, 5m or 1.5h, of a hundredth of a second or more; leaves seconds behind.
+CLI::Validator duration();
+
 /// An option that can be given several times, and takes one value each time: what follows is the next argument.
 void repeatable(CLI::Option& option);
 

@@ -48,6 +48,7 @@ std::string json_line(const ProgressState& state) {
                            state.samples_per_second(), state.seconds_left());
     line.append(out, static_cast<std::size_t>(length));
   }
+  if (!state.goal.empty()) line += ", \"goal\": \"" + state.goal + "\"";
   return line + "}";
 }
 
@@ -94,6 +95,7 @@ std::string progress_bar(const ProgressState& state, int columns) {
   std::snprintf(percent, sizeof(percent), "%3d %%", state.percent());
   std::string text = std::string(percent) + "  " + rate_text(state.samples_per_second());
   if (state.seconds_left() >= 0) text += "  " + time_text(state.seconds_left()) + " left";
+  if (!state.goal.empty()) text += "  " + state.goal;
   // Brackets, a space, and the last column, in which some terminals begin a new line.
   const int cells = std::min(kMostCells, columns - static_cast<int>(text.size()) - 4);
   if (cells < kFewestCells) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));

@@ -31,6 +31,7 @@ struct ProgressState {
   std::uint64_t done = 0;   ///< samples
   std::uint64_t total = 1;  ///< samples
   double seconds = 0;       ///< since it began
+  std::string goal = {};    ///< what ends it, in words; empty: its samples
 
   double fraction() const;            ///< 0..1
   int percent() const;                ///< whole, rounded down: 100 only when all is done

@@ -3,6 +3,8 @@
 #include <memory>
 
 #include "app/job.h"
+#include "base/error.h"
+#include "base/exit_status.h"
 #include "cli/commands.h"
 #include "cli/display_options.h"
 #include "cli/option_checks.h"
@@ -17,7 +19,7 @@ struct RenderOptions {
   app::Job job;
   SceneOptions scene;
   std::string type = "half", progress = "auto";
-  bool quiet = false, verbose = false;
+  bool quiet = false, verbose = false, strict = false;
 };
 
 /// Quiet is about what people read; a farm manager that asked for its lines gets them.
@@ -50,9 +52,15 @@ void print_summary(const RenderOptions& options, const app::JobReport& report) {
   std::string files;
   for (const auto& output : options.job.outputs) files += (files.empty() ? "" : ", ") + output.string();
   const double seconds = report.render.render_s;
-  std::fprintf(stderr, "wrote %s: %d x %d, %d samples per pixel in %.1f s, %.2f M samples/s\n", files.c_str(),
-               report.width, report.height, report.samples, seconds,
+  const double pixels = static_cast<double>(report.width) * report.height;
+  std::fprintf(stderr, "wrote %s: %d x %d, %.5g samples per pixel in %.1f s, %.2f M samples/s", files.c_str(),
+               report.width, report.height, static_cast<double>(report.render.paths) / pixels, seconds,
                seconds > 0 ? static_cast<double>(report.render.paths) / seconds / 1e6 : 0.0);
+  if (report.render.noise)
+    std::fprintf(stderr, "; noise %.3g, %llu to %llu samples", *report.render.noise,
+                 static_cast<unsigned long long>(report.render.fewest_samples),
+                 static_cast<unsigned long long>(report.render.most_samples));
+  std::fputc('\n', stderr);
   if (!options.verbose) return;
   std::fprintf(stderr, "%zu spheres, %s, %s, traversal %s, %d threads, %llu rays; scene %s\n", report.spheres,
                report.render.accelerator.c_str(), report.render.isa.c_str(), report.render.traversal.c_str(),
@@ -72,7 +80,7 @@ int render(RenderOptions& options) {
   job.exr.as_float = options.type == "float";
   job.cancel = &stop_on_signals();
   ProgressPrinter printer(style_of(options), stderr);
-  job.on_progress = [&](const auto& p) { printer.update({p.samples_done, p.samples_total, p.seconds}); };
+  job.on_progress = [&](const auto& p) { printer.update({p.samples_done, p.samples_total, p.seconds, p.goal}); };
   job.on_build = [&](double fraction) { printer.building(fraction); };
   job.on_warning = [&](const base::Finding& warning) {
     if (!options.quiet) std::fputs(base::formatted(warning).c_str(), stderr);
@@ -83,7 +91,10 @@ int render(RenderOptions& options) {
     print_bad_values(report);
     print_summary(options, report);
   }
-  return 0;
+  if (report.target_missed.empty()) return 0;
+  if (!options.quiet || options.strict)
+    std::fprintf(stderr, "%s: %s\n", options.strict ? "orrery" : "warning", report.target_missed.c_str());
+  return options.strict ? base::exit_status(base::ErrorKind::kStopped) : 0;
 }
 
 void add_picture_options(CLI::App& command, RenderOptions& options) {
@@ -113,6 +124,15 @@ void add_render(CLI::App& program, Action& action) {
                   ->required()
                   ->type_name("FILE"));
   options->scene.add_to(command);
+  command
+      .add_option("--noise", options->job.noise,
+                  "Sample until the picture is off by this much, relative to what a display shows, as 0.01")
+      ->transform(real_number(1e-6, 1))
+      ->type_name("X");
+  command.add_option("--time", options->job.seconds, "Sample for so long, where it helps most: 90s, 5m, 1.5h")
+      ->transform(duration())
+      ->type_name("TIME");
+  command.add_flag("--strict", options->strict, "Exit with 75 where --noise was not reached");
   command.add_option("-t,--threads", options->job.threads, "Threads; default: as many as this process may use")
       ->transform(whole_number(1, kMostThreads))
       ->type_name("N");

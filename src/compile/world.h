@@ -37,15 +37,15 @@ struct World {
   Accelerator accelerator = Accelerator::kEmbree;
   Bounds bounds;
   FilterTables filter;
-  int width = 0;                ///< px, of what is rendered
-  int height = 0;               ///< px
-  int window_x = 0;             ///< px, its upper left corner within the frame
-  int window_y = 0;             ///< px
-  int frame_width = 0;          ///< px
-  int frame_height = 0;         ///< px
-  double pixel_aspect = 1;      ///< a pixel's width by its height
-  int samples = 0;              ///< per pixel
-  std::uint32_t max_depth = 0;  ///< scattering events
+  int width = 0;                                       ///< px, of what is rendered
+  int height = 0;                                      ///< px
+  int window_x = 0;                                    ///< px, its upper left corner within the frame
+  int window_y = 0;                                    ///< px
+  int frame_width = 0;                                 ///< px
+  int frame_height = 0;                                ///< px
+  double pixel_aspect = 1;                             ///< a pixel's width by its height
+  int samples = 0;                                     ///< per pixel
+  std::uint32_t max_depth = 0;                         ///< scattering events
   std::uint32_t roulette_depth = kernel::kNoRoulette;  ///< scattering events before Russian roulette begins
   kernel::Sampler sampler;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "film/picture.h"
@@ -15,9 +16,13 @@ class Film {
 
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
+  std::size_t pixel_count() const noexcept { return sums_.size(); }
 
   /// The sum of a pixel; the one to the right is next, the one below is width() further on.
   kernel::PixelSum* at(int x, int y) noexcept;
+
+  /// Adds the samples of another film of the same size.
+  void add(const Film& other);
 
   /// The mean of every pixel's samples as planes R, G, B, and A = 1; 0 where there is no sample.
   film::Picture picture() const;

@@ -25,26 +25,26 @@ using IdFor = hwy::MakeUnsigned<T>;
 /// packet lie close together.
 class PathCounter {
  public:
-  PathCounter(const Tile& tile, const SceneView& scene) : tile_(tile), scene_(scene), sample_(tile.sample_begin) {}
+  PathCounter(const Tile& tile, const SceneView& scene)
+      : tile_(tile), scene_(scene), sample_(tile.sample_begin), place_(tile.pixel(0)) {}
 
   template <class Id>
   void take(Id& pixel, Id& sample) {
-    const std::uint32_t x = static_cast<std::uint32_t>(tile_.x + x_) + scene_.window_x;
-    const std::uint32_t y = static_cast<std::uint32_t>(tile_.y + y_) + scene_.window_y;
+    const std::uint32_t x = static_cast<std::uint32_t>(tile_.x + place_.x) + scene_.window_x;
+    const std::uint32_t y = static_cast<std::uint32_t>(tile_.y + place_.y) + scene_.window_y;
     pixel = static_cast<Id>(y << 16 | (x & 0xffff));
     sample = static_cast<Id>(sample_);
     if (++sample_ < tile_.sample_end) return;
     sample_ = tile_.sample_begin;
-    if (++x_ < tile_.width) return;
-    x_ = 0;
-    ++y_;
+    if (++pixel_ < tile_.pixel_count()) place_ = tile_.pixel(pixel_);
   }
 
  private:
   const Tile& tile_;
   const SceneView& scene_;
   std::uint32_t sample_;
-  int x_ = 0, y_ = 0;
+  int pixel_ = 0;
+  PixelPlace place_;
 };
 
 /// Fills the packet with the first rays of the next paths.
@@ -131,14 +131,14 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   using T = hn::TFromD<D>;
   Passengers<T, IdFor<T>> carried;
   TileCounts counts;
-  const std::uint32_t samples = tile.sample_end - tile.sample_begin;
   const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);
-  for (int y = 0; y < tile.height; ++y)
-    for (int x = 0; x < tile.width; ++x) tile.sums[y * tile.row_stride + x].weight += weight;
+  for (int i = 0; i < tile.pixel_count(); ++i) {
+    const PixelPlace at = tile.pixel(i);
+    tile.sums[at.y * tile.row_stride + at.x].weight += weight;
+  }
 
   PathCounter counter(tile, scene);
-  std::uint64_t to_start =
-      std::uint64_t{samples} * static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
+  std::uint64_t to_start = tile.path_count();
   const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
     forget_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);

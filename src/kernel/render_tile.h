@@ -24,17 +24,26 @@ inline PixelPlace place_of(std::uint64_t name, const SceneView& scene) noexcept 
           static_cast<int>(((name >> 16) - scene.window_y) & 0xffff)};
 }
 
-/// A rectangle of pixels and the samples that each of them shall get.
+/// A rectangle of pixels, or some of them, and the samples that each shall get.
 struct Tile {
   int x = 0, y = 0;  ///< px, upper left corner, within the rendered window
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
-  PixelSum* sums = nullptr;     ///< of the upper left pixel
-  std::int64_t row_stride = 0;  ///< from a pixel's sum to the one below
+  PixelSum* sums = nullptr;            ///< of the upper left pixel
+  std::int64_t row_stride = 0;         ///< from a pixel's sum to the one below
+  const PixelPlace* chosen = nullptr;  ///< the only pixels that get samples, counted from the upper left one; null: all
+  int chosen_count = 0;
   /// A record for every path: the samples of a pixel, then the pixel to the right. Null: nobody asks for them.
   PathRecord* records = nullptr;
   bool record_light = true;   ///< false: nobody reads light and group of the records
   bool record_guides = true;  ///< the same of the guides
+
+  int pixel_count() const noexcept { return chosen != nullptr ? chosen_count : width * height; }
+  /// The i-th pixel that gets samples, counted from the upper left one.
+  PixelPlace pixel(int i) const noexcept { return chosen != nullptr ? chosen[i] : PixelPlace{i % width, i / width}; }
+  std::uint64_t path_count() const noexcept {
+    return static_cast<std::uint64_t>(pixel_count()) * (sample_end - sample_begin);
+  }
 };
 
 struct TileCounts {

@@ -50,9 +50,12 @@ HWY_INLINE Four<V> sobol_at_vertex(DU du, const Sampler& sampler, V pixel, V sam
   if (sampler.kind == SamplerKind::kBlueNoise) {
     const V curve =
         hn::Or(spread_bits(du, pixel), hn::ShiftLeft<1>(spread_bits(du, hn::template ShiftRight<16>(pixel))));
-    index = hn::And(hn::Or(hn::ShiftLeftSame(curve, sampler.blue_noise_bits), index), low_bits);
-    place = hn::ShiftRightSame(curve, kSobolBits - sampler.blue_noise_bits);
-    beyond = hn::And(beyond, hn::Set(du, Id{0x8000}));
+    // A pixel's samples beyond its share of the sequence come from another one.
+    const int bits = sampler.blue_noise_bits;
+    index = hn::And(sample, hn::Set(du, (Id{1} << bits) - 1));
+    index = hn::And(hn::Or(hn::ShiftLeftSame(curve, bits), index), low_bits);
+    beyond = hn::ShiftRightSame(sample, bits);
+    place = hn::ShiftRightSame(curve, kSobolBits - bits);
   }
   // Odd multiples keep different places different; what is left of coincidences between vertices is by chance.
   const auto times = [&](V v, std::uint32_t factor) {

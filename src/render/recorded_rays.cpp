@@ -45,7 +45,7 @@ RecordedRays<Packet> record(const kernel::SceneView& view, const accel::Accel& a
     tile.sums = sums.data();
     tile.row_stride = tile.width;
     render_tile(view, tap, tile, *stream);
-    recorder.rays.paths += pixels * (tile.sample_end - tile.sample_begin);
+    recorder.rays.paths += tile.path_count();
   }
   return std::move(recorder.rays);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "accel/accel.h"
@@ -18,7 +19,8 @@ namespace orrery::render {
 struct Progress {
   std::uint64_t samples_done = 0;
   std::uint64_t samples_total = 0;
-  double seconds = 0;  ///< since rendering began, the acceleration structure's build left out
+  double seconds = 0;     ///< since rendering began, the acceleration structure's build left out
+  std::string goal = {};  ///< what ends the render, in words; empty: its samples
 };
 
 /// How rays go through the hierarchy; bits do not depend on it.
@@ -32,6 +34,11 @@ struct Settings {
   int threads = 0;  ///< 0: as many as available_threads()
   Traversal traversal = Traversal::kAuto;
   film::LayerRequest layers;  ///< beside the beauty; none cost nothing
+  /// Pixels get samples until the root of the mean of their squared errors, as film/display_error.h measures them, is
+  /// this; those first where it helps most. 0: all get the world's samples.
+  double noise = 0;
+  double seconds = 0;      ///< to sample for, wherever that helps most; 0: as long as it takes
+  bool unlimited = false;  ///< with noise or seconds: the world's samples are no limit
   /// Called from one thread at a time, a few times a second at the most.
   std::function<void(const Progress&)> on_progress;
   /// Called while the hierarchy is built, with what is done of it, 0..1, from any thread.
@@ -50,6 +57,9 @@ struct Statistics {
   std::string accelerator;  ///< "embree 3.13.5", "list"
   std::string traversal;    ///< "packet, bounced single": of camera rays, and of bounced ones where it differs
   int threads = 0;
+  std::uint64_t fewest_samples = 0, most_samples = 0;  ///< of a pixel
+  std::optional<double> noise;  ///< that was reached, by estimate; where noise or seconds were given
+  std::string ended_by;         ///< "samples", "noise" or "time", whichever came first
 };
 
 struct Result {

@@ -39,10 +39,10 @@ TileRenderer::TileRenderer(const compile::World& world, const accel::Accel& acce
   }
 }
 
-void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker) const {
+void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* kept) const {
   const DefaultRounding rounding;
   if (layers_ != nullptr) {
-    trace_layers(tile, worker);
+    trace_layers(tile, worker, kept);
   } else {
     trace(tile, worker);
   }
@@ -61,10 +61,14 @@ void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
   worker.counts.bad_samples += counts.bad_samples;
 }
 
-void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker) const {
-  const auto pixels = static_cast<std::uint32_t>(tile.width * tile.height);
-  const std::uint32_t samples_at_a_time = std::max(1u, kMostRecords / pixels);
-  worker.pixels.assign(pixels, {});
+void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* kept) const {
+  const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  const auto samples_at_a_time = std::max(1u, kMostRecords / static_cast<std::uint32_t>(pixels));
+  const auto place_in_picture = [&](kernel::PixelPlace at) {
+    return static_cast<std::size_t>(tile.y + at.y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(tile.x + at.x);
+  };
+  if (kept == nullptr) worker.pixels.assign(pixels, {});
   kernel::Tile part = tile;
   part.record_light = request_.paths_light();
   part.record_guides = request_.guides();
@@ -72,19 +76,21 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker) co
     part.sample_begin = begin;
     part.sample_end = begin + std::min(samples_at_a_time, tile.sample_end - begin);
     const std::uint32_t samples = part.sample_end - begin;
-    worker.records.resize(std::size_t{pixels} * samples);
+    worker.records.resize(pixels * samples);
     part.records = worker.records.data();
     trace(part, worker);
-    const kernel::PathRecord* record = part.records;
-    for (film::LayerPixel& pixel : worker.pixels)
+    for (int i = 0; i < tile.pixel_count(); ++i) {
+      const kernel::PixelPlace at = tile.pixel(i);
+      const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
+      film::LayerPixel& pixel = kept != nullptr ? kept[place_in_picture(at)] : worker.pixels[within];
+      const kernel::PathRecord* record = part.records + within * samples;
       for (std::uint32_t s = begin; s < part.sample_end; ++s)
-        pixel.add(request_, view_, *record++, view_.filter.weight(s, s + 1));
+        pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1));
+    }
   }
-  for (int y = 0; y < tile.height; ++y)
-    for (int x = 0; x < tile.width; ++x)
-      layers_->set(static_cast<std::size_t>(tile.y + y) * static_cast<std::size_t>(width_) +
-                       static_cast<std::size_t>(tile.x + x),
-                   worker.pixels[static_cast<std::size_t>(y * tile.width + x)]);
+  if (kept != nullptr) return;
+  for (int i = 0; i < tile.pixel_count(); ++i)
+    layers_->set(place_in_picture(tile.pixel(i)), worker.pixels[static_cast<std::size_t>(i)]);
 }
 
 }  // namespace orrery::render

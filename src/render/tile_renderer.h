@@ -28,11 +28,14 @@ class TileRenderer {
   TileRenderer(const compile::World& world, const accel::Accel& accel, const film::LayerRequest& request,
                film::LayerFilm* layers);
 
-  void operator()(const kernel::Tile& tile, TileWorker& worker) const;
+  /// Layers are finished tile by tile, unless somebody keeps what is known of each pixel.
+  ///
+  /// `kept`     of the picture, row by row, or null
+  void operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* kept = nullptr) const;
 
  private:
   void trace(const kernel::Tile& tile, TileWorker& worker) const;
-  void trace_layers(const kernel::Tile& tile, TileWorker& worker) const;
+  void trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* kept) const;
 
   kernel::SceneView view_;
   kernel::Tracer tracer_;

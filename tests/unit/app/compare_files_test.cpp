@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "image/read.h"
 #include "image/write.h"
 #include "support/scratch_folder.h"
 
@@ -22,60 +23,64 @@ film::Picture grey(int width, int height, float value) {
   return picture;
 }
 
+Comparison of_light(const film::Picture& a, const film::Picture& b) { return compare(a, b, Encoding::kLight); }
+
 TEST(AppCompareFiles, EqualPicturesDoNotDiffer) {
-  const Comparison c = compare(grey(4, 3, 0.5f), grey(4, 3, 0.5f));
-  EXPECT_EQ(c.rmse, 0);
-  EXPECT_EQ(c.relative_mse, 0);
-  EXPECT_EQ(c.max, 0);
+  const Comparison c = of_light(grey(4, 3, 0.5f), grey(4, 3, 0.5f));
+  EXPECT_EQ(c.errors.rmse, 0);
+  EXPECT_EQ(c.errors.max_channel, -1);
+  EXPECT_EQ(c.ssim, 1.0);
+  EXPECT_EQ(c.flip, 0.0);
   EXPECT_EQ(c.differing, 0u);
-  EXPECT_EQ(c.max_channel, "");
-  EXPECT_TRUE(std::isinf(c.psnr_db()));
+  EXPECT_FALSE(c.z_test);
+  EXPECT_TRUE(std::isinf(c.errors.psnr_db()));
 }
 
-TEST(AppCompareFiles, MetricsAreWhatTheirNamesSay) {
-  film::Picture a = grey(2, 2, 0.5f);
-  a.planes[1].values[2] = 1.0f;  // G at (0, 1): 0.5 more, in one value of twelve
-  a.planes[2].values[3] = 0.25f;
-  const Comparison c = compare(a, grey(2, 2, 0.5f));
-  const double sum = 0.5 * 0.5 + 0.25 * 0.25;
-  EXPECT_DOUBLE_EQ(c.rmse, std::sqrt(sum / 12));
-  EXPECT_DOUBLE_EQ(c.relative_mse, sum / (0.25 + kRelativeFloor) / 12);
-  EXPECT_DOUBLE_EQ(c.psnr_db(), -10 * std::log10(sum / 12));
-  EXPECT_EQ(c.max, 0.5);
-  EXPECT_EQ(c.max_channel, "G");
-  EXPECT_EQ(c.max_x, 0);
-  EXPECT_EQ(c.max_y, 1);
-  EXPECT_EQ(c.differing, 2u);
-}
-
-TEST(AppCompareFiles, RelativeErrorIsOfTheReference) {
-  const double bright = compare(grey(1, 1, 1), grey(1, 1, 10)).relative_mse;
-  const double dark = compare(grey(1, 1, 10), grey(1, 1, 1)).relative_mse;
-  EXPECT_DOUBLE_EQ(bright, 81 / 100.01);
-  EXPECT_DOUBLE_EQ(dark, 81 / 1.01);
-}
-
-TEST(AppCompareFiles, ValuesThatAreNotFiniteAreLeftOutAndCounted) {
+TEST(AppCompareFiles, OnlyColoursCountAndOtherChannelsAreNamed) {
   film::Picture a = grey(2, 1, 0.5f), b = a;
-  a.planes[0].values[0] = std::numeric_limits<float>::quiet_NaN();
-  b.planes[1].values[1] = std::numeric_limits<float>::infinity();
-  const Comparison c = compare(a, b);
-  EXPECT_EQ(c.not_finite, 2u);
-  EXPECT_EQ(c.rmse, 0);
-  EXPECT_EQ(c.max, 0);
+  a.planes.push_back({"A", {0, 0}});
+  a.planes.push_back({"Z", {1, 7}});
+  b.planes.push_back({"Z", {1, 2}});
+  b.planes.push_back({"N.X", {0, 0}});
+  const Comparison c = of_light(a, b);
+  EXPECT_EQ(c.channels, (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_EQ(c.errors.rmse, 0);
+  EXPECT_EQ(c.values, 8u);
+  EXPECT_EQ(c.differing, 1u);
+  EXPECT_EQ(c.only_in_picture, (std::vector<std::string>{"A"}));
+  EXPECT_EQ(c.only_in_reference, (std::vector<std::string>{"N.X"}));
 }
 
-TEST(AppCompareFiles, OnlyCommonChannelsCount) {
-  film::Picture a = grey(2, 1, 0.5f);
-  a.planes.push_back({"A", {0, 0}});
-  EXPECT_EQ(compare(a, grey(2, 1, 0.5f)).channels, (std::vector<std::string>{"R", "G", "B"}));
+TEST(AppCompareFiles, ALayerIsComparedByItself) {
+  film::Picture a = grey(2, 1, 0.5f), b = a;
+  a.planes.push_back({"Z", {1, 7}});
+  b.planes.push_back({"Z", {1, 2}});
+  const Comparison c = compare(a, b, Encoding::kLight, "Z");
+  EXPECT_EQ(c.channels, (std::vector<std::string>{"Z"}));
+  EXPECT_EQ(c.errors.max, 5);
+  EXPECT_DOUBLE_EQ(c.errors.rmse, std::sqrt(12.5));
+  EXPECT_FALSE(c.flip);
+  try {
+    compare(a, b, Encoding::kLight, "depth");
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_STREQ(error.what(), "layer depth is not in both pictures; the first has R, G, B, Z");
+  }
+}
+
+TEST(AppCompareFiles, AMetricThatIsNotThereCannotBeLimited) {
+  const Comparison c = of_light(grey(2, 1, 0.5f), grey(2, 1, 0.25f));
+  EXPECT_DOUBLE_EQ(c.metric("mae"), 0.25);
+  EXPECT_DOUBLE_EQ(c.metric("bias"), 1);
+  EXPECT_GT(c.metric("flip"), 0);
+  EXPECT_THROW(c.metric("z"), base::Error);
 }
 
 TEST(AppCompareFiles, WhatCannotBeComparedIsRefused) {
-  EXPECT_THROW(compare(grey(2, 1, 0), grey(1, 2, 0)), base::Error);
+  EXPECT_THROW(of_light(grey(2, 1, 0), grey(1, 2, 0)), base::Error);
   film::Picture other = grey(2, 1, 0);
   for (auto& plane : other.planes) plane.name += "2";
-  EXPECT_THROW(compare(grey(2, 1, 0), other), base::Error);
+  EXPECT_THROW(of_light(grey(2, 1, 0), other), base::Error);
 }
 
 TEST(AppCompareFiles, LightIsNotComparedToWhatADisplayShows) {
@@ -83,33 +88,49 @@ TEST(AppCompareFiles, LightIsNotComparedToWhatADisplayShows) {
   image::write_exr(folder / "a.exr", grey(4, 4, 0.5f), {}, {});
   image::write_encoded(folder / "a.png", {4, 4, 8, true, std::vector<std::uint16_t>(48, 128)}, "");
   try {
-    compare_files(folder / "a.png", folder / "a.exr");
+    compare_files(folder / "a.png", folder / "a.exr", "", {});
     FAIL();
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
     EXPECT_NE(std::string(error.what()).find("orrery develop " + (folder / "a.exr").string()), std::string::npos);
   }
-  EXPECT_EQ(compare_files(folder / "a.exr", folder / "a.exr").differing, 0u);
+  EXPECT_EQ(compare_files(folder / "a.exr", folder / "a.exr", "", {}).differing, 0u);
 }
 
 TEST(AppCompareFiles, TextNamesTheWorstPixel) {
   film::Picture a = grey(2, 1, 0.5f);
   a.planes[2].values[1] = 0.75f;
-  EXPECT_EQ(comparison_text(compare(a, grey(2, 1, 0.5f))),
-            "pictures    2 x 1, channels R, G, B\n"
-            "rmse        0.102062\n"
-            "relmse      0.0400641\n"
-            "max         0.25 in B at 1, 0\n"
-            "psnr        19.82 dB\n"
-            "differing   1 of 6 values\n");
+  const std::string text = comparison_text(of_light(a, grey(2, 1, 0.5f)));
+  for (const char* line : {"pictures    2 x 1, channels R, G, B\n", "rmse        0.102062\n", "relmse      0.0400641\n",
+                           "mae         0.0416667\n", "max         0.25 in B at 1, 0\n", "psnr        19.82 dB\n",
+                           "bias        +0.0833 of the mean\n", "differing   1 of 6 values\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
 }
 
 TEST(AppCompareFiles, JsonHasNoInfinity) {
-  const auto json = nlohmann::json::parse(comparison_json(compare(grey(2, 1, 0.5f), grey(2, 1, 0.5f))));
-  EXPECT_EQ(json["schema"], "orrery.compare/1");
+  const auto json = nlohmann::json::parse(comparison_json(of_light(grey(2, 1, 0.5f), grey(2, 1, 0.5f))));
+  EXPECT_EQ(json["schema"], "orrery.compare/2");
   EXPECT_TRUE(json["psnr_db"].is_null());
   EXPECT_TRUE(json["max_at"].is_null());
   EXPECT_EQ(json["rmse"], 0);
+}
+
+TEST(AppCompareFiles, DifferencesAreWrittenAsPictures) {
+  const support::ScratchFolder folder;
+  film::Picture a = grey(2, 1, 0.5f);
+  a.planes[2].values[1] = 0.25f;
+  image::ExrOptions exact;
+  exact.as_float = true;
+  image::write_exr(folder / "a.exr", a, {}, exact);
+  image::write_exr(folder / "b.exr", grey(2, 1, 0.5f), {}, exact);
+  compare_files(folder / "a.exr", folder / "b.exr", "", {folder / "d.exr", folder / "heat.png", folder / "flip.png"});
+  EXPECT_EQ(image::read(folder / "d.exr").find("B")->values, (std::vector<float>{0, -0.25f}));
+  const film::Picture heat = image::read(folder / "heat.png"), flip = image::read(folder / "flip.png");
+  EXPECT_LT(heat.find("R")->values[0], 0.01f);
+  EXPECT_GT(heat.find("R")->values[1], 0.9f);
+  EXPECT_GT(flip.find("R")->values[1], 0.1f);
+  compare_files(folder / "a.exr", folder / "b.exr", "", {folder / "d.png", {}, {}});
+  EXPECT_NEAR(image::read(folder / "d.png").find("B")->values[1], 0.375, 0.003);
 }
 
 }  // namespace

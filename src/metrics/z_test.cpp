@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "metrics/z_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace orrery::metrics {
+
+double two_sided_quantile(double chance) {
+  double low = 0, high = 40;
+  for (int i = 0; i < 80; ++i) {
+    const double z = (low + high) / 2;
+    (std::erfc(z / std::numbers::sqrt2) > chance ? low : high) = z;
+  }
+  return high;
+}
+
+std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance, const ColorView& reference,
+                            const ColorView& reference_variance) {
+  if (variance.channel[0] == nullptr) return {};
+  ZTest out;
+  std::vector<double> zs;
+  double squares = 0, variances = 0, differences = 0, light = 0;
+  for (int c = 0; c < 3; ++c) {
+    for (int y0 = 0; y0 < picture.height; y0 += kTestedSide) {
+      for (int x0 = 0; x0 < picture.width; x0 += kTestedSide) {
+        double sum = 0, expected = 0;
+        for (int y = y0; y < std::min(y0 + kTestedSide, picture.height); ++y) {
+          for (int x = x0; x < std::min(x0 + kTestedSide, picture.width); ++x) {
+            const auto i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
+            const double b = static_cast<double>(reference.channel[c][i]);
+            const double d = static_cast<double>(picture.channel[c][i]) - b;
+            double v = static_cast<double>(variance.channel[c][i]);
+            if (reference_variance.channel[c] != nullptr) v += static_cast<double>(reference_variance.channel[c][i]);
+            if (!std::isfinite(d) || !std::isfinite(v)) continue;
+            sum += d;
+            expected += v;
+            squares += d * d;
+            light += b;
+          }
+        }
+        differences += sum;
+        variances += expected;
+        if (!(expected > 0)) continue;
+        const double z = sum / std::sqrt(expected);
+        zs.push_back(z);
+        if (std::abs(z) <= std::abs(out.largest_z)) continue;
+        out.largest_z = z;
+        out.channel = c;
+        out.x = x0;
+        out.y = y0;
+      }
+    }
+  }
+  out.tests = static_cast<int>(zs.size());
+  out.critical_z = two_sided_quantile(kFamilyWiseError / std::max(out.tests, 1));
+  out.rejected =
+      static_cast<int>(std::count_if(zs.begin(), zs.end(), [&](double z) { return std::abs(z) > out.critical_z; }));
+  const double n = 3 * static_cast<double>(picture.pixels());
+  out.noise = std::sqrt(variances / n);
+  out.bias = std::sqrt(std::max(0.0, (squares - variances) / n));
+  if (light != 0) {
+    out.mean_bias = differences / light;
+    out.mean_bias_error = std::sqrt(variances) / std::abs(light);
+  }
+  return out;
+}
+
+}  // namespace orrery::metrics

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <string>
+
+#include "render/render.h"
+
+namespace orrery::render {
+
+/// Tells the caller how far the render is, from whichever thread comes by, at most a few times a second.
+class ProgressReporter {
+ public:
+  /// `total` samples are to be done, as far as is known.
+  ProgressReporter(const Settings& settings, std::uint64_t total) : settings_(settings), total_(total) {}
+
+  /// Samples were done.
+  void add(std::uint64_t samples);
+
+  /// A better guess of the samples that will be needed, and what ends the render; between rounds only. What was told
+  /// before is not taken back: a bar that went backwards would say less than one that waits.
+  void expect(std::uint64_t total, std::string goal);
+
+  double seconds() const;
+  std::uint64_t done() const { return done_.load(std::memory_order_relaxed); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double kInterval = 0.1;  // seconds
+  const Settings& settings_;
+  std::atomic<std::uint64_t> done_{0};
+  std::mutex mutex_;  // of all below
+  std::uint64_t total_;
+  std::string goal_;
+  double most_told_ = 0;  ///< 0..1
+  double last_ = 0;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace orrery::render

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "compile/world.h"
+#include "film/film.h"
+#include "film/layer_film.h"
+#include "render/progress_reporter.h"
+#include "render/render.h"
+#include "render/tile_pool.h"
+#include "render/tile_renderer.h"
+
+namespace orrery::render {
+
+/// Samples in rounds: after each the pixels are chosen that shall double theirs, until the picture is as good as asked
+/// for, the time is over, or the samples are.
+///
+/// Every pixel has two halves of samples that are independent of each other; how much they differ tells its error.
+/// Choices depend on sums that no order of adding changes: without a time limit neither does the picture.
+///
+/// `film`     gets the sum of both halves
+/// `layers`   those that `render_tile` renders, or null
+/// Result     false where the settings' `cancel` stopped it
+bool render_in_rounds(const compile::World& world, const Settings& settings, const TileRenderer& render_tile,
+                      TilePool& pool, ProgressReporter& progress, film::Film& film, film::LayerFilm* layers,
+                      Statistics& statistics);
+
+}  // namespace orrery::render

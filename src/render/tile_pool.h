@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "kernel/render_tile.h"
+#include "render/render.h"
+#include "render/tile_renderer.h"
+
+namespace orrery::render {
+
+/// Threads that share out tiles, and what each of them keeps from one tile to the next.
+class TilePool {
+ public:
+  /// Domain     `cancel` outlives this, or is null
+  TilePool(int threads, const std::atomic<bool>* cancel);
+  ~TilePool();
+
+  /// Calls `work(i, worker)` for i = 0 .. count - 1, in any order and from all threads.
+  ///
+  /// Result     false where `cancel` left some out
+  bool run(std::size_t count, const std::function<void(std::size_t i, TileWorker& worker)>& work);
+
+  /// Runs something with these threads.
+  void execute(const std::function<void()>& work);
+
+  /// Of all tiles so far.
+  kernel::TileCounts counts() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace orrery::render
