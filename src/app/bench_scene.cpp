@@ -226,6 +226,32 @@ BenchCase result_of(const Case& c, const std::vector<double>& reference) {
 
 }  // namespace
 
+std::vector<FeatureCost> bench_features(const BenchRequest& request) {
+  choose_isa(request.isa);
+  Subject subject(request);
+  std::vector<Case> cases = feature_cases_of(subject.world());
+  if (cases.empty()) return {};
+  Case as_it_is;
+  as_it_is.features = subject.world().features;
+  cases.insert(cases.begin(), as_it_is);
+  for (Case& c : cases) calibrate(subject, c, request.seconds);
+  for (int round = 0; round < request.rounds; ++round) {
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
+      const render::Statistics did = subject.run(c);
+      c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
+    }
+  }
+  std::vector<FeatureCost> out;
+  for (std::size_t i = 1; i < cases.size(); ++i) {
+    std::vector<double> saves;
+    for (std::size_t r = 0; r < cases[0].paths_per_s.size(); ++r)
+      saves.push_back(1 - cases[i].paths_per_s[r] / cases[0].paths_per_s[r]);
+    out.push_back({cases[i].name, quartiles(saves)});
+  }
+  return out;
+}
+
 Benchmark bench_scene(const BenchRequest& request) {
   choose_isa(request.isa);
   Subject subject(request);

@@ -58,6 +58,17 @@ struct Benchmark {
 /// Errors     as format::read_scene; base::Error(kStopped) where `cancel` stopped it, kUsage for an unknown `isa`
 Benchmark bench_scene(const BenchRequest& request);
 
+/// What leaving out a feature saves, that this scene does not ask for.
+struct FeatureCost {
+  std::string name;  ///< "thin lens"
+  Quartiles saves;   ///< of the time that a render with it would take
+};
+
+/// Renders the scene, small and exact, as it is and as if it had each feature more, in turn.
+///
+/// Errors     as bench_scene
+std::vector<FeatureCost> bench_features(const BenchRequest& request);
+
 /// For people.
 std::string benchmark_text(const Benchmark& benchmark);
 /// As JSON, "orrery.bench/1".

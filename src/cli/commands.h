@@ -23,5 +23,6 @@ void add_develop(CLI::App& program, Action& action);
 void add_bake(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
+void add_study(CLI::App& program, Action& action);
 
 }  // namespace orrery::cli

@@ -39,6 +39,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_bake(program, action);
   add_compare(program, action);
   add_bench(program, action);
+  add_study(program, action);
   program.footer("orrery COMMAND --help tells more, with examples.");
 }
 

@@ -147,8 +147,7 @@ kernel::Sampler compile_sampler(const scene::Render& render) {
     case scene::Sampler::kSobol: out.kind = kernel::SamplerKind::kSobol; break;
     case scene::Sampler::kBlueNoise: out.kind = kernel::SamplerKind::kBlueNoise; break;
   }
-  const auto samples = static_cast<unsigned>(render.samples);
-  out.blue_noise_bits = std::min(static_cast<int>(std::bit_width(samples - 1)), kernel::kSobolBits);
+  out.blue_noise_bits = blue_noise_bits(render.samples);
   return out;
 }
 
@@ -171,6 +170,10 @@ kernel::SceneView World::view() const noexcept {
   v.window_x = static_cast<std::uint32_t>(window_x) & 0xffff;
   v.window_y = static_cast<std::uint32_t>(window_y) & 0xffff;
   return v;
+}
+
+int blue_noise_bits(int samples) noexcept {
+  return std::min(static_cast<int>(std::bit_width(static_cast<unsigned>(samples) - 1)), kernel::kSobolBits);
 }
 
 World compile(const scene::Scene& scene) {

@@ -14,4 +14,7 @@ namespace orrery::compile {
 /// Domain     a scene that scene::validate finds no error in
 World compile(const scene::Scene& scene);
 
+/// Bits that count a pixel's samples where blue noise shares a sequence among neighbours.
+int blue_noise_bits(int samples) noexcept;
+
 }  // namespace orrery::compile

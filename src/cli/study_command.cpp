@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "cli/commands.h"
+#include "cli/option_checks.h"
+#include "cli/output.h"
+#include "cli/scene_options.h"
+#include "cli/signals.h"
+#include "study/study.h"
+
+namespace orrery::cli {
+namespace {
+
+struct StudyOptions {
+  study::Request request;
+  SceneOptions scene;
+  std::filesystem::path report;
+  bool json = false, quiet = false;
+};
+
+int run(StudyOptions& options) {
+  study::Request& request = options.request;
+  request.overrides = options.scene.overrides();
+  request.cancel = &stop_on_signals();
+  const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
+  int last = -1;
+  if (!options.quiet)
+    request.on_progress = [&](const std::string& what, double fraction) {
+      const int percent = static_cast<int>(fraction * 100);
+      if (on_terminal) {
+        std::fprintf(stderr, fraction < 1 ? "\r%3d %%  %s\x1b[K" : "\r\x1b[K", percent, what.c_str());
+      } else if (percent != last) {
+        std::fprintf(stderr, "%d%% done\n", percent);
+      }
+      last = percent;
+    };
+  if (!options.report.empty()) base::check_creatable(options.report);  // known before the budget is spent
+  const study::Study found = study::run_study(request);
+  if (!options.report.empty()) base::write_text_file(options.report, study::study_html(found));
+  print_result(options.json ? study::study_json(found) : study::study_text(found));
+  return 0;
+}
+
+}  // namespace
+
+void add_study(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<StudyOptions>();
+  CLI::App& command = *program.add_subcommand("study", "Measure what time buys in accuracy on a scene, and recommend");
+  command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
+  command.add_option("-o,--output", options->report, "Write a report: one HTML file with plots and pictures")
+      ->type_name("FILE");
+  options->scene.add_to(command);
+  command.add_option("--budget", options->request.budget_s, "Time for all of it, as 90s or 5m; default 2m")
+      ->transform(duration())
+      ->type_name("TIME");
+  command.add_option("--noise", options->request.noise, "What the recommendation shall reach; default 0.01")
+      ->transform(real_number(1e-4, 1))
+      ->type_name("X");
+  command.add_option("-t,--threads", options->request.threads, "Threads; default: as many as this process may use")
+      ->transform(whole_number(1, kMostThreads))
+      ->type_name("N");
+  command.add_option("--isa", options->request.isa, "Use no better instruction set: sse4, avx2 or avx512")
+      ->type_name("NAME");
+  command.add_flag("--json", options->json, "As JSON");
+  command.add_flag("-q,--quiet", options->quiet, "Show no progress");
+  command.footer(
+      "Examples:\n"
+      "  orrery study scenes/book/final.toml --budget 5m -o report.html\n"
+      "  orrery study cloud.toml --noise 0.02 --json");
+  command.callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace orrery::cli

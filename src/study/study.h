@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/picture.h"
+
+namespace orrery::study {
+
+struct Request {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;
+  std::string isa;        ///< empty: the processor's best
+  int threads = 0;        ///< 0: as many as this process may use
+  double budget_s = 120;  ///< for everything
+  double noise = 0.01;    ///< that the recommendation shall reach
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(const std::string& what, double fraction)> on_progress;
+};
+
+/// What a choice comes to. Errors are those of film::display_error_squared, roots of means over pixels.
+struct Point {
+  std::string axis;          ///< "samples", "sampler", "precision" ...
+  std::string name;          ///< "64 independent"
+  std::string flags;         ///< that choose it on the command line
+  double samples = 0;        ///< per pixel, mean
+  double seconds = 0;        ///< to render one picture of the study's size
+  double error = 0;          ///< against the reference, whose own is taken off
+  double bias = 0;           ///< part of it that more samples would not take away; 0 where none was found
+  double noise = 0;          ///< the rest
+  double energy = 0;         ///< light that is too much, of all light
+  double efficiency = 0;     ///< 1 / (error^2 seconds)
+  std::uint64_t memory = 0;  ///< bytes, estimated
+  bool is_shortcut = false;  ///< gives another picture than the scene asks for, however many samples
+  bool on_front = false;     ///< nothing else is both quicker and better
+  film::Picture picture;     ///< planes R, G, B
+};
+
+/// What a way of writing the picture comes to.
+struct FilePoint {
+  std::string name;  ///< "half zips"
+  std::string flags;
+  std::uint64_t bytes = 0;
+  double write_s = 0;
+  double error = 0;  ///< display error that writing brings in
+};
+
+/// A line of points by rising samples, and how steep it falls.
+struct Slope {
+  std::string name;
+  double slope = 0;  ///< of log error by log samples
+};
+
+struct Recommendation {
+  std::string words;
+  std::string command;
+  double noise = 0, bias = 0;   ///< that the picture will have
+  double seconds = 0;           ///< of rendering, at the scene's size
+  double samples = 0;           ///< per pixel
+  double baseline_seconds = 0;  ///< for the same error with the scene's own settings, the same samples in all pixels
+};
+
+struct Study {
+  std::string scene_hash, scene, version;
+  int width = 0, height = 0;              ///< px, of the study
+  int scene_width = 0, scene_height = 0;  ///< px
+  std::uint64_t spheres = 0;
+  int threads = 0;
+  std::string isa;
+  double seconds = 0, budget_s = 0;
+  double reference_noise = 0, reference_samples = 0, reference_s = 0;
+  film::Picture reference;
+  std::vector<Point> points;
+  std::vector<FilePoint> files;
+  std::vector<Slope> slopes;
+  std::vector<std::string> left_out;  ///< axes that this scene cannot feel, and points that the budget did not allow
+  struct Feature {
+    std::string name;
+    bool required = false;
+    double saves = 0;  ///< of the time, measured, where it is left out
+  };
+  std::vector<Feature> features;
+  Recommendation recommendation;
+};
+
+/// Measures what this scene's shortcuts cost and bring.
+///
+/// Renders a reference, then each choice twice with different seeds: what both are off by together is bias, the rest
+/// noise. Finds a recommendation, and tries it at the scene's own size.
+///
+/// Errors     as app::run_job; base::Error(kUsage) for a budget that is too small, with what it needs; kStopped
+Study run_study(const Request& request);
+
+/// For people.
+std::string study_text(const Study& study);
+/// As JSON, "orrery.study/1"; pictures are left out.
+std::string study_json(const Study& study);
+/// One file with everything in it; see report.cpp.
+std::string study_html(const Study& study);
+
+}  // namespace orrery::study
