@@ -4,7 +4,7 @@
 
     bench/trade.py build/src/orrery [--runs 5] [--width 320] [--noise 0.01]
 
-Five scenes; the error is that of `orrery compare`, "display", against a reference made with --noise at an eighth of the
+Five scenes; the error is that of `orrery compare`, "display", against a reference made with --noise at a quarter of the
 asked one. Every way is rendered with each seed in turn, on all threads; times are medians, errors roots of mean squares.
 The baseline is what the book does: independent numbers, the same samples everywhere, no roulette. Its time for an error
 is what it took, by the square of the errors: that is its law.
@@ -68,7 +68,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         for name, scene in scenes(options.program, work).items():
-            reference, _ = render(options.program, scene, work, size, ["--noise", options.noise / 8, "--seed", 999])
+            reference, _ = render(options.program, scene, work, size, ["--noise", options.noise / 4, "--seed", 999])
             reference = reference.rename(work / "reference.exr")
             # All ways get about the samples that adaptive sampling takes, so that their errors are alike.
             _, told = render(options.program, scene, work, size, ["--noise", options.noise, "--seed", 998])

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/info.h"
 
+#include "app/bench_scene.h"
+
 #include <algorithm>
 #include <array>
 
@@ -97,6 +99,15 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
   return info;
 }
 
+void measure_savings(const std::filesystem::path& scene, const std::vector<std::string>& overrides, SceneInfo& info) {
+  BenchRequest request;
+  request.scene = scene;
+  request.overrides = overrides;
+  for (const FeatureCost& cost : bench_features(request))
+    for (Feature& feature : info.features)
+      if (feature.name == cost.name) feature.saves = cost.saves.median;
+}
+
 std::string info_text(const SceneInfo& info) {
   std::string out;
   append(out, "scene       %s\n", info.scene_hash.c_str());
@@ -122,7 +133,9 @@ std::string info_text(const SceneInfo& info) {
     for (const Feature& f : info.features) {
       if (f.required != required) continue;
       append(out, "%s %s", first ? "" : (required ? "," : ";"), f.name.c_str());
-      if (!required && !f.note.empty()) append(out, " (%s)", f.note.c_str());
+      if (!required && !f.note.empty()) append(out, " (%s", f.note.c_str());
+      if (f.saves) append(out, "; saves %.1f %% of the time", *f.saves * 100);
+      if (!required && !f.note.empty()) out += ')';
       first = false;
     }
     out += first ? " nothing\n" : "\n";
@@ -140,7 +153,10 @@ std::string info_json(const SceneInfo& info) {
   using nlohmann::json;
   json features = json::array(), settings = json::array(), materials = json::object(), warnings = json::array();
   for (const Feature& f : info.features)
-    features.push_back({{"name", f.name}, {"required", f.required}, {"note", f.note}});
+    features.push_back({{"name", f.name},
+                        {"required", f.required},
+                        {"note", f.note},
+                        {"saves", f.saves ? json(*f.saves) : json(nullptr)}});
   for (const auto& s : info.settings) settings.push_back({{"key", s.key}, {"value", s.value}, {"origin", s.origin}});
   for (const auto& [name, count] : info.materials) materials[name] = count;
   for (const base::Finding& w : info.warnings)

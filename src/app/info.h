@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,8 @@ namespace orrery::app {
 struct Feature {
   std::string name;  ///< "thin lens"
   bool required;
-  std::string note;  ///< what requires it, or what is not computed without it
+  std::string note;                  ///< what requires it, or what is not computed without it
+  std::optional<double> saves = {};  ///< of the time, by leaving it out; where it was measured
 };
 
 /// What a scene is, before it is rendered.
@@ -42,6 +44,11 @@ struct SceneInfo {
 ///
 /// Errors     as format::read_scene
 SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
+
+/// Measures what is saved by leaving out what this scene does not ask for, as far as the kernel has it as a feature.
+///
+/// Errors     as bench_features
+void measure_savings(const std::filesystem::path& scene, const std::vector<std::string>& overrides, SceneInfo& info);
 
 /// The same as text for people.
 std::string info_text(const SceneInfo& info);

@@ -203,9 +203,10 @@ void run_phases(const Job& job, JobReport& report) {
 
   const compile::World world = compile::compile(read.scene);
   const Layers layers = layers_for(job, read.scene, world);
-  require_memory(estimate_memory(world.width, world.height, film::planes_of(layers.request).size(),
-                                 world.spheres.size(), world.accelerator == compile::Accelerator::kEmbree),
-                 job.memory_limit);
+  MemoryEstimate memory = estimate_memory(world.width, world.height, film::planes_of(layers.request).size(),
+                                          world.spheres.size(), world.accelerator == compile::Accelerator::kEmbree);
+  if (job.noise > 0 || job.seconds > 0) memory.film += estimate_rounds(world.width, world.height, layers.request.any());
+  require_memory(memory, job.memory_limit);
   read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
   report.scene_hash = scene_hash(world);
   report.width = world.width;

@@ -7,6 +7,7 @@
 
 #include "app/text.h"
 #include "base/error.h"
+#include "film/layer_pixel.h"
 #include "kernel/pixel_sum.h"
 #include "kernel/sphere.h"
 
@@ -59,6 +60,13 @@ MemoryEstimate estimate_memory(int width, int height, std::uint64_t layer_planes
   m.spheres = spheres * kBytesPerSphere;
   m.accelerator = embree ? spheres * kAcceleratorBytesPerSphere : 0;
   return m;
+}
+
+std::uint64_t estimate_rounds(int width, int height, bool has_layers) {
+  // Two floats and a count a pixel for judging it, twice while averages are made.
+  const std::uint64_t a_pixel =
+      sizeof(kernel::PixelSum) + 5 * sizeof(float) + (has_layers ? sizeof(film::LayerPixel) : 0);
+  return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * a_pixel;
 }
 
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root) {

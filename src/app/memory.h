@@ -18,6 +18,10 @@ struct MemoryEstimate {
 /// Domain     `layer_planes` beside R, G, B, A; `spheres` counts those of tables and of points files
 MemoryEstimate estimate_memory(int width, int height, std::uint64_t layer_planes, std::uint64_t spheres, bool embree);
 
+/// What a render in rounds holds beside that: a second half of each pixel's samples, its error, and, with layers, all
+/// that is known of its paths so far. Bytes.
+std::uint64_t estimate_rounds(int width, int height, bool has_layers);
+
 /// Bytes that this process may still take: what the machine has free or can free at once, and no more than its control
 /// group still grants. Nothing where neither can be told.
 ///

@@ -16,7 +16,7 @@ namespace {
 struct InfoOptions {
   std::filesystem::path scene;
   SceneOptions overrides;
-  bool json = false, settings = false;
+  bool json = false, settings = false, measure = false;
 };
 
 struct CheckOptions {
@@ -30,7 +30,8 @@ void print_warnings(const app::SceneInfo& info) {
 }
 
 int info(const InfoOptions& options) {
-  const app::SceneInfo found = app::scene_info(options.scene, options.overrides.overrides());
+  app::SceneInfo found = app::scene_info(options.scene, options.overrides.overrides());
+  if (options.measure) app::measure_savings(options.scene, options.overrides.overrides(), found);
   print_warnings(found);
   print_result(options.json       ? app::info_json(found)
                : options.settings ? app::settings_text(found)
@@ -60,7 +61,8 @@ void add_info(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("info", "Tell what a scene is, what it requires, and what is left out");
   command.add_option("SCENE", options->scene, "Scene file")->required()->type_name("FILE");
   options->overrides.add_to(command);
-  auto* json = command.add_flag("--json", options->json, "As JSON, with all settings");
+  auto* json = command.add_flag("--measure", options->measure, "Measure what leaving out saves; takes some seconds");
+  command.add_flag("--json", options->json, "As JSON, with all settings");
   command.add_flag("--settings", options->settings, "Every setting, its value and where it came from")->excludes(json);
   command.footer(
       "Examples:\n"

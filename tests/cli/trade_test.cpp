@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is asked for by error or by time, and what comes of it.
+#include <chrono>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+class CliTrade : public ProgramTest {
+ protected:
+  nlohmann::json stats() { return nlohmann::json::parse(text_of(folder_ / "s.json")); }
+};
+
+TEST_F(CliTrade, NoiseAloneIsNotLimitedByTheScenesSamples) {
+  const Outcome r = run("render good.toml -o a.exr --noise 0.002 --stats s.json --progress none");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_NE(r.err.find("; noise 0.00"), std::string::npos) << r.err;
+  const auto s = stats();
+  EXPECT_LE(s["noise"], 0.002);
+  EXPECT_EQ(s["ended_by"], "noise");
+  EXPECT_EQ(s["target_missed"], "");
+  EXPECT_GT(s["samples_most"], s["samples_fewest"]);
+}
+
+TEST_F(CliTrade, ATargetThatSamplesDoNotReachIsTold) {
+  const Outcome r = run("render good.toml -o a.exr --noise 0.0001 --samples 32 --stats s.json --progress none");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_NE(r.err.find("warning: noise 0.00"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find(" instead of 0.0001: every pixel that needs more has had all its samples\n"), std::string::npos);
+  EXPECT_NE(stats()["target_missed"], "");
+  const Outcome strict = run("render good.toml -o b.exr --noise 0.0001 --samples 32 --strict -q");
+  EXPECT_EQ(strict.status, 75);
+  EXPECT_EQ(strict.err.rfind("orrery: noise 0.00", 0), 0u) << strict.err;
+  // The picture is there all the same, and the same.
+  EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0 -q").status, 0);
+}
+
+TEST_F(CliTrade, TimeIsKept) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome r = run("render good.toml -o a.exr --noise 1e-6 --time 1.5s --stats s.json --progress none");
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_EQ(r.status, 0);
+  EXPECT_NEAR(seconds, 1.5, 1.0);
+  EXPECT_NE(r.err.find(" instead of 1e-06: time was over\n"), std::string::npos) << r.err;
+  EXPECT_EQ(stats()["ended_by"], "time");
+}
+
+TEST_F(CliTrade, WhatIsNoTargetIsAUsageError) {
+  EXPECT_EQ(run("render good.toml -o a.exr --noise 0").status, 2);
+  EXPECT_EQ(run("render good.toml -o a.exr --noise nan").status, 2);
+  const Outcome time = run("render good.toml -o a.exr --time 90");
+  EXPECT_EQ(time.status, 2);
+  EXPECT_NE(time.err.find("must be a time with its unit, as 90s, 5m or 1.5h, not `90`"), std::string::npos) << time.err;
+  EXPECT_EQ(run("render good.toml -o a.exr --time -5s").status, 2);
+  EXPECT_EQ(run("render good.toml -o a.exr --time 1e30h").status, 2);
+}
+
+TEST_F(CliTrade, AStudyWritesItsReport) {
+  const Outcome r = run("study good.toml --budget 6s --noise 0.05 -o report.html --json -q");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(nlohmann::json::parse(r.out)["schema"], "orrery.study/1");
+  EXPECT_NE(text_of(folder_ / "report.html").find("<title>What time buys</title>"), std::string::npos);
+  const Outcome small = run("study good.toml --budget 0.01s -q");
+  EXPECT_EQ(small.status, 2);
+  EXPECT_NE(small.err.find("a study needs "), std::string::npos) << small.err;
+  EXPECT_EQ(run("study nothing.toml --budget 5s -q").status, 66);
+  EXPECT_EQ(run("study good.toml --budget 5s -q -o no/such/place.html").status, 73);
+}
+
+TEST_F(CliTrade, InfoMeasuresWhatLeavingOutSaves) {
+  const Outcome r = run("info good.toml --measure");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_NE(r.out.find("; saves "), std::string::npos) << r.out;
+}
+
+}  // namespace
+}  // namespace orrery::test

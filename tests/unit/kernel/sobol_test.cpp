@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "unit/kernel/sobol_test.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
+#include <hwy/highway.h>
+
+#include "kernel/sampler-inl.h"
+#include "math/dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+/// Points of the sequence with a name, four coordinates each, by lanes of one width.
+template <class U>
+void points(std::uint32_t name, std::uint32_t first, std::size_t count, std::uint32_t* out) {
+  const hn::ScalableTag<U> du;
+  HWY_ALIGN U lanes[4][hn::MaxLanes(du)];
+  for (std::size_t i = 0; i < count; i += hn::Lanes(du)) {
+    const auto index = hn::Iota(du, static_cast<U>(first + i));
+    const auto p = sobol(du, index, hn::Set(du, static_cast<U>(name)), true);
+    for (int k = 0; k < 4; ++k) hn::Store(p.v[k], du, lanes[k]);
+    for (std::size_t l = 0; l < hn::Lanes(du) && i + l < count; ++l)
+      for (std::size_t k = 0; k < 4; ++k) out[(i + l) * 4 + k] = static_cast<std::uint32_t>(lanes[k][l]);
+  }
+}
+void points_64(std::uint32_t n, std::uint32_t f, std::size_t c, std::uint32_t* o) { points<std::uint64_t>(n, f, c, o); }
+void points_32(std::uint32_t n, std::uint32_t f, std::size_t c, std::uint32_t* o) { points<std::uint32_t>(n, f, c, o); }
+
+/// Numbers of one lane: four for each sample of a pixel at a vertex.
+void numbers(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, std::uint32_t first, std::size_t count,
+             double* out) {
+  const hn::FixedTag<double, 1> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto four = random_at_vertex(d, sampler, hn::Set(du, pixel), hn::Set(du, first + i), vertex, true);
+    for (int k = 0; k < 4; ++k) *out++ = hn::GetLane(four.v[k]);
+  }
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orrery::kernel {
+namespace {
+
+HWY_EXPORT(points_64);
+HWY_EXPORT(points_32);
+HWY_EXPORT(numbers);
+
+struct Point {
+  std::uint32_t v[4];
+};
+
+std::vector<Point> points_of(std::uint32_t name, std::uint32_t first, std::size_t count) {
+  std::vector<Point> out(count);
+  ORRERY_BEST(points_32)(name, first, count, out[0].v);
+  return out;
+}
+
+std::vector<double> numbers_of(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, std::uint32_t first,
+                               std::size_t count) {
+  std::vector<double> out(4 * count);
+  ORRERY_BEST(numbers)(sampler, pixel, vertex, first, count, out.data());
+  return out;
+}
+
+TEST(KernelSobol, ColumnsAreThoseOfTheFirstPublishedPoints) {
+  // Without scrambling points 1, 2, 4 are 1/2; 1/4 or 3/4; an eighth, three or so: joe2008's table for three
+  // dimensions.
+  const auto value = [](std::uint32_t reversed) {
+    double out = 0;
+    for (int bit = 0; bit < 32; ++bit) out += (reversed >> bit & 1) != 0 ? std::ldexp(1.0, -bit - 1) : 0;
+    return out;
+  };
+  const auto& third = kSobolColumns.third;
+  EXPECT_EQ(value(third[0]), 0.5);
+  EXPECT_EQ(value(third[0] ^ third[1]), 0.25);
+  EXPECT_EQ(value(third[1] ^ third[2]), 0.375 + 0.75 - 2 * 0.25);  // 0.11 ^ 0.011 in binary: 0.101
+  EXPECT_EQ(value(kSobolColumns.fourth[0]), 0.5);
+  EXPECT_EQ(value(kSobolColumns.fourth[1]), 0.75);
+  EXPECT_EQ(value(kSobolColumns.fourth[2]), 0.125);
+}
+
+TEST(KernelSobol, BothWidthsOfLanesGiveTheSamePoints) {
+  std::vector<std::uint32_t> wide(4 * 1000), narrow(4 * 1000);
+  for (const std::uint32_t name : {0u, 1u, 0xdeadbeefu}) {
+    ORRERY_BEST(points_64)(name, 37, 1000, wide.data());
+    ORRERY_BEST(points_32)(name, 37, 1000, narrow.data());
+    EXPECT_EQ(wide, narrow);
+  }
+}
+
+TEST(KernelSobol, EveryBlockIsANetInTheFirstTwoDimensions) {
+  for (std::uint32_t name = 1; name < 40; ++name) {
+    for (const int bits : {1, 2, 3, 5, 8}) {
+      const std::size_t count = std::size_t{1} << bits;
+      const auto p = points_of(name, static_cast<std::uint32_t>(3 * count), count);
+      for (int across = 0; across <= bits; ++across) {  // 2^across columns of 2^(bits - across) rows: one point in each
+        std::set<std::pair<std::uint32_t, std::uint32_t>> cells;
+        for (const Point& point : p)
+          cells.insert({across == 0 ? 0 : point.v[0] >> (32 - across),
+                        across == bits ? 0 : point.v[1] >> (32 - (bits - across))});
+        ASSERT_EQ(cells.size(), count) << name << " " << bits << " " << across;
+      }
+    }
+  }
+}
+
+TEST(KernelSobol, EachDimensionIsStratifiedAtEveryPowerOfTwo) {
+  for (std::uint32_t name = 1; name < 40; ++name)
+    for (const int bits : {1, 4, 9})
+      for (std::size_t k = 0; k < 4; ++k) {
+        std::set<std::uint32_t> strata;
+        for (const Point& p : points_of(name, 0, std::size_t{1} << bits)) strata.insert(p.v[k] >> (32 - bits));
+        ASSERT_EQ(strata.size(), std::size_t{1} << bits);
+      }
+}
+
+/// Of cells that are equally likely: (sum (n - e)^2 / e - f) / sqrt(2 f), nearly normal for many cells.
+double z_of(const std::vector<int>& cells) {
+  double total = 0, chi = 0;
+  for (const int n : cells) total += n;
+  const double expected = total / static_cast<double>(cells.size());
+  for (const int n : cells) chi += (n - expected) * (n - expected) / expected;
+  const double freedom = static_cast<double>(cells.size()) - 1;
+  return (chi - freedom) / std::sqrt(2 * freedom);
+}
+
+TEST(KernelSobol, APointIsUniformOverNamesInEveryPairOfDimensions) {
+  constexpr int kSide = 32, kNames = 200000;
+  for (const std::uint32_t index : {0u, 1u, 5u, 1000u}) {
+    for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 3}, std::pair{2, 3}}) {
+      std::vector<int> cells(kSide * kSide);
+      for (std::uint32_t name = 0; name < kNames; ++name) {
+        const Point p = points_of(name * 0x9e3779b1u, index, 1)[0];
+        ++cells[(p.v[a] >> 27) * kSide + (p.v[b] >> 27)];
+      }
+      EXPECT_LT(std::abs(z_of(cells)), 5) << index << " " << a << b;
+    }
+  }
+}
+
+TEST(KernelSobol, TheOrderOfAFewPointsIsByChanceToo) {
+  // In which quarter each of the first four points lies. The points of a pair lie in different halves, and share these
+  // with one of the other pair each: 2 * 2 halves, 2 * 2 quarters, all of the 16 orders equally likely.
+  std::map<std::vector<std::uint32_t>, int> orders;
+  for (std::uint32_t name = 0; name < 80000; ++name) {
+    std::vector<std::uint32_t> order;
+    for (const Point& p : points_of(name * 0x85ebca6bu, 0, 4)) order.push_back(p.v[0] >> 30);
+    ++orders[order];
+  }
+  EXPECT_EQ(orders.size(), 16u);
+  std::vector<int> counts;
+  for (const auto& [order, count] : orders) counts.push_back(count);
+  EXPECT_LT(std::abs(z_of(counts)), 5);
+}
+
+TEST(KernelSampler, NumbersOfDifferentVerticesHalvesAndPixelsDoNotGoTogether) {
+  Sampler sampler;
+  constexpr int kSide = 16;
+  std::vector<int> vertices(kSide * kSide), halves(kSide * kSide), pixels(kSide * kSide), seeds(kSide * kSide);
+  Sampler other = sampler;
+  other.seed = 2;
+  const auto cell = [](double a, double b) {
+    return static_cast<std::size_t>(a * kSide) * kSide + static_cast<std::size_t>(b * kSide);
+  };
+  for (std::uint32_t pixel = 0; pixel < 20000; ++pixel) {
+    const auto here = numbers_of(sampler, pixel, 0, 3, 1), next = numbers_of(sampler, pixel, 1, 3, 1),
+               half = numbers_of(sampler, pixel, 0, Sampler::kSecondHalf + 3, 1),
+               beside = numbers_of(sampler, pixel + 1, 0, 3, 1), reseeded = numbers_of(other, pixel, 0, 3, 1);
+    for (std::size_t k = 0; k < 4; ++k) {
+      ++vertices[cell(here[k], next[k])];
+      ++halves[cell(here[k], half[k])];
+      ++pixels[cell(here[k], beside[k])];
+      ++seeds[cell(here[k], reseeded[k])];
+    }
+  }
+  for (const auto& cells : {vertices, halves, pixels, seeds}) EXPECT_LT(std::abs(z_of(cells)), 5);
+}
+
+TEST(KernelSampler, BlueNoiseSharesASequenceAmongNeighbours) {
+  Sampler sampler;
+  sampler.kind = SamplerKind::kBlueNoise;
+  sampler.blue_noise_bits = 2;
+  // Four samples of each of the four pixels of a square: sixteen points that are one net together.
+  std::set<int> strata;
+  for (const std::uint32_t pixel : {0x00060004u, 0x00060005u, 0x00070004u, 0x00070005u}) {
+    const auto n = numbers_of(sampler, pixel, 0, 0, 4);
+    for (std::size_t i = 0; i < 4; ++i) strata.insert(static_cast<int>(n[4 * i] * 16));
+  }
+  EXPECT_EQ(strata.size(), 16u);
+  // What a pixel has beyond its share is not its neighbour's.
+  EXPECT_NE(numbers_of(sampler, 0x00060004u, 0, 4, 4), numbers_of(sampler, 0x00060005u, 0, 0, 4));
+}
+
+}  // namespace
+}  // namespace orrery::kernel
+#endif
