@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What sampler, roulette and adaptive sampling are worth: time for the same error, error in the same time.
 
-    bench/trade.py build/src/orrery [--runs 5] [--width 320] [--noise 0.01]
+    bench/trade.py build/src/orrery [--runs 5] [--width 320] [--noise 0.01] [--scene NAME]
 
 Five scenes; the error is that of `orrery compare`, "display", against a reference made with --noise at a quarter of the
 asked one. Every way is rendered with each seed in turn, on all threads; times are medians, errors roots of mean squares.
@@ -39,9 +39,9 @@ def render(program, scene, work, size, words):
     return picture, told
 
 
-def display_error(program, picture, reference):
+def compared(program, picture, reference):
     done = subprocess.run([program, "compare", picture, reference, "--json"], check=True, capture_output=True, text=True)
-    return json.loads(done.stdout)["display"]
+    return json.loads(done.stdout)
 
 
 def scenes(program, work):
@@ -61,6 +61,7 @@ def main():
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--width", type=int, default=320)
     parser.add_argument("--noise", type=float, default=0.01)
+    parser.add_argument("--scene", action="append", help="only this one; can be repeated")
     options = parser.parse_args()
     size = ["--width", options.width, "--height", options.width * 9 // 16]
     print(f"{'scene':14} {'way':12} {'samples':>8} {'seconds':>8} {'error':>8} {'time for the same error':>24} "
@@ -68,6 +69,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         for name, scene in scenes(options.program, work).items():
+            if options.scene and name not in options.scene:
+                continue
             reference, _ = render(options.program, scene, work, size, ["--noise", options.noise / 4, "--seed", 999])
             reference = reference.rename(work / "reference.exr")
             # All ways get about the samples that adaptive sampling takes, so that their errors are alike.
@@ -79,7 +82,7 @@ def main():
                     words = ["--noise", options.noise] if words is None else [*words, "--samples", samples]
                     picture, told = render(options.program, scene, work, size, [*words, "--seed", seed])
                     found[way][0].append(told["seconds"]["render"])
-                    found[way][1].append(display_error(options.program, picture, reference))
+                    found[way][1].append(compared(options.program, picture, reference)["display"])
                     found[way][2].append(told["samples"])
             base = None
             for way, (seconds, errors, counts) in found.items():

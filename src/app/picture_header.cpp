@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/picture_header.h"
 
+#include <cmath>
 #include <ctime>
 
 #include "app/camera_matrices.h"
@@ -29,6 +30,12 @@ std::string settings_lines(const std::vector<format::Setting>& settings, bool re
   return lines;
 }
 
+/// Per pixel; where pixels differ their mean.
+int mean_samples(const compile::World& world, const JobReport& report) {
+  if (!report.render.noise) return world.samples;
+  return static_cast<int>(std::lround(static_cast<double>(report.render.paths) / world.width / world.height));
+}
+
 }  // namespace
 
 image::Header picture_header(const format::ReadResult& read, const compile::World& world, const JobReport& report,
@@ -46,9 +53,10 @@ image::Header picture_header(const format::ReadResult& read, const compile::Worl
   }
   header.attributes = {{"orrery/version", program_version()},
                        {"orrery/sceneHash", report.scene_hash},
-                       {"orrery/samples", world.samples},
+                       {"orrery/samples", mean_samples(world, report)},
                        {"orrery/maxDepth", static_cast<int>(world.max_depth)},
                        {"orrery/seed", std::to_string(world.sampler.seed)}};
+  if (report.render.noise) header.attributes.push_back({"orrery/noise", static_cast<float>(*report.render.noise)});
   for (const format::Setting& setting : read.settings)
     if (setting.key == "render.precision" || setting.key == "render.shading" || setting.key == "render.sampler")
       header.attributes.push_back({"orrery/" + setting.key.substr(7), scene::unquoted(setting.value)});

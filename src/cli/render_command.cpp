@@ -158,6 +158,7 @@ void add_render(CLI::App& program, Action& action) {
       "Examples:\n"
       "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"
       "  orrery render scene.toml -o test.png --samples 20 --set camera.vfov=30\n"
+      "  orrery render scene.toml -o final.exr --noise 0.01 --time 10m\n"
       "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");
   command.callback([options, &action] { action = [options] { return render(*options); }; });
 }

@@ -61,8 +61,8 @@ void add_info(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("info", "Tell what a scene is, what it requires, and what is left out");
   command.add_option("SCENE", options->scene, "Scene file")->required()->type_name("FILE");
   options->overrides.add_to(command);
-  auto* json = command.add_flag("--measure", options->measure, "Measure what leaving out saves; takes some seconds");
-  command.add_flag("--json", options->json, "As JSON, with all settings");
+  command.add_flag("--measure", options->measure, "Measure what leaving out saves; takes some seconds");
+  auto* json = command.add_flag("--json", options->json, "As JSON, with all settings");
   command.add_flag("--settings", options->settings, "Every setting, its value and where it came from")->excludes(json);
   command.footer(
       "Examples:\n"

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/text.h"
+#include "base/text.h"
 #include "display/develop.h"
 #include "image/write.h"
 #include "metrics/false_color.h"
@@ -19,7 +19,7 @@
 namespace orrery::study {
 namespace {
 
-using app::append;
+using base::append;
 using nlohmann::json;
 
 /// The largest width of pictures on the page: of twenty of them the file shall stay a few megabytes.
@@ -160,7 +160,9 @@ class Encoder {
 
 }  // namespace
 
-std::string study_json(const Study& study) { return app::json_text(study_object(study)); }
+std::string study_json(const Study& study) {
+  return study_object(study).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
 
 std::string study_text(const Study& s) {
   std::string out;
@@ -177,7 +179,8 @@ std::string study_text(const Study& s) {
   for (const Slope& l : s.slopes) append(out, "error of %s falls as samples to the %.2f\n", l.name.c_str(), l.slope);
   append(out, "\n%-14s %12s %9s %9s\n", "file", "size", "write s", "error %");
   for (const FilePoint& f : s.files)
-    append(out, "%-14s %12s %9.3f %9.4f\n", f.name.c_str(), app::bytes_text(f.bytes).c_str(), f.write_s, f.error * 100);
+    append(out, "%-14s %12s %9.3f %9.4f\n", f.name.c_str(), base::bytes_text(f.bytes).c_str(), f.write_s,
+           f.error * 100);
   out += '\n';
   for (const auto& f : s.features) {
     if (f.required) {

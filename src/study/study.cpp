@@ -12,11 +12,11 @@
 #include "app/choose_isa.h"
 #include "app/memory.h"
 #include "app/scene_hash.h"
-#include "app/text.h"
 #include "app/threads.h"
 #include "app/version.h"
 #include "app/working_space.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "compile/compile.h"
 #include "film/display_error.h"
 #include "format/read_scene.h"
@@ -177,7 +177,8 @@ class Runner {
     if (pixels < kFewestPixels) {
       const double needed = elapsed() + kFewestPixels * kSamplesWanted / paths_per_s_ / (1 - kPilotShare);
       std::string text;
-      app::append(text, "--budget is too small for this scene: a study needs %.0f s at least", std::ceil(1.2 * needed));
+      base::append(text, "--budget is too small for this scene: a study needs %.0f s at least",
+                   std::ceil(1.2 * needed));
       throw base::Error(base::ErrorKind::kUsage, text);
     }
     resize(world_, pixels);
@@ -337,7 +338,7 @@ class Runner {
     tell("trying the recommendation");
     World world = *full_;
     std::string flags;
-    app::append(flags, "--noise %g", request_.noise);
+    base::append(flags, "--noise %g", request_.noise);
     Recommendation& r = out_.recommendation;
     const Point* const exact = find("precision", "exact");
     const Point* const fast = find("precision", "fast");
@@ -372,9 +373,9 @@ class Runner {
         static_cast<double>(pilot.statistics.paths) / (static_cast<double>(world.width) * world.height) * growth;
     r.command = "orrery render " + out_.scene + " -o final.exr " + flags;
     r.baseline_seconds = baseline_seconds();
-    app::append(r.words, "for %.3g %% noise: %s, %.3g s instead of %.3g s", request_.noise * 100, flags.c_str(),
-                r.seconds, r.baseline_seconds);
-    if (takes_fast) app::append(r.words, ", bias %.2g %%", r.bias * 100);
+    base::append(r.words, "for %.3g %% noise: %s, %.3g s instead of %.3g s", request_.noise * 100, flags.c_str(),
+                 r.seconds, r.baseline_seconds);
+    if (takes_fast) base::append(r.words, ", bias %.2g %%", r.bias * 100);
   }
 
   /// Of the points with --noise: how the error falls with time, -log error by log samples.

@@ -13,7 +13,7 @@ struct Case {
 
 const Case kCases[] = {
     {"", 2,
-     "orrery: a command is missing; there are render, info, check, generate, develop, bake, compare, bench\n"
+     "orrery: a command is missing; there are render, info, check, generate, develop, bake, compare, bench, study\n"
      "Try orrery --help.\n"},
     {"rendr good.toml", 2,
      "orrery: unknown command rendr; did you mean `render`?\n"
@@ -84,7 +84,7 @@ const Case kCases[] = {
     {"compare a.exr b.exr --fail-above rmse=-1", 2,
      "orrery: --fail-above rmse=-1: the value must be a number of 0 or more\n"},
     {"compare a.exr b.exr --fail-above psnr=40", 2,
-     "orrery: --fail-above psnr=40: psnr falls as pictures differ more; limit rmse instead\n"},
+     "orrery: --fail-above psnr=40: psnr falls as pictures differ more; limit rmse or flip instead\n"},
 };
 
 class CliMessages : public ProgramTest, public testing::WithParamInterface<Case> {};

@@ -11,7 +11,7 @@ if ! command -v chromium >/dev/null; then
 fi
 rm -rf "$work"
 mkdir -p "$work/profile"
-"$orrery" study "$here/../../scenes/trade/glass.toml" --budget 10s --noise 0.05 -q -o "$work/report.html" >"$work/report.txt"
+"$orrery" study "$here/../../scenes/trade/glass.toml" --budget 20s --noise 0.05 -q -o "$work/report.html" >"$work/report.txt"
 # The page, and at its end what presses its buttons and writes down what came of it.
 { sed 's|</body>||; s|</html>||' "$work/report.html" && printf '<script>' && cat "$here/press.js" &&
   printf '</script></body></html>\n'; } >"$work/pressed.html"

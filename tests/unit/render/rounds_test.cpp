@@ -100,7 +100,7 @@ TEST(RenderRounds, TimeIsKept) {
     settings.unlimited = true;
     const Result r = render(world_of(), settings);
     EXPECT_EQ(r.statistics.ended_by, "time");
-    EXPECT_NEAR(r.statistics.render_s, seconds, 0.5) << "PRODUCT: within 5 % or a second";
+    EXPECT_NEAR(r.statistics.render_s, seconds, 1.0);  // as promised: 5 % or a second
   }
 }
 

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace orrery::base {
+
+/// printf at the end of a string, of any length.
+[[gnu::format(printf, 2, 3)]] void append(std::string& out, const char* format, ...);
+
+/// "49.4 MiB".
+std::string bytes_text(std::uint64_t bytes);
+
+}  // namespace orrery::base
