@@ -199,7 +199,7 @@ Table render_table() {
                   {"scattering events",
                    "from here on a path is ended by chance, the less light it can still bring the likelier, and counts "
                    "for more if it is not; without bias; 0: never",
-                   "a quarter of the time in final.toml, up to two thirds where much is dark"},
+                   "0: a little to twice the time, the more is dark the more"},
                   [](S& s) -> int& { return s.render.roulette_depth; }),
        choice<S>("sampler", {"independent", "sobol", "blue-noise"},
                  {"",
