@@ -39,6 +39,9 @@ for name in 11-gamma 12-metal 13-fuzzy-metal 14-glass-always-refracts 15-glass-t
             16-glass-schlick 17-hollow-glass 18-wide-angle-two-spheres 19-far-view 20-zoomed-view 21-defocus-blur final; do
   gamma $name
 done
+for name in glass defocus contrast; do
+  picture "scenes/trade/$name.toml" "trade-$name" --samples 400
+done
 for count in 30 1000 100000; do
   "$program" generate cloud --count $count -o "$work/cloud-$count.toml"
   picture "$work/cloud-$count.toml" cloud-$count --samples 300
