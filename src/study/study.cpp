@@ -83,6 +83,32 @@ Errors errors_of(const film::Picture& a, const film::Picture& b, const film::Pic
   return out;
 }
 
+/// The spheres of a scene, lent to one world at a time: there may be ten million.
+class Spheres {
+ public:
+  /// Takes a world's.
+  void take_from(World& world) {
+    spheres_.swap(world.spheres);
+    materials_.swap(world.sphere_materials);
+  }
+
+  class Loan {
+   public:
+    Loan(Spheres& from, World& to) : from_(from), to_(to) { from_.take_from(to_); }
+    ~Loan() { from_.take_from(to_); }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+
+   private:
+    Spheres& from_;
+    World& to_;
+  };
+
+ private:
+  std::vector<kernel::Sphere> spheres_;
+  std::vector<std::uint32_t> materials_;
+};
+
 class Runner {
  public:
   explicit Runner(const Request& request) : request_(request) {
@@ -124,27 +150,23 @@ class Runner {
       throw base::Error(base::ErrorKind::kUsage,
                         "render.shading shows no light, so there is nothing to trade; set it to \"path\"");
     app::to_working_space(app::config_of(request_.scene, scene_.color), scene_);
-    world_ = compile::compile(scene_);
-    full_ = std::make_unique<World>(world_);
-    out_.scene_hash = app::scene_hash(world_);
-    out_.scene_width = world_.width;
-    out_.scene_height = world_.height;
-    out_.spheres = world_.spheres.size();
+    full_ = compile::compile(scene_);
+    scene_.spheres = {};
+    scene_.points = {};
+    out_.scene_hash = app::scene_hash(full_);
+    out_.scene_width = full_.width;
+    out_.scene_height = full_.height;
+    out_.spheres = full_.spheres.size();
+    plan_ = plan_axes(scene_, full_);
+    spheres_.take_from(full_);
+    world_ = full_;
   }
 
   render::Result render(World& world, double noise, double seconds) {
+    const Spheres::Loan loan(spheres_, world);
+    // What finds hits looks at the spheres alone, and they stay where they are, whoever has them.
     std::unique_ptr<accel::Accel>& accel = accels_[{world.precision, world.accelerator}];
-    // All worlds of a study have the same spheres; those of the full one live as long as this.
-    if (!accel) {
-      World& owner = *full_;
-      const auto precision = owner.precision;
-      const auto accelerator = owner.accelerator;
-      owner.precision = world.precision;
-      owner.accelerator = world.accelerator;
-      accel = render::build(owner, out_.threads);
-      owner.precision = precision;
-      owner.accelerator = accelerator;
-    }
+    if (!accel) accel = render::build(world, out_.threads);
     render::Settings settings;
     settings.threads = out_.threads;
     settings.noise = noise;
@@ -161,7 +183,7 @@ class Runner {
   /// Sees how fast this scene is, and makes the picture so small that the budget goes round.
   void choose_size() {
     tell("measuring the speed");
-    World pilot = *full_;
+    World pilot = full_;
     pilot.samples = 1;
     // A small picture, for a large one may take longer than the budget for a single sample.
     resize(pilot, kFewestPixels);
@@ -194,8 +216,6 @@ class Runner {
     small.image.overscan = 0;
     small.image.width = std::max(8, static_cast<int>(std::lround(out_.scene_width * scale)));
     small.image.height = std::max(8, static_cast<int>(std::lround(out_.scene_height * scale)));
-    small.spheres = {};
-    small.points = {};
     const World view = compile::compile(small);
     world.camera = view.camera;
     world.width = view.width;
@@ -221,9 +241,8 @@ class Runner {
   double pixels() const { return static_cast<double>(world_.width) * world_.height; }
 
   void measure_axes() {
-    const AxisPlan plan = plan_axes(scene_, world_);
-    out_.left_out = plan.left_out;
-    for (const Choice& choice : plan.choices) {
+    out_.left_out = plan_.left_out;
+    for (const Choice& choice : plan_.choices) {
       // What is told first matters most; what does not fit into the time is named.
       const double cost = choice.noise > 0 ? expected_seconds(choice.noise) : choice.samples * pixels() / paths_per_s_;
       const double reserve = request_.budget_s * (kPilotShare + kFeatureShare);
@@ -260,7 +279,7 @@ class Runner {
       // Noise of neighbours is told apart by the samples that each has.
       world.sampler.blue_noise_bits = compile::blue_noise_bits(choice.samples);
       results[i] = render(world, choice.noise, 0);
-      point.memory = app::estimate_memory(full_->width, full_->height, 0, out_.spheres,
+      point.memory = app::estimate_memory(full_.width, full_.height, 0, out_.spheres,
                                           world.accelerator == compile::Accelerator::kEmbree)
                          .total();
     }
@@ -291,7 +310,7 @@ class Runner {
     bench.rounds = 5;
     bench.seconds = std::clamp(request_.budget_s * kFeatureShare / 5 / 6, 0.02, 0.25);
     bench.cancel = request_.cancel;
-    const kernel::Features& has = full_->features;
+    const kernel::Features& has = full_.features;
     out_.features = {{"thin lens", has.lens, 0}, {"hemisphere", has.hemisphere, 0}, {"gradient sky", has.sky, 0}};
     for (const app::FeatureCost& cost : app::bench_features(bench))
       for (Study::Feature& feature : out_.features)
@@ -336,7 +355,7 @@ class Runner {
   /// What to use for the noise that was asked for, tried at the scene's own size.
   void recommend() {
     tell("trying the recommendation");
-    World world = *full_;
+    World world = full_;
     std::string flags;
     base::append(flags, "--noise %g", request_.noise);
     Recommendation& r = out_.recommendation;
@@ -394,15 +413,16 @@ class Runner {
     for (const Point& p : out_.points)
       if (p.axis == "sampler" && p.name.find("independent") != std::string::npos) best = &p;
     if (best == nullptr) return 0;
-    const double scale = static_cast<double>(full_->width) * full_->height / pixels();
+    const double scale = static_cast<double>(full_.width) * full_.height / pixels();
     return best->seconds * scale * std::pow(best->error / request_.noise, 2);
   }
 
   const Request& request_;
   Clock::time_point start_ = Clock::now();
   scene::Scene scene_;
-  World world_;                  ///< of the study's size
-  std::unique_ptr<World> full_;  ///< of the scene's
+  World world_, full_;  ///< of the study's size and of the scene's, both without spheres
+  Spheres spheres_;
+  AxisPlan plan_;
   std::map<std::pair<compile::Precision, compile::Accelerator>, std::unique_ptr<accel::Accel>> accels_;
   render::Traversal traversal_ = render::Traversal::kAuto;
   double paths_per_s_ = 0;
