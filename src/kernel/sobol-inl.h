@@ -71,9 +71,11 @@ HWY_INLINE V stirred(D32 d32, V v) {
 /// Sequences of different names are independent. Points 2^k n .. 2^k (n + 1) are a net in base 2 in the first two
 /// coordinates, and nearly one in all four, for every n and k: the picture may stop at any count.
 ///
-/// Domain     index < 2^kSobolBits; without `last_two` these are 0, and the time for them is saved; 64-bit lanes: both
-/// in the low halves, the high ones 0 Result     in 64-bit lanes in the low halves, the high ones 0 Reference  joe2008
-/// (directions), burley2020 (shuffled indices, scrambling by a hash)
+/// `last_two` false: these are 0, and the time for them is saved.
+///
+/// Domain     index < 2^kSobolBits; in 64-bit lanes both in the low halves, the high ones 0
+/// Result     in 64-bit lanes in the low halves, the high ones 0
+/// Reference  joe2008 (directions), burley2020 (shuffled indices, scrambling by a hash)
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE Four<V> sobol(DU du, V index, V name, bool last_two) {
   const hn::Repartition<std::uint32_t, DU> d32;
@@ -98,7 +100,8 @@ HWY_INLINE Four<V> sobol(DU du, V index, V name, bool last_two) {
   const V32 at = reversed_bits(d32, hn::And(order, hn::Set(d32, ~0u << (32 - kSobolBits))));
 
   // Coordinates with their bits in opposite order. The first is the index itself; in the second bit j of it stands for
-  // the polynomial (1 + t)^j over two elements, whatever is known of t^(2^b) gives all in five steps.
+  // the polynomial (1 + t)^j over two elements, and since (1 + t)^(2^b) is 1 + t^(2^b), a step for each bit of j does
+  // it.
   V32 second = at;
   const auto expand = [&](auto shift, std::uint32_t mask) {
     second = hn::Xor(second, hn::ShiftRight<decltype(shift)::value>(hn::And(second, hn::Set(d32, mask))));
