@@ -17,7 +17,7 @@ namespace {
 using kernel::Sampler;
 
 /// Sides of the squares that are rendered in one go, px.
-constexpr int kSide = 32;
+constexpr int kSide = 16;
 
 /// Samples of a half before anything is judged by them: fewer would miss what is rare in a pixel and leave it at that.
 constexpr std::uint32_t kFirstSamples = 8;

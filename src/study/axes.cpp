@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/text.h"
+
 namespace orrery::study {
 namespace {
 
@@ -18,18 +20,16 @@ constexpr std::size_t kLongestList = 5000;
 
 class Planner {
  public:
-  Planner(const scene::Scene& scene, const World& world) : scene_(scene), world_(world) {}
+  Planner(const scene::Scene& scene, const World& world, double noise) : scene_(scene), world_(world), noise_(noise) {}
 
   AxisPlan plan() {
     samples();
-    noise(0.04);
+    for (const double times : {4, 2, 1}) noise(times * noise_);
     precision();
     samplers();
-    noise(0.02);
     roulette();
     depth();
     fresnel();
-    noise(0.01);
     accelerator();
     return std::move(out_);
   }
@@ -56,8 +56,8 @@ class Planner {
   }
 
   void noise(double noise) {
-    std::string text = std::to_string(noise);
-    text.erase(text.find_last_not_of('0') + 1);
+    std::string text;
+    base::append(text, "%g", noise);
     add("noise", text, "--noise " + text, world_.samples).noise = noise;
   }
 
@@ -161,11 +161,14 @@ class Planner {
 
   const scene::Scene& scene_;
   const World& world_;
+  double noise_;
   AxisPlan out_;
 };
 
 }  // namespace
 
-AxisPlan plan_axes(const scene::Scene& scene, const World& world) { return Planner(scene, world).plan(); }
+AxisPlan plan_axes(const scene::Scene& scene, const World& world, double noise) {
+  return Planner(scene, world, noise).plan();
+}
 
 }  // namespace orrery::study

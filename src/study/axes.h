@@ -27,7 +27,7 @@ struct AxisPlan {
   std::vector<std::string> left_out;  ///< "no glass: no Fresnel axis"
 };
 
-/// The choices that this scene can feel, the most telling first.
-AxisPlan plan_axes(const scene::Scene& scene, const compile::World& world);
+/// The choices that this scene can feel, the most telling first; `noise` is what a recommendation shall reach.
+AxisPlan plan_axes(const scene::Scene& scene, const compile::World& world, double noise);
 
 }  // namespace orrery::study

@@ -157,7 +157,7 @@ class Runner {
     out_.scene_width = full_.width;
     out_.scene_height = full_.height;
     out_.spheres = full_.spheres.size();
-    plan_ = plan_axes(scene_, full_);
+    plan_ = plan_axes(scene_, full_, request_.noise);
     spheres_.take_from(full_);
     world_ = full_;
   }
@@ -379,17 +379,11 @@ class Runner {
       world.roulette_depth = 3;
       flags += " --set render.roulette_depth=3";
     }
-    // As near to what was asked for as the time that is left allows, and from there by what samples bring: the error
-    // falls a little faster than their root.
-    const double seconds = std::max(left() * 0.9, 0.2);
-    render::Result pilot = render(world, request_.noise, seconds);
-    const double reached = pilot.statistics.noise.value_or(0);
-    const double missing = std::max(reached / request_.noise, 1.0);
-    const double growth = std::pow(missing, 1 / slope_of_noise());
-    r.noise = std::min(reached, request_.noise);
-    r.seconds = pilot.statistics.render_s * growth;
-    r.samples =
-        static_cast<double>(pilot.statistics.paths) / (static_cast<double>(world.width) * world.height) * growth;
+    const Pilots pilots = pilot(world);
+    const Pilot last = pilots.back();
+    r.noise = std::min(last.noise, request_.noise);
+    r.seconds = last.seconds * growth(pilots, request_.noise, &Point::seconds);
+    r.samples = last.samples * growth(pilots, request_.noise, &Point::samples);
     r.command = "orrery render " + out_.scene + " -o final.exr " + flags;
     r.baseline_seconds = baseline_seconds();
     base::append(r.words, "for %.3g %% noise: %s, %.3g s instead of %.3g s", request_.noise * 100, flags.c_str(),
@@ -397,14 +391,51 @@ class Runner {
     if (takes_fast) base::append(r.words, ", bias %.2g %%", r.bias * 100);
   }
 
-  /// Of the points with --noise: how the error falls with time, -log error by log samples.
-  double slope_of_noise() const {
+  /// A try at the scene's own size.
+  struct Pilot {
+    double noise, seconds, samples;  ///< samples per pixel
+  };
+  using Pilots = std::vector<Pilot>;
+
+  /// Renders with half the noise again and again, until what was asked for is reached or the next would take too long.
+  Pilots pilot(World& world) {
+    const double full_pixels = static_cast<double>(world.width) * world.height;
+    Pilots out;
+    const auto add = [&](double noise, double seconds) {
+      const render::Statistics did = render(world, noise, seconds).statistics;
+      out.push_back({did.noise.value_or(0), did.render_s, static_cast<double>(did.paths) / full_pixels});
+    };
+    constexpr double kFewestSamples = 16;  // that a render with --noise takes
+    if (kFewestSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
+      add(request_.noise, std::max(0.8 * left(), 0.2));
+      return out;
+    }
+    for (double noise = 8 * request_.noise;; noise /= 2) {
+      if (!out.empty() && noise >= out.back().noise && noise > request_.noise) continue;
+      if (!out.empty() && out.back().seconds * growth(out, noise, &Point::seconds) > left()) return out;
+      add(noise, 0);
+      if (out.back().noise <= request_.noise) return out;
+    }
+  }
+
+  /// How many times as much of something than in the last try it takes to get down to a noise: as the study's small
+  /// pictures do from the one noise to the other.
+  double growth(const Pilots& pilots, double noise, double Point::*what) const {
+    const double reached = pilots.back().noise;
+    if (reached <= noise) return 1;
     std::vector<const Point*> line;
     for (const Point& p : out_.points)
-      if (p.axis == "noise") line.push_back(&p);
-    if (line.size() < 2) return 0.5;
-    const Point &a = *line[line.size() - 2], &b = *line.back();
-    return std::clamp(-std::log(b.error / a.error) / std::log(b.samples / a.samples), 0.4, 1.0);
+      if (p.axis == "noise" && p.error > 0) line.push_back(&p);
+    // Straight lines between points, on logarithmic axes; beyond the last ones these go on.
+    const auto at = [&](double error) {
+      std::size_t k = 1;
+      while (k + 1 < line.size() && error < line[k]->error) ++k;
+      const Point &a = *line[k - 1], &b = *line[k];
+      const double power = std::clamp(std::log(b.*what / a.*what) / std::log(a.error / b.error), 1.0, 2.5);
+      return std::log(b.*what) + power * std::log(b.error / error);
+    };
+    constexpr double kUsual = 1.75;  // between the law of chance, 2, and that of points spread evenly
+    return line.size() < 2 ? std::pow(reached / noise, kUsual) : std::exp(at(noise) - at(reached));
   }
 
   /// At the scene's size, with independent samples, the same for all pixels, and exact: what the book does.

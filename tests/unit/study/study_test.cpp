@@ -21,7 +21,7 @@ bool has_axis(const AxisPlan& plan, const std::string& axis) {
   return std::any_of(plan.choices.begin(), plan.choices.end(), [&](const Choice& c) { return c.axis == axis; });
 }
 
-AxisPlan plan_of(const scene::Scene& s) { return plan_axes(s, compile::compile(s)); }
+AxisPlan plan_of(const scene::Scene& s) { return plan_axes(s, compile::compile(s), 0.01); }
 
 TEST(StudyAxes, OnlyWhatTheSceneCanFeelIsMeasured) {
   const AxisPlan all = plan_of(test::everything());
