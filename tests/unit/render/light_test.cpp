@@ -42,6 +42,23 @@ TEST(RenderLight, OneScatteringEventIsEnoughForAConvexSphere) {
   for (const float value : result.picture.planes[0].values) ASSERT_EQ(value, 0.5f);
 }
 
+TEST(RenderLight, RouletteChangesNoMean) {
+  scene::Scene s = grey_sphere();
+  s.materials[0].model = scene::Lambertian{{0.05, 0.05, 0.05}};
+  s.render.samples = 4096;
+  for (const auto sampler : {scene::Sampler::kIndependent, scene::Sampler::kSobol}) {
+    s.render.sampler = sampler;
+    s.render.roulette_depth = 1;  // after the ball, with a chance of eight times 0.05
+    const Result result = render(compile::compile(s), {});
+    double sum = 0;
+    for (const float value : result.picture.planes[0].values) sum += static_cast<double>(value);
+    const auto pixels = static_cast<double>(result.picture.planes[0].values.size());
+    EXPECT_NEAR(static_cast<double>(result.statistics.rays) / static_cast<double>(result.statistics.paths), 1.4, 0.01);
+    // Five standard errors of independent samples.
+    EXPECT_NEAR(sum / pixels, 0.05, 5 * 0.05 * std::sqrt((1 / 0.4 - 1) / (4096 * pixels)));
+  }
+}
+
 TEST(RenderLight, EverySurfaceOnTheWayMultiplies) {
   scene::Scene s = grey_sphere();
   s.spheres.push_back({{0, 0, 0}, 1, 1, ""});  // into it, off the grey one, out of it
