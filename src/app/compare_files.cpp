@@ -123,20 +123,8 @@ film::Picture difference_picture(const Compared& a, const Compared& b, bool for_
   return out;
 }
 
-film::EncodedPicture encoded(const film::Picture& codes) {
-  film::EncodedPicture out;
-  out.width = codes.width;
-  out.height = codes.height;
-  out.is_srgb = true;
-  for (std::size_t i = 0; i < codes.planes[0].values.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      out.values.push_back(
-          static_cast<std::uint16_t>(std::lround(std::clamp(codes.planes[c].values[i], 0.0f, 1.0f) * 255)));
-  return out;
-}
-
 void write_codes(const std::filesystem::path& file, const film::Picture& codes) {
-  image::write_encoded(file, encoded(codes), program_version());
+  image::write_encoded(file, metrics::encoded(codes), program_version());
 }
 
 void write_numbers(const std::filesystem::path& file, const film::Picture& numbers) {

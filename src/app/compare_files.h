@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "film/picture.h"
@@ -56,7 +55,7 @@ struct ComparisonPictures {
 /// The same for files. Scene-linear light is not comparable to what was developed for a display.
 ///
 /// Of a difference a file of light holds the numbers themselves, a display format half of them above mid-grey; heat is
-/// the display error, up to the fiftieth part in false colours, and FLIP's map up to 1.
+/// the display error in false colours up to kHottest, and FLIP's map up to 1.
 ///
 /// Errors     base::Error: as compare, image::read and image::write; kUsage for one file of each kind
 Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/info.h"
 
-#include "app/bench_scene.h"
-
 #include <algorithm>
 #include <array>
 
 #include <nlohmann/json.hpp>
 
+#include "app/bench_scene.h"
 #include "app/precision_advice.h"
 #include "app/layers.h"
 #include "app/scene_hash.h"

@@ -41,6 +41,18 @@ film::Picture false_color(const Map& map, double full) {
   });
 }
 
+film::EncodedPicture encoded(const film::Picture& codes) {
+  film::EncodedPicture out;
+  out.width = codes.width;
+  out.height = codes.height;
+  out.is_srgb = true;
+  for (std::size_t i = 0; i < codes.planes[0].values.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      out.values.push_back(
+          static_cast<std::uint16_t>(std::lround(std::clamp(codes.planes[c].values[i], 0.0f, 1.0f) * 255)));
+  return out;
+}
+
 film::Picture grey(const Map& map) {
   return picture_of(map, [](float value, int) { return value; });
 }

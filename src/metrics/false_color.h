@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "film/encoded_picture.h"
 #include "film/picture.h"
 #include "metrics/color_view.h"
 
@@ -10,6 +11,11 @@ namespace orrery::metrics {
 ///
 /// Reference  the colour map "magma" of matplotlib, at every sixteenth step
 film::Picture false_color(const Map& map, double full);
+
+/// Codes 0..1 in 8 bits.
+///
+/// Domain     planes R, G, B
+film::EncodedPicture encoded(const film::Picture& codes);
 
 /// A map as a grey picture of its own numbers.
 film::Picture grey(const Map& map);

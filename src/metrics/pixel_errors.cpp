@@ -2,6 +2,7 @@
 #include "metrics/pixel_errors.h"
 
 #include <cmath>
+#include <limits>
 
 #include "film/display_error.h"
 

@@ -37,18 +37,26 @@ std::vector<float> averaged(const PixelErrors& e) {
   return out;
 }
 
-/// Pixels by what their next sample takes away of the picture's squared error, in steps of a sixteenth of an octave.
+/// Pixels by what their next sample takes away of the picture's squared error, in sixteen even steps to an octave. Of
+/// a number's own exponent and fraction, since a library's logarithm may differ in its last bit, and with it pictures.
 class Ranking {
  public:
   static constexpr int kStepsPerOctave = 16;
   static constexpr int kBins = 160 * kStepsPerOctave;
 
-  /// The bin of a gain; the larger, the more. Gains of 2^-130 and less are none.
+  static constexpr double kLeast = 0x1p-130;
+
+  /// The bin of a gain; the larger, the more. Gains of kLeast and less are none.
   static int bin_of(double gain) {
-    if (!(gain > 0x1p-130)) return -1;
-    return std::min(static_cast<int>((std::log2(gain) + 130) * kStepsPerOctave), kBins - 1);
+    if (!(gain > kLeast)) return -1;
+    int octave = 0;
+    const double fraction = std::frexp(gain / kLeast, &octave);  // 0.5 .. 1
+    return std::min((octave - 1) * kStepsPerOctave + static_cast<int>((2 * fraction - 1) * kStepsPerOctave), kBins - 1);
   }
-  static double gain_of(int bin) { return std::exp2(static_cast<double>(bin) / kStepsPerOctave - 130); }
+  static double gain_of(int bin) {
+    const double step = static_cast<double>(bin % kStepsPerOctave) / kStepsPerOctave;
+    return std::ldexp((1 + step) * kLeast, bin / kStepsPerOctave);
+  }
 
   struct Bin {
     double error = 0;         ///< squared, of its pixels as they are

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/file_axis.h"
 
-#include <unistd.h>
-
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 
-#include "base/error.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "metrics/pixel_errors.h"

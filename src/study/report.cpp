@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/compare_files.h"
 #include "base/text.h"
 #include "display/develop.h"
 #include "image/write.h"
@@ -24,9 +25,6 @@ using nlohmann::json;
 
 /// The largest width of pictures on the page: of twenty of them the file shall stay a few megabytes.
 constexpr int kShownWidth = 480;
-
-/// The display error that is brightest on difference pictures.
-constexpr double kHottest = 0.1;
 
 json number(double v) { return std::isfinite(v) ? json(v) : json(nullptr); }
 
@@ -128,16 +126,7 @@ class Encoder {
     return address(display::develop(shrunk(picture), settings, 8));
   }
   /// False colours are codes already.
-  std::string codes(const film::Picture& picture) const {
-    film::EncodedPicture out;
-    out.width = picture.width;
-    out.height = picture.height;
-    out.is_srgb = true;
-    for (std::size_t i = 0; i < picture.planes[0].values.size(); ++i)
-      for (std::size_t c = 0; c < 3; ++c)
-        out.values.push_back(static_cast<std::uint16_t>(std::lround(picture.planes[c].values[i] * 255)));
-    return address(out);
-  }
+  std::string codes(const film::Picture& picture) const { return address(metrics::encoded(picture)); }
   /// Brings the mean of the light to a fifth of white, as a photographer would, where it is above that.
   void expose(const film::Picture& picture) {
     double sum = 0;
@@ -204,7 +193,7 @@ std::string study_html(const Study& study) {
     const Point& p = study.points[i];
     data["points"][i]["picture"] = encode.shown(p.picture);
     const metrics::Map map = metrics::display_error_map(metrics::color_of(p.picture), truth);
-    data["points"][i]["heat"] = encode.codes(shrunk(metrics::false_color(map, kHottest)));
+    data["points"][i]["heat"] = encode.codes(shrunk(metrics::false_color(map, app::kHottest)));
   }
   // Within a script the text must not look like its end.
   std::string text = data.dump(-1, ' ', true, json::error_handler_t::replace);

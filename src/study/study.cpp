@@ -20,7 +20,6 @@
 #include "compile/compile.h"
 #include "film/display_error.h"
 #include "format/read_scene.h"
-#include "image/write.h"
 #include "kernel/isa.h"
 #include "metrics/color_view.h"
 #include "render/render.h"
