@@ -216,6 +216,18 @@ void calibrate(Subject& subject, Case& c, double seconds) {
   }
 }
 
+/// Renders every case once, and calls `then` with it and what was done.
+template <class Then>
+void measure_all(Subject& subject, std::vector<Case>& cases, int round, Then then) {
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    // Each round begins elsewhere, so that no case always follows the same one.
+    Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
+    const render::Statistics did = subject.run(c);
+    c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
+    then(c, did);
+  }
+}
+
 BenchCase result_of(const Case& c, const std::vector<double>& reference) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < reference.size(); ++i) ratios.push_back(c.paths_per_s[i] / reference[i]);
@@ -229,25 +241,17 @@ BenchCase result_of(const Case& c, const std::vector<double>& reference) {
 std::vector<FeatureCost> bench_features(const BenchRequest& request) {
   choose_isa(request.isa);
   Subject subject(request);
-  std::vector<Case> cases = feature_cases_of(subject.world());
-  if (cases.empty()) return {};
-  Case as_it_is;
-  as_it_is.features = subject.world().features;
-  cases.insert(cases.begin(), as_it_is);
+  const compile::World& world = subject.world();
+  std::vector<Case> cases = {Case{}};
+  cases[0].features = world.features;
+  for (Case& c : feature_cases_of(world)) cases.push_back(std::move(c));
   for (Case& c : cases) calibrate(subject, c, request.seconds);
-  for (int round = 0; round < request.rounds; ++round) {
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
-      const render::Statistics did = subject.run(c);
-      c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
-    }
-  }
+  for (int round = 0; round < request.rounds; ++round) measure_all(subject, cases, round, [](Case&, const auto&) {});
   std::vector<FeatureCost> out;
-  for (std::size_t i = 1; i < cases.size(); ++i) {
-    std::vector<double> saves;
-    for (std::size_t r = 0; r < cases[0].paths_per_s.size(); ++r)
-      saves.push_back(1 - cases[i].paths_per_s[r] / cases[0].paths_per_s[r]);
-    out.push_back({cases[i].name, quartiles(saves)});
+  for (const auto& [name, feature] : known_features()) {
+    FeatureCost& cost = out.emplace_back(FeatureCost{name, world.features.*feature, 0});
+    for (const Case& c : cases)
+      if (c.name == name) cost.saves = 1 - result_of(c, cases[0].paths_per_s).ratio.median;
   }
   return out;
 }
@@ -281,17 +285,13 @@ Benchmark bench_scene(const BenchRequest& request) {
     tell();
   }
   for (int round = 0; round < request.rounds; ++round) {
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      // Each round begins elsewhere, so that no case always follows the same one.
-      Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
-      const render::Statistics did = subject.run(c);
-      c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
+    measure_all(subject, cases, round, [&](Case& c, const render::Statistics& did) {
       if (c.accelerator == Accelerator::kEmbree && request.threads == 1 && &c < &cases[ways])
         c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
       out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
       if (c.accelerator == Accelerator::kEmbree) out.accelerator = did.accelerator;
       tell();
-    }
+    });
     if (tracing) tracing->measure(round);
   }
   if (tracing) out.tracing = tracing->results();

@@ -58,14 +58,16 @@ struct Benchmark {
 /// Errors     as format::read_scene; base::Error(kStopped) where `cancel` stopped it, kUsage for an unknown `isa`
 Benchmark bench_scene(const BenchRequest& request);
 
-/// What leaving out a feature saves, that this scene does not ask for.
+/// A feature of the kernel.
 struct FeatureCost {
-  std::string name;  ///< "thin lens"
-  Quartiles saves;   ///< of the time that a render with it would take
+  std::string name;       ///< "thin lens"
+  bool required = false;  ///< the scene asks for it
+  double saves = 0;       ///< where it does not: of the time that a render with it would take, median
 };
 
 /// Renders the scene, small and exact, as it is and as if it had each feature more, in turn.
 ///
+/// Result     all features, those that the scene asks for unmeasured
 /// Errors     as bench_scene
 std::vector<FeatureCost> bench_features(const BenchRequest& request);
 

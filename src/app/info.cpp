@@ -104,7 +104,7 @@ void measure_savings(const std::filesystem::path& scene, const std::vector<std::
   request.overrides = overrides;
   for (const FeatureCost& cost : bench_features(request))
     for (Feature& feature : info.features)
-      if (feature.name == cost.name) feature.saves = cost.saves.median;
+      if (feature.name == cost.name && !cost.required) feature.saves = cost.saves;
 }
 
 std::string info_text(const SceneInfo& info) {

@@ -309,11 +309,7 @@ class Runner {
     bench.rounds = 5;
     bench.seconds = std::clamp(request_.budget_s * kFeatureShare / 5 / 6, 0.02, 0.25);
     bench.cancel = request_.cancel;
-    const kernel::Features& has = full_.features;
-    out_.features = {{"thin lens", has.lens, 0}, {"hemisphere", has.hemisphere, 0}, {"gradient sky", has.sky, 0}};
-    for (const app::FeatureCost& cost : app::bench_features(bench))
-      for (Study::Feature& feature : out_.features)
-        if (feature.name == cost.name) feature.saves = cost.saves.median;
+    out_.features = app::bench_features(bench);
   }
 
   void find_slopes() {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/bench_scene.h"
 #include "film/picture.h"
 
 namespace orrery::study {
@@ -80,12 +81,7 @@ struct Study {
   std::vector<FilePoint> files;
   std::vector<Slope> slopes;
   std::vector<std::string> left_out;  ///< axes that this scene cannot feel, and points that the budget did not allow
-  struct Feature {
-    std::string name;
-    bool required = false;
-    double saves = 0;  ///< of the time, measured, where it is left out
-  };
-  std::vector<Feature> features;
+  std::vector<app::FeatureCost> features;
   Recommendation recommendation;
 };
 
