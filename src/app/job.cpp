@@ -211,7 +211,6 @@ void run_phases(const Job& job, JobReport& report) {
   report.scene_hash = scene_hash(world);
   report.width = world.width;
   report.height = world.height;
-  report.samples = world.samples;
   report.spheres = world.spheres.size();
   report.phases.compile_s = watch.lap();
   stop_if_asked(job);

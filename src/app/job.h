@@ -52,7 +52,7 @@ struct JobReport {
   film::BadValues bad_values;                                       ///< of the picture, before any display transform
   std::vector<std::pair<std::string, film::BadValues>> bad_layers;  ///< the same of each layer that has any
   image::WriteReport written;                                       ///< changed so that it fits into the files
-  int width = 0, height = 0, samples = 0;
+  int width = 0, height = 0;
   std::string target_missed;  ///< "noise 0.013 instead of 0.01: time was over"; empty: as was asked
   std::size_t spheres = 0;
   std::string scene_hash;

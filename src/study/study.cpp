@@ -18,13 +18,14 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "compile/compile.h"
-#include "film/display_error.h"
 #include "format/read_scene.h"
 #include "kernel/isa.h"
-#include "metrics/color_view.h"
 #include "render/render.h"
 #include "study/axes.h"
 #include "study/file_axis.h"
+#include "study/findings.h"
+#include "study/paired_errors.h"
+#include "study/spheres.h"
 
 namespace orrery::study {
 namespace {
@@ -45,69 +46,6 @@ constexpr double kFewestPixels = 64 * 36;
 /// A seed for the reference that no point has.
 constexpr std::uint32_t kReferenceSeed = 0x5eed0000u;
 
-/// Sums over two pictures of the same choice and the reference.
-struct Errors {
-  double error = 0, bias = 0, noise = 0, energy = 0;
-};
-
-/// What two independent pictures are off by together is the square of the bias, and of the reference's own noise, which
-/// is known; half of what they differ by is noise.
-Errors errors_of(const film::Picture& a, const film::Picture& b, const film::Picture& reference,
-                 double reference_noise) {
-  const metrics::ColorView x = metrics::color_of(a), y = metrics::color_of(b), r = metrics::color_of(reference);
-  double together = 0, apart = 0, excess = 0, light = 0;
-  for (std::size_t i = 0; i < r.pixels(); ++i) {
-    double products = 0, squares = 0, sum = 0;
-    for (int c = 0; c < 3; ++c) {
-      const double truth = static_cast<double>(r.channel[c][i]);
-      const double dx = static_cast<double>(x.channel[c][i]) - truth, dy = static_cast<double>(y.channel[c][i]) - truth;
-      products += dx * dy;
-      squares += (dx - dy) * (dx - dy) / 2;
-      sum += truth;
-      excess += (dx + dy) / 2;
-    }
-    light += sum;
-    together += film::display_error_squared(products, sum);
-    apart += film::display_error_squared(squares, sum);
-  }
-  const auto n = static_cast<double>(r.pixels());
-  Errors out;
-  const double bias2 = std::max(0.0, together / n - reference_noise * reference_noise);
-  // The estimate of a bias that is none scatters by about this; what is below is not told as one.
-  const double scatter = apart / n / std::sqrt(n) * 3 + reference_noise * reference_noise * 0.3;
-  out.bias = bias2 > scatter ? std::sqrt(bias2) : 0;
-  out.noise = std::sqrt(apart / n);
-  out.error = std::sqrt(out.noise * out.noise + out.bias * out.bias);
-  out.energy = light != 0 ? excess / light : 0;
-  return out;
-}
-
-/// The spheres of a scene, lent to one world at a time: there may be ten million.
-class Spheres {
- public:
-  /// Takes a world's.
-  void take_from(World& world) {
-    spheres_.swap(world.spheres);
-    materials_.swap(world.sphere_materials);
-  }
-
-  class Loan {
-   public:
-    Loan(Spheres& from, World& to) : from_(from), to_(to) { from_.take_from(to_); }
-    ~Loan() { from_.take_from(to_); }
-    Loan(const Loan&) = delete;
-    Loan& operator=(const Loan&) = delete;
-
-   private:
-    Spheres& from_;
-    World& to_;
-  };
-
- private:
-  std::vector<kernel::Sphere> spheres_;
-  std::vector<std::uint32_t> materials_;
-};
-
 class Runner {
  public:
   explicit Runner(const Request& request) : request_(request) {
@@ -126,8 +64,8 @@ class Runner {
     measure_axes();
     measure_files();
     measure_features();
-    find_slopes();
-    find_front();
+    out_.slopes = slopes_of(out_.points);
+    mark_front(out_.points);
     recommend();
     out_.seconds = elapsed();
     tell("done", 1);
@@ -310,35 +248,6 @@ class Runner {
     bench.seconds = std::clamp(request_.budget_s * kFeatureShare / 5 / 6, 0.02, 0.25);
     bench.cancel = request_.cancel;
     out_.features = app::bench_features(bench);
-  }
-
-  void find_slopes() {
-    std::map<std::string, std::vector<const Point*>> lines;
-    for (const Point& p : out_.points)
-      if ((p.axis == "samples" || p.axis == "sampler") && p.error > 0)
-        lines[p.name.substr(p.name.find(' ') + 1)].push_back(&p);
-    for (const auto& [name, points] : lines) {
-      if (points.size() < 2) continue;
-      double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-      for (const Point* p : points) {
-        const double x = std::log(p->samples), y = std::log(p->error);
-        n += 1;
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
-      }
-      out_.slopes.push_back({name, (n * sxy - sx * sy) / (n * sxx - sx * sx)});
-    }
-  }
-
-  void find_front() {
-    for (Point& p : out_.points)
-      p.on_front =
-          p.axis != "accelerator" && std::none_of(out_.points.begin(), out_.points.end(), [&](const Point& other) {
-            return other.axis != "accelerator" && other.seconds <= p.seconds && other.error <= p.error &&
-                   (other.seconds < p.seconds || other.error < p.error);
-          });
   }
 
   const Point* find(const std::string& axis, const std::string& name) const {
