@@ -23,29 +23,39 @@ float rounded_up(double x) { return -rounded_down(-x); }
 
 }  // namespace
 
-BoxFrame::BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids) {
+BoxFrame::BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion,
+                   std::size_t moving_count) {
+  const auto at_closing = [&](std::uint32_t id) {
+    const kernel::Sphere &s = spheres[id], &change = motion[id];
+    return kernel::Sphere{s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
+  };
+  const auto each = [&](auto f) {
+    for (const std::uint32_t id : ids) {
+      f(spheres[id]);
+      if (id < moving_count) f(at_closing(id));
+    }
+  };
   double lower[3], upper[3];
   std::fill_n(lower, 3, std::numeric_limits<double>::infinity());
   std::fill_n(upper, 3, -std::numeric_limits<double>::infinity());
-  for (const std::uint32_t id : ids) {
-    const kernel::Sphere& s = spheres[id];
+  each([&](const kernel::Sphere& s) {
     const double center[3] = {s.x, s.y, s.z};
     for (int axis = 0; axis < 3; ++axis) {
       lower[axis] = std::min(lower[axis], center[axis] - s.radius);
       upper[axis] = std::max(upper[axis], center[axis] + s.radius);
     }
-  }
+  });
   for (int axis = 0; axis < 3; ++axis) middle[axis] = lower[axis] / 2 + upper[axis] / 2;
   // Measured from the rounded middle: far from the world's origin that is not where the corners said.
   double half = 0;
-  for (const std::uint32_t id : ids) {
-    const kernel::Sphere& s = spheres[id];
+  each([&](const kernel::Sphere& s) {
     half = std::max({half, std::abs(s.x - middle[0]) + s.radius, std::abs(s.y - middle[1]) + s.radius,
                      std::abs(s.z - middle[2]) + s.radius});
-  }
+  });
   scale = std::ldexp(1.0, -std::ilogb(half));
   reach = half * scale * 1.8;  // sqrt(3) for the box's corners, and room for the padding
-  padding = kPadding * reach * kFarthestStart;
+  // Embree finds a box between two others in single precision, too: some bits more of the largest coordinate.
+  padding = kPadding * reach * kFarthestStart * (moving_count > 0 ? 2 : 1);
 }
 
 BoxFrame::Box BoxFrame::box(const kernel::Sphere& sphere) const noexcept {

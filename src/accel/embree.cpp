@@ -50,15 +50,25 @@ std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& apart, std:
   return rest;
 }
 
+/// Where a sphere is at Embree's time step, 0 or 1.
+kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsigned step) {
+  kernel::Sphere s = scene.spheres[id];
+  if (step == 0 || id >= scene.moving_count) return s;
+  const kernel::Sphere& change = scene.motion[id];
+  return {s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
+}
+
 struct BuildState {
   const EmbreeScene* scene;
+  std::uint32_t geometry;
   std::atomic<std::uint64_t> refused{0};  ///< boxes that Embree would drop without a word
 };
 
 void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
   auto& state = *static_cast<BuildState*>(arguments->geometryUserPtr);
   const auto& scene = *state.scene;
-  const BoxFrame::Box box = scene.frame.box(scene.spheres[scene.sphere_id(arguments->primID)]);
+  const BoxFrame::Box box = scene.frame.box(
+      sphere_at_step(scene, scene.sphere_id(state.geometry, arguments->primID), arguments->timeStep));
   RTCBounds& out = *arguments->bounds_o;
   out.lower_x = box.lower[0];
   out.lower_y = box.lower[1];
@@ -86,19 +96,24 @@ class Embree final : public Accel {
 
  private:
   static EmbreeScene make_scene(const kernel::SceneView& view) {
-    std::vector<std::uint32_t> apart = find_apart(view.spheres, view.sphere_count);
-    return {nullptr, view.spheres, BoxFrame(view.spheres, all_but(apart, view.sphere_count)), std::move(apart), {}};
+    EmbreeScene scene;
+    scene.spheres = view.spheres;
+    scene.motion = view.motion;
+    scene.moving_count = view.moving_count;
+    scene.apart = find_apart(view.spheres, view.sphere_count);
+    scene.frame = BoxFrame(view.spheres, all_but(scene.apart, view.sphere_count), view.motion, view.moving_count);
+    const auto moving_apart = std::lower_bound(scene.apart.begin(), scene.apart.end(), view.moving_count);
+    scene.moving_primitives =
+        static_cast<std::uint32_t>(view.moving_count) - static_cast<std::uint32_t>(moving_apart - scene.apart.begin());
+    return scene;
   }
 
+  /// What moves has a geometry of its own: the others need no second time step.
   void build(std::size_t primitives, const BuildMonitor& monitor) {
-    BuildState state{&scene_};
-    RTCGeometry geometry = rtcNewGeometry(embree_.device(), RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
-    rtcSetGeometryUserData(geometry, &state);
-    rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, functions_.intersect);
-    rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
-    embree_.attach(geometry);
+    BuildState moving{&scene_, 0}, resting{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
+    if (scene_.moving_primitives > 0) add_geometry(scene_.moving_primitives, 2, moving);
+    const std::size_t rest = primitives - scene_.moving_primitives;
+    if (rest > 0) add_geometry(rest, 1, resting);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
           embree_.get(),
@@ -106,10 +121,22 @@ class Embree final : public Accel {
           const_cast<BuildMonitor*>(&monitor));
     embree_.commit();
     rtcSetSceneProgressMonitorFunction(embree_.get(), nullptr, nullptr);
-    if (state.refused > 0)
-      throw base::Error(base::ErrorKind::kInternal,
-                        "Embree would drop " + std::to_string(state.refused) + " spheres without a word");
+    if (moving.refused + resting.refused > 0)
+      throw base::Error(base::ErrorKind::kInternal, "Embree would drop " +
+                                                        std::to_string(moving.refused + resting.refused) +
+                                                        " spheres without a word");
     scene_.scene = embree_.get();
+  }
+
+  void add_geometry(std::size_t primitives, unsigned time_steps, BuildState& state) {
+    RTCGeometry geometry = rtcNewGeometry(embree_.device(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
+    rtcSetGeometryTimeStepCount(geometry, time_steps);
+    rtcSetGeometryUserData(geometry, &state);
+    rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, functions_.intersect);
+    rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
+    embree_.attach(geometry);
   }
 
   EmbreeFunctions functions_;
@@ -122,6 +149,8 @@ class SimdList final : public Accel {
  public:
   SimdList(const kernel::SceneView& view, kernel::Precision precision) : functions_(embree_functions(precision)) {
     scene_.spheres = view.spheres;
+    scene_.motion = view.motion;
+    scene_.moving_count = view.moving_count;
     scene_.apart.resize(view.sphere_count);
     std::iota(scene_.apart.begin(), scene_.apart.end(), 0u);
   }

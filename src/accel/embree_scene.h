@@ -18,6 +18,10 @@ namespace orrery::accel {
 struct EmbreeScene {
   RTCScene scene = nullptr;  ///< null where every sphere stands apart
   const kernel::Sphere* spheres = nullptr;
+  const kernel::Sphere* motion = nullptr;  ///< as kernel::SceneView has it
+  std::size_t moving_count = 0;
+  /// Embree's geometry 0 has two time steps where there are such, and geometry 1 has the rest. Else there is but one.
+  std::uint32_t moving_primitives = 0;
   BoxFrame frame;
   /// Spheres so much larger than the rest that a box around them would hold everything (a ground): ascending ids,
   /// tested by every ray before the hierarchy is entered, which they shorten.
@@ -25,7 +29,8 @@ struct EmbreeScene {
   Traversals traversals;
 
   /// The sphere behind a primitive: ids count all spheres, primitives those that do not stand apart.
-  std::uint32_t sphere_id(std::uint32_t primitive) const noexcept {
+  std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
+    primitive += geometry * moving_primitives;
     for (const std::uint32_t id : apart) primitive += primitive >= id ? 1u : 0u;
     return primitive;
   }

@@ -55,11 +55,11 @@ struct Nearest {
 
 /// Some rays, one a lane, against one sphere.
 template <class D, kernel::Precision kPrecision>
-HWY_INLINE void meet(D d, const k::Rays<D>& ray, const kernel::Sphere& sphere, std::uint32_t id, hn::Mask<D> lanes,
+HWY_INLINE void meet(D d, const k::Rays<D>& ray, const k::Spheres<D>& sphere, std::uint32_t id, hn::Mask<D> lanes,
                      Nearest<D>& nearest) {
   const auto ids = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(id));
   const auto is_self = hn::RebindMask(d, ray.self == ids);
-  nearest.take(d, k::nearest<D, kPrecision>(d, ray, k::broadcast(d, sphere), is_self), ids, lanes);
+  nearest.take(d, k::nearest<D, kPrecision>(d, ray, sphere, is_self), ids, lanes);
 }
 
 /// Distances along rays as Embree's far limits: never below what the numbers say, so that boxes of other spheres at the
@@ -100,9 +100,10 @@ void intersect_single(const RTCIntersectFunctionNArguments* arguments, const Emb
   const D d;
   const EmbreeScene& scene = *query.scene;
   Packet& packet = *query.packet;
-  const std::uint32_t id = scene.sphere_id(arguments->primID);
+  const std::uint32_t id = scene.sphere_id(arguments->geomID, arguments->primID);
   auto nearest = Nearest<D>::load(d, packet, query.first);
-  meet<D, kPrecision>(d, k::load_rays(d, packet, query.first), scene.spheres[id], id, hn::FirstN(d, 1), nearest);
+  meet<D, kPrecision>(d, k::load_rays(d, packet, query.first), k::sphere_at(d, scene, id, packet, query.first), id,
+                      hn::FirstN(d, 1), nearest);
   if (hn::AllFalse(d, nearest.is_new)) {
     arguments->valid[0] = 0;
     return;
@@ -123,7 +124,7 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
   if (arguments->N == 1) return intersect_single<Packet, kPrecision>(arguments, query);
   const EmbreeScene& scene = *query.scene;
   Packet& packet = *query.packet;
-  const std::uint32_t id = scene.sphere_id(arguments->primID);
+  const std::uint32_t id = scene.sphere_id(arguments->geomID, arguments->primID);
   const int n = static_cast<int>(arguments->N), step = static_cast<int>(hn::Lanes(d));
   float* const to_limit = &RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0);
   for (int v = 0; v < n; v += step) {
@@ -138,7 +139,7 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const int first = query.first + v;
     const auto ray = k::load_rays(d, packet, first);
     auto nearest = Nearest<D>::load(d, packet, first);
-    meet<D, kPrecision>(d, ray, scene.spheres[id], id, valid, nearest);
+    meet<D, kPrecision>(d, ray, k::sphere_at(d, scene, id, packet, first), id, valid, nearest);
     if (hn::AllFalse(d, nearest.is_new)) {
       hn::StoreU(hn::Zero(di), di, arguments->valid + v);
       continue;
@@ -163,7 +164,6 @@ HWY_INLINE void trace_one_by_one(const int* valid, const EmbreeRays& rays, Embre
   std::copy_n(query.start, kWidth, start);
   RTCRayHit ray;
   ray.ray.tnear = 0;
-  ray.ray.time = 0;
   ray.ray.mask = ~0u;
   ray.ray.id = 0;
   ray.ray.flags = 0;
@@ -178,6 +178,7 @@ HWY_INLINE void trace_one_by_one(const int* valid, const EmbreeRays& rays, Embre
     ray.ray.dir_y = rays.ray.dir_y[i];
     ray.ray.dir_z = rays.ray.dir_z[i];
     ray.ray.tfar = rays.ray.tfar[i];
+    ray.ray.time = rays.ray.time[i];
     query.first = first + i;
     query.start[0] = start[i];
     accel::intersect(query.scene->scene, query.context, ray);
@@ -196,7 +197,8 @@ void trace(const void* self, Packet& packet) {
     const auto ray = k::load_rays(d, packet, v);
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     auto nearest = Nearest<D>::load(d, packet, v);
-    for (const std::uint32_t id : scene.apart) meet<D, kPrecision>(d, ray, scene.spheres[id], id, lanes, nearest);
+    for (const std::uint32_t id : scene.apart)
+      meet<D, kPrecision>(d, ray, k::sphere_at(d, scene, id, packet, v), id, lanes, nearest);
     nearest.store(d, packet, v);
   }
   if (scene.scene == nullptr) return;
@@ -231,6 +233,7 @@ void trace(const void* self, Packet& packet) {
       store_float(d, ray.direction.y, rays.ray.dir_y + v);
       store_float(d, ray.direction.z, rays.ray.dir_z + v);
       store_float(d, limit, rays.ray.tfar + v);
+      if (scene.moving_count > 0) store_float(d, hn::Load(d, packet.time + first + v), rays.ray.time + v);
       hn::Store(box.start, d, query.start + v);
       // A known hit before the boxes begin leaves nothing to look for (and Embree wants no negative limit).
       const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first - v)));

@@ -5,13 +5,15 @@
 #include <chrono>
 #include <optional>
 
+#include "app/checkpoint.h"
 #include "app/choose_isa.h"
+#include "app/join_parts.h"
 #include "app/layers.h"
 #include "app/matte_manifest.h"
 #include "app/memory.h"
 #include "app/output_files.h"
 #include "app/picture_header.h"
-#include "app/scene_hash.h"
+#include "app/provenance.h"
 #include "app/statistics.h"
 #include "app/text.h"
 #include "app/threads.h"
@@ -54,11 +56,22 @@ render::Traversal traversal_of(const Job& job) {
   throw base::Error(base::ErrorKind::kUsage, "no traversal " + job.traversal + "; there are auto, packet and single");
 }
 
+/// A part is sums and nothing else: pictures are made of all parts together.
+void check_part(const Job& job) {
+  const auto refuse = [](const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); };
+  if (job.outputs.size() > 1 || image::format_of(job.outputs.front()) != image::Format::kExr || !job.deep.empty())
+    refuse("--samples A:B and --tiles render a part, which is one EXR; orrery merge makes pictures of the parts");
+  if (job.noise > 0 || job.seconds > 0)
+    refuse("--noise and --time decide by the whole picture; a part, by --samples A:B or --tiles, has a fixed share");
+}
+
 /// Everything that can be known to fail before hours are spent, but for the scene.
 void check_request(const Job& job) {
   std::vector<std::filesystem::path> others;
   if (!job.statistics.empty()) others.push_back(job.statistics);
   if (!job.deep.empty()) others.push_back(job.deep);
+  if (job.parts.empty()) others.push_back(checkpoint_file(job.outputs.front()));
+  if (is_part(job)) check_part(job);
   if (!job.deep.empty() && image::format_of(job.deep) != image::Format::kExr)
     throw base::Error(base::ErrorKind::kUsage, job.deep.string() + " cannot hold samples in depth; EXR can");
   check_output_files(job.outputs, job.bits, others, job.scene);
@@ -67,9 +80,12 @@ void check_request(const Job& job) {
   choose_isa(job.isa);
 }
 
+[[noreturn]] void stopped(const std::string& remedy = "") {
+  throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written" + remedy);
+}
+
 void stop_if_asked(const Job& job) {
-  if (job.cancel != nullptr && job.cancel->load(std::memory_order_relaxed))
-    throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written");
+  if (job.cancel != nullptr && job.cancel->load(std::memory_order_relaxed)) stopped();
 }
 
 void warn(const Job& job, const base::Finding& finding) {
@@ -167,13 +183,20 @@ void count_bad_values(const film::Picture& picture, JobReport& report) {
   }
 }
 
+/// What can be seen of a picture so far.
+film::Picture preview(const compile::World& world, const film::Partial& partial) {
+  film::Partial shown(0, 0);
+  shown.film = partial.film;
+  shown.second = partial.second;
+  return render::finished(world, {}, std::move(shown)).picture;
+}
+
 /// When to stop sampling. The samples of the scene limit what is asked for otherwise only if they were asked for, too.
 void set_target(const Job& job, double seconds_so_far, render::Settings& settings) {
   constexpr double kLeastTime = 1e-3;  // nothing left is not no limit
   settings.noise = job.noise;
   if (job.seconds > 0) settings.seconds = std::max(job.seconds - seconds_so_far, kLeastTime);
-  const auto is_samples = [](const std::string& setting) { return setting.rfind("render.samples=", 0) == 0; };
-  settings.unlimited = std::none_of(job.overrides.begin(), job.overrides.end(), is_samples);
+  settings.unlimited = !is_limited(job);
 }
 
 std::string missed_target(const Job& job, const render::Statistics& statistics) {
@@ -184,10 +207,71 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
   return out;
 }
 
+MemoryEstimate memory_for(const Job& job, const compile::World& world, const film::LayerRequest& layers) {
+  MemoryEstimate memory = estimate_memory(world.width, world.height, film::planes_of(layers).size(),
+                                          world.spheres.size(), world.accelerator == compile::Accelerator::kEmbree);
+  memory.film += estimate_state(world.width, world.height, job.noise > 0 || job.seconds > 0, layers.any());
+  return memory;
+}
+
+void check_samples(const Job& job, const compile::World& world) {
+  if (job.sample_end > static_cast<std::uint32_t>(world.samples))
+    throw base::Error(base::ErrorKind::kUsage,
+                      "--samples " + std::to_string(job.sample_begin) + ":" + std::to_string(job.sample_end) +
+                          " goes beyond the scene's " + std::to_string(world.samples) +
+                          " samples; --set render.samples=" + std::to_string(job.sample_end) + " gives it more");
+}
+
+/// Adds up the parts instead of rendering.
+render::Result join(const Job& job, const compile::World& world, const Layers& layers, JobReport& report) {
+  Joined joined = join_parts(job.parts, world.width, world.height,
+                             static_cast<std::uint32_t>(world.samples), world.spheres.size(), job.allow_missing);
+  report.missing = joined.missing;
+  report.hosts = joined.hosts;
+  const film::Effort effort = joined.partial.effort;
+  const auto [fewest, most] = std::minmax_element(joined.partial.counts.begin(), joined.partial.counts.end());
+  render::Statistics statistics;
+  statistics.fewest_samples = *fewest;
+  statistics.most_samples = *most;
+  statistics.paths = effort.paths;
+  statistics.rays = effort.rays;
+  statistics.bad_samples = effort.bad_samples;
+  statistics.render_s = effort.seconds;
+  statistics.ended_by = "samples";
+  if (!layers.request.any()) joined.partial.layers.clear();
+  if (joined.partial.layers.empty() && layers.request.any())
+    throw base::Error(base::ErrorKind::kBadData, "the parts were rendered without the layers that are asked for");
+  render::Result result = render::finished(world, layers.request, std::move(joined.partial));
+  result.statistics = statistics;
+  return result;
+}
+
+/// Renders, going on from a checkpoint where there is one, and leaves one behind where it is stopped.
+render::Result render(const Job& job, const compile::World& world, render::Settings settings, Checkpoint& checkpoint,
+                      JobReport& report) {
+  settings.sample_begin = job.sample_begin;
+  settings.sample_end = job.sample_end;
+  settings.share = job.share;
+  settings.keep_partial = is_part(job);
+  settings.snapshot_is_due = [&] { return checkpoint.is_due(); };
+  settings.on_snapshot = [&](const film::Partial& partial) { checkpoint.write_snapshot(partial); };
+  std::optional<film::Partial> from = checkpoint.load();
+  report.was_resumed = from.has_value();
+  render::Result result = render::render(world, settings, std::move(from));
+  report.render = result.statistics;
+  report.phases.build_s = result.statistics.build_s;
+  report.phases.render_s = result.statistics.render_s;
+  if (result.completed) return result;
+  if (!result.partial) stopped();
+  checkpoint.write(*result.partial);
+  report.checkpoint = checkpoint.file();
+  stopped("; " + checkpoint.file().string() + " keeps what was rendered, and --resume goes on from there");
+}
+
 /// The way data takes.
 void run_phases(const Job& job, JobReport& report) {
   Stopwatch watch, total;
-  format::ReadResult read = format::read_scene(job.scene, job.overrides);
+  format::ReadResult read = format::read_scene(job.scene, job.overrides, job.frame);
   for (const base::Finding& warning : read.warnings) warn(job, warning);
   const display::Settings display = choose_display(job, read.scene, report);
   if (const int moved = to_working_space(display.config, read.scene); moved > 0) {
@@ -201,14 +285,14 @@ void run_phases(const Job& job, JobReport& report) {
   report.phases.read_s = watch.lap();
   stop_if_asked(job);
 
-  const compile::World world = compile::compile(read.scene);
+  const compile::World world = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
+  check_samples(job, world);
   const Layers layers = layers_for(job, read.scene, world);
-  MemoryEstimate memory = estimate_memory(world.width, world.height, film::planes_of(layers.request).size(),
-                                          world.spheres.size(), world.accelerator == compile::Accelerator::kEmbree);
-  if (job.noise > 0 || job.seconds > 0) memory.film += estimate_rounds(world.width, world.height, layers.request.any());
-  require_memory(memory, job.memory_limit);
+  require_memory(memory_for(job, world, layers.request), job.memory_limit);
   read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
-  report.scene_hash = scene_hash(world);
+  const image::Provenance provenance = provenance_of(job, world, layers);
+  report.scene_hash = provenance.at("sceneHash");
+  report.hosts = {provenance.at("host")};
   report.width = world.width;
   report.height = world.height;
   report.spheres = world.spheres.size();
@@ -223,19 +307,27 @@ void run_phases(const Job& job, JobReport& report) {
   settings.on_build = job.on_build;
   settings.cancel = job.cancel;
   set_target(job, total.lap(), settings);
-  const render::Result result = render::render(world, settings);
+  image::set_threads(settings.threads);
+  const auto write_sums = [&](const std::filesystem::path& file, const film::Partial& partial) {
+    image::write_partial(file, preview(world, partial), picture_header(read, world, report, job.reproducible),
+                         provenance, partial);
+  };
+  Checkpoint checkpoint(job, provenance, write_sums);
+  const render::Result result = job.parts.empty() ? render(job, world, settings, checkpoint, report)
+                                                  : join(job, world, layers, report);
   report.render = result.statistics;
-  report.phases.build_s = result.statistics.build_s;
-  report.phases.render_s = result.statistics.render_s;
   watch.lap();
-  if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written");
 
   report.target_missed = missed_target(job, result.statistics);
   count_bad_values(result.picture, report);
-  const image::Header header = picture_header(read, world, report, job.reproducible);
-  image::set_threads(settings.threads);
-  write_outputs(job, display, result.picture, header, layers.mattes, report);
-  if (!job.deep.empty()) image::write_deep(job.deep, result.deep, result.picture, header);
+  if (is_part(job)) {
+    write_sums(job.outputs.front(), *result.partial);
+  } else {
+    const image::Header header = picture_header(read, world, report, job.reproducible);
+    write_outputs(job, display, result.picture, header, layers.mattes, report);
+    if (!job.deep.empty()) image::write_deep(job.deep, result.deep, result.picture, header);
+  }
+  checkpoint.remove();
   report.phases.write_s = watch.lap();
 }
 
@@ -251,6 +343,11 @@ void write_failure(const Job& job, const JobReport& report, const base::Error& e
 }
 
 }  // namespace
+
+bool is_limited(const Job& job) {
+  const auto is_samples = [](const std::string& setting) { return setting.rfind("render.samples=", 0) == 0; };
+  return std::any_of(job.overrides.begin(), job.overrides.end(), is_samples);
+}
 
 JobReport run_job(const Job& job) {
   check_request(job);

@@ -12,12 +12,20 @@
 #include "base/finding.h"
 #include "display/develop.h"
 #include "film/picture.h"
+#include "format/read_scene.h"
+#include "image/partial_file.h"
 #include "image/write.h"
 #include "render/render.h"
 
 namespace orrery::app {
 
-/// What `orrery render` was asked for.
+/// A file with a part of a picture, and what it says of itself.
+struct PartFile {
+  std::filesystem::path file;
+  image::Provenance provenance;
+};
+
+/// What `orrery render` or `orrery merge` was asked for.
 struct Job {
   std::filesystem::path scene;
   std::vector<std::string> overrides;          ///< "camera.vfov=30"
@@ -38,7 +46,22 @@ struct Job {
   std::function<void(double fraction)> on_build;  ///< what is done of building the hierarchy; from any thread
   std::function<void(const base::Finding&)> on_warning;
   const std::atomic<bool>* cancel = nullptr;
+  std::function<void(const std::string&)> on_note;  ///< what somebody has asked for and wants to hear of
+  bool resume = false;                              ///< go on from a checkpoint, where there is one
+  double checkpoint_s = 0;                          ///< seconds between checkpoints; 0: one when it is stopped
+  std::atomic<bool>* snapshot = nullptr;            ///< true: write a checkpoint at once; it is set to false again
+  std::uint32_t sample_begin = 0, sample_end = 0;   ///< render only these, as a part; end 0: all
+  render::Share share;                              ///< render only these pixels, as a part
+  std::vector<PartFile> parts;                      ///< join these instead of rendering
+  bool allow_missing = false;                       ///< of parts
+  int frame = format::kFirstFrame;                  ///< of the scene's animation
 };
+
+/// True where the samples of the scene are a limit although something else ends the render.
+bool is_limited(const Job& job);
+
+/// True where a part is rendered, not a picture.
+inline bool is_part(const Job& job) { return job.sample_end > 0 || job.share.count > 1; }
 
 /// Seconds by phase.
 struct Phases {
@@ -57,13 +80,21 @@ struct JobReport {
   std::size_t spheres = 0;
   std::string scene_hash;
   display::Choice display;  ///< where a display format was written
+  std::filesystem::path checkpoint;  ///< that was written when it was stopped; empty: none
+  bool was_resumed = false;          ///< from a checkpoint
+  std::string missing;               ///< of joined parts, in words; empty: nothing
+  std::vector<std::string> hosts;    ///< that have rendered it
 };
 
-/// Renders a scene into files: read, check, compile, render, develop, write.
+/// Renders a scene into files, or joins parts of its picture: read, check, compile, render, develop, write.
+///
+/// A part is an EXR of sums. A job that is stopped writes a checkpoint, of the same kind, and one that resumes ends with
+/// the bits of one that was never stopped.
 ///
 /// That the files can be written, and that formats, compression, display and view exist, is known before rendering
 /// starts. A statistics file is written also where it was stopped or failed later.
 ///
+/// Domain     one output at least
 /// Errors     base::Error of every kind; kStopped where `cancel` stopped it, and then no picture was written
 JobReport run_job(const Job& job);
 

@@ -62,10 +62,11 @@ MemoryEstimate estimate_memory(int width, int height, std::uint64_t layer_planes
   return m;
 }
 
-std::uint64_t estimate_rounds(int width, int height, bool has_layers) {
-  // Two floats and a count a pixel for judging it, twice while averages are made.
-  const std::uint64_t a_pixel =
-      sizeof(kernel::PixelSum) + 5 * sizeof(float) + (has_layers ? sizeof(film::LayerPixel) : 0);
+std::uint64_t estimate_state(int width, int height, bool in_rounds, bool has_layers) {
+  // A count and a goal; two floats and a count for judging a pixel, twice while averages are made.
+  const std::uint64_t a_pixel = 2 * sizeof(std::uint32_t) +
+                                (in_rounds ? sizeof(kernel::PixelSum) + 5 * sizeof(float) : 0) +
+                                (has_layers ? sizeof(film::LayerPixel) : 0);
   return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * a_pixel;
 }
 

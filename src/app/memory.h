@@ -18,9 +18,9 @@ struct MemoryEstimate {
 /// Domain     `layer_planes` beside R, G, B, A; `spheres` counts those of tables and of points files
 MemoryEstimate estimate_memory(int width, int height, std::uint64_t layer_planes, std::uint64_t spheres, bool embree);
 
-/// What a render in rounds holds beside that: a second half of each pixel's samples, its error, and, with layers, all
-/// that is known of its paths so far. Bytes.
-std::uint64_t estimate_rounds(int width, int height, bool has_layers);
+/// What a render holds beside that in order to go on: each pixel's count; with layers all that is known of its paths so
+/// far; in rounds a second half of its samples, and its error. Bytes.
+std::uint64_t estimate_state(int width, int height, bool in_rounds, bool has_layers);
 
 /// Bytes that this process may still take: what the machine has free or can free at once, and no more than its control
 /// group still grants. Nothing where neither can be told.

@@ -67,9 +67,11 @@ image::Header picture_header(const format::ReadResult& read, const compile::Worl
                                                                   std::to_string(bad.above_half) + " above half"});
   if (!report.display.config_id.empty()) header.attributes.push_back({"orrery/ocioConfigId", report.display.config_id});
   header.attributes.push_back({"orrery/settings", settings_lines(read.settings, reproducible)});
+  if (!report.missing.empty()) header.attributes.push_back({"orrery/missing", report.missing});
   if (reproducible) return header;
   header.capture_date = local_time();
   header.attributes.push_back({"orrery/renderSeconds", static_cast<float>(report.phases.render_s)});
+  if (report.render.accelerator.empty()) return header;  // joined of parts, which may have had several
   header.attributes.push_back({"orrery/accelerator", report.render.accelerator});
   header.attributes.push_back({"orrery/isa", report.render.isa});
   return header;

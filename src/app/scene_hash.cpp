@@ -53,6 +53,12 @@ std::string scene_hash(const compile::World& world) {
   hash.add(c.half_width);
   hash.add(c.half_height);
   for (const auto* v : {&c.origin, &c.forward, &c.right, &c.down, &c.lens_u, &c.lens_v}) add_all(hash, *v);
+  if (world.features.motion) {
+    for (const kernel::Sphere& s : world.motion)
+      for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
+    const kernel::Camera& m = world.camera_motion;
+    for (const auto* v : {&m.origin, &m.forward, &m.right, &m.down, &m.lens_u, &m.lens_v}) add_all(hash, *v);
+  }
   add_all(hash, world.background.bottom);
   add_all(hash, world.background.top);
   for (const std::uint64_t v :
@@ -61,6 +67,12 @@ std::string scene_hash(const compile::World& world) {
         std::uint64_t(world.sampler.kind), std::uint64_t(world.shading), std::uint64_t(world.precision)})
     hash.add_bits(v);
   for (const double v : world.filter.above) hash.add(v);
+  return hash.text();
+}
+
+std::string text_hash(std::string_view text) {
+  Hash hash;
+  for (const char c : text) hash.add_bits(static_cast<unsigned char>(c));
   return hash.text();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "compile/world.h"
 
@@ -12,5 +13,8 @@ namespace orrery::app {
 ///
 /// Reference  fnv
 std::string scene_hash(const compile::World& world);
+
+/// The same of a text.
+std::string text_hash(std::string_view text);
 
 }  // namespace orrery::app

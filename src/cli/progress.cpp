@@ -53,6 +53,13 @@ void ProgressPrinter::building(double fraction) {
   bar_shown_ = true;
 }
 
+void ProgressPrinter::note(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  std::fprintf(to_, "%s%s\n", bar_shown_ ? "\r\033[K" : "", text.c_str());
+  std::fflush(to_);
+  bar_shown_ = false;
+}
+
 void ProgressPrinter::finish() {
   {
     const std::lock_guard lock(mutex_);

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "cli/progress_text.h"
@@ -29,6 +30,9 @@ class ProgressPrinter {
 
   /// What is done of building the hierarchy, 0..1, where a bar is shown; lines are of samples only. From any thread.
   void building(double fraction);
+
+  /// A message between two lines, or above the bar; from any thread.
+  void note(const std::string& text);
 
   /// Takes the bar away, so that the next message has its line, and ends the heartbeat.
   void finish();

@@ -1,24 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <charconv>
 #include <cstdio>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "app/job.h"
 #include "base/error.h"
 #include "base/exit_status.h"
 #include "cli/commands.h"
-#include "cli/display_options.h"
 #include "cli/option_checks.h"
+#include "cli/picture_options.h"
 #include "cli/progress.h"
+#include "cli/render_report.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
 
 namespace orrery::cli {
 namespace {
 
+/// A part of fewer pixels than this many parts leave is not worth a process.
+constexpr int kMostParts = 65536;
+
 struct RenderOptions {
   app::Job job;
   SceneOptions scene;
-  std::string type = "half", progress = "auto";
+  PictureOptions picture;
+  std::string progress = "auto", tiles;
   bool quiet = false, verbose = false, strict = false;
 };
 
@@ -28,88 +37,59 @@ ProgressStyle style_of(const RenderOptions& options) {
   return options.quiet && style == ProgressStyle::kAuto ? ProgressStyle::kNone : style;
 }
 
-/// What somebody should know before trusting the picture.
-void print_bad_values(const app::JobReport& report) {
-  const auto tell = [](std::uint64_t count, const char* what) {
-    if (count > 0) std::fprintf(stderr, "warning: %llu %s\n", static_cast<unsigned long long>(count), what);
+[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
+
+/// Two whole numbers with something between them; nothing where they are not.
+template <class Number>
+std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char between) {
+  const std::size_t at = text.find(between);
+  std::pair<Number, Number> out;
+  const auto parse = [](const char* begin, const char* end, Number& number) {
+    const auto [stopped, error] = std::from_chars(begin, end, number);
+    return error == std::errc() && stopped == end && begin != end;
   };
-  tell(report.render.bad_samples, "samples were not finite and were left out of their pixels");
-  for (const auto& [layer, bad] : report.bad_layers) {
-    const auto tell_of = [&, &name = layer](std::uint64_t count, const char* what) {
-      if (count > 0)
-        std::fprintf(stderr, "warning: %s: %llu values are %s\n", name.c_str(), static_cast<unsigned long long>(count),
-                     what);
-    };
-    tell_of(bad.nan, "not a number");
-    tell_of(bad.infinite, "infinite");
-    tell_of(bad.negative, "negative");
-  }
-  tell(report.written.not_finite, "values that are not finite were written as 0");
-  tell(report.written.clamped, "values do not fit into their file and were clamped; EXR with --type float keeps them");
+  if (at == std::string::npos || !parse(text.data(), text.data() + at, out.first) ||
+      !parse(text.data() + at + 1, text.data() + text.size(), out.second))
+    return {};
+  return out;
 }
 
-void print_summary(const RenderOptions& options, const app::JobReport& report) {
-  std::string files;
-  for (const auto& output : options.job.outputs) files += (files.empty() ? "" : ", ") + output.string();
-  const double seconds = report.render.render_s;
-  const double pixels = static_cast<double>(report.width) * report.height;
-  std::fprintf(stderr, "wrote %s: %d x %d, %.5g samples per pixel in %.1f s, %.2f M samples/s", files.c_str(),
-               report.width, report.height, static_cast<double>(report.render.paths) / pixels, seconds,
-               seconds > 0 ? static_cast<double>(report.render.paths) / seconds / 1e6 : 0.0);
-  if (report.render.noise)
-    std::fprintf(stderr, "; noise %.3g, %llu to %llu samples", *report.render.noise,
-                 static_cast<unsigned long long>(report.render.fewest_samples),
-                 static_cast<unsigned long long>(report.render.most_samples));
-  std::fputc('\n', stderr);
-  if (!options.verbose) return;
-  std::fprintf(stderr, "%zu spheres, %s, %s, traversal %s, %d threads, %llu rays; scene %s\n", report.spheres,
-               report.render.accelerator.c_str(), report.render.isa.c_str(), report.render.traversal.c_str(),
-               report.render.threads, static_cast<unsigned long long>(report.render.rays), report.scene_hash.c_str());
-  const app::Phases& phases = report.phases;
-  std::fprintf(stderr, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, write %.3f s\n", phases.read_s,
-               phases.compile_s, phases.build_s, phases.render_s, phases.write_s);
-  const display::Choice& display = report.display;
-  if (!display.display.empty())
-    std::fprintf(stderr, "display %s, view %s, OCIO config %s\n", display.display.c_str(), display.view.c_str(),
-                 display.config.c_str());
+void read_part(const RenderOptions& options, app::Job& job) {
+  if (const auto text = options.scene.sample_range()) {
+    const auto range = pair_of<std::uint32_t>(*text, ':');
+    if (!range || range->first >= range->second || range->second > std::numeric_limits<std::int32_t>::max())
+      refuse("--samples: `" + *text + "` is no range of samples; 0:100 are the first hundred, 100:200 those after them");
+    job.sample_begin = range->first;
+    job.sample_end = range->second;
+  }
+  if (options.tiles.empty()) return;
+  const auto tiles = pair_of<int>(options.tiles, '/');
+  if (!tiles || tiles->first < 1 || tiles->first > tiles->second || tiles->second > kMostParts)
+    refuse("--tiles: `" + options.tiles + "` is no part; 1/4, 2/4, 3/4 and 4/4 are the four quarters of a picture");
+  job.share = {tiles->first - 1, tiles->second};
 }
 
 int render(RenderOptions& options) {
   app::Job& job = options.job;
   job.overrides = options.scene.overrides();
-  job.exr.as_float = options.type == "float";
+  options.picture.finish(job);
+  read_part(options, job);
   job.cancel = &stop_on_signals();
+  job.snapshot = &snapshot_on_signal();
   ProgressPrinter printer(style_of(options), stderr);
   job.on_progress = [&](const auto& p) { printer.update({p.samples_done, p.samples_total, p.seconds, p.goal}); };
   job.on_build = [&](double fraction) { printer.building(fraction); };
   job.on_warning = [&](const base::Finding& warning) {
     if (!options.quiet) std::fputs(base::formatted(warning).c_str(), stderr);
   };
+  job.on_note = [&](const std::string& text) { printer.note(text); };
   const app::JobReport report = app::run_job(job);
   printer.finish();
-  if (!options.quiet) {
-    print_bad_values(report);
-    print_summary(options, report);
-  }
+  if (!options.quiet) print_report(job, report, options.verbose);
   if (report.target_missed.empty()) return 0;
   if (!options.quiet || options.strict)
     std::fprintf(stderr, "%s: %s\n", options.strict ? "orrery" : "warning", report.target_missed.c_str());
   return options.strict ? base::exit_status(base::ErrorKind::kStopped) : 0;
-}
-
-void add_picture_options(CLI::App& command, RenderOptions& options) {
-  add_display_options(command, options.job.display, options.job.bits);
-  command.add_option("--type", options.type, "EXR channels: half, the default, or float")
-      ->check(one_of({"half", "float"}))
-      ->type_name("TYPE");
-  command
-      .add_option("--compression", options.job.exr.compression, "EXR compression, zips by default: zip, dwaa:45 ...")
-      ->type_name("NAME");
-  command
-      .add_option("--deep", options.job.deep, "Write also an EXR of samples in depth, one for each sphere in a pixel")
-      ->type_name("FILE");
-  command.add_flag("--multipart", options.job.exr.multipart, "Give each layer of an EXR a part of its own");
-  command.add_flag("--reproducible", options.job.reproducible, "Leave out of headers what changes between runs");
 }
 
 }  // namespace
@@ -118,12 +98,16 @@ void add_render(CLI::App& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
   CLI::App& command = *program.add_subcommand("render", "Render a scene into one or more picture files");
   command.add_option("SCENE", options->job.scene, "Scene file")->required()->type_name("FILE");
-  repeatable(*command
-                  .add_option("-o,--output", options->job.outputs,
-                              "File to write; its extension chooses EXR, HDR, PNG, TIFF, JPEG or PPM; can be repeated")
-                  ->required()
-                  ->type_name("FILE"));
-  options->scene.add_to(command);
+  options->picture.add_to(command, options->job);
+  options->scene.add_to(command, true);
+  command.add_option("--tiles", options->tiles, "Render only the I-th of N parts of the pixels, as a part")
+      ->type_name("I/N");
+  command.add_flag("--resume", options->job.resume, "Go on from the checkpoint that a stopped render has left");
+  command
+      .add_option("--checkpoint", options->job.checkpoint_s,
+                  "Write a checkpoint so often, as 5m; one is written anyway when INT or TERM stops the render")
+      ->transform(duration())
+      ->type_name("TIME");
   command
       .add_option("--noise", options->job.noise,
                   "Sample until the picture is off by this much, relative to what a display shows, as 0.01")
@@ -147,7 +131,6 @@ void add_render(CLI::App& program, Action& action) {
       .add_option("--memory-limit", options->job.memory_limit, "Refuse what needs more, as 8G; default: what is free")
       ->transform(byte_size())
       ->type_name("SIZE");
-  add_picture_options(command, *options);
   command.add_option("--progress", options->progress, "auto, bar, alf, openjd, arnold, json or none")
       ->check(one_of(progress_style_names()))
       ->type_name("STYLE");

@@ -32,6 +32,7 @@ void add_commands(CLI::App& program, Action& action) {
   // What a script says after its own defaults shall count.
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   add_render(program, action);
+  add_merge(program, action);
   add_info(program, action);
   add_check(program, action);
   add_generate(program, action);

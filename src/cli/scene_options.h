@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,12 @@ namespace orrery::cli {
 class SceneOptions {
  public:
   /// Domain     called once; neither this moves nor `command` goes until overrides() was asked
-  void add_to(CLI::App& command);
+  ///
+  /// `allows_range`  --samples may be A:B
+  void add_to(CLI::App& command, bool allows_range = false);
+
+  /// What --samples says, where that is a range, A:B, of the scene's samples; then it overrides nothing.
+  std::optional<std::string> sample_range() const;
 
   /// All of them as "key=value", in an order in which --set wins over the short forms.
   std::vector<std::string> overrides() const;
@@ -25,6 +31,9 @@ class SceneOptions {
     const CLI::Option* flag;
     bool is_list;  ///< words between commas
   };
+  bool is_range(const Short& option) const;
+
+  bool allows_range_ = false;
   std::vector<std::string> set_;
   std::deque<Short> short_forms_;  ///< a deque: the parser holds on to where the values are
 };

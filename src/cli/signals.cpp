@@ -9,7 +9,7 @@
 namespace orrery::cli {
 namespace {
 
-std::atomic<bool> stop{false};
+std::atomic<bool> stop{false}, snapshot{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
 
 void on_signal(int signal) {
@@ -17,6 +17,8 @@ void on_signal(int signal) {
   base::remove_unfinished_files();
   _exit(128 + signal);  // as a shell reports a process that a signal ended
 }
+
+void on_snapshot(int) { snapshot.store(true, std::memory_order_relaxed); }
 
 void handle_signals() {
   struct sigaction action {};
@@ -44,6 +46,15 @@ const std::atomic<bool>& stop_on_signals() {
 void end_on_signals() {
   stop.store(true);
   handle_signals();
+}
+
+std::atomic<bool>& snapshot_on_signal() {
+  struct sigaction action {};
+  action.sa_handler = on_snapshot;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGUSR1, &action, nullptr);
+  return snapshot;
 }
 
 }  // namespace orrery::cli

@@ -16,4 +16,7 @@ const std::atomic<bool>& stop_on_signals();
 /// The same for what cannot be asked to stop: the first signal ends the process.
 void end_on_signals();
 
+/// From now on USR1 sets what this returns; whoever looks at it sets it to false again.
+std::atomic<bool>& snapshot_on_signal();
+
 }  // namespace orrery::cli

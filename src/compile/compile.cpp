@@ -130,6 +130,34 @@ Bounds bounds_of(const std::vector<kernel::Sphere>& spheres) {
   return b;
 }
 
+/// What camera and spheres of tables do until the shutter closes.
+void add_motion(const scene::Scene& opening, const scene::Scene& closing, World& world) {
+  for (std::size_t i = opening.spheres.size(); i-- > 0;) {
+    const scene::Sphere &from = opening.spheres[i], &to = closing.spheres[i];
+    const Vec3d way = to.center - from.center;
+    const kernel::Sphere change{way.x, way.y, way.z, std::abs(to.radius) - std::abs(from.radius)};
+    const bool rests = change.x == 0 && change.y == 0 && change.z == 0 && change.radius == 0;
+    if (world.motion.empty() && !rests) world.motion.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
+    if (!rests) world.motion[i] = change;
+  }
+  const kernel::Camera last = compile_camera(closing.camera, closing.image);
+  kernel::Camera& change = world.camera_motion;
+  bool camera_moves = false;
+  const auto subtract = [&](const double(&to)[3], const double(&from)[3], double(&out)[3]) {
+    for (int k = 0; k < 3; ++k) {
+      out[k] = to[k] - from[k];
+      camera_moves = camera_moves || out[k] != 0;
+    }
+  };
+  subtract(last.origin, world.camera.origin, change.origin);
+  subtract(last.forward, world.camera.forward, change.forward);
+  subtract(last.right, world.camera.right, change.right);
+  subtract(last.down, world.camera.down, change.down);
+  subtract(last.lens_u, world.camera.lens_u, change.lens_u);
+  subtract(last.lens_v, world.camera.lens_v, change.lens_v);
+  world.features.motion = camera_moves || !world.motion.empty();
+}
+
 void set_background(const scene::Background& from, World& world) {
   const bool gradient = from.type == scene::BackgroundType::kGradient;
   set(world.background.bottom, gradient ? from.bottom : from.color);
@@ -159,6 +187,9 @@ kernel::SceneView World::view() const noexcept {
   v.sphere_materials = sphere_materials.data();
   v.materials = materials.data();
   v.sphere_count = spheres.size();
+  v.motion = motion.data();
+  v.moving_count = motion.size();
+  v.camera_motion = camera_motion;
   v.camera = camera;
   v.background = background;
   v.features = features;
@@ -176,7 +207,7 @@ int blue_noise_bits(int samples) noexcept {
   return std::min(static_cast<int>(std::bit_width(static_cast<unsigned>(samples) - 1)), kernel::kSobolBits);
 }
 
-World compile(const scene::Scene& scene) {
+World compile(const scene::Scene& scene, const scene::Scene* closing) {
   World world;
   const scene::Window window = scene.image.data_window();
   world.window_x = window.x;
@@ -205,10 +236,11 @@ World compile(const scene::Scene& scene) {
     case scene::Accelerator::kList: world.accelerator = Accelerator::kList; break;
   }
   world.camera = compile_camera(scene.camera, scene.image);
-  world.features.lens = scene.camera.defocus_angle > 0;
+  world.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
   set_background(scene.background, world);
   world.filter = compile_filter(scene.render);
   add_spheres(scene, world);
+  if (closing != nullptr) add_motion(scene, *closing, world);
   world.bounds = bounds_of(world.spheres);
   return world;
 }

@@ -11,8 +11,10 @@ namespace orrery::compile {
 /// Authored meaning ends here: a negative radius becomes a positive one with the material turned inside out, degrees
 /// become vectors, and materials that no sphere uses are left out.
 ///
-/// Domain     a scene that scene::validate finds no error in
-World compile(const scene::Scene& scene);
+/// `closing`  what the shutter closes on, without points; null: it is never open. What then turns out not to move costs
+///            nothing.
+/// Domain     scenes that scene::validate finds no error in
+World compile(const scene::Scene& scene, const scene::Scene* closing = nullptr);
 
 /// Bits that count a pixel's samples where blue noise shares a sequence among neighbours.
 int blue_noise_bits(int samples) noexcept;

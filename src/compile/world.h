@@ -29,7 +29,9 @@ struct World {
   std::vector<kernel::Sphere> spheres;
   std::vector<std::uint32_t> sphere_materials;  ///< one per sphere, index into `materials`
   std::vector<kernel::Material> materials;
+  std::vector<kernel::Sphere> motion;  ///< of the first spheres; see kernel::SceneView. Empty: none moves
   kernel::Camera camera;
+  kernel::Camera camera_motion;
   kernel::Background background;
   kernel::Features features;
   kernel::Shading shading = kernel::Shading::kPath;

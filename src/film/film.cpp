@@ -11,10 +11,7 @@ Film::Film(int width_px, int height_px)
 kernel::PixelSum* Film::at(int x, int y) noexcept { return sums_.data() + static_cast<std::ptrdiff_t>(y) * width_ + x; }
 
 void Film::add(const Film& other) {
-  for (std::size_t i = 0; i < sums_.size(); ++i) {
-    for (int c = 0; c < 3; ++c) sums_[i].rgb[c] += other.sums_[i].rgb[c];
-    sums_[i].weight += other.sums_[i].weight;
-  }
+  for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
 }
 
 Picture Film::picture() const {

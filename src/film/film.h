@@ -21,6 +21,10 @@ class Film {
   /// The sum of a pixel; the one to the right is next, the one below is width() further on.
   kernel::PixelSum* at(int x, int y) noexcept;
 
+  /// All of them, row by row.
+  const std::vector<kernel::PixelSum>& sums() const noexcept { return sums_; }
+  std::vector<kernel::PixelSum>& sums() noexcept { return sums_; }
+
   /// Adds the samples of another film of the same size.
   void add(const Film& other);
 

@@ -43,14 +43,26 @@ struct Hit {
   double exit_z;    ///< where the ray leaves the sphere again
 };
 
+/// Place and view of the camera at a time within the shutter.
+void camera_at(const kernel::SceneView& scene, double time, double (&origin)[3], double (&forward)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    origin[k] = scene.camera.origin[k];
+    forward[k] = scene.camera.forward[k];
+    if (!scene.features.motion) continue;
+    origin[k] = std::fma(scene.camera_motion.origin[k], time, origin[k]);
+    forward[k] = std::fma(scene.camera_motion.forward[k], time, forward[k]);
+  }
+}
+
 Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
-  const kernel::Sphere& s = scene.spheres[path.sphere];
+  const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
   const double center[3] = {s.x, s.y, s.z};
-  const double* const forward = scene.camera.forward;
+  double origin[3], forward[3];
+  camera_at(scene, path.time, origin, forward);
   Hit hit{};
   double far = 0, length = 0, along = 0, through = 0;
   for (int k = 0; k < 3; ++k) {
-    const double from_camera = center[k] - scene.camera.origin[k] + path.offset[k];
+    const double from_camera = center[k] - origin[k] + path.offset[k];
     far += from_camera * from_camera;
     length += forward[k] * forward[k];
     hit.z += from_camera * forward[k];
@@ -93,12 +105,14 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
 
   covered += path_weight;
   if (request.albedo) add3(albedo, scene.materials[scene.sphere_materials[path.sphere]].albedo, path_weight);
-  const kernel::Sphere& s = scene.spheres[path.sphere];
+  const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
   const double center[3] = {s.x, s.y, s.z};
   if (request.normal) {
+    double origin[3], forward[3];
+    camera_at(scene, path.time, origin, forward);
     double to_center = 0;
     for (int k = 0; k < 3; ++k) {
-      const double away = center[k] - scene.camera.origin[k];
+      const double away = center[k] - origin[k];
       to_center += away * away;
     }
     const double outward = to_center < s.radius * s.radius ? -1 / s.radius : 1 / s.radius;
@@ -110,6 +124,34 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   z = hit.z;
   sphere = path.sphere;
   for (int k = 0; k < 3; ++k) position[k] = center[k] + path.offset[k];
+}
+
+void LayerPixel::add(const LayerPixel& other) {
+  const auto add_all = [](Int128(&to)[3], const Int128(&from)[3]) {
+    for (int k = 0; k < 3; ++k) to[k] += from[k];
+  };
+  for (int g = 0; g < kernel::kLightGroups; ++g) add_all(light[g], other.light[g]);
+  add_all(squares, other.squares);
+  add_all(normal, other.normal);
+  add_all(albedo, other.albedo);
+  add_all(guide_albedo, other.guide_albedo);
+  add_all(guide_normal, other.guide_normal);
+  weight += other.weight;
+  lit += other.lit;
+  paths += other.paths;
+  covered += other.covered;
+  for (const SphereShare& from : other.shares) {
+    SphereShare& to = share_of(shares, from.sphere);
+    to.weight += from.weight;
+    add_all(to.light, from.light);
+    to.front = std::min(to.front, from.front);
+    to.back = std::max(to.back, from.back);
+  }
+  if (!(other.depth < depth)) return;
+  depth = other.depth;
+  z = other.z;
+  sphere = other.sphere;
+  std::copy_n(other.position, 3, position);
 }
 
 }  // namespace orrery::film

@@ -28,6 +28,9 @@ struct LayerPixel {
   void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path,
            std::int64_t weight);
 
+  /// Adds the paths of another part of the same pixel. Of two that met spheres equally near the first stays.
+  void add(const LayerPixel& other);
+
   using Int128 = kernel::Int128;
   Int128 light[kernel::kLightGroups][3] = {};
   Int128 squares[3] = {};  ///< of the light, in units of kSquareUnit

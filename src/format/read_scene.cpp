@@ -11,7 +11,10 @@
 #include "format/overrides.h"
 #include "format/read_keys.h"
 #include "format/read_materials.h"
+#include "base/frames.h"
 #include "format/read_ply.h"
+#include "format/read_tracks.h"
+#include "scene/animation.h"
 #include "scene/validate.h"
 
 namespace orrery::format {
@@ -88,7 +91,7 @@ void read_spheres(Reading& reading, const toml::table& root, const MaterialIndex
   }
 }
 
-void read_points(Reading& reading, const toml::table& root, const std::filesystem::path& folder,
+void read_points(Reading& reading, const toml::table& root, const std::filesystem::path& folder, int frame,
                  const MaterialIndex& index, scene::Scene& scene) {
   const toml::array* list = tables_under(reading, root, "points");
   if (list == nullptr) return;
@@ -99,6 +102,7 @@ void read_points(Reading& reading, const toml::table& root, const std::filesyste
     read_keys(reading, table, full_name, scene::points_keys(), {"material"}, points);
     points.material = read_material_name(reading, table, full_name, scene, index);
     if (reading.unread.count(full_name + ".file") == 0) {
+      points.file = base::with_frame(points.file.string(), frame);
       try {
         read_ply(folder / points.file, scene.materials.size(), points);
       } catch (const base::Error& error) {
@@ -150,10 +154,35 @@ void add_problems(Reading& reading, const toml::table& root, const scene::Scene&
   }
 }
 
+/// Brings the scene to the moment of the frame; where the shutter stays open, to its two moments.
+void pose(Reading& reading, const toml::table& root, const std::string& file, int frame, ReadResult& result) {
+  scene::Scene& scene = result.scene;
+  const scene::Camera& shutter = scene.camera;
+  const bool is_open = shutter.shutter_close > shutter.shutter_open;
+  const double opens = frame + (is_open ? shutter.shutter_open : 0), closes = frame + shutter.shutter_close;
+  if (!scene.tracks.empty()) {
+    check_tracks(reading, *root.get("key")->as_array(), scene, opens);
+    if (is_open) check_tracks(reading, *root.get("key")->as_array(), scene, closes);
+  }
+  if (is_open) {
+    result.closing = scene::posed(scene, closes);
+    for (scene::Problem problem : scene::validate(*result.closing)) {
+      if (problem.severity == base::Severity::kWarning) continue;
+      const toml::node* node = node_of(root, problem.key);
+      reading.findings.push_back(reading.source.finding(problem.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1},
+                                                        problem.key + " when the shutter closes: " + problem.text));
+    }
+  }
+  scene = scene::posed(scene, opens);
+  for (std::size_t i = 0; is_open && i < scene.spheres.size(); ++i)
+    if ((scene.spheres[i].radius < 0) != (result.closing->spheres[i].radius < 0))
+      reading.error(Place{file, 0, 0, 1}, "sphere[" + std::to_string(i) + "].radius changes its sign while the shutter is open");
+}
+
 void report_unknown_tables(Reading& reading, const toml::table& root) {
   std::vector<std::string> known;
   for (const scene::Table& table : scene::tables()) known.push_back(table.name);
-  known.insert(known.end(), {"material", "sphere", "points"});
+  known.insert(known.end(), {"material", "sphere", "points", "key"});
   for (const auto& [key, node] : root)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       report_unknown_key(reading, key, "the scene", known);
@@ -190,7 +219,7 @@ void throw_errors(const std::filesystem::path& file, std::vector<base::Finding> 
 
 }  // namespace
 
-ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides, int frame) {
   const std::string text = read_file(file, kLargestSceneFile);
   Reading reading;
   const toml::table root = parse_tree(file.string(), text, overrides, reading.source, reading.findings);
@@ -204,7 +233,10 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::
   for (const scene::Material& material : result.scene.materials)
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
   read_spheres(reading, root, index, result.scene);
-  read_points(reading, root, file.parent_path(), index, result.scene);
+  if (const toml::array* keys = tables_under(reading, root, "key")) read_tracks(reading, *keys, result.scene);
+  if (std::none_of(reading.findings.begin(), reading.findings.end(), is_error)) 
+    pose(reading, root, file.string(), frame, result);
+  read_points(reading, root, file.parent_path(), frame, index, result.scene);
   add_problems(reading, root, result.scene, file.string());
   throw_errors(file, reading.findings);
   result.warnings = std::move(reading.findings);

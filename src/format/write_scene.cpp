@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "format/write_ply.h"
+#include "scene/animation.h"
 #include "scene/schema.h"
 
 namespace orrery::format {
@@ -62,6 +63,26 @@ void add_materials(std::string& out, const std::vector<scene::Material>& materia
   out += '\n';
 }
 
+void add_tracks(std::string& out, const scene::Scene& scene) {
+  const char* const names[] = {"linear", "cubic", "hold"};
+  const auto list = [&](const char* key, std::size_t size, auto text) {
+    out += std::string(key) + " = [";
+    for (std::size_t i = 0; i < size; ++i) out += (i > 0 ? ", " : "") + text(i);
+    out += "]\n";
+  };
+  for (const scene::Track& track : scene.tracks) {
+    const auto target = scene::find_animated(scene, track.target);
+    const bool is_vector = target && target->type == scene::ValueType::kVector;
+    out += "[[key]]\ntarget = " + string_text(track.target) + "\ninterpolation = " +
+           string_text(names[static_cast<std::size_t>(track.interpolation)]) + "\n";
+    list("frames", track.frames.size(), [&](std::size_t i) { return number_text(track.frames[i]); });
+    list("values", track.values.size(), [&](std::size_t i) {
+      return is_vector ? vector_text(track.values[i]) : number_text(track.values[i].x);
+    });
+    out += '\n';
+  }
+}
+
 const std::string& material_name(const scene::Scene& scene, std::uint32_t material) {
   if (material >= scene.materials.size())
     throw base::Error(base::ErrorKind::kInternal, "a scene to write has no material " + std::to_string(material));
@@ -82,6 +103,7 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
     out += "center = " + vector_text(sphere.center) + "\nradius = " + number_text(sphere.radius) +
            "\nmaterial = " + string_text(material_name(scene, sphere.material)) + "\n\n";
   }
+  add_tracks(out, scene);
   for (const scene::Points& points : scene.points) {
     out += "[[points]]\nfile = " + string_text(points.file.string()) +
            "\nmaterial = " + string_text(material_name(scene, points.material)) + "\n";

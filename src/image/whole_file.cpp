@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "image/checked_file.h"
 #include "image/library.h"
+#include "image/seal.h"
 
 namespace orrery::image {
 namespace {
@@ -36,7 +37,7 @@ std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDe
   for (std::size_t i = 0; i < parts.size() && first_complaint.empty(); ++i) {
     if (i > 0 && !out.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) return complaint("opening a part");
     const bool written =
-        parts[i].deep != nullptr ? out.write_deep_image(*parts[i].deep) : out.write_image(type, parts[i].pixels);
+        parts[i].deep != nullptr ? out.write_deep_image(*parts[i].deep) : out.write_image(parts[i].type.value_or(type), parts[i].pixels);
     if (!written) first_complaint = complaint("encoding");
   }
   if (!out.close() && first_complaint.empty()) return complaint("closing");
@@ -84,7 +85,7 @@ std::string read_back(const std::string& name, const std::string& format, const 
 }  // namespace
 
 void write_whole(const std::filesystem::path& file, const std::string& format, OIIO::TypeDesc type,
-                 const std::vector<WholePart>& parts) {
+                 const std::vector<WholePart>& parts, bool sealed) {
   prepare_library();
   base::AtomicFile target(file);
   const std::string name = target.temporary().string();
@@ -99,6 +100,7 @@ void write_whole(const std::filesystem::path& file, const std::string& format, O
   if (const int error = bytes.finish(); error != 0) io_failed(file, std::strerror(error));
   if (!complaint.empty()) io_failed(file, complaint);
   if (const std::string wrong = read_back(name, format, parts); !wrong.empty()) io_failed(file, wrong);
+  if (sealed) seal(target.temporary(), file);
   target.commit();
 }
 

@@ -66,19 +66,40 @@ HWY_INLINE void filter_place(D d, const PixelFilter& filter, hn::Vec<hn::RebindT
   random.v[1] = hn::Load(d, u[1]);
 }
 
+/// A camera's vectors; see Camera.
+template <class V>
+struct CameraVectors {
+  Vec3<V> origin, forward, right, down, lens_u, lens_v;
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE CameraVectors<V> camera_vectors(D d, const Camera& c) {
+  return {set3(d, c.origin), set3(d, c.forward), set3(d, c.right),
+          set3(d, c.down),   set3(d, c.lens_u),  set3(d, c.lens_v)};
+}
+
+/// The camera at a time within the shutter, one a lane.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE CameraVectors<V> camera_at(D d, const SceneView& scene, V time) {
+  const auto a = camera_vectors(d, scene.camera), change = camera_vectors(d, scene.camera_motion);
+  return {mul_add(change.origin, time, a.origin), mul_add(change.forward, time, a.forward),
+          mul_add(change.right, time, a.right),   mul_add(change.down, time, a.down),
+          mul_add(change.lens_u, time, a.lens_u), mul_add(change.lens_v, time, a.lens_v)};
+}
+
 /// The ray of a path through its pixel.
 ///
 /// Space      film coordinates in pixels from the film's middle
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE CameraRay<V> camera_ray(D d, const Camera& camera, bool has_lens, V pixel_x, V pixel_y,
+HWY_INLINE CameraRay<V> camera_ray(D d, const SceneView& scene, const CameraVectors<V>& camera, V pixel_x, V pixel_y,
                                    const Four<V>& random) {
   using T = hn::TFromD<D>;
-  const V x = pixel_x - hn::Set(d, static_cast<T>(camera.half_width)) + random.v[0];
-  const V y = pixel_y - hn::Set(d, static_cast<T>(camera.half_height)) + random.v[1];
-  const auto to_focus = mul_add(set3(d, camera.down), y, mul_add(set3(d, camera.right), x, set3(d, camera.forward)));
-  if (!has_lens) return {{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, normalized(d, to_focus)};
+  const V x = pixel_x - hn::Set(d, static_cast<T>(scene.camera.half_width)) + random.v[0];
+  const V y = pixel_y - hn::Set(d, static_cast<T>(scene.camera.half_height)) + random.v[1];
+  const auto to_focus = mul_add(camera.down, y, mul_add(camera.right, x, camera.forward));
+  if (!scene.features.lens) return {{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, normalized(d, to_focus)};
   const auto lens = sample_unit_disc(d, random.v[2], random.v[3]);
-  const auto offset = mul_add(set3(d, camera.lens_u), lens.x, set3(d, camera.lens_v) * lens.y);
+  const auto offset = mul_add(camera.lens_u, lens.x, camera.lens_v * lens.y);
   return {offset, normalized(d, to_focus - offset)};
 }
 

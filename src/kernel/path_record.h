@@ -29,6 +29,7 @@ struct PathRecord {
   float guide_normal[3] = {0, 0, 0};  ///< its normal, unit, against the ray; world space
   std::uint32_t sphere = kNoSphere;   ///< first hit; kNoSphere: the background
   LightGroup group = LightGroup::kBackground;
+  double time = 0;  ///< 0..1 within the shutter
 };
 
 }  // namespace orrery::kernel

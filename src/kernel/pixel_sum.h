@@ -15,6 +15,12 @@ __extension__ using Int128 = __int128;
 struct PixelSum {
   Int128 rgb[3] = {0, 0, 0};
   std::int64_t weight = 0;  ///< of all samples, those left out apart: 1 each, but for PixelFilter's negative ones
+
+  PixelSum& operator+=(const PixelSum& other) noexcept {
+    for (int c = 0; c < 3; ++c) rgb[c] += other.rgb[c];
+    weight += other.weight;
+    return *this;
+  }
 };
 
 /// A sample above this is counted as bad: it would not leave room for 2^31 of its kind.

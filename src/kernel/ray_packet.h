@@ -29,6 +29,7 @@ struct alignas(64) RayPacketOf {
   Id self[kPacketSize];           ///< sphere that the ray leaves, or kNoSphere
   T distance[kPacketSize];        ///< in: farther hits do not count; out: of the nearest hit, in lengths of direction
   Id hit[kPacketSize];            ///< in: kNoSphere; out: the sphere of the nearest hit, or kNoSphere
+  T time[kPacketSize];            ///< 0..1 within the shutter; only where the scene moves
   int count = 0;                  ///< rays in use, the first ones
 };
 

@@ -42,13 +42,17 @@ class Recorder {
   }
 
   /// The surfaces that camera rays have met.
-  HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids spheres, const Vec3<V>& offset, const Vec3<V>& direction) {
+  ///
+  /// `times`    of the rays; null where nothing moves
+  HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids spheres, const Vec3<V>& offset, const Vec3<V>& direction,
+                            const hn::TFromD<D>* times) {
     const IdTag<D> du;
     HWY_ALIGN Id sphere[kMax];
     Stored at(d, offset), along(d, direction);
     hn::Store(spheres, du, sphere);
     each(d, hit, [&](PathRecord& r, int i) {
       r.sphere = static_cast<std::uint32_t>(sphere[i]);
+      if (times != nullptr) r.time = static_cast<double>(times[i]);
       for (int k = 0; k < 3; ++k) {
         r.offset[k] = static_cast<double>(at.v[k][i]);
         r.direction[k] = static_cast<double>(along.v[k][i]);

@@ -60,7 +60,6 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     carried.sample[i] = carried.sample[0];
   }
   packet.count = count;
-  const auto camera_origin = set3(d, scene.camera.origin);
   const auto one = hn::Set(d, T(1));
   for (int v = 0; v < kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
     const auto pixels = hn::Load(du, carried.pixel + v);
@@ -72,20 +71,28 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     };
     const auto x = place(pixels, scene.window_x);
     const auto y = place(hn::template ShiftRight<16>(pixels), scene.window_y);
-    const auto ray = camera_ray(d, scene.camera, scene.features.lens, x, y, random);
-    const auto origin = camera_origin + ray.offset;
-    const auto low = sum_error(camera_origin, ray.offset, origin);
     const auto store = [&](const auto& value, auto& to) {
       hn::Store(value.x, d, to[0] + v);
       hn::Store(value.y, d, to[1] + v);
       hn::Store(value.z, d, to[2] + v);
     };
-    store(origin, packet.origin);
-    store(low, packet.origin_low);
-    store(ray.offset, packet.offset);
-    store(ray.direction, packet.direction);
+    const auto store_rays = [&](const CameraVectors<hn::Vec<D>>& camera) HWY_ATTR {
+      const auto ray = camera_ray(d, scene, camera, x, y, random);
+      const auto origin = camera.origin + ray.offset;
+      store(origin, packet.origin);
+      store(sum_error(camera.origin, ray.offset, origin), packet.origin_low);
+      store(ray.offset, packet.offset);
+      store(ray.direction, packet.direction);
+      hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
+    };
+    if (HWY_UNLIKELY(scene.features.motion)) {
+      const auto time = time_of_path(d, scene.sampler, pixels, samples);
+      hn::Store(time, d, packet.time + v);
+      store_rays(camera_at(d, scene, time));
+    } else {
+      store_rays(camera_vectors(d, scene.camera));
+    }
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
-    hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
     if constexpr (kRecords) hn::Store(hn::Set(du, static_cast<Id>(kOnlySharpBit)), du, carried.history + v);
   }
@@ -93,7 +100,8 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
 
 /// Fills the packet with the next rays of paths first .. first + count of the stream.
 template <class D, bool kRecords, class Stream, class Carried>
-HWY_INLINE void load_bounced_rays(D d, Stream& stream, int first, int count, Carried& carried) {
+HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, int first, int count,
+                                  Carried& carried) {
   using T = hn::TFromD<D>;
   const IdTag<D> du;
   auto& packet = stream.packet;
@@ -119,8 +127,11 @@ HWY_INLINE void load_bounced_rays(D d, Stream& stream, int first, int count, Car
     store(at(stream.throughput), carried.throughput);
     hn::Store(one / dot(direction, direction), d, packet.inverse_square + v);
     hn::Store(hn::LoadU(du, stream.self + i), du, packet.self + v);
-    hn::Store(hn::LoadU(du, stream.pixel + i), du, carried.pixel + v);
-    hn::Store(hn::LoadU(du, stream.sample + i), du, carried.sample + v);
+    const auto pixels = hn::LoadU(du, stream.pixel + i), samples = hn::LoadU(du, stream.sample + i);
+    hn::Store(pixels, du, carried.pixel + v);
+    hn::Store(samples, du, carried.sample + v);
+    if (HWY_UNLIKELY(scene.features.motion))
+      hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
     if constexpr (kRecords) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
   }
 }
@@ -157,7 +168,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
       // Survivors are written over paths that were already read: a packet never grows.
       int survivors = 0;
       for (int i = 0; i < alive; i += kPacketSize) {
-        load_bounced_rays<D, kRecords>(d, stream, i, std::min(kPacketSize, alive - i), carried);
+        load_bounced_rays<D, kRecords>(d, scene, stream, i, std::min(kPacketSize, alive - i), carried);
         survivors = trace_and_shade(depth, survivors);
       }
       alive = survivors;

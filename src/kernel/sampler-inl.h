@@ -80,6 +80,18 @@ HWY_INLINE Four<hn::Vec<D>> random_at_vertex(D d, const Sampler& sampler, hn::Ve
   return {{to_unit(d, bits.v[0]), to_unit(d, bits.v[1]), to_unit(d, bits.v[2]), to_unit(d, bits.v[3])}};
 }
 
+/// When a path happens, 0..1 within the shutter; the same at all its vertices.
+///
+/// Precision  24 bits, so that a float has it as it is
+template <class D>
+HWY_INLINE hn::Vec<D> time_of_path(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
+                                   hn::Vec<hn::RebindToUnsigned<D>> sample) {
+  using T = hn::TFromD<D>;
+  constexpr std::uint32_t kVertex = 0xfffffffe;  // that no path has
+  const auto u = random_at_vertex(d, sampler, pixel, sample, kVertex, false).v[0];
+  return hn::Floor(u * hn::Set(d, T(0x1p24))) * hn::Set(d, T(0x1p-24));
+}
+
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

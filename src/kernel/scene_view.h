@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,6 +28,7 @@ struct Features {
   bool lens = false;        ///< the camera has an aperture
   bool hemisphere = false;  ///< some sphere's material is of this kind
   bool sky = false;         ///< the background depends on the direction
+  bool motion = false;      ///< camera or spheres move while the shutter is open
 };
 
 /// Russian roulette leaves paths alone that still have one part in so many of their light: what they save would not
@@ -42,7 +44,11 @@ struct SceneView {
   const std::uint32_t* sphere_materials = nullptr;  ///< one per sphere, index into `materials`
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
+  /// What becomes of the first spheres until the shutter closes: the change of place and radius. The others rest.
+  const Sphere* motion = nullptr;
+  std::size_t moving_count = 0;
   Camera camera;
+  Camera camera_motion;  ///< the change of its vectors until the shutter closes, where features.motion
   Background background;
   Features features;
   Shading shading = Shading::kPath;
@@ -56,5 +62,17 @@ struct SceneView {
   std::uint32_t window_x = 0, window_y = 0;
   bool background_visible = true;  ///< false: camera rays that leave the scene bring no light
 };
+
+/// A sphere at a time between 0, when the shutter opens, and 1, when it closes; as the inner loops compute it.
+inline Sphere sphere_at(const SceneView& scene, std::size_t id, double time) noexcept {
+  Sphere s = scene.spheres[id];
+  if (id >= scene.moving_count) return s;
+  const Sphere& change = scene.motion[id];
+  s.x = std::fma(change.x, time, s.x);
+  s.y = std::fma(change.y, time, s.y);
+  s.z = std::fma(change.z, time, s.z);
+  s.radius = std::fma(change.radius, time, s.radius);
+  return s;
+}
 
 }  // namespace orrery::kernel

@@ -90,8 +90,10 @@ struct Lookup {
 };
 
 /// Fetches spheres and materials of the lanes that hit something; the others get those of sphere 0.
+///
+/// `times`    of the rays; read only where spheres move
 template <class D>
-HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits) {
+HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
   const IdTag<D> du;
@@ -112,6 +114,15 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
       d, [&](std::size_t i) { return material[i]->eta; }, glass);
   Lookup<D> out;
   out.sphere = {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
+  if (HWY_UNLIKELY(scene.moving_count > 0)) {
+    static constexpr Sphere kAtRest{0, 0, 0, 0};
+    hn::Vec<D> change[4];
+    gather4(
+        d, [&](std::size_t i) { return &(id[i] < scene.moving_count ? scene.motion[id[i]] : kAtRest).x; }, change);
+    const auto time = hn::Load(d, times);
+    out.sphere = {mul_add(Vec3<hn::Vec<D>>{change[0], change[1], change[2]}, time, out.sphere.center),
+                  hn::MulAdd(change[3], time, out.sphere.radius)};
+  }
   out.albedo = {color[0], color[1], color[2]};
   out.surface.fuzz = color[3];
   out.eta_outside = glass[0];
@@ -126,8 +137,8 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
 /// Finds point, normal and side of every hit, and the material's constants for that side.
 template <class D, Precision kPrecision>
 HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
-                                   hn::Vec<D> distance) {
-  Lookup<D> at = look_up(d, scene, hits);
+                                   hn::Vec<D> distance, const hn::TFromD<D>* times) {
+  Lookup<D> at = look_up(d, scene, hits, times);
   Surface<D>& surface = at.surface;
   const auto is_self = hn::RebindMask(d, hits == ray.self);
   surface.direction = ray.direction;
@@ -248,11 +259,13 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
 
     const bool ends = scene.shading == Shading::kPath && depth >= scene.max_depth;
     if (ends && !(kRecords && depth == 0)) continue;
-    const auto at = reach_surface<D, kPrecision>(d, scene, ray, hits, hn::Load(d, packet.distance + v));
+    const auto at = reach_surface<D, kPrecision>(d, scene, ray, hits, hn::Load(d, packet.distance + v),
+                                                 packet.time + v);
     const Vec3<hn::Vec<D>> tinted = {throughput.x * at.albedo.x, throughput.y * at.albedo.y,
                                      throughput.z * at.albedo.z};
     if constexpr (kRecords) {
-      if (depth == 0) record.first_hit(d, hit, hits, at.surface.offset, ray.direction);
+      if (depth == 0)
+        record.first_hit(d, hit, hits, at.surface.offset, ray.direction, scene.features.motion ? packet.time + v : nullptr);
       if (tile.record_guides)
         record.guide(d, hn::AndNot(is_sharp(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
       if (ends) continue;

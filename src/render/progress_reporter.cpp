@@ -6,7 +6,9 @@
 
 namespace orrery::render {
 
-double ProgressReporter::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+double ProgressReporter::seconds() const {
+  return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
+}
 
 void ProgressReporter::expect(std::uint64_t total, std::string goal) {
   const std::lock_guard lock(mutex_);

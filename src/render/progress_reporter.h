@@ -14,8 +14,9 @@ namespace orrery::render {
 /// Tells the caller how far the render is, from whichever thread comes by, at most a few times a second.
 class ProgressReporter {
  public:
-  /// `total` samples are to be done, as far as is known.
-  ProgressReporter(const Settings& settings, std::uint64_t total) : settings_(settings), total_(total) {}
+  /// `total` samples are to be done, as far as is known; `before` was done by earlier runs.
+  ProgressReporter(const Settings& settings, std::uint64_t total, const film::Effort& before = {})
+      : settings_(settings), seconds_before_(before.seconds), done_(before.paths), total_(total) {}
 
   /// Samples were done.
   void add(std::uint64_t samples);
@@ -24,6 +25,7 @@ class ProgressReporter {
   /// before is not taken back: a bar that went backwards would say less than one that waits.
   void expect(std::uint64_t total, std::string goal);
 
+  /// Of rendering, those of earlier runs among them.
   double seconds() const;
   std::uint64_t done() const { return done_.load(std::memory_order_relaxed); }
 
@@ -31,7 +33,8 @@ class ProgressReporter {
   using Clock = std::chrono::steady_clock;
   static constexpr double kInterval = 0.1;  // seconds
   const Settings& settings_;
-  std::atomic<std::uint64_t> done_{0};
+  double seconds_before_;
+  std::atomic<std::uint64_t> done_;
   std::mutex mutex_;  // of all below
   std::uint64_t total_;
   std::string goal_;

@@ -3,7 +3,9 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -11,14 +13,13 @@
 
 #include "accel/accel.h"
 #include "base/error.h"
-#include "film/film.h"
 #include "film/layer_film.h"
 #include "kernel/isa.h"
 #include "render/progress_reporter.h"
+#include "render/passes.h"
 #include "render/rounds.h"
 #include "render/tile_pool.h"
 #include "render/tile_renderer.h"
-#include "render/tiles.h"
 #include "render/traversals.h"
 
 namespace orrery::render {
@@ -28,18 +29,29 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+bool is_in_rounds(const Settings& settings) { return settings.noise > 0 || settings.seconds > 0; }
+
 int threads_of(const Settings& settings) { return settings.threads > 0 ? settings.threads : available_threads(); }
 
-/// All samples of a pixel, then the next pixel: what neighbouring paths look at is in the cache.
-bool render_at_once(const compile::World& world, const TileRenderer& render_tile, TilePool& pool,
-                    ProgressReporter& progress, film::Film& film, Statistics& statistics) {
-  const std::vector<kernel::Tile> tiles = make_tiles(world.width, world.height, world.samples, film);
-  statistics.fewest_samples = statistics.most_samples = static_cast<std::uint64_t>(world.samples);
-  statistics.ended_by = "samples";
-  return pool.run(tiles.size(), [&](std::size_t i, TileWorker& worker) {
-    render_tile(tiles[i], worker);
-    progress.add(tiles[i].path_count());
-  });
+void count_samples(const compile::World& world, const Settings& settings, const film::Partial& state,
+                   Statistics& statistics) {
+  const std::vector<bool> owned = pixels_of(settings.share, world.width, world.height);
+  const std::uint64_t halves = state.has_halves() ? 2 : 1;
+  statistics.fewest_samples = std::numeric_limits<std::uint64_t>::max();
+  for (std::size_t i = 0; i < owned.size(); ++i) {
+    if (!owned[i]) continue;
+    statistics.fewest_samples = std::min(statistics.fewest_samples, halves * state.counts[i]);
+    statistics.most_samples = std::max(statistics.most_samples, halves * state.counts[i]);
+  }
+  statistics.fewest_samples = std::min(statistics.fewest_samples, statistics.most_samples);
+}
+
+/// Where a render begins: nothing done.
+film::Partial fresh_state(const compile::World& world, const Settings& settings) {
+  film::Partial state(world.width, world.height);
+  if (is_in_rounds(settings)) state.second = film::Film(world.width, world.height);
+  if (settings.layers.any()) state.layers.resize(state.pixel_count());
+  return state;
 }
 
 }  // namespace
@@ -48,7 +60,7 @@ int available_threads() { return tbb::this_task_arena::max_concurrency(); }
 
 std::unique_ptr<accel::Accel> build(const compile::World& world, int threads, const accel::BuildMonitor& monitor) {
   std::unique_ptr<accel::Accel> accel;
-  TilePool(threads, nullptr).execute([&] {
+  TilePool(threads).execute([&] {
     accel = world.accelerator == compile::Accelerator::kList
                 ? accel::make_list(world.view(), world.precision)
                 : accel::make_embree(world.view(), world.precision, monitor);
@@ -56,46 +68,70 @@ std::unique_ptr<accel::Accel> build(const compile::World& world, int threads, co
   return accel;
 }
 
-Result render(const compile::World& world, accel::Accel& accel, const Settings& settings) {
-  Result result;
-  Statistics& statistics = result.statistics;
-  statistics.threads = threads_of(settings);
-  statistics.isa = kernel::isa_name();
-  statistics.accelerator = accel.name();
+std::uint32_t samples_of(const compile::World& world, const Settings& settings) {
+  return settings.sample_end > 0 ? settings.sample_end - settings.sample_begin
+                                 : static_cast<std::uint32_t>(world.samples);
+}
 
-  std::optional<film::LayerFilm> layers;
-  if (settings.layers.any()) layers.emplace(settings.layers, world.view(), world.width, world.height);
-  film::Film film(world.width, world.height);
-  const bool in_rounds = settings.noise > 0 || settings.seconds > 0;
-  ProgressReporter progress(settings, std::uint64_t(world.samples) * film.pixel_count());
-  const accel::Traversals traversals = choose_traversals(world, accel, settings.traversal);
-  accel.use(traversals);
-  statistics.traversal = name_of(traversals);
-  TilePool pool(statistics.threads, settings.cancel);
-  const TileRenderer render_tile(world, accel, settings.layers, layers ? &*layers : nullptr);
-  result.completed = in_rounds ? render_in_rounds(world, settings, render_tile, pool, progress, film,
-                                                  layers ? &*layers : nullptr, statistics)
-                               : render_at_once(world, render_tile, pool, progress, film, statistics);
-  statistics.render_s = progress.seconds();
-  const kernel::TileCounts counts = pool.counts();
-  statistics.rays = counts.rays;
-  statistics.bad_samples = counts.bad_samples;
-  if (!result.completed) return result;
-  statistics.paths = progress.done();
-  result.picture = film.picture();
+Result finished(const compile::World& world, const film::LayerRequest& request, film::Partial partial) {
+  Result result;
+  result.completed = true;
+  if (partial.has_halves()) partial.film.add(partial.second);
+  result.picture = partial.film.picture();
   result.picture.x = world.window_x;
   result.picture.y = world.window_y;
   result.picture.frame_width = world.frame_width;
   result.picture.frame_height = world.frame_height;
   result.picture.pixel_aspect = world.pixel_aspect;
-  if (layers) {
-    layers->move_to(result.picture);
-    result.deep = layers->take_deep();
-  }
+  if (partial.layers.empty()) return result;
+  film::LayerFilm layers(request, world.view(), world.width, world.height);
+  for (std::size_t i = 0; i < partial.layers.size(); ++i) layers.set(i, partial.layers[i]);
+  layers.move_to(result.picture);
+  result.deep = layers.take_deep();
   return result;
 }
 
-Result render(const compile::World& world, const Settings& settings) {
+Result render(const compile::World& world, accel::Accel& accel, const Settings& settings,
+              std::optional<film::Partial> from) {
+  Statistics statistics;
+  statistics.threads = threads_of(settings);
+  statistics.isa = kernel::isa_name();
+  statistics.accelerator = accel.name();
+
+  film::Partial state = from ? std::move(*from) : fresh_state(world, settings);
+  const std::vector<bool> owned = pixels_of(settings.share, world.width, world.height);
+  const auto pixels = static_cast<std::uint64_t>(std::count(owned.begin(), owned.end(), true));
+  ProgressReporter progress(settings, samples_of(world, settings) * pixels, state.effort);
+  const accel::Traversals traversals = choose_traversals(world, accel, settings.traversal);
+  accel.use(traversals);
+  statistics.traversal = name_of(traversals);
+  TilePool pool(statistics.threads);
+  const TileRenderer render_tile(world, accel, settings.layers);
+  const bool completed =
+      is_in_rounds(settings)
+          ? render_in_rounds(world, settings, render_tile, pool, progress, state, statistics)
+          : render_in_passes(world, settings, render_tile, pool, progress, state, statistics);
+  state.effort = effort_so_far(state.effort, pool, progress);
+  statistics.render_s = state.effort.seconds;
+  statistics.paths = state.effort.paths;
+  statistics.rays = state.effort.rays;
+  statistics.bad_samples = state.effort.bad_samples;
+  count_samples(world, settings, state, statistics);
+
+  Result result;
+  if (!completed) {
+    result.partial = std::move(state);
+  } else if (settings.keep_partial) {
+    result = finished(world, settings.layers, state);
+    result.partial = std::move(state);
+  } else {
+    result = finished(world, settings.layers, std::move(state));
+  }
+  result.statistics = std::move(statistics);
+  return result;
+}
+
+Result render(const compile::World& world, const Settings& settings, std::optional<film::Partial> from) {
   const auto start = Clock::now();
   const accel::BuildMonitor monitor = [&settings](double fraction) {
     if (settings.on_build) settings.on_build(fraction);
@@ -109,7 +145,7 @@ Result render(const compile::World& world, const Settings& settings) {
     return {};
   }
   const double build_s = seconds_since(start);
-  Result result = render(world, *accel, settings);
+  Result result = render(world, *accel, settings, std::move(from));
   result.statistics.build_s = build_s;
   return result;
 }

@@ -12,7 +12,9 @@
 #include "compile/world.h"
 #include "film/deep_picture.h"
 #include "film/layers.h"
+#include "film/partial.h"
 #include "film/picture.h"
+#include "render/share.h"
 
 namespace orrery::render {
 
@@ -44,6 +46,13 @@ struct Settings {
   /// Called while the hierarchy is built, with what is done of it, 0..1, from any thread.
   std::function<void(double fraction)> on_build;
   const std::atomic<bool>* cancel = nullptr;  ///< looked at while building and between tiles; true stops the render
+  /// Only these samples of each pixel, of the world's; the sums of all ranges are those of one render. end 0: all.
+  std::uint32_t sample_begin = 0, sample_end = 0;
+  Share share;  ///< only these pixels
+  /// Asked often, from any thread: true has the threads wait while `on_snapshot` gets what there is so far.
+  std::function<bool()> snapshot_is_due;
+  std::function<void(const film::Partial&)> on_snapshot;
+  bool keep_partial = false;  ///< the result shall have what it was made of
 };
 
 /// What a render did.
@@ -67,6 +76,8 @@ struct Result {
   film::DeepPicture deep;  ///< empty unless it was asked for
   Statistics statistics;
   bool completed = false;  ///< false: stopped by `cancel`
+  /// Where it was stopped while rendering, what it can go on from; completed, where the settings say so.
+  std::optional<film::Partial> partial;
 };
 
 /// Threads this process may use: the processors in its affinity mask.
@@ -80,15 +91,24 @@ std::unique_ptr<accel::Accel> build(const compile::World& world, int threads, co
 
 /// Renders a whole picture with hits of an `accel` that was built for this world's spheres and precision.
 ///
+/// `from`     a partial of this world and these settings, to go on from; none: from the beginning
 /// Result     completed == false where `cancel` stopped it; build_s is 0
-Result render(const compile::World& world, accel::Accel& accel, const Settings& settings);
+Result render(const compile::World& world, accel::Accel& accel, const Settings& settings,
+              std::optional<film::Partial> from = {});
 
 /// Builds, and renders a whole picture.
 ///
-/// The picture's bits depend on the world alone, not on threads, tiles or accelerator.
+/// The picture's bits depend on the world alone, not on threads, tiles, accelerator, or how often it was stopped on the
+/// way.
 ///
 /// Result     completed == false where `cancel` stopped it
 /// Errors     base::Error(kInternal) where the acceleration structure cannot be built
-Result render(const compile::World& world, const Settings& settings);
+Result render(const compile::World& world, const Settings& settings, std::optional<film::Partial> from = {});
+
+/// Samples of a pixel that the settings ask for.
+std::uint32_t samples_of(const compile::World& world, const Settings& settings);
+
+/// The picture that a partial comes to as it is, where a pixel without samples is black.
+Result finished(const compile::World& world, const film::LayerRequest& layers, film::Partial partial);
 
 }  // namespace orrery::render

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "compile/world.h"
-#include "film/film.h"
-#include "film/layer_film.h"
+#include "film/partial.h"
 #include "render/progress_reporter.h"
 #include "render/render.h"
 #include "render/tile_pool.h"
@@ -17,11 +16,9 @@ namespace orrery::render {
 /// Every pixel has two halves of samples that are independent of each other; how much they differ tells its error.
 /// Choices depend on sums that no order of adding changes: without a time limit neither does the picture.
 ///
-/// `film`     gets the sum of both halves
-/// `layers`   those that `render_tile` renders, or null
+/// `state`    has halves; what is in it is gone on from, in the middle of a round, too
 /// Result     false where the settings' `cancel` stopped it
 bool render_in_rounds(const compile::World& world, const Settings& settings, const TileRenderer& render_tile,
-                      TilePool& pool, ProgressReporter& progress, film::Film& film, film::LayerFilm* layers,
-                      Statistics& statistics);
+                      TilePool& pool, ProgressReporter& progress, film::Partial& state, Statistics& statistics);
 
 }  // namespace orrery::render

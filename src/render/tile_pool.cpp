@@ -7,6 +7,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
+
 namespace orrery::render {
 
 struct TilePool::Impl {
@@ -14,29 +16,29 @@ struct TilePool::Impl {
   tbb::global_control limit;
   tbb::task_arena arena;
   tbb::enumerable_thread_specific<TileWorker> workers;
-  const std::atomic<bool>* cancel;
 
-  Impl(int threads, const std::atomic<bool>* stop)
-      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
-        arena(threads),
-        cancel(stop) {}
-  bool cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
+  explicit Impl(int threads)
+      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)), arena(threads) {}
 };
 
-TilePool::TilePool(int threads, const std::atomic<bool>* cancel) : impl_(std::make_unique<Impl>(threads, cancel)) {}
+TilePool::TilePool(int threads) : impl_(std::make_unique<Impl>(threads)) {}
 TilePool::~TilePool() = default;
 
-bool TilePool::run(std::size_t count, const std::function<void(std::size_t, TileWorker&)>& work) {
+bool TilePool::run(std::size_t count, const std::function<void(std::size_t, TileWorker&)>& work,
+                   const std::function<bool()>& shall_stop) {
+  std::atomic<std::size_t> left{count};
   execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i < range.end() && !impl_->cancelled(); ++i)
+          for (std::size_t i = range.begin(); i < range.end() && !shall_stop(); ++i) {
             work(i, impl_->workers.local());
+            left.fetch_sub(1, std::memory_order_relaxed);
+          }
         },
         tbb::simple_partitioner());
   });
-  return !impl_->cancelled();
+  return left == 0;
 }
 
 void TilePool::execute(const std::function<void()>& work) { impl_->arena.execute(work); }

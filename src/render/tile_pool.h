@@ -15,14 +15,14 @@ namespace orrery::render {
 /// Threads that share out tiles, and what each of them keeps from one tile to the next.
 class TilePool {
  public:
-  /// Domain     `cancel` outlives this, or is null
-  TilePool(int threads, const std::atomic<bool>* cancel);
+  explicit TilePool(int threads);
   ~TilePool();
 
-  /// Calls `work(i, worker)` for i = 0 .. count - 1, in any order and from all threads.
+  /// Calls `work(i, worker)` for i = 0 .. count - 1, in any order and from all threads, until `shall_stop` says so.
   ///
-  /// Result     false where `cancel` left some out
-  bool run(std::size_t count, const std::function<void(std::size_t i, TileWorker& worker)>& work);
+  /// Result     false where some were left out
+  bool run(std::size_t count, const std::function<void(std::size_t i, TileWorker& worker)>& work,
+           const std::function<bool()>& shall_stop);
 
   /// Runs something with these threads.
   void execute(const std::function<void()>& work);

@@ -27,22 +27,21 @@ class DefaultRounding {
 
 }  // namespace
 
-TileRenderer::TileRenderer(const compile::World& world, const accel::Accel& accel, const film::LayerRequest& request,
-                           film::LayerFilm* layers)
-    : view_(world.view()), tracer_(accel.tracer()), request_(request), layers_(layers), width_(world.width) {
+TileRenderer::TileRenderer(const compile::World& world, const accel::Accel& accel, const film::LayerRequest& request)
+    : view_(world.view()), tracer_(accel.tracer()), request_(request), width_(world.width) {
+  const bool layers = request.any();
   if (request.coverage) view_.background_visible = false;
   if (world.precision == compile::Precision::kFast) {
-    render_fast_ = layers != nullptr ? kernel::record_tile_fast_function() : kernel::render_tile_fast_function();
+    render_fast_ = layers ? kernel::record_tile_fast_function() : kernel::render_tile_fast_function();
   } else {
-    render_ = layers != nullptr ? kernel::record_tile_function(world.precision)
-                                : kernel::render_tile_function(world.precision);
+    render_ = layers ? kernel::record_tile_function(world.precision) : kernel::render_tile_function(world.precision);
   }
 }
 
-void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* kept) const {
+void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const {
   const DefaultRounding rounding;
-  if (layers_ != nullptr) {
-    trace_layers(tile, worker, kept);
+  if (layers != nullptr) {
+    trace_layers(tile, worker, layers);
   } else {
     trace(tile, worker);
   }
@@ -61,14 +60,13 @@ void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
   worker.counts.bad_samples += counts.bad_samples;
 }
 
-void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* kept) const {
+void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const {
   const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   const auto samples_at_a_time = std::max(1u, kMostRecords / static_cast<std::uint32_t>(pixels));
   const auto place_in_picture = [&](kernel::PixelPlace at) {
     return static_cast<std::size_t>(tile.y + at.y) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(tile.x + at.x);
   };
-  if (kept == nullptr) worker.pixels.assign(pixels, {});
   kernel::Tile part = tile;
   part.record_light = request_.paths_light();
   part.record_guides = request_.guides();
@@ -82,15 +80,12 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, fi
     for (int i = 0; i < tile.pixel_count(); ++i) {
       const kernel::PixelPlace at = tile.pixel(i);
       const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
-      film::LayerPixel& pixel = kept != nullptr ? kept[place_in_picture(at)] : worker.pixels[within];
+      film::LayerPixel& pixel = layers[place_in_picture(at)];
       const kernel::PathRecord* record = part.records + within * samples;
       for (std::uint32_t s = begin; s < part.sample_end; ++s)
         pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1));
     }
   }
-  if (kept != nullptr) return;
-  for (int i = 0; i < tile.pixel_count(); ++i)
-    layers_->set(place_in_picture(tile.pixel(i)), worker.pixels[static_cast<std::size_t>(i)]);
 }
 
 }  // namespace orrery::render

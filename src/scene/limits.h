@@ -3,6 +3,12 @@
 
 namespace orrery::scene {
 
+/// Frames before or behind its own that a picture's shutter may reach.
+inline constexpr double kLongestShutter = 100;
+
+/// Frames of a film.
+inline constexpr double kMostFrames = 1e6;
+
 /// Largest absolute coordinate and radius, scene units: its square and the square's products stay far inside a double.
 inline constexpr double kLargestLength = 1e18;
 

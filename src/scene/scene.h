@@ -43,6 +43,8 @@ struct Camera {
   double vfov = 90;                      ///< degrees, vertical
   double defocus_angle = 0;              ///< degrees, apex angle of the cone at the focus plane; 0 = pinhole
   std::optional<double> focus_distance;  ///< scene units; default: distance from look_from to look_at
+  double shutter_open = 0;               ///< frames, from the frame's own time
+  double shutter_close = 0;              ///< frames; not before shutter_open; the same: nothing is blurred
 };
 
 enum class BackgroundType { kGradient, kConstant };
@@ -134,6 +136,21 @@ struct Color {
   const std::string& working_space() const { return working.empty() ? space : working; }
 };
 
+enum class Interpolation { kLinear, kCubic, kHold };
+
+/// A number that changes from frame to frame: what it is at some of them, its keys, and how it goes between.
+struct Track {
+  std::string target;  ///< "camera.look_from", "sphere[3].radius"; what scene::find_animated finds
+  Interpolation interpolation = Interpolation::kLinear;
+  std::vector<double> frames;  ///< ascending
+  std::vector<Vec3d> values;   ///< one for each frame; of a single number x
+};
+
+struct Animation {
+  double fps = 24;       ///< frames per second
+  double turntable = 0;  ///< frames in which the camera turns once around look_at, about up; 0: it stands
+};
+
 struct Scene {
   Image image;
   Camera camera;
@@ -141,6 +158,8 @@ struct Scene {
   Render render;
   Color color;
   Output output;
+  Animation animation;
+  std::vector<Track> tracks;
   std::vector<Material> materials;
   std::vector<Sphere> spheres;
   std::vector<Points> points;

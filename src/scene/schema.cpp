@@ -163,7 +163,24 @@ Table camera_table() {
                      [](S& s) -> double& { return s.camera.defocus_angle; }),
            optional_number<S>("focus_distance", kLength, {"scene units", "distance of the plane that is in focus"},
                               "distance to look_at",
-                              [](S& s) -> std::optional<double>& { return s.camera.focus_distance; })}};
+                              [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
+           number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
+                     {"frames", "when the shutter opens, counted from the frame's own time"},
+                     [](S& s) -> double& { return s.camera.shutter_open; }),
+           number<S>("shutter_close", {-kLongestShutter, kLongestShutter},
+                     {"frames", "when it closes; later than `shutter_open`: what moves meanwhile is blurred",
+                      "only where something moves: a quarter to twice the time"},
+                     [](S& s) -> double& { return s.camera.shutter_close; })}};
+}
+
+Table animation_table() {
+  return {"animation",
+          {number<S>("fps", {0.001, 1000}, {"frames per second", "told in the header of an EXR"},
+                     [](S& s) -> double& { return s.animation.fps; }),
+           number<S>("turntable", {-kMostFrames, kMostFrames},
+                     {"frames", "in which the camera turns once around `look_at`, about `up`, to the right from frame 1 "
+                                "on; below 0 to the left; 0: it stands"},
+                     [](S& s) -> double& { return s.animation.turntable; })}};
 }
 
 Table background_table() {
@@ -312,7 +329,7 @@ const std::vector<Table>& tables() {
         number<S>("exposure", {-kMostStops, kMostStops},
                   {"stops", "to brighten what a display shows; an EXR stays as it is"},
                   [](S& s) -> double& { return s.color.exposure; })}},
-      output_table()};
+      output_table(), animation_table()};
   return all;
 }
 

@@ -75,6 +75,12 @@ void check_camera(const Camera& camera, Problems& problems) {
   }
 }
 
+void check_shutter(const Camera& camera, Problems& problems) {
+  if (camera.shutter_close < camera.shutter_open)
+    problems.error("camera.shutter_close", "the shutter closes at " + number_text(camera.shutter_close) +
+                                               ", before it opens at " + number_text(camera.shutter_open));
+}
+
 /// Where the rays start is a coordinate like any other.
 void check_lens(const Camera& camera, Problems& problems) {
   if (!(camera.defocus_angle > 0)) return;
@@ -161,6 +167,7 @@ std::vector<Problem> validate(const Scene& scene) {
   check_image(scene.image, problems);
   check_camera(scene.camera, problems);
   check_lens(scene.camera, problems);
+  check_shutter(scene.camera, problems);
   check_spheres(scene, problems);
   for (std::size_t p = 0; p < scene.points.size(); ++p)
     check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, problems);

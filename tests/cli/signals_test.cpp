@@ -47,13 +47,14 @@ class CliSignals : public ProgramTest {
   }
 };
 
-TEST_F(CliSignals, TermAndIntStopSoonWithNothingWritten) {
+TEST_F(CliSignals, TermAndIntStopSoonAndLeaveACheckpoint) {
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
     const pid_t child = start_render();
     kill(child, number);
     EXPECT_EQ(wait_for(child), 75) << number;
-    EXPECT_EQ(file_count(), 0);
-    EXPECT_NE(text_of(folder_ / ".err").find("no picture was written"), std::string::npos);
+    EXPECT_EQ(file_count(), 1);
+    EXPECT_TRUE(std::filesystem::remove(folder_ / "a.checkpoint.exr"));
+    EXPECT_NE(text_of(folder_ / ".err").find("no picture was written; a.checkpoint.exr"), std::string::npos);
   }
 }
 
@@ -63,7 +64,17 @@ TEST_F(CliSignals, ASecondOneEndsAtOnce) {
   kill(child, SIGTERM);  // two kinds, so that the kernel does not make them one
   const int status = wait_for(child);
   EXPECT_TRUE(status == 75 || status == 128 + SIGINT || status == 128 + SIGTERM) << status;
-  EXPECT_EQ(file_count(), 0);
+  EXPECT_EQ(file_count(), status == 75 ? 1 : 0);
+}
+
+TEST_F(CliSignals, Usr1WritesASnapshotAndGoesOn) {
+  const pid_t child = start_render();
+  kill(child, SIGUSR1);
+  wait_until([&] { return text_of(folder_ / ".err").find("wrote a.checkpoint.exr") != std::string::npos; });
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
+  EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0);
+  kill(child, SIGKILL);
+  wait_for(child);
 }
 
 TEST_F(CliSignals, WhatWasIgnoredStaysSo) {

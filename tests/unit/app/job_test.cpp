@@ -114,16 +114,77 @@ TEST_F(AppJob, StoppedBeforeItBeganItWritesNothing) {
   EXPECT_EQ(statistics()["exit_status"], 75);
 }
 
-TEST_F(AppJob, StoppedWhileRenderingItWritesNothing) {
+TEST_F(AppJob, StoppedWhileRenderingItLeavesACheckpointAndResumesToTheSameBytes) {
+  job_.outputs = {folder_ / "a.exr"};
+  job_.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
+  job_.reproducible = true;
+  run_job(job_);
+  const std::string uninterrupted = support::file_bytes(folder_ / "a.exr");
+  std::filesystem::remove(folder_ / "a.exr");
+
   std::atomic<bool> cancel{false};
   job_.cancel = &cancel;
   job_.on_progress = [&](const render::Progress&) { cancel = true; };
-  job_.outputs = {folder_ / "a.exr"};
-  job_.overrides = {"image.width=500", "image.height=500", "render.samples=40000"};
   EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
-  EXPECT_EQ(folder_.count(), 2u);
+  EXPECT_EQ(folder_.count(), 3u);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
   EXPECT_EQ(statistics()["exit_reason"], "stopped");
-  EXPECT_GT(statistics()["rays"], 0);
+  EXPECT_EQ(statistics()["checkpoint"], (folder_ / "a.checkpoint.exr").string());
+  const auto rays = statistics()["rays"].get<std::uint64_t>();
+  EXPECT_GT(rays, 0u);
+
+  cancel = false;
+  job_.on_progress = {};
+  job_.resume = true;
+  run_job(job_);
+  EXPECT_EQ(support::file_bytes(folder_ / "a.exr"), uninterrupted);
+  EXPECT_EQ(statistics()["resumed"], true);
+  EXPECT_GT(statistics()["rays"], rays);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
+}
+
+TEST_F(AppJob, ACheckpointOfSomethingElseIsRefused) {
+  job_.outputs = {folder_ / "a.exr"};
+  job_.overrides = {"image.width=200", "image.height=100", "render.samples=300"};
+  std::atomic<bool> cancel{false};
+  job_.cancel = &cancel;
+  job_.on_progress = [&](const render::Progress&) { cancel = true; };
+  EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
+  cancel = false;
+  job_.on_progress = {};
+  job_.resume = true;
+  const std::string checkpoint = support::file_bytes(folder_ / "a.checkpoint.exr");
+  const Job right = job_;
+  const auto expect_refused = [&](const std::string& word) {
+    const base::Error refused = error();
+    EXPECT_EQ(refused.kind(), base::ErrorKind::kBadData) << word;
+    EXPECT_NE(std::string(refused.what()).find(word), std::string::npos) << refused.what();
+    EXPECT_EQ(support::file_bytes(folder_ / "a.checkpoint.exr"), checkpoint);
+    job_ = right;
+  };
+  job_.overrides.push_back("render.seed=2");
+  expect_refused("scene hash");
+  job_.noise = 0.1;
+  expect_refused("--noise");
+  job_.share = {0, 2};
+  expect_refused("--tiles 1/1, not 1/2");
+  job_.overrides.push_back("output.layers=[\"N\"]");
+  expect_refused("layers none, not N");
+  support::write_bytes(folder_ / "a.checkpoint.exr", checkpoint.substr(0, checkpoint.size() / 2));
+  EXPECT_EQ(error().kind(), base::ErrorKind::kBadData);
+}
+
+TEST_F(AppJob, CheckpointsComeFromTimeToTime) {
+  job_.outputs = {folder_ / "a.exr"};
+  job_.overrides = {"image.width=200", "image.height=100", "render.samples=2000"};
+  job_.checkpoint_s = 0.01;
+  bool seen = false;
+  job_.on_progress = [&](const render::Progress&) {
+    seen = seen || std::filesystem::exists(folder_ / "a.checkpoint.exr");
+  };
+  run_job(job_);
+  EXPECT_TRUE(seen);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
 TEST_F(AppJob, AFailedWriteIsInTheStatistics) {

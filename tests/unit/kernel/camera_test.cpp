@@ -34,7 +34,11 @@ void camera_case(CameraCase& c) {
   using V = hn::Vec<hn::FixedTag<double, 1>>;
   const Four<V> random{
       {hn::Set(d, c.random[0]), hn::Set(d, c.random[1]), hn::Set(d, c.random[2]), hn::Set(d, c.random[3])}};
-  const auto ray = camera_ray(d, c.camera, c.has_lens, hn::Set(d, c.pixel[0]), hn::Set(d, c.pixel[1]), random);
+  SceneView scene;
+  scene.camera = c.camera;
+  scene.features.lens = c.has_lens;
+  const auto ray =
+      camera_ray(d, scene, camera_vectors(d, scene.camera), hn::Set(d, c.pixel[0]), hn::Set(d, c.pixel[1]), random);
   const auto store = [](const auto& v, double(&to)[3]) {
     to[0] = hn::GetLane(v.x);
     to[1] = hn::GetLane(v.y);

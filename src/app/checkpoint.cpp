@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/checkpoint.h"
+
+#include <utility>
+
+#include "app/provenance.h"
+#include "base/error.h"
+
+namespace orrery::app {
+namespace {
+
+std::chrono::steady_clock::duration interval(const Job& job) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(job.checkpoint_s));
+}
+
+}  // namespace
+
+std::filesystem::path checkpoint_file(const std::filesystem::path& first_output) {
+  std::filesystem::path out = first_output;
+  return out.replace_extension(".checkpoint.exr");
+}
+
+Checkpoint::Checkpoint(const Job& job, image::Provenance provenance, Write write)
+    : job_(job),
+      file_(checkpoint_file(job.outputs.front())),
+      provenance_(std::move(provenance)),
+      write_(std::move(write)),
+      next_(Clock::now() + interval(job)) {}
+
+std::optional<film::Partial> Checkpoint::load() {
+  if (!job_.resume || !std::filesystem::exists(file_)) return {};
+  image::PartialFile found = image::read_partial(file_);
+  if (const std::string wrong = difference(found.provenance, provenance_, keys_of_checkpoints()); !wrong.empty())
+    throw base::Error(base::ErrorKind::kBadData, file_.string() + " is of " + wrong +
+                                                     "; delete it, or render without --resume to begin anew");
+  is_ours_ = true;
+  return std::move(found.partial);
+}
+
+bool Checkpoint::is_due() const {
+  if (job_.snapshot != nullptr && job_.snapshot->load(std::memory_order_relaxed)) return true;
+  return job_.checkpoint_s > 0 && Clock::now() >= next_;
+}
+
+void Checkpoint::write_snapshot(const film::Partial& partial) {
+  const bool was_asked = job_.snapshot != nullptr && job_.snapshot->exchange(false);
+  try {
+    write(partial);
+    if (was_asked && job_.on_note) job_.on_note("wrote " + file_.string());
+  } catch (const base::Error& error) {
+    base::Finding finding;
+    finding.severity = base::Severity::kWarning;
+    finding.file = file_.string();
+    finding.text = std::string("no checkpoint: ") + error.what();
+    if (job_.on_warning) job_.on_warning(finding);
+  }
+  next_ = Clock::now() + interval(job_);
+}
+
+void Checkpoint::write(const film::Partial& partial) {
+  write_(file_, partial);
+  is_ours_ = true;
+}
+
+void Checkpoint::remove() {
+  std::error_code ignored;
+  if (is_ours_) std::filesystem::remove(file_, ignored);
+}
+
+}  // namespace orrery::app

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/join_parts.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "app/provenance.h"
+#include "base/error.h"
+#include "base/suggestion.h"
+
+namespace orrery::app {
+namespace {
+
+using base::ErrorKind;
+
+base::Finding finding_of(const std::filesystem::path& file, std::string text, std::string remedy = {}) {
+  base::Finding finding;
+  finding.severity = base::Severity::kError;
+  finding.file = file.string();
+  finding.text = std::move(text);
+  finding.remedy = std::move(remedy);
+  return finding;
+}
+
+[[noreturn]] void refuse(ErrorKind kind, std::vector<base::Finding> findings) {
+  const std::size_t count = findings.size();
+  throw base::Error(kind, "the parts cannot be joined: " + std::to_string(count) +
+                              (count == 1 ? " error" : " errors"),
+                    std::move(findings));
+}
+
+/// Which samples of which pixels are there already, and through whom.
+class Coverage {
+ public:
+  Coverage(std::size_t pixels, int width) : to_(pixels), by_(pixels), width_(width) {}
+
+  /// Adds the samples of a part, of which those before begin with no later sample.
+  ///
+  /// Result     what is wrong, or nothing
+  std::string add(const std::vector<PartFile>& parts, std::size_t part, std::uint32_t begin,
+                  const std::vector<std::uint32_t>& counts) {
+    for (std::size_t i = 0; i < to_.size(); ++i) {
+      if (counts[i] == 0) continue;
+      if (begin < to_[i])
+        return "has samples that " + parts[by_[i]].file.string() + " has, too, first in pixel " +
+               std::to_string(static_cast<int>(i) % width_) + ", " + std::to_string(static_cast<int>(i) / width_);
+      if (begin > to_[i]) ++gaps_[{to_[i], begin}];
+      to_[i] = begin + counts[i];
+      by_[i] = static_cast<std::uint32_t>(part);
+    }
+    return {};
+  }
+
+  /// What is in no part, in words.
+  std::string missing(std::uint32_t samples) {
+    for (const std::uint32_t to : to_)
+      if (to < samples) ++gaps_[{to, samples}];
+    std::vector<std::string> words;
+    for (const auto& [gap, pixels] : gaps_)
+      words.push_back("samples " + std::to_string(gap.first) + ":" + std::to_string(gap.second) + " of " +
+                      (pixels == to_.size() ? std::string("all") : std::to_string(pixels)) + " pixels");
+    constexpr std::size_t kMost = 8;
+    const std::size_t count = words.size();
+    if (count > kMost) {
+      words.resize(kMost);
+      words.push_back(std::to_string(count - kMost) + " ranges more");
+    }
+    return words.empty() ? "" : base::joined(words);
+  }
+
+ private:
+  std::vector<std::uint32_t> to_;  ///< by pixel: samples up to here are there, or known to be missing
+  std::vector<std::uint32_t> by_;  ///< index of the part that had the last of them
+  int width_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> gaps_;  ///< and of how many pixels
+};
+
+/// Tiles that no file is for, of those whose ranges have others: "--samples 0:100 --tiles 2/3".
+std::string missing_tiles(const std::vector<PartFile>& parts) {
+  std::map<std::pair<std::string, int>, std::set<int>> found;
+  for (const PartFile& part : parts) {
+    const render::Share tiles = share(part.provenance);
+    found[{part.provenance.at("samples"), tiles.count}].insert(tiles.index);
+  }
+  std::vector<std::string> words;
+  for (const auto& [group, indices] : found)
+    for (int i = 0; i < group.second; ++i)
+      if (indices.count(i) == 0)
+        words.push_back("--samples " + group.first + " --tiles " + std::to_string(i + 1) + "/" +
+                        std::to_string(group.second));
+  constexpr std::size_t kMost = 20;
+  if (words.size() > kMost) words.resize(kMost);
+  return words.empty() ? "" : "there is no part with " + base::joined(words);
+}
+
+/// Layers name spheres, and a name that the scene has not would be looked up beyond its end.
+bool names_known_spheres(const film::Partial& partial, std::size_t spheres) {
+  const auto is_known = [spheres](std::uint32_t s) { return s == kernel::kNoSphere || s < spheres; };
+  return std::all_of(partial.layers.begin(), partial.layers.end(), [&](const film::LayerPixel& p) {
+    return is_known(p.sphere) && std::all_of(p.shares.begin(), p.shares.end(),
+                                             [&](const film::SphereShare& s) { return is_known(s.sphere); });
+  });
+}
+
+}  // namespace
+
+std::vector<PartFile> read_parts(const std::vector<std::filesystem::path>& files) {
+  std::vector<PartFile> parts;
+  std::vector<base::Finding> findings;
+  bool only_missing = true;
+  std::set<std::filesystem::path> seen;
+  for (const std::filesystem::path& file : files) {
+    std::error_code ignored;
+    if (!seen.insert(std::filesystem::weakly_canonical(file, ignored)).second)
+      throw base::Error(ErrorKind::kUsage, file.string() + " is given twice");
+    try {
+      parts.push_back({file, image::read_provenance(file)});
+    } catch (const base::Error& error) {
+      only_missing = only_missing && error.kind() == ErrorKind::kMissingInput;
+      findings.push_back(finding_of(file, error.what()));
+      continue;
+    }
+    const PartFile& part = parts.back();
+    const SampleRange range = sample_range(part.provenance);
+    const render::Share tiles = share(part.provenance);
+    std::string wrong = difference(part.provenance, parts.front().provenance, keys_of_parts());
+    if (!wrong.empty()) {
+      wrong = "is of " + wrong + " as " + parts.front().file.string();
+    } else if (range.begin >= range.end || tiles.count < 1 || tiles.index < 0 || tiles.index >= tiles.count) {
+      wrong = "does not say which samples it has";
+    } else if (part.provenance.at("noise") != "0" || part.provenance.at("time") != "no") {
+      wrong = "is a render by --noise or --time, which has no parts";
+    }
+    if (wrong.empty()) continue;
+    only_missing = false;
+    findings.push_back(finding_of(file, wrong));
+  }
+  if (!findings.empty()) refuse(only_missing ? ErrorKind::kMissingInput : ErrorKind::kBadData, std::move(findings));
+  return parts;
+}
+
+void take_scene(const PartFile& part, Job& job) {
+  const auto value = [&](const char* key) {
+    const auto found = part.provenance.find(key);
+    return found == part.provenance.end() ? std::string() : found->second;
+  };
+  if (job.scene.empty()) job.scene = value("scene");
+  std::istringstream lines(value("overrides"));
+  for (std::string line; std::getline(lines, line);) job.overrides.push_back(line);
+}
+
+Joined join_parts(std::vector<PartFile> parts, int width_px, int height_px, std::uint32_t samples, std::size_t spheres,
+                  bool allow_missing) {
+  std::stable_sort(parts.begin(), parts.end(), [](const PartFile& a, const PartFile& b) {
+    return sample_range(a.provenance).begin < sample_range(b.provenance).begin;
+  });
+  Joined out;
+  out.partial = film::Partial(width_px, height_px);
+  Coverage coverage(out.partial.pixel_count(), width_px);
+  std::vector<base::Finding> findings;
+  std::set<std::string> hosts;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const film::Partial part = image::read_partial(parts[i].file).partial;
+    const SampleRange range = sample_range(parts[i].provenance);
+    const auto wrong = [&](std::string text, std::string remedy = {}) {
+      findings.push_back(finding_of(parts[i].file, std::move(text), std::move(remedy)));
+    };
+    if (part.film.width() != width_px || part.film.height() != height_px || part.has_halves()) {
+      wrong("its sums are of another size than its scene says");
+      continue;
+    }
+    if (!names_known_spheres(part, spheres) || range.end > samples) {
+      wrong("has what its scene has not");
+      continue;
+    }
+    const std::uint32_t most = *std::max_element(part.counts.begin(), part.counts.end());
+    if (most > range.end - range.begin) {
+      wrong("has more samples than it says");
+      continue;
+    }
+    const std::vector<bool> owned = render::pixels_of(share(parts[i].provenance), width_px, height_px);
+    bool is_finished = true;
+    for (std::size_t p = 0; p < owned.size(); ++p)
+      is_finished = is_finished && (!owned[p] || part.counts[p] == range.end - range.begin);
+    if (!is_finished && !allow_missing) {
+      wrong("is unfinished: its render was stopped", "render it again with --resume, or say --allow-missing");
+      continue;
+    }
+    if (const std::string overlap = coverage.add(parts, i, range.begin, part.counts); !overlap.empty()) {
+      wrong(overlap, "leave one of them out");
+      continue;
+    }
+    out.partial.film.add(part.film);
+    for (std::size_t p = 0; p < part.counts.size(); ++p) out.partial.counts[p] += part.counts[p];
+    if (!part.layers.empty()) {
+      out.partial.layers.resize(part.layers.size());
+      for (std::size_t p = 0; p < part.layers.size(); ++p) out.partial.layers[p].add(part.layers[p]);
+    }
+    out.partial.effort += part.effort;
+    hosts.insert(parts[i].provenance.count("host") > 0 ? parts[i].provenance.at("host") : "");
+  }
+  if (!findings.empty()) refuse(ErrorKind::kBadData, std::move(findings));
+  out.hosts.assign(hosts.begin(), hosts.end());
+  out.missing = coverage.missing(samples);
+  if (!out.missing.empty() && !allow_missing)
+    refuse(ErrorKind::kBadData, {finding_of("the parts", out.missing + " are in no part",
+                                            missing_tiles(parts).empty() ? "render them, or say --allow-missing"
+                                                                         : missing_tiles(parts))});
+  return out;
+}
+
+}  // namespace orrery::app

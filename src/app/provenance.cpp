@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/provenance.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "app/scene_hash.h"
+#include "app/text.h"
+#include "app/version.h"
+#include "film/layer_film.h"
+
+namespace orrery::app {
+namespace {
+
+/// Names and channels of all layers, and what they depend on beside the scene's hash.
+std::string layers_text(const Layers& layers) {
+  std::string out;
+  for (const film::Plane& plane : film::planes_of(layers.request)) out += (out.empty() ? "" : " ") + plane.name;
+  if (layers.request.coverage) out += " coverage";
+  if (layers.request.deep) out += " deep";
+  for (const MatteNames& matte : layers.mattes)
+    for (const auto& [name, id] : matte.things) append(out, " %08x", id);
+  // Of ten thousand things in a matte nobody reads the list; the same list is the same hash.
+  constexpr std::size_t kLongest = 200;
+  if (out.size() > kLongest) out = out.substr(0, kLongest) + "... " + text_hash(out);
+  return out;
+}
+
+}  // namespace
+
+image::Provenance provenance_of(const Job& job, const compile::World& world, const Layers& layers) {
+  const std::uint32_t end = job.sample_end > 0 ? job.sample_end : static_cast<std::uint32_t>(world.samples);
+  image::Provenance out;
+  out["version"] = program_version();
+  out["sceneHash"] = scene_hash(world);
+  out["samples"] = std::to_string(job.sample_begin) + ":" + std::to_string(end);
+  out["tiles"] = std::to_string(job.share.index + 1) + "/" + std::to_string(job.share.count);
+  append(out["noise"], "%.17g", job.noise);
+  out["time"] = job.seconds > 0 ? "yes" : "no";
+  out["limit"] = is_limited(job) ? "yes" : "no";
+  out["layers"] = layers_text(layers);
+  out["scene"] = std::filesystem::absolute(job.scene).lexically_normal().string();
+  for (const std::string& setting : job.overrides) out["overrides"] += setting + "\n";
+  char host[256] = "";
+  gethostname(host, sizeof(host) - 1);
+  out["host"] = host;
+  return out;
+}
+
+std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys) {
+  const auto value = [](const image::Provenance& p, const std::string& key) {
+    const auto found = p.find(key);
+    return found == p.end() ? std::string() : found->second;
+  };
+  static const std::vector<std::pair<std::string, std::string>> names = {
+      {"version", "orrery "},   {"sceneHash", "scene hash "},   {"samples", "--samples "},
+      {"tiles", "--tiles "},    {"noise", "--noise "},          {"time", "a time limit: "},
+      {"limit", "a limit of samples: "}, {"layers", "layers "}};
+  for (const auto& [key, name] : names) {
+    if (std::find(keys.begin(), keys.end(), key) == keys.end() || value(a, key) == value(b, key)) continue;
+    return name + (value(a, key).empty() ? "none" : value(a, key)) + ", not " +
+           (value(b, key).empty() ? "none" : value(b, key));
+  }
+  return {};
+}
+
+const std::vector<std::string>& keys_of_parts() {
+  static const std::vector<std::string> keys = {"version", "sceneHash", "noise", "time", "layers"};
+  return keys;
+}
+
+const std::vector<std::string>& keys_of_checkpoints() {
+  static const std::vector<std::string> keys = {"version", "sceneHash", "samples", "tiles",
+                                                "noise",   "time",      "limit",   "layers"};
+  return keys;
+}
+
+SampleRange sample_range(const image::Provenance& provenance) {
+  SampleRange out;
+  const auto found = provenance.find("samples");
+  if (found != provenance.end()) std::sscanf(found->second.c_str(), "%u:%u", &out.begin, &out.end);
+  return out;
+}
+
+render::Share share(const image::Provenance& provenance) {
+  render::Share out;
+  const auto found = provenance.find("tiles");
+  if (found != provenance.end() && std::sscanf(found->second.c_str(), "%d/%d", &out.index, &out.count) == 2) --out.index;
+  return out;
+}
+
+}  // namespace orrery::app

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/job.h"
+#include "app/layers.h"
+#include "compile/world.h"
+#include "image/partial_file.h"
+
+namespace orrery::app {
+
+/// What a partial of this job says of itself: the program's version, the scene, and every setting that its sums depend
+/// on, so that nothing is joined or gone on with that does not belong together.
+image::Provenance provenance_of(const Job& job, const compile::World& world, const Layers& layers);
+
+/// Why something of one provenance does not belong to the other: "scene hash 1234, not 5678"; empty where it does.
+///
+/// `keys`     what must be the same
+std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys);
+
+/// What must be the same for parts of one picture, and for a render that goes on.
+const std::vector<std::string>& keys_of_parts();
+const std::vector<std::string>& keys_of_checkpoints();
+
+/// "0:500" as numbers.
+struct SampleRange {
+  std::uint32_t begin = 0, end = 0;
+};
+SampleRange sample_range(const image::Provenance& provenance);
+render::Share share(const image::Provenance& provenance);
+
+}  // namespace orrery::app

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <sstream>
+#include <vector>
+
+#include "app/join_parts.h"
+#include "app/job.h"
+#include "cli/commands.h"
+#include "cli/option_checks.h"
+#include "cli/picture_options.h"
+#include "cli/render_report.h"
+#include "cli/signals.h"
+
+namespace orrery::cli {
+namespace {
+
+struct MergeOptions {
+  app::Job job;
+  PictureOptions picture;
+  std::vector<std::filesystem::path> parts;
+  bool quiet = false, verbose = false;
+};
+
+int merge(MergeOptions& options) {
+  app::Job& job = options.job;
+  options.picture.finish(job);
+  job.parts = app::read_parts(options.parts);
+  app::take_scene(job.parts.front(), job);
+  job.cancel = &stop_on_signals();
+  job.on_warning = [&](const base::Finding& warning) {
+    if (!options.quiet) std::fputs(base::formatted(warning).c_str(), stderr);
+  };
+  const app::JobReport report = app::run_job(job);
+  if (!options.quiet) print_report(job, report, options.verbose);
+  return 0;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<MergeOptions>();
+  CLI::App& command = *program.add_subcommand("merge", "Join parts of a picture that were rendered apart");
+  command.add_option("PART", options->parts, "EXR files that --samples A:B or --tiles I/N have made, in any order")
+      ->required()
+      ->type_name("FILE");
+  options->picture.add_to(command, options->job);
+  command
+      .add_option("--scene", options->job.scene,
+                  "The scene file, where it is no longer where it was when the parts were rendered")
+      ->type_name("FILE");
+  command.add_flag("--allow-missing", options->job.allow_missing,
+                   "Make a picture of what is there, and say in its header what is not");
+  command
+      .add_option("--memory-limit", options->job.memory_limit, "Refuse what needs more, as 8G; default: what is free")
+      ->transform(byte_size())
+      ->type_name("SIZE");
+  command.add_option("--stats", options->job.statistics, "Write what all parts together did as JSON")
+      ->type_name("FILE");
+  command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+  command.add_flag("-v,--verbose", options->verbose, "Say what was done and how long it took");
+  command.footer(
+      "Examples:\n"
+      "  orrery merge part.*.exr -o final.exr -o final.png\n"
+      "  orrery merge part.1.exr part.3.exr -o preview.png --allow-missing");
+  command.callback([options, &action] { action = [options] { return merge(*options); }; });
+}
+
+}  // namespace orrery::cli

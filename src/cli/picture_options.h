@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+#include "app/job.h"
+
+namespace orrery::cli {
+
+/// Flags that say what files a job writes, and how.
+class PictureOptions {
+ public:
+  /// Domain     called once; neither this nor `job` moves until the command line is read
+  void add_to(CLI::App& command, app::Job& job);
+
+  /// What flags say that are no members of a job as they are.
+  void finish(app::Job& job) const { job.exr.as_float = type_ == "float"; }
+
+ private:
+  std::string type_ = "half";
+};
+
+}  // namespace orrery::cli

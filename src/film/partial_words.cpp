@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film/partial_words.h"
+
+#include <bit>
+#include <cstddef>
+
+#include "base/error.h"
+#include "kernel/render_tile.h"
+
+namespace orrery::film {
+namespace {
+
+using kernel::Int128;
+
+constexpr std::uint32_t kFormat = 1;
+
+enum Flag : std::uint32_t { kHasHalves = 1, kHasGoals = 2, kHasLayers = 4, kAllFlags = 7 };
+
+std::uint64_t bits(std::uint64_t v) { return v; }
+std::uint64_t bits(std::int64_t v) { return static_cast<std::uint64_t>(v); }
+std::uint64_t bits(double v) { return std::bit_cast<std::uint64_t>(v); }
+
+/// Appends numbers as words, the low one first.
+class Writer {
+ public:
+  explicit Writer(std::vector<std::uint32_t>& out) : out_(out) {}
+
+  void number(const std::uint32_t& v) { out_.push_back(v); }
+  template <class T>
+  void number(const T& v) {
+    if constexpr (sizeof(T) == sizeof(Int128)) {
+      for (int w = 0; w < 4; ++w) out_.push_back(word(v, w));
+    } else {
+      for (int w = 0; w < 2; ++w) out_.push_back(static_cast<std::uint32_t>(bits(v) >> 32 * w));
+    }
+  }
+  /// One number of each of many things: a plane for each of its words.
+  template <class Things, class At>
+  void numbers(Things& things, At at) {
+    using T = std::remove_reference_t<decltype(at(things[0]))>;
+    constexpr int kWords = sizeof(T) / sizeof(std::uint32_t);
+    for (int w = 0; w < kWords; ++w)
+      for (auto& thing : things) out_.push_back(word(at(thing), w));
+  }
+
+ private:
+  static std::uint32_t word(std::uint32_t v, int) { return v; }
+  template <class T>
+  static std::uint32_t word(const T& v, int w) {
+    if constexpr (sizeof(T) == sizeof(Int128)) {
+      return static_cast<std::uint32_t>(v >> 32 * w);
+    } else {
+      return static_cast<std::uint32_t>(bits(v) >> 32 * w);
+    }
+  }
+
+  std::vector<std::uint32_t>& out_;
+};
+
+/// Takes the same numbers out of words again.
+class Reader {
+ public:
+  explicit Reader(const std::vector<std::uint32_t>& in) : in_(in) {}
+
+  void number(std::uint32_t& v) {
+    need(1);
+    v = in_[at_++];
+  }
+  void number(std::uint64_t& v) { v = take64(); }
+  void number(double& v) { v = std::bit_cast<double>(take64()); }
+
+  template <class Things, class At>
+  void numbers(Things& things, At at) {
+    using T = std::remove_reference_t<decltype(at(things[0]))>;
+    constexpr std::size_t kWords = sizeof(T) / sizeof(std::uint32_t);
+    need(kWords * things.size());
+    std::size_t i = at_;
+    for (auto& thing : things) {
+      std::uint32_t words[kWords];
+      for (std::size_t w = 0; w < kWords; ++w) words[w] = in_[i + w * things.size()];
+      at(thing) = joined<T>(words);
+      ++i;
+    }
+    at_ += kWords * things.size();
+  }
+
+  void need(std::size_t words) const {
+    if (in_.size() - at_ < words) throw base::Error(base::ErrorKind::kBadData, "its samples end too early");
+  }
+
+ private:
+  template <class T>
+  static T joined(const std::uint32_t* words) {
+    if constexpr (sizeof(T) == sizeof(std::uint32_t)) {
+      return words[0];
+    } else if constexpr (sizeof(T) == sizeof(Int128)) {
+      __extension__ using Unsigned = unsigned __int128;
+      Unsigned v = 0;
+      for (int w = 4; w-- > 0;) v = v << 32 | words[w];
+      return static_cast<Int128>(v);
+    } else {
+      return std::bit_cast<T>(std::uint64_t{words[1]} << 32 | words[0]);
+    }
+  }
+  std::uint64_t take64() {
+    need(2);
+    at_ += 2;
+    return std::uint64_t{in_[at_ - 1]} << 32 | in_[at_ - 2];
+  }
+
+  const std::vector<std::uint32_t>& in_;
+  std::size_t at_ = 0;
+};
+
+template <class Io, class Sums>
+void each_sum(Io& io, Sums& sums) {
+  for (int c = 0; c < 3; ++c) io.numbers(sums, [c](auto& s) -> auto& { return s.rgb[c]; });
+  io.numbers(sums, [](auto& s) -> auto& { return s.weight; });
+}
+
+template <class Io, class Layers>
+void each_layer_number(Io& io, Layers& layers) {
+  for (int k = 0; k < 3; ++k) {
+    for (int g = 0; g < kernel::kLightGroups; ++g) io.numbers(layers, [=](auto& p) -> auto& { return p.light[g][k]; });
+    io.numbers(layers, [k](auto& p) -> auto& { return p.squares[k]; });
+    io.numbers(layers, [k](auto& p) -> auto& { return p.normal[k]; });
+    io.numbers(layers, [k](auto& p) -> auto& { return p.albedo[k]; });
+    io.numbers(layers, [k](auto& p) -> auto& { return p.guide_albedo[k]; });
+    io.numbers(layers, [k](auto& p) -> auto& { return p.guide_normal[k]; });
+    io.numbers(layers, [k](auto& p) -> auto& { return p.position[k]; });
+  }
+  io.numbers(layers, [](auto& p) -> auto& { return p.weight; });
+  io.numbers(layers, [](auto& p) -> auto& { return p.lit; });
+  io.numbers(layers, [](auto& p) -> auto& { return p.paths; });
+  io.numbers(layers, [](auto& p) -> auto& { return p.covered; });
+  io.numbers(layers, [](auto& p) -> auto& { return p.depth; });
+  io.numbers(layers, [](auto& p) -> auto& { return p.z; });
+  io.numbers(layers, [](auto& p) -> auto& { return p.sphere; });
+}
+
+template <class Io, class Shares>
+void each_share_number(Io& io, Shares& shares) {
+  io.numbers(shares, [](auto& s) -> auto& { return s.sphere; });
+  io.numbers(shares, [](auto& s) -> auto& { return s.weight; });
+  for (int k = 0; k < 3; ++k) io.numbers(shares, [k](auto& s) -> auto& { return s.light[k]; });
+  io.numbers(shares, [](auto& s) -> auto& { return s.front; });
+  io.numbers(shares, [](auto& s) -> auto& { return s.back; });
+}
+
+template <class Io, class EffortType>
+void each_effort(Io& io, EffortType& effort) {
+  io.number(effort.paths);
+  io.number(effort.rays);
+  io.number(effort.bad_samples);
+  io.number(effort.seconds);
+}
+
+const auto itself = [](auto& v) -> auto& { return v; };
+
+/// What all pixels of both kinds hold, in the order of the file; shares are apart, since pixels have some or none.
+template <class Io, class P>
+void each_pixel_number(Io& io, P& partial) {
+  each_sum(io, partial.film.sums());
+  if (partial.has_halves()) each_sum(io, partial.second.sums());
+  io.numbers(partial.counts, itself);
+  if (!partial.goals.empty()) io.numbers(partial.goals, itself);
+  if (!partial.layers.empty()) each_layer_number(io, partial.layers);
+}
+
+void write_shares(Writer& out, const Partial& partial) {
+  std::vector<std::uint32_t> counts;
+  std::vector<SphereShare> shares;
+  for (const LayerPixel& p : partial.layers) {
+    counts.push_back(static_cast<std::uint32_t>(p.shares.size()));
+    shares.insert(shares.end(), p.shares.begin(), p.shares.end());
+  }
+  out.numbers(counts, itself);
+  each_share_number(out, shares);
+}
+
+void read_shares(Reader& in, Partial& partial) {
+  std::vector<std::uint32_t> counts(partial.layers.size());
+  in.numbers(counts, itself);
+  std::size_t total = 0;
+  for (const std::uint32_t n : counts) total += n;
+  in.need(total);  // before memory is taken for what a damaged count promises
+  std::vector<SphereShare> shares(total);
+  each_share_number(in, shares);
+  auto next = shares.begin();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const auto end = next + static_cast<std::ptrdiff_t>(counts[i]);
+    partial.layers[i].shares.assign(next, end);
+    for (auto s = next; s != end; ++s)
+      if (s != next && (s - 1)->sphere >= s->sphere)
+        throw base::Error(base::ErrorKind::kBadData, "its spheres are out of order");
+    next = end;
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> to_words(const Partial& partial) {
+  std::vector<std::uint32_t> words;
+  Writer out(words);
+  const std::uint32_t flags = (partial.has_halves() ? kHasHalves : 0u) | (partial.goals.empty() ? 0u : kHasGoals) |
+                              (partial.layers.empty() ? 0u : kHasLayers);
+  for (const std::uint32_t v : {kFormat, static_cast<std::uint32_t>(partial.film.width()),
+                          static_cast<std::uint32_t>(partial.film.height()), flags})
+    out.number(v);
+  each_effort(out, partial.effort);
+  each_pixel_number(out, partial);
+  if (!partial.layers.empty()) write_shares(out, partial);
+  return words;
+}
+
+Partial from_words(const std::vector<std::uint32_t>& words) {
+  Reader in(words);
+  std::uint32_t format = 0, width = 0, height = 0, flags = 0;
+  for (std::uint32_t* v : {&format, &width, &height, &flags}) in.number(*v);
+  if (format != kFormat || flags > kAllFlags)
+    throw base::Error(base::ErrorKind::kBadData, "its samples are written in another way than this program knows");
+  constexpr std::uint32_t kLargest = kernel::kLargestSide;
+  if (width < 1 || height < 1 || width > kLargest || height > kLargest)
+    throw base::Error(base::ErrorKind::kBadData, "it has no size");
+  in.need(std::size_t{width} * height);
+  Partial partial(static_cast<int>(width), static_cast<int>(height));
+  if ((flags & kHasHalves) != 0) partial.second = Film(static_cast<int>(width), static_cast<int>(height));
+  if ((flags & kHasGoals) != 0) partial.goals.resize(partial.pixel_count());
+  if ((flags & kHasLayers) != 0) partial.layers.resize(partial.pixel_count());
+  each_effort(in, partial.effort);
+  each_pixel_number(in, partial);
+  if (!partial.layers.empty()) read_shares(in, partial);
+  return partial;
+}
+
+}  // namespace orrery::film

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/read_tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scene/animation.h"
+#include "scene/limits.h"
+
+namespace orrery::format {
+namespace {
+
+using scene::Track;
+using scene::ValueType;
+
+const std::vector<std::string>& interpolations() {
+  static const std::vector<std::string> names = {"linear", "cubic", "hold"};  // in the order of the enumerators
+  return names;
+}
+
+/// A list under a key of the table; null and a finding where there is none.
+const toml::array* list_at(Reading& reading, const toml::table& table, const std::string& full_name, const char* key) {
+  const toml::node* node = table.get(key);
+  const toml::array* list = node == nullptr ? nullptr : node->as_array();
+  if (list != nullptr && !list->empty()) return list;
+  const std::string what = full_name + (node == nullptr ? " needs `" + std::string(key) + "`"
+                                                        : "." + std::string(key) + " must be a list that is not empty");
+  reading.error(node == nullptr ? place_of(table) : place_of(*node), what);
+  return nullptr;
+}
+
+bool read_frames(Reading& reading, const toml::array& list, const std::string& name, std::vector<double>& frames) {
+  bool good = true;
+  for (const toml::node& node : list) {
+    const auto value =
+        read_value(reading, node, name, ValueType::kNumber, {-scene::kMostFrames, scene::kMostFrames}, {});
+    const double frame = value ? std::get<double>(*value) : 0;
+    if (value && !frames.empty() && good && frame <= frames.back()) {
+      reading.error(place_of(node), name + ": frame " + scene::number_text(frame) + " does not come after " +
+                                        scene::number_text(frames.back()));
+      good = false;
+    }
+    good = good && value.has_value();
+    frames.push_back(frame);
+  }
+  return good;
+}
+
+bool read_values(Reading& reading, const toml::array& list, const std::string& name, const scene::Animated& target,
+                 std::vector<math::Vec3d>& values) {
+  bool good = true;
+  for (const toml::node& node : list) {
+    const auto value = read_value(reading, node, name, target.type, target.range, {});
+    good = good && value.has_value();
+    if (!value) continue;
+    values.push_back(target.type == ValueType::kVector ? std::get<math::Vec3d>(*value)
+                                                       : math::Vec3d{std::get<double>(*value), 0, 0});
+  }
+  return good;
+}
+
+/// The name of what changes, and what that is; nothing, and a finding, where it is nothing.
+std::optional<scene::Animated> read_target(Reading& reading, const toml::table& table, const std::string& full_name,
+                                           const scene::Scene& scene, std::string& name) {
+  const toml::node* node = table.get("target");
+  if (node == nullptr) {
+    reading.error(place_of(table), full_name + " needs `target`", "as in target = \"camera.look_from\"");
+    return {};
+  }
+  const auto value = read_value(reading, *node, full_name + ".target", ValueType::kText, {}, {});
+  if (!value) return {};
+  name = std::get<std::string>(*value);
+  auto target = scene::find_animated(scene, name);
+  if (target) return target;
+  std::string remedy = base::did_you_mean(name, scene::animated_names(scene));
+  if (remedy.empty())
+    remedy = "numbers of camera, background, material.NAME, sphere.NAME and sphere[NUMBER] can change";
+  reading.error(place_of(*node), full_name + ".target: there is no number \"" + name + "\" that can change", remedy);
+  return {};
+}
+
+}  // namespace
+
+void read_tracks(Reading& reading, const toml::array& list, scene::Scene& scene) {
+  static const std::vector<std::string> known = {"target", "frames", "values", "interpolation"};
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const toml::table& table = *list.get(i)->as_table();
+    const std::string full_name = "key[" + std::to_string(i) + "]";
+    for (const auto& [key, node] : table)
+      if (std::find(known.begin(), known.end(), key.str()) == known.end())
+        report_unknown_key(reading, key, full_name, known);
+    Track track;
+    if (const toml::node* node = table.get("interpolation"))
+      if (const auto value =
+              read_value(reading, *node, full_name + ".interpolation", ValueType::kChoice, {}, interpolations()))
+        track.interpolation = static_cast<scene::Interpolation>(
+            std::find(interpolations().begin(), interpolations().end(), std::get<std::string>(*value)) -
+            interpolations().begin());
+    const auto target = read_target(reading, table, full_name, scene, track.target);
+    const toml::array* const frames = list_at(reading, table, full_name, "frames");
+    const toml::array* const values = list_at(reading, table, full_name, "values");
+    if (!target || frames == nullptr || values == nullptr) continue;
+    if (frames->size() != values->size())
+      reading.error(place_of(*table.get("values")), full_name + " has " + std::to_string(frames->size()) +
+                                                        " frames and " + std::to_string(values->size()) + " values");
+    const auto is_same = [&](const Track& other) { return other.target == track.target; };
+    if (std::any_of(scene.tracks.begin(), scene.tracks.end(), is_same))
+      reading.error(place_of(*table.get("target")), full_name + ": " + track.target + " has keys already",
+                    "put all its frames into one [[key]]");
+    const bool frames_are_good = read_frames(reading, *frames, full_name + ".frames", track.frames);
+    const bool values_are_good = read_values(reading, *values, full_name + ".values", *target, track.values);
+    if (frames_are_good && values_are_good && track.frames.size() == track.values.size())
+      scene.tracks.push_back(std::move(track));
+  }
+}
+
+void check_tracks(Reading& reading, const toml::array& list, const scene::Scene& scene, double frame) {
+  for (std::size_t i = 0; i < scene.tracks.size() && i < list.size(); ++i) {
+    const Track& track = scene.tracks[i];
+    const auto target = scene::find_animated(scene, track.target);
+    const math::Vec3d v = scene::value_at(track, frame);
+    const bool is_vector = target->type == ValueType::kVector;
+    if (target->range.contains(v.x) && (!is_vector || (target->range.contains(v.y) && target->range.contains(v.z))))
+      continue;
+    reading.error(place_of(*list.get(i)), track.target + " is " +
+                                              (is_vector ? scene::vector_text(v) : scene::number_text(v.x)) +
+                                              " at frame " + scene::number_text(frame) + "; allowed is " +
+                                              target->range.text(),
+                  "a cubic track goes beyond its keys; set more of them, or let it be linear");
+  }
+}
+
+}  // namespace orrery::format

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/partial_file.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "film/partial_words.h"
+#include "image/exr_spec.h"
+#include "image/library.h"
+#include "image/seal.h"
+#include "image/whole_file.h"
+
+namespace orrery::image {
+namespace {
+
+using OIIO::ImageInput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+constexpr const char* kPrefix = "orrery/partial/";
+constexpr const char* kSumsName = "orrery.sums";
+
+/// Words in a row of the part of sums: those of one word of all pixels are some whole rows.
+constexpr int kMostWordsInRow = 4096;
+
+[[noreturn]] void damaged(const std::filesystem::path& file, const std::string& why) {
+  throw base::Error(base::ErrorKind::kBadData, file.string() + " is no partial picture that can be gone on from: " + why);
+}
+
+std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
+  prepare_library();
+  require_seal(file);
+  auto in = ImageInput::create("openexr");
+  if (!in) throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read EXR" + OIIO::geterror());
+  ImageSpec spec;
+  if (!in->open(file.string(), spec)) damaged(file, in->geterror());
+  return in;
+}
+
+Provenance provenance_of(const ImageInput& in) {
+  Provenance out;
+  const std::string prefix = kPrefix;
+  for (const OIIO::ParamValue& value : in.spec().extra_attribs) {
+    const std::string name = value.name().string();
+    if (name.rfind(prefix, 0) == 0) out[name.substr(prefix.size())] = value.get_string();
+  }
+  return out;
+}
+
+}  // namespace
+
+void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
+                   const Provenance& provenance, const film::Partial& partial) {
+  Header own = header;
+  for (const auto& [name, value] : provenance) own.attributes.push_back({kPrefix + name, value});
+  std::vector<std::uint32_t> words = film::to_words(partial);
+  const auto row = static_cast<std::size_t>(std::min(preview.width, kMostWordsInRow));
+  words.resize((words.size() + row - 1) / row * row);
+  ImageSpec sums(static_cast<int>(row), static_cast<int>(words.size() / row), 1, TypeDesc::UINT32);
+  sums.channelnames = {"words"};
+  sums.attribute("compression", "rle");  // rows of zeros go, the others are noise that nothing makes smaller
+  sums.attribute("oiio:subimagename", kSumsName);
+  sums.full_width = preview.frame_width;
+  sums.full_height = preview.frame_height;
+  if (preview.pixel_aspect != 1) sums.attribute("PixelAspectRatio", static_cast<float>(preview.pixel_aspect));
+
+  std::vector<const film::Plane*> planes;
+  ImageSpec shown(preview.width, preview.height, 4, TypeDesc::HALF);
+  add_windows(shown, preview);
+  add_header(shown, own);
+  shown.channelnames.clear();
+  for (const char* name : {"R", "G", "B", "A"}) {
+    planes.push_back(preview.find(name));
+    shown.channelnames.push_back(name);
+  }
+  shown.alpha_channel = 3;
+  shown.attribute("compression", "zips");
+  shown.attribute("oiio:subimagename", "rgba");
+  WriteReport ignored;  // of the final picture it will be told
+  const std::vector<float> pixels = interleaved(preview, planes, {4, kHalfRange}, ignored);
+  WholePart shown_part{shown, pixels.data()}, sums_part{sums, words.data()};
+  sums_part.type = TypeDesc::UINT32;
+  write_whole(file, "openexr", TypeDesc::FLOAT, {shown_part, sums_part}, true);
+}
+
+Provenance read_provenance(const std::filesystem::path& file) { return provenance_of(*open(file)); }
+
+PartialFile read_partial(const std::filesystem::path& file) {
+  const auto in = open(file);
+  Provenance provenance = provenance_of(*in);
+  if (!in->seek_subimage(1, 0)) damaged(file, "it has no sums");
+  const ImageSpec spec = in->spec();
+  if (spec.nchannels != 1 || spec.format != TypeDesc::UINT32 || spec.width < 1 || spec.height < 1 ||
+      spec.width > kMostWordsInRow)
+    damaged(file, "its sums are of another kind");
+  try {
+    std::vector<std::uint32_t> words(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+    if (!in->read_scanlines(1, 0, spec.y, spec.y + spec.height, 0, 0, 1, TypeDesc::UINT32, words.data()))
+      damaged(file, in->geterror());
+    return {std::move(provenance), film::from_words(words)};
+  } catch (const base::Error& error) {
+    damaged(file, error.what());
+  } catch (const std::bad_alloc&) {
+    damaged(file, "there is not enough memory for its samples");
+  } catch (const std::length_error&) {
+    damaged(file, "there is not enough memory for its samples");
+  }
+}
+
+}  // namespace orrery::image

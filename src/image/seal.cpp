@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/seal.h"
+
+#include <OpenImageIO/hash.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace orrery::image {
+namespace {
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+constexpr char kMark[] = "\norrery seal sha1 ";
+constexpr std::size_t kMarkSize = sizeof(kMark) - 1;
+constexpr std::size_t kSealSize = kMarkSize + 40 + 1;  // digits, newline
+
+/// The seal that the first `size` bytes of an open file shall have.
+///
+/// Result     empty where they cannot be read
+std::string seal_of(std::FILE* in, std::uint64_t size) {
+  OIIO::SHA1 digest;
+  std::vector<char> bytes(std::size_t{1} << 20);
+  while (size > 0) {
+    const std::size_t wanted = size < bytes.size() ? static_cast<std::size_t>(size) : bytes.size();
+    if (std::fread(bytes.data(), 1, wanted, in) != wanted) return {};
+    digest.append(bytes.data(), wanted);
+    size -= wanted;
+  }
+  std::string text = kMark + digest.digest() + "\n";
+  for (std::size_t i = kMarkSize; i < text.size(); ++i)
+    if (text[i] >= 'A' && text[i] <= 'F') text[i] = static_cast<char>(text[i] - 'A' + 'a');
+  return text;
+}
+
+}  // namespace
+
+void seal(const std::filesystem::path& file, const std::filesystem::path& name) {
+  const auto fail = [&](int error) {
+    throw base::Error(base::ErrorKind::kIo, "writing " + name.string() + " failed: " + std::strerror(error));
+  };
+  File in(std::fopen(file.c_str(), "rb"), &std::fclose);
+  std::error_code failed;
+  const std::uint64_t size = std::filesystem::file_size(file, failed);
+  if (!in || failed) fail(errno);
+  const std::string text = seal_of(in.get(), size);
+  if (text.size() != kSealSize) fail(EIO);
+  in.reset();
+  std::FILE* const out = std::fopen(file.c_str(), "ab");
+  if (out == nullptr) fail(errno);
+  const bool written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
+  const int error = errno;
+  if (std::fclose(out) != 0) fail(errno);
+  if (!written) fail(error);
+}
+
+void require_seal(const std::filesystem::path& file) {
+  const File in(std::fopen(file.c_str(), "rb"), &std::fclose);
+  if (!in)
+    throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + std::strerror(errno));
+  const auto damaged = [&](const char* why) {
+    throw base::Error(base::ErrorKind::kBadData, file.string() + why);
+  };
+  std::error_code failed;
+  const std::uint64_t size = std::filesystem::file_size(file, failed);
+  constexpr const char* kNoPartial =
+      " is no partial picture of orrery, or it is cut off; --resume, --samples A:B and --tiles write such files";
+  if (failed || size < kSealSize) damaged(kNoPartial);
+  const std::string expected = seal_of(in.get(), size - kSealSize);
+  char found[kSealSize];
+  if (std::fread(found, 1, kSealSize, in.get()) != kSealSize || std::memcmp(found, kMark, kMarkSize) != 0)
+    damaged(kNoPartial);
+  if (std::memcmp(found, expected.data(), kSealSize) != 0)
+    damaged(" is damaged: its bytes are not those that were written; delete it and render that part again");
+}
+
+}  // namespace orrery::image

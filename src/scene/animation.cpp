@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/animation.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+
+namespace orrery::scene {
+namespace {
+
+bool is_number(ValueType type) { return type == ValueType::kNumber || type == ValueType::kVector; }
+
+/// Tables whose numbers are of one moment; those of others are of the whole film.
+bool is_of_a_moment(const std::string& table) { return table == "camera" || table == "background"; }
+
+template <class Target>
+const Key<Target>* find_key(const std::vector<Key<Target>>& keys, const std::string& name) {
+  for (const Key<Target>& key : keys)
+    if (key.name == name && is_number(key.type)) return &key;
+  return nullptr;
+}
+
+const MaterialType& type_of(const Material& material) { return material_types()[material.model.index()]; }
+
+/// The sphere that "3" counts, or that has the name.
+std::optional<std::size_t> find_sphere(const Scene& scene, const std::string& name, bool is_index) {
+  if (is_index) {
+    std::size_t i = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), i);
+    const bool found = error == std::errc() && end == name.data() + name.size() && i < scene.spheres.size();
+    return found ? std::optional(i) : std::nullopt;
+  }
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
+    if (scene.spheres[i].name == name) return i;
+  return {};
+}
+
+std::optional<Animated> animated_sphere(const Scene& scene, const std::string& name, bool is_index,
+                                        const std::string& key_name) {
+  const auto* key = find_key(sphere_keys(), key_name);
+  const std::optional<std::size_t> i = find_sphere(scene, name, is_index);
+  if (key == nullptr || !i) return {};
+  return Animated{key->type, key->range, [key, i](Scene& s, const Value& v) { key->set(s.spheres[*i], v); }};
+}
+
+std::optional<Animated> animated_material(const Scene& scene, const std::string& name, const std::string& key_name) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    if (scene.materials[i].name != name) continue;
+    const auto* key = find_key(type_of(scene.materials[i]).keys, key_name);
+    if (key == nullptr) return {};
+    return Animated{key->type, key->range, [key, i](Scene& s, const Value& v) { key->set(s.materials[i].model, v); }};
+  }
+  return {};
+}
+
+/// The slope at key i by the frames around it; at the ends by the one neighbour.
+Vec3d slope(const Track& t, std::size_t i) {
+  const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, t.frames.size() - 1);
+  const double span = t.frames[after] - t.frames[before];
+  return span > 0 ? (t.values[after] - t.values[before]) * (1 / span) : Vec3d{0, 0, 0};
+}
+
+/// Turns a vector about a unit axis.
+///
+/// Precision  sine and cosine are rounded from long double, so that they don't depend on the library
+/// Reference  rodrigues1840
+Vec3d turned(Vec3d v, Vec3d axis, double turns) {
+  const long double angle = 2 * std::numbers::pi_v<long double> * static_cast<long double>(turns - std::floor(turns));
+  const auto c = static_cast<double>(std::cos(angle)), s = static_cast<double>(std::sin(angle));
+  return v * c + math::cross(axis, v) * s + axis * (math::dot(axis, v) * (1 - c));
+}
+
+}  // namespace
+
+std::optional<Animated> find_animated(const Scene& scene, const std::string& target) {
+  const std::size_t last = target.rfind('.');
+  const std::size_t first = target.find_first_of(".[");
+  if (last == std::string::npos || first > last) return {};
+  const std::string table = target.substr(0, first), key = target.substr(last + 1);
+  if (first == last) {
+    if (!is_of_a_moment(table)) return {};
+    for (const Table& t : tables())
+      if (t.name == table)
+        if (const auto* found = find_key(t.keys, key)) return Animated{found->type, found->range, found->set};
+    return {};
+  }
+  const bool is_index = target[first] == '[';
+  std::string name = target.substr(first + 1, last - first - 1);
+  if (is_index && (name.empty() || name.back() != ']')) return {};
+  if (is_index) name.pop_back();
+  if (table == "sphere") return animated_sphere(scene, name, is_index, key);
+  return table == "material" && !is_index ? animated_material(scene, name, key) : std::nullopt;
+}
+
+std::vector<std::string> animated_names(const Scene& scene) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& owner, const auto& keys) {
+    for (const auto& key : keys)
+      if (is_number(key.type)) names.push_back(owner + "." + key.name);
+  };
+  for (const Table& table : tables())
+    if (is_of_a_moment(table.name)) add(table.name, table.keys);
+  for (const Sphere& sphere : scene.spheres)
+    if (!sphere.name.empty()) add("sphere." + sphere.name, sphere_keys());
+  for (const Material& material : scene.materials) add("material." + material.name, type_of(material).keys);
+  return names;
+}
+
+Vec3d value_at(const Track& track, double frame) {
+  const std::vector<double>& at = track.frames;
+  const auto after = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), frame) - at.begin());
+  if (after == 0) return track.values.front();
+  const std::size_t i = after - 1;
+  if (after == at.size() || track.interpolation == Interpolation::kHold) return track.values[i];
+  const double span = at[after] - at[i], t = (frame - at[i]) / span;
+  const Vec3d a = track.values[i], b = track.values[after];
+  if (track.interpolation == Interpolation::kLinear) return a + (b - a) * t;
+  const double u = t * t * (3 - 2 * t);
+  return a + (b - a) * u + slope(track, i) * (span * t * (1 - t) * (1 - t)) -
+         slope(track, after) * (span * t * t * (1 - t));
+}
+
+Scene posed(const Scene& scene, double frame) {
+  Scene out = scene;
+  for (const Track& track : scene.tracks) {
+    const std::optional<Animated> target = find_animated(scene, track.target);
+    if (!target) continue;
+    const Vec3d v = value_at(track, frame);
+    target->set(out, target->type == ValueType::kVector ? Value(v) : Value(v.x));
+  }
+  if (out.animation.turntable != 0) {
+    Camera& camera = out.camera;
+    const double length = math::length(camera.up);
+    camera.look_from = camera.look_at + turned(camera.look_from - camera.look_at, camera.up * (1 / length),
+                                               (frame - 1) / out.animation.turntable);
+  }
+  return out;
+}
+
+}  // namespace orrery::scene

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film/partial_words.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "base/error.h"
+
+namespace orrery::film {
+namespace {
+
+/// A partial with something else in every number.
+Partial full_partial(bool halves, bool goals, bool layers) {
+  Partial p(5, 3);
+  std::mt19937_64 random(3);
+  const auto number = [&] { return static_cast<std::int64_t>(random()); };
+  const auto large = [&] { return static_cast<kernel::Int128>(number()) * 0x100000001 + number(); };
+  const auto fill = [&](Film& film) {
+    for (kernel::PixelSum& s : film.sums()) s = {{large(), -large(), large()}, number()};
+  };
+  fill(p.film);
+  if (halves) p.second = Film(5, 3);
+  fill(p.second);
+  for (std::uint32_t& n : p.counts) n = static_cast<std::uint32_t>(random());
+  if (goals)
+    for (const std::uint32_t n : p.counts) p.goals.push_back(n + 7);
+  if (layers) p.layers.resize(15);
+  for (LayerPixel& l : p.layers) {
+    for (auto& group : l.light)
+      for (auto& v : group) v = large();
+    for (auto* vector : {&l.squares, &l.normal, &l.albedo, &l.guide_albedo, &l.guide_normal})
+      for (auto& v : *vector) v = large();
+    for (auto* v : {&l.weight, &l.lit, &l.paths, &l.covered}) *v = number();
+    l.depth = static_cast<double>(number());
+    l.z = 1 / l.depth;
+    for (double& v : l.position) v = static_cast<double>(number());
+    l.sphere = static_cast<std::uint32_t>(random());
+    for (std::uint32_t s = 0; s < random() % 4; ++s)
+      l.shares.push_back({3 * s, number(), {large(), large(), large()}, 0.1 * s, 1e30});
+  }
+  p.effort = {1ull << 40, 1ull << 50, 3, 12.625};
+  return p;
+}
+
+TEST(FilmPartialWords, ComeBackAsTheyWere) {
+  for (int kind = 0; kind < 8; ++kind) {
+    const Partial p = full_partial((kind & 1) != 0, (kind & 2) != 0, (kind & 4) != 0);
+    const std::vector<std::uint32_t> words = to_words(p);
+    const Partial q = from_words(words);
+    EXPECT_EQ(to_words(q), words) << kind;
+    EXPECT_EQ(q.film.width(), 5);
+    EXPECT_EQ(q.film.height(), 3);
+    EXPECT_EQ(q.counts, p.counts);
+    EXPECT_EQ(q.goals, p.goals);
+    EXPECT_EQ(q.has_halves(), p.has_halves());
+    EXPECT_TRUE(q.film.sums()[7].rgb[1] == p.film.sums()[7].rgb[1]);
+    EXPECT_EQ(q.effort.seconds, 12.625);
+    if (p.layers.empty()) continue;
+    EXPECT_EQ(q.layers[3].shares.size(), p.layers[3].shares.size());
+    EXPECT_TRUE(q.layers[14].guide_normal[2] == p.layers[14].guide_normal[2]);
+    EXPECT_EQ(q.layers[9].position[1], p.layers[9].position[1]);
+  }
+}
+
+TEST(FilmPartialWords, WhatIsCutOffIsRefused) {
+  const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true));
+  for (std::size_t length = 0; length < words.size(); length += 7)
+    EXPECT_THROW(from_words({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)}), base::Error)
+        << length;
+}
+
+TEST(FilmPartialWords, DamagedWordsAreRefusedOrRead) {
+  const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true));
+  std::minstd_rand random(5);
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<std::uint32_t> damaged = words;
+    damaged[i < 64 ? static_cast<std::size_t>(i) % 12 : random() % words.size()] ^= 1u << random() % 32;
+    try {
+      from_words(damaged);
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 10);
+}
+
+}  // namespace
+}  // namespace orrery::film

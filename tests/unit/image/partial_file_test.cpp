@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/partial_file.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "base/error.h"
+#include "film/partial_words.h"
+#include "image/read.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::image {
+namespace {
+
+constexpr int kWidth = 23, kHeight = 11;
+
+film::Partial some_partial() {
+  film::Partial p(kWidth, kHeight);
+  std::mt19937_64 random(1);
+  for (kernel::PixelSum& s : p.film.sums())
+    s = {{static_cast<std::int64_t>(random() >> 4), static_cast<std::int64_t>(random() >> 4), 5}, 3};
+  for (std::uint32_t& n : p.counts) n = 3;
+  p.layers.resize(p.pixel_count());
+  for (film::LayerPixel& l : p.layers) l.shares.resize(1);
+  p.effort.seconds = 1.5;
+  return p;
+}
+
+class ImagePartialFile : public testing::Test {
+ protected:
+  void SetUp() override { write(file_); }
+  void write(const std::filesystem::path& file) const {
+    film::Picture preview = partial_.film.picture();
+    preview.frame_width = 40;
+    preview.frame_height = 20;
+    preview.x = 3;
+    preview.y = 2;
+    write_partial(file, preview, {}, {{"samples", "0:3"}, {"host", "b\nc"}}, partial_);
+  }
+  void expect_refused(const std::string& what) const {
+    try {
+      read_partial(file_);
+      ADD_FAILURE() << what << " was not noticed";
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << what << ": " << error.what();
+      EXPECT_NE(std::string(error.what()).find(file_.string()), std::string::npos);
+    }
+  }
+
+  support::ScratchFolder folder_;
+  const std::filesystem::path file_ = folder_ / "a.exr";
+  const film::Partial partial_ = some_partial();
+};
+
+TEST_F(ImagePartialFile, ComesBackAsItWas) {
+  const PartialFile read = read_partial(file_);
+  EXPECT_EQ(film::to_words(read.partial), film::to_words(partial_));
+  EXPECT_EQ(read.provenance, (Provenance{{"samples", "0:3"}, {"host", "b\nc"}}));
+  EXPECT_EQ(read_provenance(file_), read.provenance);
+}
+
+TEST_F(ImagePartialFile, AnyProgramSeesThePicture) {
+  const film::Picture seen = image::read(file_);
+  ASSERT_NE(seen.find("R"), nullptr);
+  EXPECT_EQ(seen.planes.size(), 4u);
+  EXPECT_EQ(seen.width, 40);
+  const film::Picture shown = partial_.film.picture();
+  const float there = shown.find("R")->values[5 * kWidth + 4];
+  EXPECT_NEAR(seen.find("R")->values[(5 + 2) * 40 + 4 + 3], there, there / 1024);
+}
+
+TEST_F(ImagePartialFile, TheSamePartialIsTheSameBytes) {
+  write(folder_ / "b.exr");
+  EXPECT_EQ(support::file_bytes(file_), support::file_bytes(folder_ / "b.exr"));
+}
+
+TEST_F(ImagePartialFile, AFlippedBitIsRefusedWhereverItIs) {
+  const std::string bytes = support::file_bytes(file_);
+  for (std::size_t i = 0; i < 300; ++i) {
+    const std::size_t at = i < 70 ? bytes.size() - 1 - i : (i * 2654435761u) % bytes.size();
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << i % 8));
+    support::write_bytes(file_, damaged);
+    expect_refused("bit " + std::to_string(i % 8) + " of byte " + std::to_string(at));
+  }
+}
+
+TEST_F(ImagePartialFile, WhatIsCutOffOrGrownIsRefused) {
+  const std::string bytes = support::file_bytes(file_);
+  for (std::size_t i = 0; i < 50; ++i) {
+    support::write_bytes(file_, bytes.substr(0, bytes.size() * i / 50));
+    expect_refused("a part of the file");
+  }
+  support::write_bytes(file_, bytes.substr(0, bytes.size() - 1));
+  expect_refused("a missing byte");
+  support::write_bytes(file_, bytes + " ");
+  expect_refused("one byte more");
+}
+
+TEST_F(ImagePartialFile, AnotherPictureIsNone) {
+  film::Picture picture = partial_.film.picture();
+  write_exr(file_, picture, {}, {});
+  expect_refused("a plain picture");
+  std::filesystem::remove(file_);
+  try {
+    read_partial(file_);
+    ADD_FAILURE();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kMissingInput);
+  }
+}
+
+}  // namespace
+}  // namespace orrery::image

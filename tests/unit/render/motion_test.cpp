@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "compile/compile.h"
+#include "render/render.h"
+#include "scene/animation.h"
+#include "support/everything.h"
+
+namespace orrery::render {
+namespace {
+
+std::vector<float> values(const film::Picture& picture) {
+  std::vector<float> all;
+  for (const film::Plane& plane : picture.planes) all.insert(all.end(), plane.values.begin(), plane.values.end());
+  return all;
+}
+
+/// A scene in which spheres fly, grow, and rest, one of them a ground that stands apart; and the camera with them.
+struct Moving {
+  scene::Scene opening = test::everything(), closing;
+  explicit Moving(bool camera = true) {
+    closing = opening;
+    closing.spheres[0].center.y = -1000.25;
+    closing.spheres[1].center = {-1.5, 0.9, 0.3};
+    closing.spheres[2].radius = 0.7;
+    closing.spheres[4].center = {0.4, 0.6, 1.2};
+    closing.spheres[5].center = {0.4, 0.6, 1.2};
+    if (!camera) return;
+    closing.camera.look_from = {3.2, 2, 3.9};
+    closing.camera.vfov = 42;
+  }
+  compile::World world() const { return compile::compile(opening, &closing); }
+};
+
+Settings with_layers() {
+  Settings settings;
+  settings.layers.z = settings.layers.position = settings.layers.normal = settings.layers.variance = true;
+  return settings;
+}
+
+TEST(RenderMotion, EveryAcceleratorThreadCountAndTraversalGivesTheSameBits) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+    Moving moving;
+    moving.opening.render.precision = precision;
+    const std::vector<float> expected = values(render(moving.world(), with_layers()).picture);
+    for (const Traversal traversal : {Traversal::kPacket, Traversal::kSingle}) {
+      Settings settings = with_layers();
+      settings.threads = 3;
+      settings.traversal = traversal;
+      EXPECT_EQ(values(render(moving.world(), settings).picture), expected);
+    }
+    compile::World list = moving.world();
+    list.accelerator = compile::Accelerator::kList;
+    EXPECT_EQ(values(render(list, with_layers()).picture), expected);
+  }
+}
+
+TEST(RenderMotion, WhatRestsIsRenderedAsIfTheShutterWereNeverOpen) {
+  const scene::Scene scene = test::everything();
+  const compile::World world = compile::compile(scene, &scene);
+  EXPECT_FALSE(world.features.motion);
+  EXPECT_TRUE(world.motion.empty());
+  EXPECT_EQ(values(render(world, {}).picture), values(render(compile::compile(scene), {}).picture));
+}
+
+TEST(RenderMotion, OnlySpheresUpToTheLastThatMovesAreKept) {
+  scene::Scene opening = test::everything(), closing = opening;
+  closing.spheres[2].center.x += 1;
+  const compile::World world = compile::compile(opening, &closing);
+  ASSERT_EQ(world.motion.size(), 3u);
+  EXPECT_EQ(world.motion[2].x, 1);
+  EXPECT_EQ(world.motion[1].x, 0);
+  EXPECT_EQ(world.motion[1].radius, 0);
+}
+
+/// The blurred picture is the mean of the pictures of all moments.
+void expect_mean_of_moments(const Moving& moving) {
+  scene::Scene scene = moving.opening;
+  scene.render.samples = 4096;
+  scene.render.seed = 9;
+  const film::Picture blurred = render(compile::compile(scene, &moving.closing), {}).picture;
+
+  constexpr int kMoments = 64;
+  std::vector<double> mean(values(blurred).size());
+  for (int m = 0; m < kMoments; ++m) {
+    const double t = (m + 0.5) / kMoments;
+    scene::Scene at = moving.opening;
+    const auto between = [t](double a, double b) { return a + (b - a) * t; };
+    for (std::size_t i = 0; i < at.spheres.size(); ++i) {
+      const scene::Sphere &a = moving.opening.spheres[i], &b = moving.closing.spheres[i];
+      at.spheres[i].center = a.center + (b.center - a.center) * t;
+      at.spheres[i].radius = between(a.radius, b.radius);
+    }
+    const math::Vec3d from = moving.opening.camera.look_from, to = moving.closing.camera.look_from;
+    at.camera.look_from = from + (to - from) * t;
+    at.camera.vfov = between(moving.opening.camera.vfov, moving.closing.camera.vfov);
+    at.render.samples = 64;
+    at.render.seed = static_cast<std::uint32_t>(m) + 100;
+    const std::vector<float> picture = values(render(compile::compile(at), {}).picture);
+    for (std::size_t i = 0; i < picture.size(); ++i) mean[i] += static_cast<double>(picture[i]) / kMoments;
+  }
+  const std::vector<float> found = values(blurred);
+  double bias = 0, square = 0, worst = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double difference = static_cast<double>(found[i]) - mean[i];
+    bias += difference / static_cast<double>(found.size());
+    square += difference * difference / static_cast<double>(found.size());
+    worst = std::max(worst, std::abs(difference));
+  }
+  EXPECT_LT(std::abs(bias), 3e-4);
+  EXPECT_LT(std::sqrt(square), 0.006);
+  EXPECT_LT(worst, 0.08);
+}
+
+TEST(RenderMotion, IsTheMeanOfAllMomentsOfMovingSpheres) { expect_mean_of_moments(Moving(false)); }
+
+TEST(RenderMotion, IsTheMeanOfAllMomentsOfAMovingCamera) {
+  Moving moving;
+  moving.closing.spheres = moving.opening.spheres;
+  expect_mean_of_moments(moving);
+}
+
+TEST(RenderMotion, TimeIsSpreadOverTheWholeShutter) {
+  // A white sphere without light from elsewhere flies from left to right across a black sky.
+  scene::Scene s;
+  s.image = {64, 1};
+  s.camera.vfov = 1;  // 64 pixels are 1.117 degrees
+  s.camera.look_from = {0, 0, 0};
+  s.render.samples = 4096;
+  s.render.shading = scene::Shading::kFlat;
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0, 0, 0};
+  s.materials = {{"white", scene::Lambertian{{1, 1, 1}}}};
+  const double pixel = 2 * std::tan(0.5 / 180 * 3.14159265358979) * 100;  // at 100 units, of one row
+  s.spheres = {{{-24 * pixel, 0, -100}, 4 * pixel, 0}};
+  scene::Scene closing = s;
+  closing.spheres[0].center.x = 24 * pixel;
+  const film::Picture picture = render(compile::compile(s, &closing), {}).picture;
+  // Each pixel that the whole sphere passes sees it for the same share of the time: mean chord by way.
+  const film::Plane& red = *picture.find("R");
+  for (int x = 14; x < 50; ++x) EXPECT_NEAR(red.values[static_cast<std::size_t>(x)], 8.0 / 48, 0.012) << x;
+  EXPECT_EQ(red.values[2], 0);
+  EXPECT_EQ(red.values[61], 0);
+}
+
+}  // namespace
+}  // namespace orrery::render
