@@ -28,14 +28,15 @@ Checkpoint::Checkpoint(const Job& job, image::Provenance provenance, Write write
       write_(std::move(write)),
       next_(Clock::now() + interval(job)) {}
 
-std::optional<film::Partial> Checkpoint::load() {
+std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
   if (!job_.resume || !std::filesystem::exists(file_)) return {};
-  image::PartialFile found = image::read_partial(file_);
-  if (const std::string wrong = difference(found.provenance, provenance_, keys_of_checkpoints()); !wrong.empty())
-    throw base::Error(base::ErrorKind::kBadData, file_.string() + " is of " + wrong +
-                                                     "; delete it, or render without --resume to begin anew");
+  const image::Provenance found = image::read_provenance(file_);
+  if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())
+    throw base::Error(base::ErrorKind::kBadData,
+                      file_.string() + " is of " + wrong + "; delete it, or render without --resume to begin anew");
+  image::PartialFile file = image::read_partial(file_, width_px, height_px);
   is_ours_ = true;
-  return std::move(found.partial);
+  return std::move(file.partial);
 }
 
 bool Checkpoint::is_due() const {

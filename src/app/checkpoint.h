@@ -28,7 +28,7 @@ class Checkpoint {
   /// What an earlier run has left, where the job wants to go on from it and there is something.
   ///
   /// Errors     base::Error(kBadData) where it is damaged or of another scene, setting or version
-  std::optional<film::Partial> load();
+  std::optional<film::Partial> load(int width_px, int height_px);
 
   /// True from time to time, as the job wants it, and when it is asked by signal. From any thread.
   bool is_due() const;

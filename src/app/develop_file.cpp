@@ -25,7 +25,7 @@ void check_kinds(const Development& development) {
 
 DevelopReport develop_file(const Development& development) {
   check_kinds(development);
-  check_output_files(development.outputs, development.bits, {}, development.input);
+  check_output_files(development.outputs, development.bits, {}, {development.input});
   DevelopReport report;
   const film::Picture picture = image::read(development.input);
   display::Settings display = development.display;

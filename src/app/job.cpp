@@ -7,6 +7,7 @@
 
 #include "app/checkpoint.h"
 #include "app/choose_isa.h"
+#include "app/disk_space.h"
 #include "app/join_parts.h"
 #include "app/layers.h"
 #include "app/matte_manifest.h"
@@ -24,6 +25,7 @@
 #include "film/layer_film.h"
 #include "format/read_scene.h"
 #include "image/format.h"
+#include "image/verify.h"
 #include "kernel/isa.h"
 
 namespace orrery::app {
@@ -74,7 +76,9 @@ void check_request(const Job& job) {
   if (is_part(job)) check_part(job);
   if (!job.deep.empty() && image::format_of(job.deep) != image::Format::kExr)
     throw base::Error(base::ErrorKind::kUsage, job.deep.string() + " cannot hold samples in depth; EXR can");
-  check_output_files(job.outputs, job.bits, others, job.scene);
+  std::vector<std::filesystem::path> inputs = {job.scene};
+  for (const PartFile& part : job.parts) inputs.push_back(part.file);
+  check_output_files(job.outputs, job.bits, others, inputs);
   traversal_of(job);
   image::check_compression(job.exr.compression);
   choose_isa(job.isa);
@@ -150,7 +154,7 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
       case image::Format::kPpm:
         if (!developed)
           developed = display::develop(picture, display, job.bits != 0 ? job.bits : report.display.default_bits());
-        image::write_encoded(output, *developed, header.software);
+        image::write_encoded(output, *developed, header.software, header.stamp);
         break;
     }
   }
@@ -223,9 +227,16 @@ void check_samples(const Job& job, const compile::World& world) {
 }
 
 /// Adds up the parts instead of rendering.
-render::Result join(const Job& job, const compile::World& world, const Layers& layers, JobReport& report) {
-  Joined joined = join_parts(job.parts, world.width, world.height,
-                             static_cast<std::uint32_t>(world.samples), world.spheres.size(), job.allow_missing);
+render::Result join(const Job& job, const compile::World& world, const Layers& layers,
+                    const image::Provenance& provenance, JobReport& report) {
+  const PartFile& first = job.parts.front();
+  if (const std::string wrong = difference(first.provenance, provenance, {"version", "sceneHash", "layers"});
+      !wrong.empty())
+    throw base::Error(base::ErrorKind::kBadData, first.file.string() + " is of " + wrong + ", which " +
+                                                     job.scene.string() +
+                                                     " comes to now; the scene has changed, or --scene names another");
+  Joined joined = join_parts(job.parts, world.width, world.height, static_cast<std::uint32_t>(world.samples),
+                             world.spheres.size(), job.allow_missing);
   report.missing = joined.missing;
   report.hosts = joined.hosts;
   const film::Effort effort = joined.partial.effort;
@@ -246,6 +257,21 @@ render::Result join(const Job& job, const compile::World& world, const Layers& l
   return result;
 }
 
+/// Whether all files of a job are there, whole, and what it would write again.
+bool is_there(const Job& job, const compile::World& world, const image::Provenance& provenance,
+              const std::string& stamp) {
+  if (is_part(job)) {
+    try {
+      const image::PartialFile part = image::read_partial(job.outputs.front(), world.width, world.height);
+      return difference(part.provenance, provenance, keys_of_checkpoints()).empty() && is_finished(part);
+    } catch (const base::Error&) {
+      return false;
+    }
+  }
+  const auto is_same = [&](const std::filesystem::path& file) { return image::verified_stamp(file) == stamp; };
+  return std::all_of(job.outputs.begin(), job.outputs.end(), is_same) && (job.deep.empty() || is_same(job.deep));
+}
+
 /// Renders, going on from a checkpoint where there is one, and leaves one behind where it is stopped.
 render::Result render(const Job& job, const compile::World& world, render::Settings settings, Checkpoint& checkpoint,
                       JobReport& report) {
@@ -255,7 +281,7 @@ render::Result render(const Job& job, const compile::World& world, render::Setti
   settings.keep_partial = is_part(job);
   settings.snapshot_is_due = [&] { return checkpoint.is_due(); };
   settings.on_snapshot = [&](const film::Partial& partial) { checkpoint.write_snapshot(partial); };
-  std::optional<film::Partial> from = checkpoint.load();
+  std::optional<film::Partial> from = checkpoint.load(world.width, world.height);
   report.was_resumed = from.has_value();
   render::Result result = render::render(world, settings, std::move(from));
   report.render = result.statistics;
@@ -288,10 +314,14 @@ void run_phases(const Job& job, JobReport& report) {
   const compile::World world = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   check_samples(job, world);
   const Layers layers = layers_for(job, read.scene, world);
+  const image::Provenance provenance = provenance_of(job, world, layers);
+  const std::string stamp = stamp_of(job, provenance, display);
+  report.scene_hash = provenance.at("sceneHash");
+  report.was_skipped = job.skip_existing && is_there(job, world, provenance, stamp);
+  if (report.was_skipped) return;
+  require_disk_space(job, world, film::planes_of(layers.request).size());
   require_memory(memory_for(job, world, layers.request), job.memory_limit);
   read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
-  const image::Provenance provenance = provenance_of(job, world, layers);
-  report.scene_hash = provenance.at("sceneHash");
   report.hosts = {provenance.at("host")};
   report.width = world.width;
   report.height = world.height;
@@ -314,7 +344,7 @@ void run_phases(const Job& job, JobReport& report) {
   };
   Checkpoint checkpoint(job, provenance, write_sums);
   const render::Result result = job.parts.empty() ? render(job, world, settings, checkpoint, report)
-                                                  : join(job, world, layers, report);
+                                                  : join(job, world, layers, provenance, report);
   report.render = result.statistics;
   watch.lap();
 
@@ -323,7 +353,8 @@ void run_phases(const Job& job, JobReport& report) {
   if (is_part(job)) {
     write_sums(job.outputs.front(), *result.partial);
   } else {
-    const image::Header header = picture_header(read, world, report, job.reproducible);
+    image::Header header = picture_header(read, world, report, job.reproducible);
+    header.stamp = stamp;
     write_outputs(job, display, result.picture, header, layers.mattes, report);
     if (!job.deep.empty()) image::write_deep(job.deep, result.deep, result.picture, header);
   }

@@ -52,16 +52,18 @@ struct Job {
   std::atomic<bool>* snapshot = nullptr;            ///< true: write a checkpoint at once; it is set to false again
   std::uint32_t sample_begin = 0, sample_end = 0;   ///< render only these, as a part; end 0: all
   render::Share share;                              ///< render only these pixels, as a part
+  bool as_part = false;                             ///< render a part, though it be of all samples and pixels
   std::vector<PartFile> parts;                      ///< join these instead of rendering
   bool allow_missing = false;                       ///< of parts
   int frame = format::kFirstFrame;                  ///< of the scene's animation
+  bool skip_existing = false;                       ///< do nothing where all files are there, whole, and of this job
 };
 
 /// True where the samples of the scene are a limit although something else ends the render.
 bool is_limited(const Job& job);
 
 /// True where a part is rendered, not a picture.
-inline bool is_part(const Job& job) { return job.sample_end > 0 || job.share.count > 1; }
+inline bool is_part(const Job& job) { return job.as_part || job.sample_end > 0 || job.share.count > 1; }
 
 /// Seconds by phase.
 struct Phases {
@@ -79,17 +81,18 @@ struct JobReport {
   std::string target_missed;  ///< "noise 0.013 instead of 0.01: time was over"; empty: as was asked
   std::size_t spheres = 0;
   std::string scene_hash;
-  display::Choice display;  ///< where a display format was written
+  display::Choice display;           ///< where a display format was written
   std::filesystem::path checkpoint;  ///< that was written when it was stopped; empty: none
   bool was_resumed = false;          ///< from a checkpoint
   std::string missing;               ///< of joined parts, in words; empty: nothing
   std::vector<std::string> hosts;    ///< that have rendered it
+  bool was_skipped = false;          ///< its files were there already
 };
 
 /// Renders a scene into files, or joins parts of its picture: read, check, compile, render, develop, write.
 ///
-/// A part is an EXR of sums. A job that is stopped writes a checkpoint, of the same kind, and one that resumes ends with
-/// the bits of one that was never stopped.
+/// A part is an EXR of sums. A job that is stopped writes a checkpoint, of the same kind, and one that resumes ends
+/// with the bits of one that was never stopped.
 ///
 /// That the files can be written, and that formats, compression, display and view exist, is known before rendering
 /// starts. A statistics file is written also where it was stopped or failed later.

@@ -2,6 +2,7 @@
 #include "app/join_parts.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <set>
 #include <sstream>
@@ -9,6 +10,7 @@
 
 #include "app/provenance.h"
 #include "base/error.h"
+#include "base/frames.h"
 #include "base/suggestion.h"
 
 namespace orrery::app {
@@ -27,8 +29,7 @@ base::Finding finding_of(const std::filesystem::path& file, std::string text, st
 
 [[noreturn]] void refuse(ErrorKind kind, std::vector<base::Finding> findings) {
   const std::size_t count = findings.size();
-  throw base::Error(kind, "the parts cannot be joined: " + std::to_string(count) +
-                              (count == 1 ? " error" : " errors"),
+  throw base::Error(kind, "the parts cannot be joined: " + std::to_string(count) + (count == 1 ? " error" : " errors"),
                     std::move(findings));
 }
 
@@ -150,6 +151,10 @@ void take_scene(const PartFile& part, Job& job) {
   if (job.scene.empty()) job.scene = value("scene");
   std::istringstream lines(value("overrides"));
   for (std::string line; std::getline(lines, line);) job.overrides.push_back(line);
+  const std::string frame = value("frame");
+  std::from_chars(frame.data(), frame.data() + frame.size(), job.frame);
+  for (std::filesystem::path& output : job.outputs) output = base::with_frame(output.string(), job.frame);
+  if (!job.statistics.empty()) job.statistics = base::with_frame(job.statistics.string(), job.frame);
 }
 
 Joined join_parts(std::vector<PartFile> parts, int width_px, int height_px, std::uint32_t samples, std::size_t spheres,
@@ -163,13 +168,14 @@ Joined join_parts(std::vector<PartFile> parts, int width_px, int height_px, std:
   std::vector<base::Finding> findings;
   std::set<std::string> hosts;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const film::Partial part = image::read_partial(parts[i].file).partial;
+    const image::PartialFile file = image::read_partial(parts[i].file, width_px, height_px);
+    const film::Partial& part = file.partial;
     const SampleRange range = sample_range(parts[i].provenance);
     const auto wrong = [&](std::string text, std::string remedy = {}) {
       findings.push_back(finding_of(parts[i].file, std::move(text), std::move(remedy)));
     };
-    if (part.film.width() != width_px || part.film.height() != height_px || part.has_halves()) {
-      wrong("its sums are of another size than its scene says");
+    if (part.has_halves()) {
+      wrong("its sums are of another kind than its header says");
       continue;
     }
     if (!names_known_spheres(part, spheres) || range.end > samples) {
@@ -181,11 +187,7 @@ Joined join_parts(std::vector<PartFile> parts, int width_px, int height_px, std:
       wrong("has more samples than it says");
       continue;
     }
-    const std::vector<bool> owned = render::pixels_of(share(parts[i].provenance), width_px, height_px);
-    bool is_finished = true;
-    for (std::size_t p = 0; p < owned.size(); ++p)
-      is_finished = is_finished && (!owned[p] || part.counts[p] == range.end - range.begin);
-    if (!is_finished && !allow_missing) {
+    if (!allow_missing && !is_finished(file)) {
       wrong("is unfinished: its render was stopped", "render it again with --resume, or say --allow-missing");
       continue;
     }
@@ -206,9 +208,9 @@ Joined join_parts(std::vector<PartFile> parts, int width_px, int height_px, std:
   out.hosts.assign(hosts.begin(), hosts.end());
   out.missing = coverage.missing(samples);
   if (!out.missing.empty() && !allow_missing)
-    refuse(ErrorKind::kBadData, {finding_of("the parts", out.missing + " are in no part",
-                                            missing_tiles(parts).empty() ? "render them, or say --allow-missing"
-                                                                         : missing_tiles(parts))});
+    refuse(ErrorKind::kBadData,
+           {finding_of("the parts", out.missing + " are in no part",
+                       missing_tiles(parts).empty() ? "render them, or say --allow-missing" : missing_tiles(parts))});
   return out;
 }
 

@@ -27,17 +27,19 @@ fs::path canonical_name(const fs::path& file) {
 }  // namespace
 
 void check_output_files(const std::vector<fs::path>& pictures, int bits, const std::vector<fs::path>& others,
-                        const fs::path& input) {
+                        const std::vector<fs::path>& inputs) {
   for (const fs::path& file : pictures) {
     const image::Format format = image::format_of(file);
     if (image::is_display_format(format) && bits > image::most_bits(format))
       refuse(file, " holds 8 bits in a channel; PNG and TIFF hold 16");
   }
+  std::vector<fs::path> read;
+  for (const fs::path& file : inputs) read.push_back(canonical_name(file));
   std::vector<fs::path> all = pictures, seen;
   all.insert(all.end(), others.begin(), others.end());
   for (const fs::path& file : all) {
     const fs::path name = canonical_name(file);
-    if (name == canonical_name(input)) refuse(file, " is read and would be overwritten");
+    if (std::find(read.begin(), read.end(), name) != read.end()) refuse(file, " is read and would be overwritten");
     if (std::find(seen.begin(), seen.end(), name) != seen.end()) refuse(file, " is to be written twice");
     seen.push_back(name);
   }

@@ -12,6 +12,7 @@ namespace orrery::app {
 /// Domain     `bits` of display formats, 0: nobody asked; `others` are files to write that are no pictures
 /// Errors     base::Error: kUsage, kCannotCreate
 void check_output_files(const std::vector<std::filesystem::path>& pictures, int bits,
-                        const std::vector<std::filesystem::path>& others, const std::filesystem::path& input);
+                        const std::vector<std::filesystem::path>& others,
+                        const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace orrery::app

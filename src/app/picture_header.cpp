@@ -30,6 +30,15 @@ std::string settings_lines(const std::vector<format::Setting>& settings, bool re
   return lines;
 }
 
+/// Whole rates as they are, 23.976 and its like as multiples of 1000/1001, others in thousandths.
+std::array<int, 2> rational(double rate) {
+  const double whole = std::round(rate);
+  if (std::abs(rate - whole) < 1e-9 && whole >= 1) return {static_cast<int>(whole), 1};
+  const double of_ntsc = std::round(rate * 1.001);
+  if (std::abs(rate - of_ntsc / 1.001) < 5e-4) return {static_cast<int>(of_ntsc) * 1000, 1001};
+  return {static_cast<int>(std::lround(rate * 1000)), 1000};
+}
+
 /// Per pixel; where pixels differ their mean.
 int mean_samples(const compile::World& world, const JobReport& report) {
   if (!report.render.noise) return world.samples;
@@ -51,6 +60,7 @@ image::Header picture_header(const format::ReadResult& read, const compile::Worl
     header.chromaticities = space->chromaticities;
     header.color_interop_id = space->interop_id;
   }
+  header.frames_per_second = rational(read.scene.animation.fps);
   header.attributes = {{"orrery/version", program_version()},
                        {"orrery/sceneHash", report.scene_hash},
                        {"orrery/samples", mean_samples(world, report)},

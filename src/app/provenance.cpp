@@ -43,11 +43,24 @@ image::Provenance provenance_of(const Job& job, const compile::World& world, con
   out["limit"] = is_limited(job) ? "yes" : "no";
   out["layers"] = layers_text(layers);
   out["scene"] = std::filesystem::absolute(job.scene).lexically_normal().string();
-  for (const std::string& setting : job.overrides) out["overrides"] += setting + "\n";
+  std::string& overrides = out["overrides"];
+  for (const std::string& setting : job.overrides) overrides += setting + "\n";
+  out["frame"] = std::to_string(job.frame);
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
   out["host"] = host;
   return out;
+}
+
+std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display) {
+  std::string all;
+  for (const std::string& key : keys_of_checkpoints()) all += key + " " + provenance.at(key) + "\n";
+  append(all, "%.17g s, frame %d, %d bits, float %d, multipart %d, reproducible %d, exposure %.17g\n", job.seconds,
+         job.frame, job.bits, job.exr.as_float, job.exr.multipart, job.reproducible, display.exposure.value_or(0));
+  for (const std::string& word : {job.exr.compression, display.config, display.display, display.view, display.look,
+                                  display.working_space, provenance.at("overrides")})
+    all += word + "\n";
+  return text_hash(all);
 }
 
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys) {
@@ -56,9 +69,8 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
     return found == p.end() ? std::string() : found->second;
   };
   static const std::vector<std::pair<std::string, std::string>> names = {
-      {"version", "orrery "},   {"sceneHash", "scene hash "},   {"samples", "--samples "},
-      {"tiles", "--tiles "},    {"noise", "--noise "},          {"time", "a time limit: "},
-      {"limit", "a limit of samples: "}, {"layers", "layers "}};
+      {"version", "orrery "}, {"sceneHash", "scene hash "}, {"samples", "--samples "},         {"tiles", "--tiles "},
+      {"noise", "--noise "},  {"time", "a time limit: "},   {"limit", "a limit of samples: "}, {"layers", "layers "}};
   for (const auto& [key, name] : names) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end() || value(a, key) == value(b, key)) continue;
     return name + (value(a, key).empty() ? "none" : value(a, key)) + ", not " +
@@ -78,6 +90,15 @@ const std::vector<std::string>& keys_of_checkpoints() {
   return keys;
 }
 
+bool is_finished(const image::PartialFile& part) {
+  const SampleRange range = sample_range(part.provenance);
+  const std::vector<bool> owned =
+      render::pixels_of(share(part.provenance), part.partial.film.width(), part.partial.film.height());
+  for (std::size_t i = 0; i < owned.size(); ++i)
+    if (owned[i] && part.partial.counts[i] != range.end - range.begin) return false;
+  return true;
+}
+
 SampleRange sample_range(const image::Provenance& provenance) {
   SampleRange out;
   const auto found = provenance.find("samples");
@@ -88,7 +109,8 @@ SampleRange sample_range(const image::Provenance& provenance) {
 render::Share share(const image::Provenance& provenance) {
   render::Share out;
   const auto found = provenance.find("tiles");
-  if (found != provenance.end() && std::sscanf(found->second.c_str(), "%d/%d", &out.index, &out.count) == 2) --out.index;
+  if (found != provenance.end() && std::sscanf(found->second.c_str(), "%d/%d", &out.index, &out.count) == 2)
+    --out.index;
   return out;
 }
 

@@ -15,6 +15,9 @@ namespace orrery::app {
 /// on, so that nothing is joined or gone on with that does not belong together.
 image::Provenance provenance_of(const Job& job, const compile::World& world, const Layers& layers);
 
+/// A name for the files of a job: whoever finds it in a picture's header knows that it would come out as it is.
+std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display);
+
 /// Why something of one provenance does not belong to the other: "scene hash 1234, not 5678"; empty where it does.
 ///
 /// `keys`     what must be the same
@@ -23,6 +26,9 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
 /// What must be the same for parts of one picture, and for a render that goes on.
 const std::vector<std::string>& keys_of_parts();
 const std::vector<std::string>& keys_of_checkpoints();
+
+/// True where each pixel of a part's share has all the samples of its range.
+bool is_finished(const image::PartialFile& part);
 
 /// "0:500" as numbers.
 struct SampleRange {

@@ -15,6 +15,7 @@ using Action = std::function<int()>;
 /// Adds one command to the program; where argv names it, parsing puts what it does into `action`.
 ///
 /// Domain     `action` outlives the parsing
+void add_submit(CLI::App& program, Action& action);
 void add_merge(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);

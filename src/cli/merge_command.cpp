@@ -6,6 +6,7 @@
 #include "app/join_parts.h"
 #include "app/job.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/picture_options.h"
 #include "cli/render_report.h"
@@ -28,10 +29,10 @@ int merge(MergeOptions& options) {
   app::take_scene(job.parts.front(), job);
   job.cancel = &stop_on_signals();
   job.on_warning = [&](const base::Finding& warning) {
-    if (!options.quiet) std::fputs(base::formatted(warning).c_str(), stderr);
+    if (!options.quiet) tell(base::formatted(warning));
   };
   const app::JobReport report = app::run_job(job);
-  if (!options.quiet) print_report(job, report, options.verbose);
+  if (!options.quiet) tell(report_text(job, report, options.verbose));
   return 0;
 }
 

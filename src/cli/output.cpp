@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/exit_status.h"
+#include "cli/messages.h"
 
 namespace orrery::cli {
 
@@ -15,9 +16,14 @@ void print_result(const std::string& text) {
     throw base::Error(base::ErrorKind::kIo, std::string("writing to standard output failed: ") + std::strerror(errno));
 }
 
+std::string error_text(const base::Error& error) {
+  std::string out;
+  for (const base::Finding& finding : error.findings()) out += base::formatted(finding);
+  return out + "orrery: " + error.what() + "\n";
+}
+
 int print_error(const base::Error& error) {
-  for (const base::Finding& finding : error.findings()) std::fputs(base::formatted(finding).c_str(), stderr);
-  std::fprintf(stderr, "orrery: %s\n", error.what());
+  tell(error_text(error));
   return base::exit_status(error.kind());
 }
 

@@ -12,6 +12,9 @@ namespace orrery::cli {
 /// Errors     base::Error(kIo): a result that nobody got is a failure, also of a command that writes no file
 void print_result(const std::string& text);
 
+/// An error in whole lines: each finding with its place, then the error itself.
+std::string error_text(const base::Error& error);
+
 /// Tells an error on stderr: each finding with its place, then the error itself.
 ///
 /// Result     the exit status that it asks for

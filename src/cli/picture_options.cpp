@@ -16,11 +16,9 @@ void PictureOptions::add_to(CLI::App& command, app::Job& job) {
   command.add_option("--type", type_, "EXR channels: half, the default, or float")
       ->check(one_of({"half", "float"}))
       ->type_name("TYPE");
-  command
-      .add_option("--compression", job.exr.compression, "EXR compression, zips by default: zip, dwaa:45 ...")
+  command.add_option("--compression", job.exr.compression, "EXR compression, zips by default: zip, dwaa:45 ...")
       ->type_name("NAME");
-  command
-      .add_option("--deep", job.deep, "Write also an EXR of samples in depth, one for each sphere in a pixel")
+  command.add_option("--deep", job.deep, "Write also an EXR of samples in depth, one for each sphere in a pixel")
       ->type_name("FILE");
   command.add_flag("--multipart", job.exr.multipart, "Give each layer of an EXR a part of its own");
   command.add_flag("--reproducible", job.reproducible, "Leave out of headers what changes between runs");

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <thread>
 
+#include "cli/messages.h"
+
 namespace orrery::cli {
 namespace {
 
@@ -55,8 +57,10 @@ void ProgressPrinter::building(double fraction) {
 
 void ProgressPrinter::note(const std::string& text) {
   const std::lock_guard lock(mutex_);
-  std::fprintf(to_, "%s%s\n", bar_shown_ ? "\r\033[K" : "", text.c_str());
+  if (bar_shown_) std::fputs("\r\033[K", to_);
+  std::fputs(text.c_str(), to_);
   std::fflush(to_);
+  tell_log(text);
   bar_shown_ = false;
 }
 
@@ -79,7 +83,9 @@ void ProgressPrinter::print_bar() {
 }
 
 void ProgressPrinter::print_line() {
-  std::fprintf(to_, "%s\n", progress_line(style_, state_).c_str());
+  const std::string line = progress_line(style_, state_) + "\n";
+  std::fputs(line.c_str(), to_);
+  tell_log(line);
   std::fflush(to_);
   last_percent_ = state_.percent();
   last_line_ = std::chrono::steady_clock::now();

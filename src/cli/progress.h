@@ -31,7 +31,7 @@ class ProgressPrinter {
   /// What is done of building the hierarchy, 0..1, where a bar is shown; lines are of samples only. From any thread.
   void building(double fraction);
 
-  /// A message between two lines, or above the bar; from any thread.
+  /// A message of whole lines between two of progress, or above the bar; from any thread.
   void note(const std::string& text);
 
   /// Takes the bar away, so that the next message has its line, and ends the heartbeat.

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "app/job.h"
+#include "app/batch.h"
 #include "base/error.h"
 #include "base/exit_status.h"
+#include "base/frames.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/option_checks.h"
+#include "cli/output.h"
 #include "cli/picture_options.h"
 #include "cli/progress.h"
 #include "cli/render_report.h"
@@ -24,11 +29,12 @@ namespace {
 constexpr int kMostParts = 65536;
 
 struct RenderOptions {
-  app::Job job;
+  app::Batch batch;
   SceneOptions scene;
   PictureOptions picture;
-  std::string progress = "auto", tiles;
-  bool quiet = false, verbose = false, strict = false;
+  std::string progress = "auto", tiles, frames;
+  std::filesystem::path log;
+  bool quiet = false, verbose = false, strict = false, fail_fast = false;
 };
 
 /// Quiet is about what people read; a farm manager that asked for its lines gets them.
@@ -58,7 +64,8 @@ void read_part(const RenderOptions& options, app::Job& job) {
   if (const auto text = options.scene.sample_range()) {
     const auto range = pair_of<std::uint32_t>(*text, ':');
     if (!range || range->first >= range->second || range->second > std::numeric_limits<std::int32_t>::max())
-      refuse("--samples: `" + *text + "` is no range of samples; 0:100 are the first hundred, 100:200 those after them");
+      refuse("--samples: `" + *text +
+             "` is no range of samples; 0:100 are the first hundred, 100:200 those after them");
     job.sample_begin = range->first;
     job.sample_end = range->second;
   }
@@ -67,29 +74,88 @@ void read_part(const RenderOptions& options, app::Job& job) {
   if (!tiles || tiles->first < 1 || tiles->first > tiles->second || tiles->second > kMostParts)
     refuse("--tiles: `" + options.tiles + "` is no part; 1/4, 2/4, 3/4 and 4/4 are the four quarters of a picture");
   job.share = {tiles->first - 1, tiles->second};
+  job.as_part = true;
+}
+
+/// A batch is one render to whoever watches it: all jobs' samples in a row, as many each.
+class BatchProgress {
+ public:
+  explicit BatchProgress(ProgressPrinter& printer) : printer_(printer) {}
+
+  void begin(std::size_t index, std::size_t count) {
+    index_ = index;
+    count_ = count;
+  }
+  void update(const render::Progress& p) {
+    if (count_ <= 1) return printer_.update({p.samples_done, p.samples_total, p.seconds, p.goal});
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    printer_.update({index_ * p.samples_total + p.samples_done, count_ * p.samples_total, seconds,
+                     std::to_string(index_ + 1) + " of " + std::to_string(count_)});
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ProgressPrinter& printer_;
+  std::size_t index_ = 0, count_ = 1;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// What came of many jobs, and the exit status that stands for it: that of the first failure.
+int print_summary(const app::BatchReport& report, bool quiet) {
+  std::string text = std::to_string(report.rendered) + " of " + std::to_string(report.jobs) + " rendered, " +
+                     std::to_string(report.skipped) + " were there, " + std::to_string(report.failures.size()) +
+                     " failed\n";
+  for (const app::BatchReport::Failure& failure : report.failures)
+    text += "failed: " + failure.name + ": " + failure.error.what() + "\n";
+  if (!quiet || !report.failures.empty()) tell(text);
+  return report.failures.empty() ? 0 : base::exit_status(report.failures.front().error.kind());
 }
 
 int render(RenderOptions& options) {
-  app::Job& job = options.job;
+  app::Batch& batch = options.batch;
+  app::Job& job = batch.job;
+  for (std::size_t i = 1; i < batch.scenes.size(); ++i)
+    if (batch.scenes[i].extension() != ".toml")
+      refuse("`" + batch.scenes[i].string() + "` is one argument too many; files to write are named by -o");
   job.overrides = options.scene.overrides();
   options.picture.finish(job);
   read_part(options, job);
+  if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
+  const bool is_many = batch.scenes.size() * std::max<std::size_t>(batch.frames.size(), 1) > 1;
+  batch.keep_going = is_many && !options.fail_fast;
+  if (!options.log.empty()) open_log(options.log);
   job.cancel = &stop_on_signals();
   job.snapshot = &snapshot_on_signal();
   ProgressPrinter printer(style_of(options), stderr);
-  job.on_progress = [&](const auto& p) { printer.update({p.samples_done, p.samples_total, p.seconds, p.goal}); };
+  BatchProgress progress(printer);
+  int status = 0;
+  job.on_progress = [&](const render::Progress& p) { progress.update(p); };
   job.on_build = [&](double fraction) { printer.building(fraction); };
-  job.on_warning = [&](const base::Finding& warning) {
-    if (!options.quiet) std::fputs(base::formatted(warning).c_str(), stderr);
+  const auto note = [&](const std::string& text) {  // the log has what nobody wants to see
+    options.quiet ? tell_log(text) : printer.note(text);
   };
-  job.on_note = [&](const std::string& text) { printer.note(text); };
-  const app::JobReport report = app::run_job(job);
+  job.on_warning = [&](const base::Finding& warning) { note(base::formatted(warning)); };
+  job.on_note = [&](const std::string& text) { printer.note(text + "\n"); };
+  batch.on_begin = [&](const app::Job& one, std::size_t index, std::size_t count) {
+    progress.begin(index, count);
+    tell_log("begins: " + app::job_name(batch, one) + "\n");
+  };
+  batch.on_end = [&](const app::Job& one, const app::JobReport& report) {
+    if (!is_many) printer.finish();
+    const std::string text = report.was_skipped ? "skipped " + app::job_name(batch, one) + ": its files are there\n"
+                                                : report_text(one, report, options.verbose);
+    note(text);
+    if (report.target_missed.empty()) return;
+    if (!options.quiet || options.strict)
+      printer.note((options.strict ? "orrery: " : "warning: ") + report.target_missed + "\n");
+    if (options.strict) status = base::exit_status(base::ErrorKind::kStopped);
+  };
+  batch.on_failure = [&](const app::Job&, const base::Error& error) { printer.note(error_text(error)); };
+  const app::BatchReport report = app::run_batch(batch);
   printer.finish();
-  if (!options.quiet) print_report(job, report, options.verbose);
-  if (report.target_missed.empty()) return 0;
-  if (!options.quiet || options.strict)
-    std::fprintf(stderr, "%s: %s\n", options.strict ? "orrery" : "warning", report.target_missed.c_str());
-  return options.strict ? base::exit_status(base::ErrorKind::kStopped) : 0;
+  if (!is_many) return status;
+  const int failed = print_summary(report, options.quiet);
+  return failed != 0 ? failed : status;
 }
 
 }  // namespace
@@ -97,44 +163,55 @@ int render(RenderOptions& options) {
 void add_render(CLI::App& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
   CLI::App& command = *program.add_subcommand("render", "Render a scene into one or more picture files");
-  command.add_option("SCENE", options->job.scene, "Scene file")->required()->type_name("FILE");
-  options->picture.add_to(command, options->job);
+  command.add_option("SCENE", options->batch.scenes, "Scene file; several: their outputs are named with {scene}")
+      ->required()
+      ->type_name("FILE");
+  options->picture.add_to(command, options->batch.job);
   options->scene.add_to(command, true);
   command.add_option("--tiles", options->tiles, "Render only the I-th of N parts of the pixels, as a part")
       ->type_name("I/N");
-  command.add_flag("--resume", options->job.resume, "Go on from the checkpoint that a stopped render has left");
   command
-      .add_option("--checkpoint", options->job.checkpoint_s,
+      .add_option("--frames", options->frames,
+                  "Frames to render, as 1-48, 1-48x2 or 1,3,7-9; names of files have a place for them: shot.####.exr")
+      ->type_name("RANGE");
+  command.add_flag("--skip-existing", options->batch.job.skip_existing,
+                   "Leave out what is there already, whole, and made of this scene with these settings");
+  command.add_flag("--fail-fast", options->fail_fast, "End at the first of several frames or scenes that fails");
+  command.add_flag("--resume", options->batch.job.resume, "Go on from the checkpoint that a stopped render has left");
+  command
+      .add_option("--checkpoint", options->batch.job.checkpoint_s,
                   "Write a checkpoint so often, as 5m; one is written anyway when INT or TERM stops the render")
       ->transform(duration())
       ->type_name("TIME");
   command
-      .add_option("--noise", options->job.noise,
+      .add_option("--noise", options->batch.job.noise,
                   "Sample until the picture is off by this much, relative to what a display shows, as 0.01")
       ->transform(real_number(1e-6, 1))
       ->type_name("X");
-  command.add_option("--time", options->job.seconds, "Sample for so long, where it helps most: 90s, 5m, 1.5h")
+  command.add_option("--time", options->batch.job.seconds, "Sample for so long, where it helps most: 90s, 5m, 1.5h")
       ->transform(duration())
       ->type_name("TIME");
   command.add_flag("--strict", options->strict, "Exit with 75 where --noise was not reached");
-  command.add_option("-t,--threads", options->job.threads, "Threads; default: as many as this process may use")
+  command.add_option("-t,--threads", options->batch.job.threads, "Threads; default: as many as this process may use")
       ->transform(whole_number(1, kMostThreads))
       ->type_name("N");
   command
-      .add_option("--traversal", options->job.traversal,
+      .add_option("--traversal", options->batch.job.traversal,
                   "How rays go through the hierarchy: auto, the default, measures what is quicker; packet or single")
       ->check(one_of({"auto", "packet", "single"}))
       ->type_name("WAY");
-  command.add_option("--isa", options->job.isa, "Use no better instruction set: sse4, avx2 or avx512")
+  command.add_option("--isa", options->batch.job.isa, "Use no better instruction set: sse4, avx2 or avx512")
       ->type_name("NAME");
   command
-      .add_option("--memory-limit", options->job.memory_limit, "Refuse what needs more, as 8G; default: what is free")
+      .add_option("--memory-limit", options->batch.job.memory_limit,
+                  "Refuse what needs more, as 8G; default: what is free")
       ->transform(byte_size())
       ->type_name("SIZE");
   command.add_option("--progress", options->progress, "auto, bar, alf, openjd, arnold, json or none")
       ->check(one_of(progress_style_names()))
       ->type_name("STYLE");
-  command.add_option("--stats", options->job.statistics, "Write what the render did as JSON")->type_name("FILE");
+  command.add_option("--stats", options->batch.job.statistics, "Write what the render did as JSON")->type_name("FILE");
+  command.add_option("--log", options->log, "Append all messages to this file, too, with the time")->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
   command.add_flag("-v,--verbose", options->verbose, "Say what was done and how long it took");
   command.footer(
@@ -142,6 +219,8 @@ void add_render(CLI::App& program, Action& action) {
       "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"
       "  orrery render scene.toml -o test.png --samples 20 --set camera.vfov=30\n"
       "  orrery render scene.toml -o final.exr --noise 0.01 --time 10m\n"
+      "  orrery render shot.toml -o shot.####.exr --frames 1-240 --resume --skip-existing\n"
+      "  orrery render shot.toml -o part.2.exr --samples 100:200\n"
       "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");
   command.callback([options, &action] { action = [options] { return render(*options); }; });
 }

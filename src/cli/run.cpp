@@ -33,6 +33,7 @@ void add_commands(CLI::App& program, Action& action) {
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   add_render(program, action);
   add_merge(program, action);
+  add_submit(program, action);
   add_info(program, action);
   add_check(program, action);
   add_generate(program, action);

@@ -3,9 +3,10 @@
 
 #include <bit>
 #include <cstddef>
+#include <string>
+#include <type_traits>
 
 #include "base/error.h"
-#include "kernel/render_tile.h"
 
 namespace orrery::film {
 namespace {
@@ -19,6 +20,9 @@ enum Flag : std::uint32_t { kHasHalves = 1, kHasGoals = 2, kHasLayers = 4, kAllF
 std::uint64_t bits(std::uint64_t v) { return v; }
 std::uint64_t bits(std::int64_t v) { return static_cast<std::uint64_t>(v); }
 std::uint64_t bits(double v) { return std::bit_cast<std::uint64_t>(v); }
+
+/// What stands before the words of a plane: one word for all pixels, or one for each.
+constexpr std::uint32_t kConstant = 0, kPlane = 1;
 
 /// Appends numbers as words, the low one first.
 class Writer {
@@ -39,8 +43,17 @@ class Writer {
   void numbers(Things& things, At at) {
     using T = std::remove_reference_t<decltype(at(things[0]))>;
     constexpr int kWords = sizeof(T) / sizeof(std::uint32_t);
-    for (int w = 0; w < kWords; ++w)
-      for (auto& thing : things) out_.push_back(word(at(thing), w));
+    for (int w = 0; w < kWords && !things.empty(); ++w) {
+      const std::uint32_t first = word(at(things[0]), w);
+      bool is_constant = true;
+      for (auto& thing : things) is_constant = is_constant && word(at(thing), w) == first;
+      out_.push_back(is_constant ? kConstant : kPlane);
+      if (is_constant) {
+        out_.push_back(first);
+      } else {
+        for (auto& thing : things) out_.push_back(word(at(thing), w));
+      }
+    }
   }
 
  private:
@@ -73,15 +86,27 @@ class Reader {
   void numbers(Things& things, At at) {
     using T = std::remove_reference_t<decltype(at(things[0]))>;
     constexpr std::size_t kWords = sizeof(T) / sizeof(std::uint32_t);
-    need(kWords * things.size());
-    std::size_t i = at_;
+    if (things.empty()) return;
+    const std::uint32_t* planes[kWords];
+    std::size_t steps[kWords];
+    for (std::size_t w = 0; w < kWords; ++w) {
+      std::uint32_t kind = 0;
+      number(kind);
+      if (kind > kPlane) throw base::Error(base::ErrorKind::kBadData, "its samples are mixed up");
+      steps[w] = kind == kPlane ? 1 : 0;
+      const std::size_t size = kind == kPlane ? things.size() : 1;
+      need(size);
+      planes[w] = &in_[at_];
+      at_ += size;
+    }
     for (auto& thing : things) {
       std::uint32_t words[kWords];
-      for (std::size_t w = 0; w < kWords; ++w) words[w] = in_[i + w * things.size()];
+      for (std::size_t w = 0; w < kWords; ++w) {
+        words[w] = *planes[w];
+        planes[w] += steps[w];
+      }
       at(thing) = joined<T>(words);
-      ++i;
     }
-    at_ += kWords * things.size();
   }
 
   void need(std::size_t words) const {
@@ -114,37 +139,61 @@ class Reader {
 
 template <class Io, class Sums>
 void each_sum(Io& io, Sums& sums) {
-  for (int c = 0; c < 3; ++c) io.numbers(sums, [c](auto& s) -> auto& { return s.rgb[c]; });
-  io.numbers(sums, [](auto& s) -> auto& { return s.weight; });
+  for (int c = 0; c < 3; ++c)
+    io.numbers(
+        sums, [c](auto& s) -> auto& { return s.rgb[c]; });
+  io.numbers(
+      sums, [](auto& s) -> auto& { return s.weight; });
 }
 
 template <class Io, class Layers>
 void each_layer_number(Io& io, Layers& layers) {
   for (int k = 0; k < 3; ++k) {
-    for (int g = 0; g < kernel::kLightGroups; ++g) io.numbers(layers, [=](auto& p) -> auto& { return p.light[g][k]; });
-    io.numbers(layers, [k](auto& p) -> auto& { return p.squares[k]; });
-    io.numbers(layers, [k](auto& p) -> auto& { return p.normal[k]; });
-    io.numbers(layers, [k](auto& p) -> auto& { return p.albedo[k]; });
-    io.numbers(layers, [k](auto& p) -> auto& { return p.guide_albedo[k]; });
-    io.numbers(layers, [k](auto& p) -> auto& { return p.guide_normal[k]; });
-    io.numbers(layers, [k](auto& p) -> auto& { return p.position[k]; });
+    for (int g = 0; g < kernel::kLightGroups; ++g)
+      io.numbers(
+          layers, [=](auto& p) -> auto& { return p.light[g][k]; });
+    io.numbers(
+        layers, [k](auto& p) -> auto& { return p.squares[k]; });
+    io.numbers(
+        layers, [k](auto& p) -> auto& { return p.normal[k]; });
+    io.numbers(
+        layers, [k](auto& p) -> auto& { return p.albedo[k]; });
+    io.numbers(
+        layers, [k](auto& p) -> auto& { return p.guide_albedo[k]; });
+    io.numbers(
+        layers, [k](auto& p) -> auto& { return p.guide_normal[k]; });
+    io.numbers(
+        layers, [k](auto& p) -> auto& { return p.position[k]; });
   }
-  io.numbers(layers, [](auto& p) -> auto& { return p.weight; });
-  io.numbers(layers, [](auto& p) -> auto& { return p.lit; });
-  io.numbers(layers, [](auto& p) -> auto& { return p.paths; });
-  io.numbers(layers, [](auto& p) -> auto& { return p.covered; });
-  io.numbers(layers, [](auto& p) -> auto& { return p.depth; });
-  io.numbers(layers, [](auto& p) -> auto& { return p.z; });
-  io.numbers(layers, [](auto& p) -> auto& { return p.sphere; });
+  io.numbers(
+      layers, [](auto& p) -> auto& { return p.weight; });
+  io.numbers(
+      layers, [](auto& p) -> auto& { return p.lit; });
+  io.numbers(
+      layers, [](auto& p) -> auto& { return p.paths; });
+  io.numbers(
+      layers, [](auto& p) -> auto& { return p.covered; });
+  io.numbers(
+      layers, [](auto& p) -> auto& { return p.depth; });
+  io.numbers(
+      layers, [](auto& p) -> auto& { return p.z; });
+  io.numbers(
+      layers, [](auto& p) -> auto& { return p.sphere; });
 }
 
 template <class Io, class Shares>
 void each_share_number(Io& io, Shares& shares) {
-  io.numbers(shares, [](auto& s) -> auto& { return s.sphere; });
-  io.numbers(shares, [](auto& s) -> auto& { return s.weight; });
-  for (int k = 0; k < 3; ++k) io.numbers(shares, [k](auto& s) -> auto& { return s.light[k]; });
-  io.numbers(shares, [](auto& s) -> auto& { return s.front; });
-  io.numbers(shares, [](auto& s) -> auto& { return s.back; });
+  io.numbers(
+      shares, [](auto& s) -> auto& { return s.sphere; });
+  io.numbers(
+      shares, [](auto& s) -> auto& { return s.weight; });
+  for (int k = 0; k < 3; ++k)
+    io.numbers(
+        shares, [k](auto& s) -> auto& { return s.light[k]; });
+  io.numbers(
+      shares, [](auto& s) -> auto& { return s.front; });
+  io.numbers(
+      shares, [](auto& s) -> auto& { return s.back; });
 }
 
 template <class Io, class EffortType>
@@ -183,7 +232,8 @@ void read_shares(Reader& in, Partial& partial) {
   in.numbers(counts, itself);
   std::size_t total = 0;
   for (const std::uint32_t n : counts) total += n;
-  in.need(total);  // before memory is taken for what a damaged count promises
+  // Spheres of a pixel differ, so that their plane is full: no memory for what a damaged count promises.
+  if (total > partial.layers.size()) in.need(total);
   std::vector<SphereShare> shares(total);
   each_share_number(in, shares);
   auto next = shares.begin();
@@ -205,7 +255,7 @@ std::vector<std::uint32_t> to_words(const Partial& partial) {
   const std::uint32_t flags = (partial.has_halves() ? kHasHalves : 0u) | (partial.goals.empty() ? 0u : kHasGoals) |
                               (partial.layers.empty() ? 0u : kHasLayers);
   for (const std::uint32_t v : {kFormat, static_cast<std::uint32_t>(partial.film.width()),
-                          static_cast<std::uint32_t>(partial.film.height()), flags})
+                                static_cast<std::uint32_t>(partial.film.height()), flags})
     out.number(v);
   each_effort(out, partial.effort);
   each_pixel_number(out, partial);
@@ -213,18 +263,18 @@ std::vector<std::uint32_t> to_words(const Partial& partial) {
   return words;
 }
 
-Partial from_words(const std::vector<std::uint32_t>& words) {
+Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int height_px) {
   Reader in(words);
   std::uint32_t format = 0, width = 0, height = 0, flags = 0;
   for (std::uint32_t* v : {&format, &width, &height, &flags}) in.number(*v);
   if (format != kFormat || flags > kAllFlags)
     throw base::Error(base::ErrorKind::kBadData, "its samples are written in another way than this program knows");
-  constexpr std::uint32_t kLargest = kernel::kLargestSide;
-  if (width < 1 || height < 1 || width > kLargest || height > kLargest)
-    throw base::Error(base::ErrorKind::kBadData, "it has no size");
-  in.need(std::size_t{width} * height);
-  Partial partial(static_cast<int>(width), static_cast<int>(height));
-  if ((flags & kHasHalves) != 0) partial.second = Film(static_cast<int>(width), static_cast<int>(height));
+  if (width != static_cast<std::uint32_t>(width_px) || height != static_cast<std::uint32_t>(height_px))
+    throw base::Error(base::ErrorKind::kBadData, "it is " + std::to_string(width) + " x " + std::to_string(height) +
+                                                     " pixels, not " + std::to_string(width_px) + " x " +
+                                                     std::to_string(height_px));
+  Partial partial(width_px, height_px);
+  if ((flags & kHasHalves) != 0) partial.second = Film(width_px, height_px);
   if ((flags & kHasGoals) != 0) partial.goals.resize(partial.pixel_count());
   if ((flags & kHasLayers) != 0) partial.layers.resize(partial.pixel_count());
   each_effort(in, partial.effort);

@@ -169,14 +169,16 @@ void pose(Reading& reading, const toml::table& root, const std::string& file, in
     for (scene::Problem problem : scene::validate(*result.closing)) {
       if (problem.severity == base::Severity::kWarning) continue;
       const toml::node* node = node_of(root, problem.key);
-      reading.findings.push_back(reading.source.finding(problem.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1},
+      reading.findings.push_back(reading.source.finding(problem.severity,
+                                                        node != nullptr ? place_of(*node) : Place{file, 0, 0, 1},
                                                         problem.key + " when the shutter closes: " + problem.text));
     }
   }
   scene = scene::posed(scene, opens);
   for (std::size_t i = 0; is_open && i < scene.spheres.size(); ++i)
     if ((scene.spheres[i].radius < 0) != (result.closing->spheres[i].radius < 0))
-      reading.error(Place{file, 0, 0, 1}, "sphere[" + std::to_string(i) + "].radius changes its sign while the shutter is open");
+      reading.error(Place{file, 0, 0, 1},
+                    "sphere[" + std::to_string(i) + "].radius changes its sign while the shutter is open");
 }
 
 void report_unknown_tables(Reading& reading, const toml::table& root) {
@@ -234,7 +236,7 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
   read_spheres(reading, root, index, result.scene);
   if (const toml::array* keys = tables_under(reading, root, "key")) read_tracks(reading, *keys, result.scene);
-  if (std::none_of(reading.findings.begin(), reading.findings.end(), is_error)) 
+  if (std::none_of(reading.findings.begin(), reading.findings.end(), is_error))
     pose(reading, root, file.string(), frame, result);
   read_points(reading, root, file.parent_path(), frame, index, result.scene);
   add_problems(reading, root, result.scene, file.string());

@@ -123,10 +123,9 @@ void check_tracks(Reading& reading, const toml::array& list, const scene::Scene&
     const bool is_vector = target->type == ValueType::kVector;
     if (target->range.contains(v.x) && (!is_vector || (target->range.contains(v.y) && target->range.contains(v.z))))
       continue;
-    reading.error(place_of(*list.get(i)), track.target + " is " +
-                                              (is_vector ? scene::vector_text(v) : scene::number_text(v.x)) +
-                                              " at frame " + scene::number_text(frame) + "; allowed is " +
-                                              target->range.text(),
+    reading.error(place_of(*list.get(i)),
+                  track.target + " is " + (is_vector ? scene::vector_text(v) : scene::number_text(v.x)) + " at frame " +
+                      scene::number_text(frame) + "; allowed is " + target->range.text(),
                   "a cubic track goes beyond its keys; set more of them, or let it be linear");
   }
 }

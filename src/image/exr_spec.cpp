@@ -59,6 +59,7 @@ void add_header(ImageSpec& spec, const Header& header) {
   if (header.chromaticities)
     spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), header.chromaticities->data());
   if (!header.color_interop_id.empty()) spec.attribute("colorInteropID", header.color_interop_id);
+  if (!header.stamp.empty()) spec.attribute(kStampName, header.stamp);
   add_attributes(spec, header.attributes);
 }
 

@@ -32,7 +32,8 @@ constexpr const char* kSumsName = "orrery.sums";
 constexpr int kMostWordsInRow = 4096;
 
 [[noreturn]] void damaged(const std::filesystem::path& file, const std::string& why) {
-  throw base::Error(base::ErrorKind::kBadData, file.string() + " is no partial picture that can be gone on from: " + why);
+  throw base::Error(base::ErrorKind::kBadData,
+                    file.string() + " is no partial picture that can be gone on from: " + why);
 }
 
 std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
@@ -93,7 +94,7 @@ void write_partial(const std::filesystem::path& file, const film::Picture& previ
 
 Provenance read_provenance(const std::filesystem::path& file) { return provenance_of(*open(file)); }
 
-PartialFile read_partial(const std::filesystem::path& file) {
+PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px) {
   const auto in = open(file);
   Provenance provenance = provenance_of(*in);
   if (!in->seek_subimage(1, 0)) damaged(file, "it has no sums");
@@ -105,7 +106,7 @@ PartialFile read_partial(const std::filesystem::path& file) {
     std::vector<std::uint32_t> words(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
     if (!in->read_scanlines(1, 0, spec.y, spec.y + spec.height, 0, 0, 1, TypeDesc::UINT32, words.data()))
       damaged(file, in->geterror());
-    return {std::move(provenance), film::from_words(words)};
+    return {std::move(provenance), film::from_words(words, width_px, height_px)};
   } catch (const base::Error& error) {
     damaged(file, error.what());
   } catch (const std::bad_alloc&) {

@@ -34,7 +34,8 @@ struct PartialFile {
   film::Partial partial;
 };
 
-/// Errors     base::Error: kMissingInput where it cannot be opened, kBadData where it is no whole, undamaged partial
-PartialFile read_partial(const std::filesystem::path& file);
+/// Errors     base::Error: kMissingInput where it cannot be opened, kBadData where it is no whole, undamaged partial of
+///            this size
+PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px);
 
 }  // namespace orrery::image

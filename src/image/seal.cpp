@@ -64,9 +64,7 @@ void require_seal(const std::filesystem::path& file) {
   const File in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in)
     throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + std::strerror(errno));
-  const auto damaged = [&](const char* why) {
-    throw base::Error(base::ErrorKind::kBadData, file.string() + why);
-  };
+  const auto damaged = [&](const char* why) { throw base::Error(base::ErrorKind::kBadData, file.string() + why); };
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);
   constexpr const char* kNoPartial =

@@ -36,8 +36,8 @@ std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDe
   std::string first_complaint;
   for (std::size_t i = 0; i < parts.size() && first_complaint.empty(); ++i) {
     if (i > 0 && !out.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) return complaint("opening a part");
-    const bool written =
-        parts[i].deep != nullptr ? out.write_deep_image(*parts[i].deep) : out.write_image(parts[i].type.value_or(type), parts[i].pixels);
+    const bool written = parts[i].deep != nullptr ? out.write_deep_image(*parts[i].deep)
+                                                  : out.write_image(parts[i].type.value_or(type), parts[i].pixels);
     if (!written) first_complaint = complaint("encoding");
   }
   if (!out.close() && first_complaint.empty()) return complaint("closing");

@@ -13,8 +13,8 @@ namespace orrery::image {
 /// One picture of a file, which may hold several of one size.
 struct WholePart {
   OIIO::ImageSpec spec;
-  const void* pixels = nullptr;          ///< spec's width x height x channels values, rows from the top
-  const OIIO::DeepData* deep = nullptr;  ///< in place of pixels, where the spec says so
+  const void* pixels = nullptr;             ///< spec's width x height x channels values, rows from the top
+  const OIIO::DeepData* deep = nullptr;     ///< in place of pixels, where the spec says so
   std::optional<OIIO::TypeDesc> type = {};  ///< of the pixels, where it is not that of the other parts
 };
 

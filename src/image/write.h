@@ -22,6 +22,10 @@ struct Attribute {
   std::variant<std::string, int, float> value;
 };
 
+/// The attribute that holds a header's stamp; formats that have no attributes of ours hold name and stamp as their
+/// description, Radiance and PPM files nothing.
+inline constexpr const char* kStampName = "orrery/stamp";
+
 /// What stands in a picture's header beside its pixels. What is empty is left out; with a header that does not change
 /// between runs, two writes give the same bytes.
 struct Header {
@@ -35,7 +39,8 @@ struct Header {
   std::string color_interop_id;
   std::vector<Attribute> attributes;
   std::vector<Attribute>
-      matte_attributes;  ///< Cryptomatte's; a file of several parts has them where the mattes are, too
+      matte_attributes;    ///< Cryptomatte's; a file of several parts has them where the mattes are, too
+  std::string stamp = {};  ///< names what the picture is made of; see kStampName
 };
 
 struct ExrOptions {
@@ -88,6 +93,7 @@ WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& pi
 ///
 /// Result     as write_exr
 /// Errors     base::Error: kUsage where the format does not hold so many bits, kCannotCreate, kIo
-void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software);
+void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
+                   const std::string& stamp = {});
 
 }  // namespace orrery::image

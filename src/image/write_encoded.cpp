@@ -37,8 +37,8 @@ const char* add_format(Format format, ImageSpec& spec) {
 
 }  // namespace
 
-void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture,
-                   const std::string& software) {
+void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
+                   const std::string& stamp) {
   const Format format = format_of(file);
   if (picture.bits > most_bits(format))
     throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits in a channel; PNG and TIFF hold 16");
@@ -48,6 +48,7 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
     throw base::Error(base::ErrorKind::kInternal, "the values of " + file.string() + " are not of the picture's size");
   ImageSpec spec(picture.width, picture.height, kChannels, picture.bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
   if (!software.empty()) spec.attribute("Software", software);
+  if (!stamp.empty()) spec.attribute("ImageDescription", std::string(kStampName) + " " + stamp);
   if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
   const char* const name = add_format(format, spec);
   if (picture.bits == 8) {

@@ -31,9 +31,7 @@ bool Passes::run(int side, const OnPixel& on_pixel) {
   const auto cancelled = [&] {
     return settings_.cancel != nullptr && settings_.cancel->load(std::memory_order_relaxed);
   };
-  const auto shall_pause = [&] {
-    return cancelled() || (settings_.snapshot_is_due && settings_.snapshot_is_due());
-  };
+  const auto shall_pause = [&] { return cancelled() || (settings_.snapshot_is_due && settings_.snapshot_is_due()); };
   for (;;) {
     const std::vector<kernel::PixelPlace> squares = unfinished_squares(side);
     const auto render = [&](std::size_t i, TileWorker& worker) {
@@ -88,8 +86,8 @@ void Passes::render_square(int x0, int y0, int side, const OnPixel& on_pixel, Ti
     for (int x = 0; x < tile.width; ++x) {
       const std::uint32_t have = state_.counts[at({x, y})], want = state_.goals[at({x, y})];
       if (have >= want) continue;
-      auto group = std::find_if(groups.begin(), groups.end(),
-                                [&](const Group& g) { return g.have == have && g.want == want; });
+      auto group =
+          std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.have == have && g.want == want; });
       if (group == groups.end()) group = groups.insert(group, {have, want, {}});
       group->pixels.push_back({x, y});
     }

@@ -107,10 +107,9 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
   statistics.traversal = name_of(traversals);
   TilePool pool(statistics.threads);
   const TileRenderer render_tile(world, accel, settings.layers);
-  const bool completed =
-      is_in_rounds(settings)
-          ? render_in_rounds(world, settings, render_tile, pool, progress, state, statistics)
-          : render_in_passes(world, settings, render_tile, pool, progress, state, statistics);
+  const bool completed = is_in_rounds(settings)
+                             ? render_in_rounds(world, settings, render_tile, pool, progress, state, statistics)
+                             : render_in_passes(world, settings, render_tile, pool, progress, state, statistics);
   state.effort = effort_so_far(state.effort, pool, progress);
   statistics.render_s = state.effort.seconds;
   statistics.paths = state.effort.paths;

@@ -55,8 +55,10 @@ class Rounds {
     if (!state_.goals.empty() && !run_round()) return false;  // that in which an earlier run was stopped
     // With a time limit the first round is the smallest there is: it tells the speed.
     std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
-    for (n = n > 0 ? next_of_all(n) : settings_.seconds > 0 ? 1 : std::min(kFirstSamples, most_); n > 0;
-         n = next_of_all(n)) {
+    for (n = n > 0                   ? next_of_all(n)
+             : settings_.seconds > 0 ? 1
+                                     : std::min(kFirstSamples, most_);
+         n > 0; n = next_of_all(n)) {
       state_.goals.assign(state_.pixel_count(), n);
       if (!run_round()) return false;
     }

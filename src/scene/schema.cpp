@@ -178,8 +178,9 @@ Table animation_table() {
           {number<S>("fps", {0.001, 1000}, {"frames per second", "told in the header of an EXR"},
                      [](S& s) -> double& { return s.animation.fps; }),
            number<S>("turntable", {-kMostFrames, kMostFrames},
-                     {"frames", "in which the camera turns once around `look_at`, about `up`, to the right from frame 1 "
-                                "on; below 0 to the left; 0: it stands"},
+                     {"frames",
+                      "in which the camera turns once around `look_at`, about `up`, to the right from frame 1 "
+                      "on; below 0 to the left; 0: it stands"},
                      [](S& s) -> double& { return s.animation.turntable; })}};
 }
 
@@ -329,7 +330,8 @@ const std::vector<Table>& tables() {
         number<S>("exposure", {-kMostStops, kMostStops},
                   {"stops", "to brighten what a display shows; an EXR stays as it is"},
                   [](S& s) -> double& { return s.color.exposure; })}},
-      output_table(), animation_table()};
+      output_table(),
+      animation_table()};
   return all;
 }
 

@@ -13,7 +13,7 @@ struct Case {
 
 const Case kCases[] = {
     {"", 2,
-     "orrery: a command is missing; there are render, merge, info, check, generate, develop, bake, compare, bench, study\n"
+     "orrery: a command is missing; there are render, merge, submit, info, check, generate, develop, bake, compare, bench, study\n"
      "Try orrery --help.\n"},
     {"rendr good.toml", 2,
      "orrery: unknown command rendr; did you mean `render`?\n"
@@ -31,8 +31,7 @@ const Case kCases[] = {
      "orrery: SCENE is required\n"
      "Try orrery render --help.\n"},
     {"render good.toml -o a.png b.png", 2,
-     "orrery: `b.png` is one argument too many; files to write are named by -o\n"
-     "Try orrery render --help.\n"},
+     "orrery: `b.png` is one argument too many; files to write are named by -o\n"},
     {"render good.toml -o a.png -t many", 2,
      "orrery: --threads: must be a whole number from 1 to 4096, not `many`\n"
      "Try orrery render --help.\n"},

@@ -17,7 +17,7 @@ class AppOutputFiles : public testing::Test {
   std::string verdict(const std::vector<std::filesystem::path>& pictures, int bits = 0,
                       const std::vector<std::filesystem::path>& others = {}) {
     try {
-      check_output_files(pictures, bits, others, folder_ / "scene.toml");
+      check_output_files(pictures, bits, others, {folder_ / "scene.toml"});
     } catch (const base::Error& error) {
       kind_ = error.kind();
       return error.what();

@@ -48,7 +48,7 @@ TEST(FilmPartialWords, ComeBackAsTheyWere) {
   for (int kind = 0; kind < 8; ++kind) {
     const Partial p = full_partial((kind & 1) != 0, (kind & 2) != 0, (kind & 4) != 0);
     const std::vector<std::uint32_t> words = to_words(p);
-    const Partial q = from_words(words);
+    const Partial q = from_words(words, 5, 3);
     EXPECT_EQ(to_words(q), words) << kind;
     EXPECT_EQ(q.film.width(), 5);
     EXPECT_EQ(q.film.height(), 3);
@@ -67,8 +67,20 @@ TEST(FilmPartialWords, ComeBackAsTheyWere) {
 TEST(FilmPartialWords, WhatIsCutOffIsRefused) {
   const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true));
   for (std::size_t length = 0; length < words.size(); length += 7)
-    EXPECT_THROW(from_words({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)}), base::Error)
+    EXPECT_THROW(from_words({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)}, 5, 3), base::Error)
         << length;
+}
+
+TEST(FilmPartialWords, AnotherSizeIsRefused) {
+  const std::vector<std::uint32_t> words = to_words(full_partial(false, false, false));
+  EXPECT_THROW(from_words(words, 3, 5), base::Error);
+}
+
+TEST(FilmPartialWords, WhatAllPixelsHaveInCommonTakesNoRoom) {
+  Partial empty(500, 400);
+  empty.layers.resize(empty.pixel_count());
+  EXPECT_LT(to_words(empty).size(), 1000u);
+  EXPECT_EQ(to_words(from_words(to_words(empty), 500, 400)), to_words(empty));
 }
 
 TEST(FilmPartialWords, DamagedWordsAreRefusedOrRead) {
@@ -79,7 +91,7 @@ TEST(FilmPartialWords, DamagedWordsAreRefusedOrRead) {
     std::vector<std::uint32_t> damaged = words;
     damaged[i < 64 ? static_cast<std::size_t>(i) % 12 : random() % words.size()] ^= 1u << random() % 32;
     try {
-      from_words(damaged);
+      from_words(damaged, 5, 3);
     } catch (const base::Error& error) {
       EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
       ++refused;

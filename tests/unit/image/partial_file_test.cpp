@@ -40,7 +40,7 @@ class ImagePartialFile : public testing::Test {
   }
   void expect_refused(const std::string& what) const {
     try {
-      read_partial(file_);
+      read_partial(file_, kWidth, kHeight);
       ADD_FAILURE() << what << " was not noticed";
     } catch (const base::Error& error) {
       EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << what << ": " << error.what();
@@ -54,7 +54,7 @@ class ImagePartialFile : public testing::Test {
 };
 
 TEST_F(ImagePartialFile, ComesBackAsItWas) {
-  const PartialFile read = read_partial(file_);
+  const PartialFile read = read_partial(file_, kWidth, kHeight);
   EXPECT_EQ(film::to_words(read.partial), film::to_words(partial_));
   EXPECT_EQ(read.provenance, (Provenance{{"samples", "0:3"}, {"host", "b\nc"}}));
   EXPECT_EQ(read_provenance(file_), read.provenance);
@@ -104,7 +104,7 @@ TEST_F(ImagePartialFile, AnotherPictureIsNone) {
   expect_refused("a plain picture");
   std::filesystem::remove(file_);
   try {
-    read_partial(file_);
+    read_partial(file_, kWidth, kHeight);
     ADD_FAILURE();
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kMissingInput);

@@ -105,7 +105,7 @@ Result interrupted(const compile::World& world, Settings settings, int* starts) 
     if (result.completed) return result;
     EXPECT_TRUE(result.partial);
     if (!result.partial) return result;
-    from = film::from_words(film::to_words(*result.partial));
+    from = film::from_words(film::to_words(*result.partial), world.width, world.height);
   }
 }
 

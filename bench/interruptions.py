@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What interruptions cost: a render that is stopped thirty times and resumed, against one that is not.
+
+    bench/interruptions.py PROGRAM [--scene FILE] [--times N] [--seconds S]
+
+Both are timed as whole processes, one after the other; the pictures must be the same bytes.
+"""
+import argparse
+import pathlib
+import random
+import signal
+import subprocess
+import tempfile
+import time
+
+parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+parser.add_argument("program", type=pathlib.Path)
+parser.add_argument("--scene", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "scenes/book/final.toml")
+parser.add_argument("--times", type=int, default=30)
+parser.add_argument("--seconds", type=float, default=60, help="that the render shall take about")
+arguments = parser.parse_args()
+program = arguments.program.resolve()
+random.seed(1)
+
+with tempfile.TemporaryDirectory() as folder:
+    base = [program, "render", arguments.scene.resolve(), "--width", "480", "--height", "270", "--reproducible", "-q"]
+
+    def run(samples, name):
+        start = time.monotonic()
+        subprocess.run([*base, "--samples", str(samples), "-o", name], check=True, cwd=folder)
+        return time.monotonic() - start
+
+    samples = max(16, int(16 * arguments.seconds / run(16, "speed.exr")))
+    whole = run(samples, "whole.exr")
+    command = [*base, "--samples", str(samples), "-o", "parts.exr", "--resume"]
+    spent, interruptions = 0.0, 0
+    while True:
+        start = time.monotonic()
+        process = subprocess.Popen(command, cwd=folder)
+        if interruptions < arguments.times:
+            try:
+                process.wait(random.uniform(0.3, 2 * whole / (arguments.times + 1)))
+            except subprocess.TimeoutExpired:
+                process.send_signal(signal.SIGTERM)
+        status = process.wait()
+        spent += time.monotonic() - start
+        if status != 75:
+            break
+        interruptions += 1
+    same = pathlib.Path(folder, "whole.exr").read_bytes() == pathlib.Path(folder, "parts.exr").read_bytes()
+    print(f"{samples} samples: {whole:.1f} s in one go, {spent:.1f} s with {interruptions} interruptions, "
+          f"ratio {spent / whole:.3f}; exit status {status}; the pictures are {'the same' if same else 'DIFFERENT'}")
+    raise SystemExit(0 if same and status == 0 else 1)

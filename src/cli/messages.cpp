@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/messages.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <sstream>
+
+#include "base/error.h"
+
+namespace orrery::cli {
+namespace {
+
+int log_file = -1;
+
+/// "2026-11-21T22:48:05.123Z".
+std::string time_text() {
+  const auto now = std::chrono::system_clock::now();
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+  const auto milliseconds =
+      std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[32], out[48];
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%S", &utc);
+  std::snprintf(out, sizeof(out), "%s.%03dZ", text, static_cast<int>(milliseconds));
+  return out;
+}
+
+}  // namespace
+
+void tell(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+  tell_log(text);
+}
+
+void tell_log(const std::string& text) {
+  if (log_file < 0) return;
+  const std::string begin = time_text() + " " + std::to_string(getpid()) + " ";
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string whole = begin + line + "\n";
+    // A log that cannot be written on is no reason to lose a picture.
+    [[maybe_unused]] const ssize_t written = ::write(log_file, whole.data(), whole.size());
+  }
+}
+
+void open_log(const std::filesystem::path& file) {
+  log_file = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+  if (log_file < 0)
+    throw base::Error(base::ErrorKind::kCannotCreate, "cannot create " + file.string() + ": " + std::strerror(errno));
+}
+
+}  // namespace orrery::cli

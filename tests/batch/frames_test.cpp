@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ranges of frames, several scenes, and what is there already.
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+constexpr const char* kAnimated = R"(
+[image]
+width = 40
+height = 24
+[camera]
+look_from = [0, 0, 1]
+look_at = [0, 0, -1]
+[render]
+samples = 4
+[material.grey]
+type = "lambertian"
+albedo = [0.5, 0.5, 0.5]
+[[sphere]]
+center = [0, 0, -1]
+radius = 0.5
+material = "grey"
+name = "ball"
+[[key]]
+target = "sphere.ball.center"
+frames = [1, 5]
+values = [[-1, 0, -1], [1, 0, -1]]
+)";
+
+constexpr const char* kPly =
+    "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float radius\nend_header\n0 0 -1 0.5\n";
+
+class BatchFrames : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write("shot.toml", kAnimated);
+  }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+};
+
+TEST_F(BatchFrames, ARangeIsAPictureForEachFrame) {
+  const Outcome r = run("render shot.toml -o s.####.exr -o s.%02d.png --frames 1-5:2 --stats s.##.json -q");
+  ASSERT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(r.err, "");
+  for (const char* name : {"s.0001.exr", "s.0003.exr", "s.0005.exr", "s.01.png", "s.05.png", "s.03.json"})
+    EXPECT_TRUE(exists(name)) << name;
+  EXPECT_EQ(file_count(), 9);
+  EXPECT_NE(text_of(folder_ / "s.01.png"), text_of(folder_ / "s.05.png"));
+  // A frame is what it is, whoever renders it.
+  ASSERT_EQ(run("render shot.toml -o one.png --frames 5 -q").status, 0);
+  ASSERT_EQ(run("render shot.toml -o set.png -q --set 'sphere[0].center=[1,0,-1]' --set 'key=[]'").status, 0);
+  EXPECT_EQ(run("compare one.png s.05.png -q --fail-above max=0").status, 0);
+  EXPECT_EQ(run("compare one.png set.png -q --fail-above max=0").status, 0);
+}
+
+TEST_F(BatchFrames, ARangeWithoutAPlaceForItsNumbersIsRefused) {
+  const Outcome range = run("render shot.toml -o s.png --frames 1-5");
+  EXPECT_EQ(range.status, 2);
+  EXPECT_NE(range.err.find("s.png is one name for 5 frames"), std::string::npos) << range.err;
+  const Outcome place = run("render shot.toml -o s.##.png");
+  EXPECT_EQ(place.status, 2);
+  EXPECT_NE(place.err.find("--frames"), std::string::npos) << place.err;
+  const Outcome statistics = run("render shot.toml -o s.##.png --frames 1-5 --stats s.json");
+  EXPECT_EQ(statistics.status, 2);
+  for (const char* text : {"1-", "a", "1-5x0", "5 6", "", "1-99999999", "1,,2"})
+    EXPECT_EQ(run(std::string("render shot.toml -o s.##.png --frames '") + text + "'").status, 2) << text;
+}
+
+TEST_F(BatchFrames, WhatIsThereWholeAndRightIsLeftOut) {
+  const std::string command =
+      "render shot.toml -o s.##.exr -o s.##.png -o s.##.jpg -o s.##.tif --frames 1-3 --skip-existing";
+  ASSERT_EQ(run(command + " -q").status, 0);
+  const std::string first = text_of(folder_ / "s.01.exr"), second = text_of(folder_ / "s.02.exr");
+  EXPECT_NE(run(command).err.find("0 of 3 rendered, 3 were there"), std::string::npos);
+  EXPECT_EQ(text_of(folder_ / "s.01.exr"), first);
+
+  // Cut off, of another picture, or missing: rendered again. The others stay.
+  write("s.02.exr", second.substr(0, second.size() / 2));
+  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 were there"), std::string::npos);
+  write("s.02.png", text_of(folder_ / "s.03.png"));
+  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 were there"), std::string::npos);
+  std::filesystem::remove(folder_ / "s.03.jpg");
+  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 were there"), std::string::npos);
+  EXPECT_EQ(text_of(folder_ / "s.01.exr"), first);
+
+  // Other settings are another picture, also those that no pixel of an EXR depends on.
+  for (const char* other :
+       {"--samples 5", "--type float", "--exposure 1", "--layers Z", "--bits 16", "--compression zip"}) {
+    ASSERT_EQ(run(command + " -q").status, 0);
+    const Outcome r = run(command + " " + (std::string(other) == "--bits 16" ? "" : other));
+    EXPECT_NE(r.err.find(std::string(other) == "--bits 16" ? "0 of 3" : "3 of 3"), std::string::npos) << other << "\n"
+                                                                                                      << r.err;
+  }
+}
+
+TEST_F(BatchFrames, AFailureIsToldAndTheOthersGoOn) {
+  for (const int frame : {1, 3}) write("cloud." + std::to_string(frame) + ".ply", kPly);
+  write("cloud.toml", std::string(kAnimated) + "[[points]]\nfile = \"cloud.%d.ply\"\nmaterial = \"grey\"\n");
+  const Outcome r = run("render cloud.toml -o c.##.png --frames 1-3");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_TRUE(exists("c.01.png"));
+  EXPECT_FALSE(exists("c.02.png"));
+  EXPECT_TRUE(exists("c.03.png"));
+  EXPECT_NE(r.err.find("cloud.2.ply"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("2 of 3 rendered, 0 were there, 1 failed\nfailed: frame 2 of cloud.toml"), std::string::npos)
+      << r.err;
+  std::filesystem::remove(folder_ / "c.03.png");
+  EXPECT_EQ(run("render cloud.toml -o c.##.png --frames 1-3 --fail-fast").status, 65);
+  EXPECT_FALSE(exists("c.03.png"));
+}
+
+TEST_F(BatchFrames, SeveralScenesAreNamedByTheirFiles) {
+  const Outcome r = run("render good.toml shot.toml -o {scene}.##.png --frames 1-2 -q");
+  ASSERT_EQ(r.status, 0) << r.err;
+  for (const char* name : {"good.01.png", "good.02.png", "shot.01.png", "shot.02.png"}) EXPECT_TRUE(exists(name));
+  EXPECT_EQ(run("render good.toml shot.toml -o a.png").status, 2);
+  std::filesystem::create_directory(folder_ / "other");
+  write("other/good.toml", kAnimated);
+  const Outcome same = run("render good.toml other/good.toml -o {scene}.png");
+  EXPECT_EQ(same.status, 2);
+  EXPECT_NE(same.err.find("good.png would be written for good.toml and for other/good.toml"), std::string::npos)
+      << same.err;
+}
+
+TEST_F(BatchFrames, TheLogHasTimesAndWhatNobodyWantedToRead) {
+  ASSERT_EQ(run("render shot.toml -o s.##.png --frames 1-2 --log log -q").status, 0);
+  ASSERT_EQ(run("render nothing.toml -o s.png --log log").status, 66);
+  const std::string log = text_of(folder_ / "log");
+  EXPECT_NE(log.find("begins: frame 2 of shot.toml"), std::string::npos) << log;
+  EXPECT_NE(log.find("wrote s.02.png"), std::string::npos) << log;
+  EXPECT_NE(log.find("cannot open nothing.toml"), std::string::npos) << log;
+  EXPECT_EQ(log.substr(0, 2), "20");
+  EXPECT_EQ(log[10], 'T');
+}
+
+TEST_F(BatchFrames, TheTurntableComesRound) {
+  const std::string turn = " --set animation.turntable=4 --samples 4 -q ";
+  ASSERT_EQ(run("render shot.toml -o t.##.png --frames 1,3,5" + turn + "--set 'key=[]'").status, 0);
+  EXPECT_EQ(run("compare t.01.png t.05.png -q --fail-above max=0").status, 0);
+  EXPECT_NE(run("compare t.01.png t.03.png -q --fail-above max=0.01").status, 0);
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,118 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# A farm of four nodes on this machine: Slurm for real, with its own keys, ports and folders, and no systemd.
+# Renders two frames in shards by `orrery submit --slurm`, kills a node in the middle of its task, and compares the
+# merged pictures with those of one program.
+#
+#   tests/batch/slurm.sh PROGRAM WORK_FOLDER
+#
+# Exit status 77 where Slurm is not installed, or the user is not root.
+set -eu
+[ $# -eq 2 ] || { sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 2; }
+scenes=$(cd "$(dirname "$0")/../../scenes" && pwd)
+program=$(realpath "$1")
+mkdir -p "$2"
+work=$(realpath "$2")
+for tool in munged slurmctld slurmd sbatch squeue; do
+  command -v "$tool" > /dev/null || { echo "slurm: left out, $tool is not installed (munge slurm-wlm)"; exit 77; }
+done
+[ "$(id -u)" -eq 0 ] || { echo "slurm: left out, only root can start nodes"; exit 77; }
+
+host=$(hostname -s)
+rm -rf "$work/farm" "$work/shot.parts" "$work"/*.exr
+mkdir -p "$work/farm/state" "$work/farm/munge"
+chmod 0700 "$work/farm/munge"
+cd "$work"
+
+stop_all() {
+  for pid in farm/slurmctld.pid farm/slurmd.n*.pid farm/munge/munged.pid; do
+    [ -f "$pid" ] && kill -9 "$(cat "$pid")" 2> /dev/null || true
+  done
+  pkill -9 -f "slurmstepd: \[" 2> /dev/null || true
+}
+trap stop_all EXIT
+
+dd if=/dev/urandom of=farm/munge/key bs=128 count=1 2> /dev/null
+chmod 0400 farm/munge/key
+munged --force --key-file="$work/farm/munge/key" --socket="$work/farm/munge/socket" \
+  --pid-file="$work/farm/munge/munged.pid" --log-file="$work/farm/munge/log" --seed-file="$work/farm/munge/seed"
+
+# Ports of this process's own, so that two farms do not meet.
+port=$((20000 + $$ % 20000))
+cat > farm/slurm.conf << END
+ClusterName=orrery
+SlurmctldHost=$host(127.0.0.1)
+SlurmUser=root
+AuthType=auth/munge
+CredType=cred/munge
+AuthInfo=socket=$work/farm/munge/socket
+SlurmctldPort=$port
+SlurmctldPidFile=$work/farm/slurmctld.pid
+SlurmdPidFile=$work/farm/slurmd.%n.pid
+SlurmctldLogFile=$work/farm/slurmctld.log
+SlurmdLogFile=$work/farm/slurmd.%n.log
+StateSaveLocation=$work/farm/state
+SlurmdSpoolDir=$work/farm/spool.%n
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+MpiDefault=none
+CommunicationParameters=NoCtldInAddrAny,NoInAddrAny
+SlurmdTimeout=10
+SlurmctldTimeout=30
+KillWait=5
+ReturnToService=2
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SlurmdParameters=config_overrides
+SchedulerParameters=sched_interval=2,bf_interval=2
+NodeName=n0 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 1)) CPUs=1
+NodeName=n1 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 2)) CPUs=1
+NodeName=n2 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 3)) CPUs=1
+NodeName=n3 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 4)) CPUs=1
+PartitionName=all Nodes=ALL Default=YES State=UP
+END
+export SLURM_CONF="$work/farm/slurm.conf"
+slurmctld
+for node in n0 n1 n2 n3; do slurmd -N "$node"; done
+
+wait_for() {  # seconds, what, command ...
+  left=$1
+  what=$2
+  shift 2
+  until "$@"; do
+    left=$((left - 1))
+    [ "$left" -gt 0 ] || { echo "slurm: waited in vain for $what"; sinfo -lN; squeue; tail -5 farm/*.log; exit 1; }
+    sleep 1
+  done
+}
+four_are_idle() { [ "$(sinfo --noheader --states=idle -o %D)" = 4 ]; }
+wait_for 60 "four nodes" four_are_idle
+
+settings="--width 320 --height 180 --samples ${SAMPLES:-300} --set animation.turntable=48 --layers Z,CryptoObject --reproducible"
+cp "$scenes/book/final.toml" shot.toml
+# shellcheck disable=SC2086  # words
+"$program" submit shot.toml -o shot.####.exr --frames 1-2 --shards 4 $settings --slurm --program "$program" > shot.sh
+sh shot.sh
+node_is_busy() { [ "$(squeue --noheader --states=running --nodelist=n1 -o %i | wc -l)" -gt 0 ] && ls shot.parts/render.*.log > /dev/null 2>&1; }
+wait_for 60 "a task on n1" node_is_busy
+sleep 1
+killed=$(squeue --noheader --states=running --nodelist=n1 -o %i)
+echo "slurm: killing node n1 with its task $killed"
+kill -9 "$(cat farm/slurmd.n1.pid)"
+pkill -9 -f "slurmstepd: \[$(scontrol show job "$killed" | sed -n 's/^ *JobId=\([0-9]*\).*/\1/p' | head -1)" || true
+for pid in $(pgrep -f "tiles .*/4 --frames"); do
+  grep -qz "SLURMD_NODENAME=n1" "/proc/$pid/environ" 2> /dev/null && kill -9 "$pid" || true
+done
+rm -f farm/slurmd.n1.pid
+
+all_done() { [ "$(squeue --noheader -o %i | wc -l)" -eq 0 ]; }
+wait_for 600 "the end of all jobs" all_done
+starts=$(grep -c "\(Started\|Allocate\) JobId=$killed(" farm/slurmctld.log)
+[ "$starts" -ge 2 ] || { echo "slurm: the killed task $killed was started $starts times"; exit 1; }
+
+for frame in 1 2; do
+  # shellcheck disable=SC2086
+  "$program" render shot.toml -o "one.####.exr" --frames $frame $settings -q
+  cmp "one.000$frame.exr" "shot.000$frame.exr" || { tail -n 3 shot.parts/*.log; exit 1; }
+done
+echo "slurm: two frames in four shards each, one node killed: the same bytes as one program's"

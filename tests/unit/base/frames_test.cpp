@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/frames.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace orrery::base {
+namespace {
+
+using Frames = std::vector<int>;
+
+TEST(BaseFrames, RangesStepsAndLists) {
+  EXPECT_EQ(parse_frames("7"), (Frames{7}));
+  EXPECT_EQ(parse_frames("1-4"), (Frames{1, 2, 3, 4}));
+  EXPECT_EQ(parse_frames("1-10:3"), (Frames{1, 4, 7, 10}));
+  EXPECT_EQ(parse_frames("1-10x4"), (Frames{1, 5, 9}));
+  EXPECT_EQ(parse_frames("1,3,7-9"), (Frames{1, 3, 7, 8, 9}));
+  EXPECT_EQ(parse_frames("9-7,8,1"), (Frames{9, 8, 7, 1}));
+  EXPECT_EQ(parse_frames("-2--1,-1-1"), (Frames{-2, -1, 0, 1}));
+}
+
+TEST(BaseFrames, WhatIsNoRangeIsRefused) {
+  for (const char* text :
+       {"", "a", "1-", "-", "1-2-3", "1,", ",1", "1-5x", "1-5x0", "1-5x-1", "1 2", "99999999", "1-9999999"}) {
+    try {
+      parse_frames(text);
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kUsage) << text;
+    }
+  }
+}
+
+TEST(BaseFrames, PlacesAreFilled) {
+  EXPECT_EQ(with_frame("shot.####.exr", 7), "shot.0007.exr");
+  EXPECT_EQ(with_frame("shot.####.exr", 12345), "shot.12345.exr");
+  EXPECT_EQ(with_frame("a/%04d/b.%d.exr", 12), "a/0012/b.12.exr");
+  EXPECT_EQ(with_frame("##", -3), "-3");
+  EXPECT_EQ(with_frame("####", -3), "-003");
+  EXPECT_EQ(with_frame("take#1.exr", 5), "take#1.exr");
+  EXPECT_EQ(with_frame("100%.exr", 5), "100%.exr");
+  EXPECT_TRUE(has_frame_pattern("a.##.png"));
+  EXPECT_TRUE(has_frame_pattern("a.%02d.png"));
+  EXPECT_FALSE(has_frame_pattern("a#.png"));
+  EXPECT_FALSE(has_frame_pattern("a%s.png"));
+  EXPECT_FALSE(has_frame_pattern("%999999999999999999999d"));
+}
+
+}  // namespace
+}  // namespace orrery::base
