@@ -19,8 +19,8 @@ class BoxFrame {
 
   /// `motion`   of the spheres below moving_count, which are then held with all the way they go
   /// Domain     `ids` not empty
-  BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids,
-           const kernel::Sphere* motion = nullptr, std::size_t moving_count = 0);
+  BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
+           std::size_t moving_count = 0);
 
   /// Corners of a sphere's padded box.
   struct Box {

@@ -67,8 +67,8 @@ struct BuildState {
 void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
   auto& state = *static_cast<BuildState*>(arguments->geometryUserPtr);
   const auto& scene = *state.scene;
-  const BoxFrame::Box box = scene.frame.box(
-      sphere_at_step(scene, scene.sphere_id(state.geometry, arguments->primID), arguments->timeStep));
+  const BoxFrame::Box box =
+      scene.frame.box(sphere_at_step(scene, scene.sphere_id(state.geometry, arguments->primID), arguments->timeStep));
   RTCBounds& out = *arguments->bounds_o;
   out.lower_x = box.lower[0];
   out.lower_y = box.lower[1];
@@ -122,9 +122,9 @@ class Embree final : public Accel {
     embree_.commit();
     rtcSetSceneProgressMonitorFunction(embree_.get(), nullptr, nullptr);
     if (moving.refused + resting.refused > 0)
-      throw base::Error(base::ErrorKind::kInternal, "Embree would drop " +
-                                                        std::to_string(moving.refused + resting.refused) +
-                                                        " spheres without a word");
+      throw base::Error(
+          base::ErrorKind::kInternal,
+          "Embree would drop " + std::to_string(moving.refused + resting.refused) + " spheres without a word");
     scene_.scene = embree_.get();
   }
 

@@ -27,8 +27,8 @@ void trace_list(const void* self, Packet& packet) {
     const auto ray = k::load_rays(d, packet, i);
     for (std::size_t id = 0; id < scene.sphere_count; ++id) {
       const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
-      const auto found = k::nearest<D, kPrecision>(
-          d, ray, k::sphere_at(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
+      const auto found =
+          k::nearest<D, kPrecision>(d, ray, k::sphere_at(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
       if (hn::AllFalse(d, found.mask)) continue;
       const T distance = hn::GetLane(found.value);
       if (distance >= packet.distance[i]) continue;  // ids ascend: of two at the same place the smaller was first

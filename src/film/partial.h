@@ -19,8 +19,9 @@ struct Effort {
   Effort& operator+=(const Effort& other);
 };
 
-/// A picture whose samples are not all there: what a stopped render goes on from, and what parts of a picture are joined
-/// by. All sums are whole numbers, so that it does not matter where a picture was cut, nor in which order it is joined.
+/// A picture whose samples are not all there: what a stopped render goes on from, and what parts of a picture are
+/// joined by. All sums are whole numbers, so that it does not matter where a picture was cut, nor in which order it is
+/// joined.
 struct Partial {
   Partial() : Partial(0, 0) {}
   Partial(int width_px, int height_px) : film(width_px, height_px), counts(film.pixel_count()) {}

@@ -100,8 +100,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
 
 /// Fills the packet with the next rays of paths first .. first + count of the stream.
 template <class D, bool kRecords, class Stream, class Carried>
-HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, int first, int count,
-                                  Carried& carried) {
+HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, int first, int count, Carried& carried) {
   using T = hn::TFromD<D>;
   const IdTag<D> du;
   auto& packet = stream.packet;

@@ -259,13 +259,14 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
 
     const bool ends = scene.shading == Shading::kPath && depth >= scene.max_depth;
     if (ends && !(kRecords && depth == 0)) continue;
-    const auto at = reach_surface<D, kPrecision>(d, scene, ray, hits, hn::Load(d, packet.distance + v),
-                                                 packet.time + v);
+    const auto at =
+        reach_surface<D, kPrecision>(d, scene, ray, hits, hn::Load(d, packet.distance + v), packet.time + v);
     const Vec3<hn::Vec<D>> tinted = {throughput.x * at.albedo.x, throughput.y * at.albedo.y,
                                      throughput.z * at.albedo.z};
     if constexpr (kRecords) {
       if (depth == 0)
-        record.first_hit(d, hit, hits, at.surface.offset, ray.direction, scene.features.motion ? packet.time + v : nullptr);
+        record.first_hit(d, hit, hits, at.surface.offset, ray.direction,
+                         scene.features.motion ? packet.time + v : nullptr);
       if (tile.record_guides)
         record.guide(d, hn::AndNot(is_sharp(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
       if (ends) continue;

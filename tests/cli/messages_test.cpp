@@ -13,7 +13,8 @@ struct Case {
 
 const Case kCases[] = {
     {"", 2,
-     "orrery: a command is missing; there are render, merge, submit, info, check, generate, develop, bake, compare, bench, study\n"
+     "orrery: a command is missing; there are render, merge, submit, info, check, generate, develop, bake, compare, "
+     "bench, study\n"
      "Try orrery --help.\n"},
     {"rendr good.toml", 2,
      "orrery: unknown command rendr; did you mean `render`?\n"
