@@ -38,6 +38,8 @@ std::vector<Feature> features_of(const compile::World& world, bool has_layers) {
       feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "mirrors are sharp"),
       feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
       feature("gradient sky", world.features.sky, "one colour: no direction is looked at"),
+      feature("motion blur", world.features.motion, "nothing moves while the shutter is open",
+              "camera or spheres move while the shutter is open"),
       feature("layers", has_layers, "[output] asks for none: no path is written down"),
       feature("light paths", world.shading == kernel::Shading::kPath, "render.shading asks for the first hit only")};
 }
@@ -57,7 +59,7 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
   format::ReadResult read = format::read_scene(scene, overrides);
   to_working_space(config_of(scene, read.scene.color), read.scene);
-  const compile::World world = compile::compile(read.scene);
+  const compile::World world = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   const film::LayerRequest layers = choose_layers(read.scene, world).request;
   SceneInfo info;
   info.scene_hash = scene_hash(world);
@@ -87,6 +89,7 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
   info.traversal = render::planned_traversal(world);
   info.memory = estimate_memory(world.width, world.height, film::planes_of(layers).size(), info.spheres,
                                 info.accelerator == "embree");
+  info.memory.film += estimate_state(world.width, world.height, false, layers.any());
   info.warnings = std::move(read.warnings);
   for (const std::string& advice : precision_advice(world)) {
     base::Finding warning;

@@ -5,14 +5,13 @@
 #include <chrono>
 #include <optional>
 
+#include "app/check_job.h"
 #include "app/checkpoint.h"
-#include "app/choose_isa.h"
 #include "app/disk_space.h"
-#include "app/join_parts.h"
 #include "app/layers.h"
+#include "app/make_picture.h"
 #include "app/matte_manifest.h"
 #include "app/memory.h"
-#include "app/output_files.h"
 #include "app/picture_header.h"
 #include "app/provenance.h"
 #include "app/statistics.h"
@@ -25,8 +24,6 @@
 #include "film/layer_film.h"
 #include "format/read_scene.h"
 #include "image/format.h"
-#include "image/verify.h"
-#include "kernel/isa.h"
 
 namespace orrery::app {
 namespace {
@@ -51,45 +48,8 @@ bool wants_display(const Job& job) {
   return false;
 }
 
-render::Traversal traversal_of(const Job& job) {
-  if (job.traversal == "auto") return render::Traversal::kAuto;
-  if (job.traversal == "packet") return render::Traversal::kPacket;
-  if (job.traversal == "single") return render::Traversal::kSingle;
-  throw base::Error(base::ErrorKind::kUsage, "no traversal " + job.traversal + "; there are auto, packet and single");
-}
-
-/// A part is sums and nothing else: pictures are made of all parts together.
-void check_part(const Job& job) {
-  const auto refuse = [](const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); };
-  if (job.outputs.size() > 1 || image::format_of(job.outputs.front()) != image::Format::kExr || !job.deep.empty())
-    refuse("--samples A:B and --tiles render a part, which is one EXR; orrery merge makes pictures of the parts");
-  if (job.noise > 0 || job.seconds > 0)
-    refuse("--noise and --time decide by the whole picture; a part, by --samples A:B or --tiles, has a fixed share");
-}
-
-/// Everything that can be known to fail before hours are spent, but for the scene.
-void check_request(const Job& job) {
-  std::vector<std::filesystem::path> others;
-  if (!job.statistics.empty()) others.push_back(job.statistics);
-  if (!job.deep.empty()) others.push_back(job.deep);
-  if (job.parts.empty()) others.push_back(checkpoint_file(job.outputs.front()));
-  if (is_part(job)) check_part(job);
-  if (!job.deep.empty() && image::format_of(job.deep) != image::Format::kExr)
-    throw base::Error(base::ErrorKind::kUsage, job.deep.string() + " cannot hold samples in depth; EXR can");
-  std::vector<std::filesystem::path> inputs = {job.scene};
-  for (const PartFile& part : job.parts) inputs.push_back(part.file);
-  check_output_files(job.outputs, job.bits, others, inputs);
-  traversal_of(job);
-  image::check_compression(job.exr.compression);
-  choose_isa(job.isa);
-}
-
-[[noreturn]] void stopped(const std::string& remedy = "") {
-  throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written" + remedy);
-}
-
 void stop_if_asked(const Job& job) {
-  if (job.cancel != nullptr && job.cancel->load(std::memory_order_relaxed)) stopped();
+  if (job.cancel != nullptr && job.cancel->load(std::memory_order_relaxed)) stop_job();
 }
 
 void warn(const Job& job, const base::Finding& finding) {
@@ -187,22 +147,6 @@ void count_bad_values(const film::Picture& picture, JobReport& report) {
   }
 }
 
-/// What can be seen of a picture so far.
-film::Picture preview(const compile::World& world, const film::Partial& partial) {
-  film::Partial shown(0, 0);
-  shown.film = partial.film;
-  shown.second = partial.second;
-  return render::finished(world, {}, std::move(shown)).picture;
-}
-
-/// When to stop sampling. The samples of the scene limit what is asked for otherwise only if they were asked for, too.
-void set_target(const Job& job, double seconds_so_far, render::Settings& settings) {
-  constexpr double kLeastTime = 1e-3;  // nothing left is not no limit
-  settings.noise = job.noise;
-  if (job.seconds > 0) settings.seconds = std::max(job.seconds - seconds_so_far, kLeastTime);
-  settings.unlimited = !is_limited(job);
-}
-
 std::string missed_target(const Job& job, const render::Statistics& statistics) {
   std::string out;
   if (job.noise > 0 && statistics.noise && *statistics.noise > job.noise)
@@ -216,82 +160,6 @@ MemoryEstimate memory_for(const Job& job, const compile::World& world, const fil
                                           world.spheres.size(), world.accelerator == compile::Accelerator::kEmbree);
   memory.film += estimate_state(world.width, world.height, job.noise > 0 || job.seconds > 0, layers.any());
   return memory;
-}
-
-void check_samples(const Job& job, const compile::World& world) {
-  if (job.sample_end > static_cast<std::uint32_t>(world.samples))
-    throw base::Error(base::ErrorKind::kUsage,
-                      "--samples " + std::to_string(job.sample_begin) + ":" + std::to_string(job.sample_end) +
-                          " goes beyond the scene's " + std::to_string(world.samples) +
-                          " samples; --set render.samples=" + std::to_string(job.sample_end) + " gives it more");
-}
-
-/// Adds up the parts instead of rendering.
-render::Result join(const Job& job, const compile::World& world, const Layers& layers,
-                    const image::Provenance& provenance, JobReport& report) {
-  const PartFile& first = job.parts.front();
-  if (const std::string wrong = difference(first.provenance, provenance, {"version", "sceneHash", "layers"});
-      !wrong.empty())
-    throw base::Error(base::ErrorKind::kBadData, first.file.string() + " is of " + wrong + ", which " +
-                                                     job.scene.string() +
-                                                     " comes to now; the scene has changed, or --scene names another");
-  Joined joined = join_parts(job.parts, world.width, world.height, static_cast<std::uint32_t>(world.samples),
-                             world.spheres.size(), job.allow_missing);
-  report.missing = joined.missing;
-  report.hosts = joined.hosts;
-  const film::Effort effort = joined.partial.effort;
-  const auto [fewest, most] = std::minmax_element(joined.partial.counts.begin(), joined.partial.counts.end());
-  render::Statistics statistics;
-  statistics.fewest_samples = *fewest;
-  statistics.most_samples = *most;
-  statistics.paths = effort.paths;
-  statistics.rays = effort.rays;
-  statistics.bad_samples = effort.bad_samples;
-  statistics.render_s = effort.seconds;
-  statistics.ended_by = "samples";
-  if (!layers.request.any()) joined.partial.layers.clear();
-  if (joined.partial.layers.empty() && layers.request.any())
-    throw base::Error(base::ErrorKind::kBadData, "the parts were rendered without the layers that are asked for");
-  render::Result result = render::finished(world, layers.request, std::move(joined.partial));
-  result.statistics = statistics;
-  return result;
-}
-
-/// Whether all files of a job are there, whole, and what it would write again.
-bool is_there(const Job& job, const compile::World& world, const image::Provenance& provenance,
-              const std::string& stamp) {
-  if (is_part(job)) {
-    try {
-      const image::PartialFile part = image::read_partial(job.outputs.front(), world.width, world.height);
-      return difference(part.provenance, provenance, keys_of_checkpoints()).empty() && is_finished(part);
-    } catch (const base::Error&) {
-      return false;
-    }
-  }
-  const auto is_same = [&](const std::filesystem::path& file) { return image::verified_stamp(file) == stamp; };
-  return std::all_of(job.outputs.begin(), job.outputs.end(), is_same) && (job.deep.empty() || is_same(job.deep));
-}
-
-/// Renders, going on from a checkpoint where there is one, and leaves one behind where it is stopped.
-render::Result render(const Job& job, const compile::World& world, render::Settings settings, Checkpoint& checkpoint,
-                      JobReport& report) {
-  settings.sample_begin = job.sample_begin;
-  settings.sample_end = job.sample_end;
-  settings.share = job.share;
-  settings.keep_partial = is_part(job);
-  settings.snapshot_is_due = [&] { return checkpoint.is_due(); };
-  settings.on_snapshot = [&](const film::Partial& partial) { checkpoint.write_snapshot(partial); };
-  std::optional<film::Partial> from = checkpoint.load(world.width, world.height);
-  report.was_resumed = from.has_value();
-  render::Result result = render::render(world, settings, std::move(from));
-  report.render = result.statistics;
-  report.phases.build_s = result.statistics.build_s;
-  report.phases.render_s = result.statistics.render_s;
-  if (result.completed) return result;
-  if (!result.partial) stopped();
-  checkpoint.write(*result.partial);
-  report.checkpoint = checkpoint.file();
-  stopped("; " + checkpoint.file().string() + " keeps what was rendered, and --resume goes on from there");
 }
 
 /// The way data takes.
@@ -336,15 +204,14 @@ void run_phases(const Job& job, JobReport& report) {
   settings.on_progress = job.on_progress;
   settings.on_build = job.on_build;
   settings.cancel = job.cancel;
-  set_target(job, total.lap(), settings);
   image::set_threads(settings.threads);
   const auto write_sums = [&](const std::filesystem::path& file, const film::Partial& partial) {
     image::write_partial(file, preview(world, partial), picture_header(read, world, report, job.reproducible),
                          provenance, partial);
   };
   Checkpoint checkpoint(job, provenance, write_sums);
-  const render::Result result = job.parts.empty() ? render(job, world, settings, checkpoint, report)
-                                                  : join(job, world, layers, provenance, report);
+  const render::Result result = job.parts.empty() ? render_job(job, world, settings, checkpoint, total.lap(), report)
+                                                  : join_job(job, world, layers, provenance, report);
   report.render = result.statistics;
   watch.lap();
 

@@ -2,8 +2,8 @@
 #include "scene/schema.h"
 
 #include <limits>
-#include <type_traits>
 
+#include "scene/key_builders.h"
 #include "scene/limits.h"
 
 namespace orrery::scene {
@@ -13,120 +13,6 @@ constexpr Range kAnyLength{-kLargestLength, kLargestLength};
 constexpr Range kLength{kSmallestRadius, kLargestLength};
 constexpr Range kUnit{0, 1};
 constexpr Range kLight{0, kBrightestBackground};
-
-/// What people read about a key.
-struct About {
-  const char* unit;
-  const char* doc;
-  const char* cost = "";
-};
-
-/// A key for the member that `at` finds in its target; `at` changes nothing, it only gives a reference.
-template <class Target, class At, class Text>
-Key<Target> key_of(const char* name, ValueType type, Range range, const About& about, At at, Text text) {
-  return {name,
-          type,
-          range,
-          {},
-          about.unit,
-          about.doc,
-          about.cost,
-          false,
-          [at](Target& t, const Value& v) {
-            using Member = std::remove_reference_t<decltype(at(t))>;
-            if constexpr (std::is_integral_v<Member>) {
-              at(t) = static_cast<Member>(std::get<std::int64_t>(v));
-            } else if constexpr (std::is_constructible_v<Member, std::string>) {
-              at(t) = std::get<std::string>(v);
-            } else {
-              at(t) = std::get<Member>(v);
-            }
-          },
-          [at, text](const Target& t) { return text(at(const_cast<Target&>(t))); }};
-}
-template <class Target, class At>
-Key<Target> integer(const char* name, Range range, const About& about, At at) {
-  return key_of<Target>(name, ValueType::kInteger, range, about, at, [](auto x) { return std::to_string(x); });
-}
-template <class Target, class At>
-Key<Target> number(const char* name, Range range, const About& about, At at) {
-  return key_of<Target>(name, ValueType::kNumber, range, about, at, number_text);
-}
-template <class Target, class At>
-Key<Target> vector(const char* name, Range range, const About& about, At at) {
-  return key_of<Target>(name, ValueType::kVector, range, about, at, vector_text);
-}
-template <class Target, class At>
-Key<Target> text(const char* name, const About& about, At at) {
-  return key_of<Target>(name, ValueType::kText, {}, about, at, string_text);
-}
-/// A number that may be left out, and then is what `otherwise` says.
-template <class Target, class At>
-Key<Target> optional_number(const char* name, Range range, const About& about, const char* otherwise, At at) {
-  return {name,
-          ValueType::kNumber,
-          range,
-          {},
-          about.unit,
-          about.doc,
-          about.cost,
-          false,
-          [at](Target& t, const Value& v) { at(t) = std::get<double>(v); },
-          [at, otherwise](const Target& t) -> std::string {
-            const std::optional<double>& x = at(const_cast<Target&>(t));
-            return x ? number_text(*x) : otherwise;
-          }};
-}
-/// Choices stand in the order of the enumerators.
-template <class Target, class At>
-Key<Target> choice(const char* name, std::vector<std::string> choices, const About& about, At at) {
-  return {name,
-          ValueType::kChoice,
-          {},
-          choices,
-          about.unit,
-          about.doc,
-          about.cost,
-          false,
-          [at, choices](Target& t, const Value& v) {
-            using Enum = std::remove_reference_t<decltype(at(t))>;
-            for (std::size_t i = 0; i < choices.size(); ++i)
-              if (choices[i] == std::get<std::string>(v)) at(t) = static_cast<Enum>(i);
-          },
-          [at, choices](const Target& t) {
-            return string_text(choices[static_cast<std::size_t>(at(const_cast<Target&>(t)))]);
-          }};
-}
-/// A rectangle that may be left out, and then is what `otherwise` says.
-template <class Target, class At>
-Key<Target> optional_window(const char* name, const About& about, const char* otherwise, At at) {
-  Key<Target> key;
-  key.name = name;
-  key.type = ValueType::kWindow;
-  key.required = false;
-  key.range = {0, kLargestSide};
-  key.unit = about.unit;
-  key.doc = about.doc;
-  key.cost = about.cost;
-  key.set = [at](Target& t, const Value& v) { at(t) = std::get<Window>(v); };
-  key.text = [at, otherwise](const Target& t) -> std::string {
-    const std::optional<Window>& w = at(const_cast<Target&>(t));
-    return w ? window_text(*w) : otherwise;
-  };
-  return key;
-}
-/// Some of the choices, in any order.
-template <class Target, class At>
-Key<Target> choices(const char* name, std::vector<std::string> choices, const About& about, At at) {
-  Key<Target> key = key_of<Target>(name, ValueType::kChoices, {}, about, at, list_text);
-  key.choices = std::move(choices);
-  return key;
-}
-template <class Target>
-Key<Target> required(Key<Target> key) {
-  key.required = true;
-  return key;
-}
 
 using S = Scene;
 

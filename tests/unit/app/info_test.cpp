@@ -121,7 +121,7 @@ TEST_F(AppInfo, JsonSaysTheSame) {
   EXPECT_EQ(json["spheres"], 3);
   EXPECT_EQ(json["bounds"]["lower"][0], -0.5);
   EXPECT_EQ(json["radius"]["largest"], 0.5);
-  EXPECT_EQ(json["memory_bytes"]["film"], 24 * 16 * 80);
+  EXPECT_EQ(json["memory_bytes"]["film"], 24 * 16 * (80 + 8));  // sums and picture, counts and goals
   EXPECT_EQ(json["settings"][0]["key"], "image.width");
 }
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/check_job.h"
+
+#include "app/checkpoint.h"
+#include "app/choose_isa.h"
+#include "app/output_files.h"
+#include "base/error.h"
+#include "image/format.h"
+
+namespace orrery::app {
+namespace {
+
+/// A part is sums and nothing else: pictures are made of all parts together.
+void check_part(const Job& job) {
+  const auto refuse = [](const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); };
+  if (job.outputs.size() > 1 || image::format_of(job.outputs.front()) != image::Format::kExr || !job.deep.empty())
+    refuse("--samples A:B and --tiles render a part, which is one EXR; orrery merge makes pictures of the parts");
+  if (job.noise > 0 || job.seconds > 0)
+    refuse("--noise and --time decide by the whole picture; a part, by --samples A:B or --tiles, has a fixed share");
+}
+
+}  // namespace
+
+render::Traversal traversal_of(const Job& job) {
+  if (job.traversal == "auto") return render::Traversal::kAuto;
+  if (job.traversal == "packet") return render::Traversal::kPacket;
+  if (job.traversal == "single") return render::Traversal::kSingle;
+  throw base::Error(base::ErrorKind::kUsage, "no traversal " + job.traversal + "; there are auto, packet and single");
+}
+
+void check_request(const Job& job) {
+  std::vector<std::filesystem::path> others;
+  if (!job.statistics.empty()) others.push_back(job.statistics);
+  if (!job.deep.empty()) others.push_back(job.deep);
+  if (job.parts.empty()) others.push_back(checkpoint_file(job.outputs.front()));
+  if (is_part(job)) check_part(job);
+  if (!job.deep.empty() && image::format_of(job.deep) != image::Format::kExr)
+    throw base::Error(base::ErrorKind::kUsage, job.deep.string() + " cannot hold samples in depth; EXR can");
+  std::vector<std::filesystem::path> inputs = {job.scene};
+  for (const PartFile& part : job.parts) inputs.push_back(part.file);
+  check_output_files(job.outputs, job.bits, others, inputs);
+  traversal_of(job);
+  image::check_compression(job.exr.compression);
+  choose_isa(job.isa);
+}
+
+void check_samples(const Job& job, const compile::World& world) {
+  if (job.sample_end > static_cast<std::uint32_t>(world.samples))
+    throw base::Error(base::ErrorKind::kUsage,
+                      "--samples " + std::to_string(job.sample_begin) + ":" + std::to_string(job.sample_end) +
+                          " goes beyond the scene's " + std::to_string(world.samples) +
+                          " samples; --set render.samples=" + std::to_string(job.sample_end) + " gives it more");
+}
+
+}  // namespace orrery::app

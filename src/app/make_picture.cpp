@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/make_picture.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "app/join_parts.h"
+#include "app/provenance.h"
+#include "base/error.h"
+#include "image/verify.h"
+
+namespace orrery::app {
+namespace {
+
+/// When to stop sampling. The samples of the scene limit what is asked for otherwise only if they were asked for, too.
+void set_target(const Job& job, double seconds_so_far, render::Settings& settings) {
+  constexpr double kLeastTime = 1e-3;  // nothing left is not no limit
+  settings.noise = job.noise;
+  if (job.seconds > 0) settings.seconds = std::max(job.seconds - seconds_so_far, kLeastTime);
+  settings.unlimited = !is_limited(job);
+}
+
+}  // namespace
+
+void stop_job(const std::string& remedy) {
+  throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written" + remedy);
+}
+
+film::Picture preview(const compile::World& world, const film::Partial& partial) {
+  film::Partial shown(0, 0);
+  shown.film = partial.film;
+  shown.second = partial.second;
+  return render::finished(world, {}, std::move(shown)).picture;
+}
+
+render::Result join_job(const Job& job, const compile::World& world, const Layers& layers,
+                        const image::Provenance& provenance, JobReport& report) {
+  const PartFile& first = job.parts.front();
+  if (const std::string wrong = difference(first.provenance, provenance, {"version", "sceneHash", "layers"});
+      !wrong.empty())
+    throw base::Error(base::ErrorKind::kBadData, first.file.string() + " is of " + wrong + ", which " +
+                                                     job.scene.string() +
+                                                     " comes to now; the scene has changed, or --scene names another");
+  Joined joined = join_parts(job.parts, world.width, world.height, static_cast<std::uint32_t>(world.samples),
+                             world.spheres.size(), job.allow_missing);
+  report.missing = joined.missing;
+  report.hosts = joined.hosts;
+  const film::Effort effort = joined.partial.effort;
+  const auto [fewest, most] = std::minmax_element(joined.partial.counts.begin(), joined.partial.counts.end());
+  render::Statistics statistics;
+  statistics.fewest_samples = *fewest;
+  statistics.most_samples = *most;
+  statistics.paths = effort.paths;
+  statistics.rays = effort.rays;
+  statistics.bad_samples = effort.bad_samples;
+  statistics.render_s = effort.seconds;
+  statistics.ended_by = "samples";
+  if (!layers.request.any()) joined.partial.layers.clear();
+  if (joined.partial.layers.empty() && layers.request.any())
+    throw base::Error(base::ErrorKind::kBadData, "the parts were rendered without the layers that are asked for");
+  render::Result result = render::finished(world, layers.request, std::move(joined.partial));
+  result.statistics = statistics;
+  return result;
+}
+
+bool is_there(const Job& job, const compile::World& world, const image::Provenance& provenance,
+              const std::string& stamp) {
+  if (is_part(job)) {
+    try {
+      const image::PartialFile part = image::read_partial(job.outputs.front(), world.width, world.height);
+      return difference(part.provenance, provenance, keys_of_checkpoints()).empty() && is_finished(part);
+    } catch (const base::Error&) {
+      return false;
+    }
+  }
+  const auto is_same = [&](const std::filesystem::path& file) { return image::verified_stamp(file) == stamp; };
+  return std::all_of(job.outputs.begin(), job.outputs.end(), is_same) && (job.deep.empty() || is_same(job.deep));
+}
+
+render::Result render_job(const Job& job, const compile::World& world, render::Settings settings,
+                          Checkpoint& checkpoint, double seconds_so_far, JobReport& report) {
+  set_target(job, seconds_so_far, settings);
+  settings.sample_begin = job.sample_begin;
+  settings.sample_end = job.sample_end;
+  settings.share = job.share;
+  settings.keep_partial = is_part(job);
+  settings.snapshot_is_due = [&] { return checkpoint.is_due(); };
+  settings.on_snapshot = [&](const film::Partial& partial) { checkpoint.write_snapshot(partial); };
+  std::optional<film::Partial> from = checkpoint.load(world.width, world.height);
+  report.was_resumed = from.has_value();
+  render::Result result = render::render(world, settings, std::move(from));
+  report.render = result.statistics;
+  report.phases.build_s = result.statistics.build_s;
+  report.phases.render_s = result.statistics.render_s;
+  if (result.completed) return result;
+  if (!result.partial)
+    stop_job(report.was_resumed ? "; " + checkpoint.file().string() + " still keeps what was rendered before" : "");
+  checkpoint.write(*result.partial);
+  report.checkpoint = checkpoint.file();
+  stop_job("; " + checkpoint.file().string() + " keeps what was rendered, and --resume goes on from there");
+}
+
+}  // namespace orrery::app
