@@ -128,7 +128,8 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Worl
   const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
   if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) return layers;
   const auto is_explicit = [](const std::string& setting) { return setting.rfind("output.layers=", 0) == 0; };
-  if (!scene.output.layers.empty() && std::any_of(job.overrides.begin(), job.overrides.end(), is_explicit))
+  if (job.parts.empty() && !scene.output.layers.empty() &&
+      std::any_of(job.overrides.begin(), job.overrides.end(), is_explicit))
     throw base::Error(base::ErrorKind::kUsage, "layers were asked for, and no output can hold them; add -o FILE.exr");
   Layers none;
   none.request.coverage = layers.request.coverage;
@@ -256,7 +257,7 @@ JobReport run_job(const Job& job) {
     write_failure(job, report, error);
     throw;
   }
-  if (!job.statistics.empty()) write_statistics(job.statistics, report, {});
+  if (!job.statistics.empty() && !report.was_skipped) write_statistics(job.statistics, report, {});
   return report;
 }
 

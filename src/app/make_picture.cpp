@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "app/join_parts.h"
 #include "app/provenance.h"
 #include "base/error.h"
+#include "image/format.h"
 #include "image/verify.h"
 
 namespace orrery::app {
@@ -37,8 +40,11 @@ film::Picture preview(const compile::World& world, const film::Partial& partial)
 render::Result join_job(const Job& job, const compile::World& world, const Layers& layers,
                         const image::Provenance& provenance, JobReport& report) {
   const PartFile& first = job.parts.front();
-  if (const std::string wrong = difference(first.provenance, provenance, {"version", "sceneHash", "layers"});
-      !wrong.empty())
+  std::vector<std::string> keys = {"version", "sceneHash"};
+  const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
+  // Other files have no use for the layers that the parts may have.
+  if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) keys.push_back("layers");
+  if (const std::string wrong = difference(first.provenance, provenance, keys); !wrong.empty())
     throw base::Error(base::ErrorKind::kBadData, first.file.string() + " is of " + wrong + ", which " +
                                                      job.scene.string() +
                                                      " comes to now; the scene has changed, or --scene names another");

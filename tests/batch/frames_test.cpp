@@ -75,6 +75,8 @@ TEST_F(BatchFrames, WhatIsThereWholeAndRightIsLeftOut) {
   const std::string command =
       "render shot.toml -o s.##.exr -o s.##.png -o s.##.jpg -o s.##.tif --frames 1-3 --skip-existing";
   ASSERT_EQ(run(command + " -q").status, 0);
+  ASSERT_EQ(run(command + " -q --stats s.##.json").status, 0);
+  EXPECT_FALSE(exists("s.01.json"));  // nothing was done, and what an earlier run did is not to be lost
   const std::string first = text_of(folder_ / "s.01.exr"), second = text_of(folder_ / "s.02.exr");
   EXPECT_NE(run(command).err.find("0 of 3 rendered, 3 were there"), std::string::npos);
   EXPECT_EQ(text_of(folder_ / "s.01.exr"), first);

@@ -63,6 +63,15 @@ TEST_F(BatchParts, AnyCuttingMergesToTheSameBytes) {
   }
 }
 
+TEST_F(BatchParts, APictureWithoutLayersIsMadeOfPartsWithThem) {
+  ASSERT_EQ(run("develop whole.exr -o whole.png -q").status, 0);
+  render("a.exr", "--tiles 1/2");
+  render("b.exr", "--tiles 2/2");
+  const Outcome r = run("merge a.exr b.exr -o merged.png -q");
+  ASSERT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(run("compare merged.png whole.png -q --fail-above max=0.01").status, 0);  // whole.exr is half
+}
+
 TEST_F(BatchParts, BothWaysOfCuttingGoTogether) {
   render("a.exr", "--samples 0:10 --tiles 1/2");
   render("b.exr", "--samples 0:10 --tiles 2/2");
