@@ -207,10 +207,11 @@ Joined join_parts(std::vector<PartFile> parts, int width_px, int height_px, std:
   if (!findings.empty()) refuse(ErrorKind::kBadData, std::move(findings));
   out.hosts.assign(hosts.begin(), hosts.end());
   out.missing = coverage.missing(samples);
-  if (!out.missing.empty() && !allow_missing)
-    refuse(ErrorKind::kBadData,
-           {finding_of("the parts", out.missing + " are in no part",
-                       missing_tiles(parts).empty() ? "render them, or say --allow-missing" : missing_tiles(parts))});
+  if (!out.missing.empty() && !allow_missing) {
+    const std::string tiles = missing_tiles(parts);
+    refuse(ErrorKind::kBadData, {finding_of("the parts", out.missing + " are in no part",
+                                            tiles.empty() ? "render them, or say --allow-missing" : tiles)});
+  }
   return out;
 }
 

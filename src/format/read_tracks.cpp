@@ -11,13 +11,9 @@
 namespace orrery::format {
 namespace {
 
+using scene::interpolation_names;
 using scene::Track;
 using scene::ValueType;
-
-const std::vector<std::string>& interpolations() {
-  static const std::vector<std::string> names = {"linear", "cubic", "hold"};  // in the order of the enumerators
-  return names;
-}
 
 /// A list under a key of the table; null and a finding where there is none.
 const toml::array* list_at(Reading& reading, const toml::table& table, const std::string& full_name, const char* key) {
@@ -93,10 +89,10 @@ void read_tracks(Reading& reading, const toml::array& list, scene::Scene& scene)
     Track track;
     if (const toml::node* node = table.get("interpolation"))
       if (const auto value =
-              read_value(reading, *node, full_name + ".interpolation", ValueType::kChoice, {}, interpolations()))
+              read_value(reading, *node, full_name + ".interpolation", ValueType::kChoice, {}, interpolation_names()))
         track.interpolation = static_cast<scene::Interpolation>(
-            std::find(interpolations().begin(), interpolations().end(), std::get<std::string>(*value)) -
-            interpolations().begin());
+            std::find(interpolation_names().begin(), interpolation_names().end(), std::get<std::string>(*value)) -
+            interpolation_names().begin());
     const auto target = read_target(reading, table, full_name, scene, track.target);
     const toml::array* const frames = list_at(reading, table, full_name, "frames");
     const toml::array* const values = list_at(reading, table, full_name, "values");

@@ -64,7 +64,6 @@ void add_materials(std::string& out, const std::vector<scene::Material>& materia
 }
 
 void add_tracks(std::string& out, const scene::Scene& scene) {
-  const char* const names[] = {"linear", "cubic", "hold"};
   const auto list = [&](const char* key, std::size_t size, auto text) {
     out += std::string(key) + " = [";
     for (std::size_t i = 0; i < size; ++i) out += (i > 0 ? ", " : "") + text(i);
@@ -73,8 +72,8 @@ void add_tracks(std::string& out, const scene::Scene& scene) {
   for (const scene::Track& track : scene.tracks) {
     const auto target = scene::find_animated(scene, track.target);
     const bool is_vector = target && target->type == scene::ValueType::kVector;
-    out += "[[key]]\ntarget = " + string_text(track.target) +
-           "\ninterpolation = " + string_text(names[static_cast<std::size_t>(track.interpolation)]) + "\n";
+    out += "[[key]]\ntarget = " + string_text(track.target) + "\ninterpolation = " +
+           string_text(scene::interpolation_names()[static_cast<std::size_t>(track.interpolation)]) + "\n";
     list("frames", track.frames.size(), [&](std::size_t i) { return number_text(track.frames[i]); });
     list("values", track.values.size(),
          [&](std::size_t i) { return is_vector ? vector_text(track.values[i]) : number_text(track.values[i].x); });

@@ -25,6 +25,9 @@ std::optional<Animated> find_animated(const Scene& scene, const std::string& tar
 /// All names that find_animated knows in this scene, of spheres only those that have names.
 std::vector<std::string> animated_names(const Scene& scene);
 
+/// As they stand in files, in the order of the enumerators.
+const std::vector<std::string>& interpolation_names();
+
 /// The value of a track at a frame, which need not be whole. Before the first key and behind the last one it rests.
 ///
 /// Domain     frames ascend, as many values as frames, at least one

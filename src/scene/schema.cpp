@@ -55,7 +55,7 @@ Table camera_table() {
                      [](S& s) -> double& { return s.camera.shutter_open; }),
            number<S>("shutter_close", {-kLongestShutter, kLongestShutter},
                      {"frames", "when it closes; later than `shutter_open`: what moves meanwhile is blurred",
-                      "only where something moves: a quarter to twice the time"},
+                      "only where something moves: a random number more at each vertex, and boxes that move"},
                      [](S& s) -> double& { return s.camera.shutter_close; })}};
 }
 

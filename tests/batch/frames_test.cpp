@@ -7,25 +7,13 @@
 namespace orrery::test {
 namespace {
 
-constexpr const char* kAnimated = R"(
-[image]
-width = 40
-height = 24
+/// The good scene, whose ball flies from left to right.
+constexpr const char* kFlight = R"(
 [camera]
 look_from = [0, 0, 1]
 look_at = [0, 0, -1]
-[render]
-samples = 4
-[material.grey]
-type = "lambertian"
-albedo = [0.5, 0.5, 0.5]
-[[sphere]]
-center = [0, 0, -1]
-radius = 0.5
-material = "grey"
-name = "ball"
 [[key]]
-target = "sphere.ball.center"
+target = "sphere[0].center"
 frames = [1, 5]
 values = [[-1, 0, -1], [1, 0, -1]]
 )";
@@ -38,8 +26,9 @@ class BatchFrames : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    write("shot.toml", kAnimated);
+    write("shot.toml", animated());
   }
+  static std::string animated() { return std::string(kGoodScene) + kFlight; }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
 };
 
@@ -102,7 +91,7 @@ TEST_F(BatchFrames, WhatIsThereWholeAndRightIsLeftOut) {
 
 TEST_F(BatchFrames, AFailureIsToldAndTheOthersGoOn) {
   for (const int frame : {1, 3}) write("cloud." + std::to_string(frame) + ".ply", kPly);
-  write("cloud.toml", std::string(kAnimated) + "[[points]]\nfile = \"cloud.%d.ply\"\nmaterial = \"grey\"\n");
+  write("cloud.toml", animated() + "[[points]]\nfile = \"cloud.%d.ply\"\nmaterial = \"grey\"\n");
   const Outcome r = run("render cloud.toml -o c.##.png --frames 1-3");
   EXPECT_EQ(r.status, 65);
   EXPECT_TRUE(exists("c.01.png"));
@@ -122,7 +111,7 @@ TEST_F(BatchFrames, SeveralScenesAreNamedByTheirFiles) {
   for (const char* name : {"good.01.png", "good.02.png", "shot.01.png", "shot.02.png"}) EXPECT_TRUE(exists(name));
   EXPECT_EQ(run("render good.toml shot.toml -o a.png").status, 2);
   std::filesystem::create_directory(folder_ / "other");
-  write("other/good.toml", kAnimated);
+  write("other/good.toml", animated());
   const Outcome same = run("render good.toml other/good.toml -o {scene}.png");
   EXPECT_EQ(same.status, 2);
   EXPECT_NE(same.err.find("good.png would be written for good.toml and for other/good.toml"), std::string::npos)

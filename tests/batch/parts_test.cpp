@@ -120,7 +120,6 @@ TEST_F(BatchParts, WhatIsMissingMayBeAllowed) {
 
 TEST_F(BatchParts, AnUnfinishedPartIsNamed) {
   render("b.exr", "--samples 10:35");
-  const std::string large = "--samples 0:10 --set image.width=70";
   // A render that is stopped at once leaves a checkpoint of its part.
   run("render good.toml -o a.exr --set render.samples=3000000 --samples 0:2999965 --width 70 --height 45 -q",
       "timeout -s TERM 1");

@@ -12,47 +12,47 @@ set -eu
 scenes=$(cd "$(dirname "$0")/../../scenes" && pwd)
 program=$(realpath "$1")
 mkdir -p "$2"
-work=$(realpath "$2")
+folder=$(realpath "$2")
 for tool in munged slurmctld slurmd sbatch squeue; do
   command -v "$tool" > /dev/null || { echo "slurm: left out, $tool is not installed (munge slurm-wlm)"; exit 77; }
 done
 [ "$(id -u)" -eq 0 ] || { echo "slurm: left out, only root can start nodes"; exit 77; }
 
 host=$(hostname -s)
-rm -rf "$work/farm" "$work/shot.parts" "$work"/*.exr
-mkdir -p "$work/farm/state" "$work/farm/munge"
-chmod 0700 "$work/farm/munge"
-cd "$work"
+rm -rf "$folder/cluster" "$folder/shot.parts" "$folder"/*.exr
+mkdir -p "$folder/cluster/state" "$folder/cluster/keys"
+chmod 0700 "$folder/cluster/keys"
+cd "$folder"
 
 stop_all() {
-  for pid in farm/slurmctld.pid farm/slurmd.n*.pid farm/munge/munged.pid; do
+  for pid in cluster/slurmctld.pid cluster/slurmd.n*.pid cluster/keys/munged.pid; do
     [ -f "$pid" ] && kill -9 "$(cat "$pid")" 2> /dev/null || true
   done
   pkill -9 -f "slurmstepd: \[" 2> /dev/null || true
 }
 trap stop_all EXIT
 
-dd if=/dev/urandom of=farm/munge/key bs=128 count=1 2> /dev/null
-chmod 0400 farm/munge/key
-munged --force --key-file="$work/farm/munge/key" --socket="$work/farm/munge/socket" \
-  --pid-file="$work/farm/munge/munged.pid" --log-file="$work/farm/munge/log" --seed-file="$work/farm/munge/seed"
+dd if=/dev/urandom of=cluster/keys/key bs=128 count=1 2> /dev/null
+chmod 0400 cluster/keys/key
+munged --force --key-file="$folder/cluster/keys/key" --socket="$folder/cluster/keys/socket" \
+  --pid-file="$folder/cluster/keys/munged.pid" --log-file="$folder/cluster/keys/log" --seed-file="$folder/cluster/keys/seed"
 
 # Ports of this process's own, so that two farms do not meet.
 port=$((20000 + $$ % 20000))
-cat > farm/slurm.conf << END
+cat > cluster/slurm.conf << END
 ClusterName=orrery
 SlurmctldHost=$host(127.0.0.1)
 SlurmUser=root
 AuthType=auth/munge
 CredType=cred/munge
-AuthInfo=socket=$work/farm/munge/socket
+AuthInfo=socket=$folder/cluster/keys/socket
 SlurmctldPort=$port
-SlurmctldPidFile=$work/farm/slurmctld.pid
-SlurmdPidFile=$work/farm/slurmd.%n.pid
-SlurmctldLogFile=$work/farm/slurmctld.log
-SlurmdLogFile=$work/farm/slurmd.%n.log
-StateSaveLocation=$work/farm/state
-SlurmdSpoolDir=$work/farm/spool.%n
+SlurmctldPidFile=$folder/cluster/slurmctld.pid
+SlurmdPidFile=$folder/cluster/slurmd.%n.pid
+SlurmctldLogFile=$folder/cluster/slurmctld.log
+SlurmdLogFile=$folder/cluster/slurmd.%n.log
+StateSaveLocation=$folder/cluster/state
+SlurmdSpoolDir=$folder/cluster/spool.%n
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 MpiDefault=none
@@ -71,7 +71,7 @@ NodeName=n2 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 3)) CPUs=1
 NodeName=n3 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 4)) CPUs=1
 PartitionName=all Nodes=ALL Default=YES State=UP
 END
-export SLURM_CONF="$work/farm/slurm.conf"
+export SLURM_CONF="$folder/cluster/slurm.conf"
 slurmctld
 for node in n0 n1 n2 n3; do slurmd -N "$node"; done
 
@@ -81,7 +81,7 @@ wait_for() {  # seconds, what, command ...
   shift 2
   until "$@"; do
     left=$((left - 1))
-    [ "$left" -gt 0 ] || { echo "slurm: waited in vain for $what"; sinfo -lN; squeue; tail -5 farm/*.log; exit 1; }
+    [ "$left" -gt 0 ] || { echo "slurm: waited in vain for $what"; sinfo -lN; squeue; tail -5 cluster/*.log; exit 1; }
     sleep 1
   done
 }
@@ -98,16 +98,16 @@ wait_for 60 "a task on n1" node_is_busy
 sleep 1
 killed=$(squeue --noheader --states=running --nodelist=n1 -o %i)
 echo "slurm: killing node n1 with its task $killed"
-kill -9 "$(cat farm/slurmd.n1.pid)"
+kill -9 "$(cat cluster/slurmd.n1.pid)"
 pkill -9 -f "slurmstepd: \[$(scontrol show job "$killed" | sed -n 's/^ *JobId=\([0-9]*\).*/\1/p' | head -1)" || true
 for pid in $(pgrep -f "tiles .*/4 --frames"); do
   grep -qz "SLURMD_NODENAME=n1" "/proc/$pid/environ" 2> /dev/null && kill -9 "$pid" || true
 done
-rm -f farm/slurmd.n1.pid
+rm -f cluster/slurmd.n1.pid
 
 all_done() { [ "$(squeue --noheader -o %i | wc -l)" -eq 0 ]; }
 wait_for 600 "the end of all jobs" all_done
-starts=$(grep -c "\(Started\|Allocate\) JobId=$killed(" farm/slurmctld.log)
+starts=$(grep -c "\(Started\|Allocate\) JobId=$killed(" cluster/slurmctld.log)
 [ "$starts" -ge 2 ] || { echo "slurm: the killed task $killed was started $starts times"; exit 1; }
 
 for frame in 1 2; do
