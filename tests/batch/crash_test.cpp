@@ -188,11 +188,11 @@ TEST_F(BatchCrash, TwoProcessesOnOnePictureMakeOneWholePicture) {
   }
 }
 
-TEST_F(BatchCrash, ThirtyInterruptionsCostNothingButTheirOwnTime) {
-  ASSERT_EQ(run("render scene.toml -o whole.exr --samples 4000 --reproducible -q --stats whole.json").status, 0);
+TEST_F(BatchCrash, InterruptedThirtyTimesItIsTheSameBytes) {
+  ASSERT_EQ(run("render scene.toml -o whole.exr --samples 4000 --reproducible -q").status, 0);
   std::mt19937 random(13);
-  const std::vector<const char*> words = {"render", "scene.toml", "-o",      "a.exr",  "--resume",      "--samples",
-                                          "4000",   "-q",         "--stats", "a.json", "--reproducible"};
+  const std::vector<const char*> words = {"render",    "scene.toml", "-o", "a.exr",         "--resume",
+                                          "--samples", "4000",       "-q", "--reproducible"};
   std::uniform_real_distribution<double> moment(0.02, 20 * seconds_ / 31 * 2);
   int interruptions = 0, status = 75;
   while (status == 75) {
