@@ -34,10 +34,10 @@ void run(benchmark::State& state, Precision precision, Render render) {
 }
 
 void in_double(benchmark::State& state, Precision precision, Lanes lanes) {
-  run<kernel::RayPacket, kernel::PathStream>(state, precision, kernel::render_tile_function(precision, lanes));
+  run<kernel::RayPacket, kernel::PathStream>(state, precision, kernel::render_tile_function({}, precision, lanes));
 }
 void in_float(benchmark::State& state) {
-  run<kernel::RayPacketFast, kernel::PathStreamFast>(state, Precision::kFast, kernel::render_tile_fast_function());
+  run<kernel::RayPacketFast, kernel::PathStreamFast>(state, Precision::kFast, kernel::render_tile_fast_function({}));
 }
 
 [[maybe_unused]] const bool kRegistered = [] {

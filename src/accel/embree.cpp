@@ -84,7 +84,7 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
 class Embree final : public Accel {
  public:
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor)
-      : functions_(embree_functions(precision)), scene_(make_scene(view)) {
+      : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view)) {
     const std::size_t primitives = view.sphere_count - scene_.apart.size();
     if (primitives > 0) build(primitives, monitor);
   }
@@ -147,7 +147,8 @@ class Embree final : public Accel {
 /// Every sphere stands apart, and no hierarchy is left.
 class SimdList final : public Accel {
  public:
-  SimdList(const kernel::SceneView& view, kernel::Precision precision) : functions_(embree_functions(precision)) {
+  SimdList(const kernel::SceneView& view, kernel::Precision precision)
+      : functions_(embree_functions(precision, view.moving_count > 0)) {
     scene_.spheres = view.spheres;
     scene_.motion = view.motion;
     scene_.moving_count = view.moving_count;

@@ -48,12 +48,13 @@ struct EmbreeQuery {
   alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
 };
 
-/// The functions that were compiled for this processor and are right for a precision.
+/// The functions that were compiled for this processor and are right for a precision, and for spheres that move or
+/// that all rest.
 struct EmbreeFunctions {
   RTCIntersectFunctionN intersect = nullptr;
   void (*trace)(const void* scene, kernel::RayPacket& packet) = nullptr;
   void (*trace_fast)(const void* scene, kernel::RayPacketFast& packet) = nullptr;
 };
-EmbreeFunctions embree_functions(kernel::Precision precision);
+EmbreeFunctions embree_functions(kernel::Precision precision, bool moves);
 
 }  // namespace orrery::accel

@@ -94,16 +94,16 @@ HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
 }
 
 /// Embree's callback for one ray.
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kMoves>
 void intersect_single(const RTCIntersectFunctionNArguments* arguments, const EmbreeQuery<Packet>& query) {
   using D = hn::FixedTag<DistanceOf<Packet>, 1>;
   const D d;
   const EmbreeScene& scene = *query.scene;
   Packet& packet = *query.packet;
-  const std::uint32_t id = scene.sphere_id(arguments->geomID, arguments->primID);
+  const std::uint32_t id = scene.sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
   auto nearest = Nearest<D>::load(d, packet, query.first);
-  meet<D, kPrecision>(d, k::load_rays(d, packet, query.first), k::sphere_at(d, scene, id, packet, query.first), id,
-                      hn::FirstN(d, 1), nearest);
+  meet<D, kPrecision>(d, k::load_rays(d, packet, query.first), k::sphere_at<kMoves>(d, scene, id, packet, query.first),
+                      id, hn::FirstN(d, 1), nearest);
   if (hn::AllFalse(d, nearest.is_new)) {
     arguments->valid[0] = 0;
     return;
@@ -114,17 +114,17 @@ void intersect_single(const RTCIntersectFunctionNArguments* arguments, const Emb
 }
 
 /// Embree's callback: some rays of the query against one sphere.
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kMoves>
 void intersect(const RTCIntersectFunctionNArguments* arguments) {
   using T = DistanceOf<Packet>;
   using D = hn::ScalableTag<T>;
   const D d;
   const hn::Rebind<std::int32_t, D> di;
   auto& query = *reinterpret_cast<EmbreeQuery<Packet>*>(arguments->context);
-  if (arguments->N == 1) return intersect_single<Packet, kPrecision>(arguments, query);
+  if (arguments->N == 1) return intersect_single<Packet, kPrecision, kMoves>(arguments, query);
   const EmbreeScene& scene = *query.scene;
   Packet& packet = *query.packet;
-  const std::uint32_t id = scene.sphere_id(arguments->geomID, arguments->primID);
+  const std::uint32_t id = scene.sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
   const int n = static_cast<int>(arguments->N), step = static_cast<int>(hn::Lanes(d));
   float* const to_limit = &RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0);
   for (int v = 0; v < n; v += step) {
@@ -139,7 +139,7 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const int first = query.first + v;
     const auto ray = k::load_rays(d, packet, first);
     auto nearest = Nearest<D>::load(d, packet, first);
-    meet<D, kPrecision>(d, ray, k::sphere_at(d, scene, id, packet, first), id, valid, nearest);
+    meet<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first), id, valid, nearest);
     if (hn::AllFalse(d, nearest.is_new)) {
       hn::StoreU(hn::Zero(di), di, arguments->valid + v);
       continue;
@@ -186,7 +186,7 @@ HWY_INLINE void trace_one_by_one(const int* valid, const EmbreeRays& rays, Embre
 }
 
 /// Traces a packet: the spheres that stand apart, then the hierarchy.
-template <class Packet, kernel::Precision kPrecision>
+template <class Packet, kernel::Precision kPrecision, bool kMoves>
 void trace(const void* self, Packet& packet) {
   using T = DistanceOf<Packet>;
   using D = hn::ScalableTag<T>;
@@ -198,7 +198,7 @@ void trace(const void* self, Packet& packet) {
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     auto nearest = Nearest<D>::load(d, packet, v);
     for (const std::uint32_t id : scene.apart)
-      meet<D, kPrecision>(d, ray, k::sphere_at(d, scene, id, packet, v), id, lanes, nearest);
+      meet<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v), id, lanes, nearest);
     nearest.store(d, packet, v);
   }
   if (scene.scene == nullptr) return;
@@ -233,7 +233,7 @@ void trace(const void* self, Packet& packet) {
       store_float(d, ray.direction.y, rays.ray.dir_y + v);
       store_float(d, ray.direction.z, rays.ray.dir_z + v);
       store_float(d, limit, rays.ray.tfar + v);
-      if (scene.moving_count > 0) store_float(d, hn::Load(d, packet.time + first + v), rays.ray.time + v);
+      if constexpr (kMoves) store_float(d, hn::Load(d, packet.time + first + v), rays.ray.time + v);
       hn::Store(box.start, d, query.start + v);
       // A known hit before the boxes begin leaves nothing to look for (and Embree wants no negative limit).
       const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first - v)));
@@ -248,21 +248,29 @@ void trace(const void* self, Packet& packet) {
   }
 }
 
-void intersect_exact(const RTCIntersectFunctionNArguments* a) {
-  intersect<kernel::RayPacket, kernel::Precision::kExact>(a);
+template <bool kMoves>
+EmbreeFunctions instance(kernel::Precision precision) {
+  using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast;
+  EmbreeFunctions f;
+  switch (precision) {
+    case Precision::kExact:
+      f.intersect = intersect<RayPacket, Precision::kExact, kMoves>;
+      f.trace = trace<RayPacket, Precision::kExact, kMoves>;
+      break;
+    case Precision::kBook:
+      f.intersect = intersect<RayPacket, Precision::kBook, kMoves>;
+      f.trace = trace<RayPacket, Precision::kBook, kMoves>;
+      break;
+    case Precision::kFast:
+      f.intersect = intersect<RayPacketFast, Precision::kFast, kMoves>;
+      f.trace_fast = trace<RayPacketFast, Precision::kFast, kMoves>;
+      break;
+  }
+  return f;
 }
-void intersect_book(const RTCIntersectFunctionNArguments* a) {
-  intersect<kernel::RayPacket, kernel::Precision::kBook>(a);
-}
-void intersect_fast(const RTCIntersectFunctionNArguments* a) {
-  intersect<kernel::RayPacketFast, kernel::Precision::kFast>(a);
-}
-void trace_exact(const void* self, kernel::RayPacket& p) {
-  trace<kernel::RayPacket, kernel::Precision::kExact>(self, p);
-}
-void trace_book(const void* self, kernel::RayPacket& p) { trace<kernel::RayPacket, kernel::Precision::kBook>(self, p); }
-void trace_fast(const void* self, kernel::RayPacketFast& p) {
-  trace<kernel::RayPacketFast, kernel::Precision::kFast>(self, p);
+
+EmbreeFunctions functions(kernel::Precision precision, bool moves) {
+  return moves ? instance<true>(precision) : instance<false>(precision);
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE
@@ -271,30 +279,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace orrery::accel {
 
-HWY_EXPORT(intersect_exact);
-HWY_EXPORT(intersect_book);
-HWY_EXPORT(intersect_fast);
-HWY_EXPORT(trace_exact);
-HWY_EXPORT(trace_book);
-HWY_EXPORT(trace_fast);
+HWY_EXPORT(functions);
 
-EmbreeFunctions embree_functions(kernel::Precision precision) {
-  EmbreeFunctions f;
-  switch (precision) {
-    case kernel::Precision::kExact:
-      f.intersect = ORRERY_BEST(intersect_exact);
-      f.trace = ORRERY_BEST(trace_exact);
-      break;
-    case kernel::Precision::kBook:
-      f.intersect = ORRERY_BEST(intersect_book);
-      f.trace = ORRERY_BEST(trace_book);
-      break;
-    case kernel::Precision::kFast:
-      f.intersect = ORRERY_BEST(intersect_fast);
-      f.trace_fast = ORRERY_BEST(trace_fast);
-      break;
-  }
-  return f;
+EmbreeFunctions embree_functions(kernel::Precision precision, bool moves) {
+  return ORRERY_BEST(functions)(precision, moves);
 }
 
 }  // namespace orrery::accel

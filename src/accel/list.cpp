@@ -17,7 +17,7 @@ namespace orrery::accel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class T, kernel::Precision kPrecision, class Packet>
+template <class T, kernel::Precision kPrecision, bool kMoves, class Packet>
 void trace_list(const void* self, Packet& packet) {
   namespace k = kernel::HWY_NAMESPACE;
   using D = hn::FixedTag<T, 1>;
@@ -27,8 +27,8 @@ void trace_list(const void* self, Packet& packet) {
     const auto ray = k::load_rays(d, packet, i);
     for (std::size_t id = 0; id < scene.sphere_count; ++id) {
       const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
-      const auto found =
-          k::nearest<D, kPrecision>(d, ray, k::sphere_at(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
+      const auto found = k::nearest<D, kPrecision>(
+          d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
       if (hn::AllFalse(d, found.mask)) continue;
       const T distance = hn::GetLane(found.value);
       if (distance >= packet.distance[i]) continue;  // ids ascend: of two at the same place the smaller was first
@@ -38,14 +38,18 @@ void trace_list(const void* self, Packet& packet) {
   }
 }
 
-void list_exact(const void* self, kernel::RayPacket& packet) {
-  trace_list<double, kernel::Precision::kExact>(self, packet);
+template <bool kMoves>
+kernel::Tracer instance(kernel::Precision precision) {
+  using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast;
+  kernel::Tracer t;
+  t.trace = precision == Precision::kBook ? trace_list<double, Precision::kBook, kMoves, RayPacket>
+                                          : trace_list<double, Precision::kExact, kMoves, RayPacket>;
+  t.trace_fast = trace_list<float, Precision::kFast, kMoves, RayPacketFast>;
+  return t;
 }
-void list_book(const void* self, kernel::RayPacket& packet) {
-  trace_list<double, kernel::Precision::kBook>(self, packet);
-}
-void list_fast(const void* self, kernel::RayPacketFast& packet) {
-  trace_list<float, kernel::Precision::kFast>(self, packet);
+
+kernel::Tracer list_tracer(kernel::Precision precision, bool moves) {
+  return moves ? instance<true>(precision) : instance<false>(precision);
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE
@@ -55,19 +59,15 @@ HWY_AFTER_NAMESPACE();
 namespace orrery::accel {
 namespace {
 
-HWY_EXPORT(list_exact);
-HWY_EXPORT(list_book);
-HWY_EXPORT(list_fast);
+HWY_EXPORT(list_tracer);
 
 class List final : public Accel {
  public:
   List(const kernel::SceneView& scene, kernel::Precision precision) : scene_(scene), precision_(precision) {}
 
   kernel::Tracer tracer() const noexcept override {
-    kernel::Tracer t;
+    kernel::Tracer t = ORRERY_BEST(list_tracer)(precision_, scene_.moving_count > 0);
     t.self = &scene_;
-    t.trace = precision_ == kernel::Precision::kBook ? ORRERY_BEST(list_book) : ORRERY_BEST(list_exact);
-    t.trace_fast = ORRERY_BEST(list_fast);
     return t;
   }
   std::string name() const override { return "list"; }

@@ -79,9 +79,8 @@ HWY_INLINE CameraVectors<V> camera_vectors(D d, const Camera& c) {
 }
 
 /// The camera at a time within the shutter, one a lane.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE CameraVectors<V> camera_at(D d, const SceneView& scene, V time) {
-  const auto a = camera_vectors(d, scene.camera), change = camera_vectors(d, scene.camera_motion);
+template <class V>
+HWY_INLINE CameraVectors<V> moved(const CameraVectors<V>& a, const CameraVectors<V>& change, V time) {
   return {mul_add(change.origin, time, a.origin), mul_add(change.forward, time, a.forward),
           mul_add(change.right, time, a.right),   mul_add(change.down, time, a.down),
           mul_add(change.lens_u, time, a.lens_u), mul_add(change.lens_v, time, a.lens_v)};

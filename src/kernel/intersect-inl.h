@@ -62,11 +62,11 @@ HWY_INLINE Spheres<D> broadcast(D d, const Sphere& s) {
 
 /// A sphere at the times of the rays `first` .. of a packet.
 ///
-/// Domain     `scene` has spheres, motion and moving_count as SceneView has them
-template <class D, class Scene, class Packet>
+/// Domain     `scene` has spheres, motion and moving_count as SceneView has them; something moves where kMoves
+template <bool kMoves, class D, class Scene, class Packet>
 HWY_INLINE Spheres<D> sphere_at(D d, const Scene& scene, std::uint32_t id, const Packet& packet, int first) {
   const auto at_opening = broadcast(d, scene.spheres[id]);
-  if (HWY_LIKELY(id >= scene.moving_count)) return at_opening;
+  if (!kMoves || id >= scene.moving_count) return at_opening;
   const auto change = broadcast(d, scene.motion[id]);
   const auto time = hn::Load(d, packet.time + first);
   return {mul_add(change.center, time, at_opening.center), hn::MulAdd(change.radius, time, at_opening.radius)};

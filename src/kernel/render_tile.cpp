@@ -48,7 +48,7 @@ class PathCounter {
 };
 
 /// Fills the packet with the first rays of the next paths.
-template <class D, bool kRecords, class Packet, class Carried>
+template <class D, bool kRecords, bool kMoves, class Packet, class Carried>
 HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& counter, int count, Packet& packet,
                                  Carried& carried) {
   using T = hn::TFromD<D>;
@@ -76,30 +76,27 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
       hn::Store(value.y, d, to[1] + v);
       hn::Store(value.z, d, to[2] + v);
     };
-    const auto store_rays = [&](const CameraVectors<hn::Vec<D>>& camera) HWY_ATTR {
-      const auto ray = camera_ray(d, scene, camera, x, y, random);
-      const auto origin = camera.origin + ray.offset;
-      store(origin, packet.origin);
-      store(sum_error(camera.origin, ray.offset, origin), packet.origin_low);
-      store(ray.offset, packet.offset);
-      store(ray.direction, packet.direction);
-      hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
-    };
-    if (HWY_UNLIKELY(scene.features.motion)) {
+    auto camera = camera_vectors(d, scene.camera);
+    if constexpr (kMoves) {
       const auto time = time_of_path(d, scene.sampler, pixels, samples);
       hn::Store(time, d, packet.time + v);
-      store_rays(camera_at(d, scene, time));
-    } else {
-      store_rays(camera_vectors(d, scene.camera));
+      camera = moved(camera, camera_vectors(d, scene.camera_motion), time);
     }
+    const auto ray = camera_ray(d, scene, camera, x, y, random);
+    const auto origin = camera.origin + ray.offset;
+    store(origin, packet.origin);
+    store(sum_error(camera.origin, ray.offset, origin), packet.origin_low);
+    store(ray.offset, packet.offset);
+    store(ray.direction, packet.direction);
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
+    hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
     if constexpr (kRecords) hn::Store(hn::Set(du, static_cast<Id>(kOnlySharpBit)), du, carried.history + v);
   }
 }
 
 /// Fills the packet with the next rays of paths first .. first + count of the stream.
-template <class D, bool kRecords, class Stream, class Carried>
+template <class D, bool kRecords, bool kMoves, class Stream, class Carried>
 HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, int first, int count, Carried& carried) {
   using T = hn::TFromD<D>;
   const IdTag<D> du;
@@ -129,13 +126,12 @@ HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, i
     const auto pixels = hn::LoadU(du, stream.pixel + i), samples = hn::LoadU(du, stream.sample + i);
     hn::Store(pixels, du, carried.pixel + v);
     hn::Store(samples, du, carried.sample + v);
-    if (HWY_UNLIKELY(scene.features.motion))
-      hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
+    if constexpr (kMoves) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
     if constexpr (kRecords) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
   }
 }
 
-template <class D, Precision kPrecision, bool kRecords = false, class Stream>
+template <class D, Precision kPrecision, bool kRecords, bool kMoves, class Stream>
 TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, Stream& stream) {
   const D d;
   using T = hn::TFromD<D>;
@@ -153,21 +149,22 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     forget_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);
     trace(tracer, stream.packet);
-    return shade<D, kPrecision, kRecords>(d, scene, tile, depth, carried, stream, alive, counts);
+    return shade<D, kPrecision, kRecords, kMoves>(d, scene, tile, depth, carried, stream, alive, counts);
   };
   while (to_start > 0) {
     const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
     to_start -= static_cast<std::uint64_t>(batch);
     int alive = 0;
     for (int i = 0; i < batch; i += kPacketSize) {
-      load_camera_rays<D, kRecords>(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet, carried);
+      load_camera_rays<D, kRecords, kMoves>(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet,
+                                            carried);
       alive = trace_and_shade(0, alive);
     }
     for (std::uint32_t depth = 1; alive > 0; ++depth) {
       // Survivors are written over paths that were already read: a packet never grows.
       int survivors = 0;
       for (int i = 0; i < alive; i += kPacketSize) {
-        load_bounced_rays<D, kRecords>(d, scene, stream, i, std::min(kPacketSize, alive - i), carried);
+        load_bounced_rays<D, kRecords, kMoves>(d, scene, stream, i, std::min(kPacketSize, alive - i), carried);
         survivors = trace_and_shade(depth, survivors);
       }
       alive = survivors;
@@ -180,30 +177,29 @@ using One = hn::FixedTag<double, 1>;
 using All = hn::ScalableTag<double>;
 using AllFast = hn::ScalableTag<float>;
 
-TileCounts render_exact_one(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
-  return render_tile<One, Precision::kExact>(v, r, t, s);
+template <class D, bool kRecords, bool kMoves>
+RenderTile instance(Precision precision) {
+  if (precision == Precision::kBook) return render_tile<D, Precision::kBook, kRecords, kMoves, PathStream>;
+  return render_tile<D, Precision::kExact, kRecords, kMoves, PathStream>;
 }
-TileCounts render_exact_all(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
-  return render_tile<All, Precision::kExact>(v, r, t, s);
-}
-TileCounts render_book_one(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
-  return render_tile<One, Precision::kBook>(v, r, t, s);
-}
-TileCounts render_book_all(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
-  return render_tile<All, Precision::kBook>(v, r, t, s);
-}
-TileCounts render_fast(const SceneView& v, const Tracer& r, const Tile& t, PathStreamFast& s) {
-  return render_tile<AllFast, Precision::kFast>(v, r, t, s);
+template <bool kRecords, bool kMoves>
+RenderTileFast fast_instance() {
+  return render_tile<AllFast, Precision::kFast, kRecords, kMoves, PathStreamFast>;
 }
 
-TileCounts record_exact(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
-  return render_tile<All, Precision::kExact, true>(v, r, t, s);
+RenderTile render_instance(bool moves, Precision precision, Lanes lanes) {
+  if (lanes == Lanes::kOne)
+    return moves ? instance<One, false, true>(precision) : instance<One, false, false>(precision);
+  return moves ? instance<All, false, true>(precision) : instance<All, false, false>(precision);
 }
-TileCounts record_book(const SceneView& v, const Tracer& r, const Tile& t, PathStream& s) {
-  return render_tile<All, Precision::kBook, true>(v, r, t, s);
+RenderTile record_instance(bool moves, Precision precision) {
+  return moves ? instance<All, true, true>(precision) : instance<All, true, false>(precision);
 }
-TileCounts record_fast(const SceneView& v, const Tracer& r, const Tile& t, PathStreamFast& s) {
-  return render_tile<AllFast, Precision::kFast, true>(v, r, t, s);
+RenderTileFast render_fast_instance(bool moves) {
+  return moves ? fast_instance<false, true>() : fast_instance<false, false>();
+}
+RenderTileFast record_fast_instance(bool moves) {
+  return moves ? fast_instance<true, true>() : fast_instance<true, false>();
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
@@ -212,27 +208,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace orrery::kernel {
 
-HWY_EXPORT(render_exact_one);
-HWY_EXPORT(render_exact_all);
-HWY_EXPORT(render_book_one);
-HWY_EXPORT(render_book_all);
-HWY_EXPORT(render_fast);
-HWY_EXPORT(record_exact);
-HWY_EXPORT(record_book);
-HWY_EXPORT(record_fast);
+HWY_EXPORT(render_instance);
+HWY_EXPORT(record_instance);
+HWY_EXPORT(render_fast_instance);
+HWY_EXPORT(record_fast_instance);
 
-RenderTile render_tile_function(Precision precision, Lanes lanes) {
-  const bool one = lanes == Lanes::kOne;
-  if (precision == Precision::kBook) return one ? ORRERY_BEST(render_book_one) : ORRERY_BEST(render_book_all);
-  return one ? ORRERY_BEST(render_exact_one) : ORRERY_BEST(render_exact_all);
+RenderTile render_tile_function(const Features& features, Precision precision, Lanes lanes) {
+  return ORRERY_BEST(render_instance)(features.motion, precision, lanes);
+}
+RenderTileFast render_tile_fast_function(const Features& features) {
+  return ORRERY_BEST(render_fast_instance)(features.motion);
 }
 
-RenderTileFast render_tile_fast_function() { return ORRERY_BEST(render_fast); }
-
-RenderTile record_tile_function(Precision precision) {
-  return precision == Precision::kBook ? ORRERY_BEST(record_book) : ORRERY_BEST(record_exact);
+RenderTile record_tile_function(const Features& features, Precision precision) {
+  return ORRERY_BEST(record_instance)(features.motion, precision);
 }
-RenderTileFast record_tile_fast_function() { return ORRERY_BEST(record_fast); }
+RenderTileFast record_tile_fast_function(const Features& features) {
+  return ORRERY_BEST(record_fast_instance)(features.motion);
+}
 
 }  // namespace orrery::kernel
 #endif

@@ -64,17 +64,19 @@ enum class Lanes : std::uint8_t {
   kAll,  ///< as many as the processor has
 };
 
-/// The path loop for the best instruction set that is enabled on this processor.
+/// The path loop for the best instruction set that is enabled on this processor, without what no scene with these
+/// features needs.
 ///
+/// Domain     the scene that is rendered has these features
 /// Result     bit-identical pictures for both lane counts, with records or without, and on every instruction set with
 ///            fused multiply-add
-RenderTile render_tile_function(Precision precision, Lanes lanes = Lanes::kAll);
-RenderTileFast render_tile_fast_function();
+RenderTile render_tile_function(const Features& features, Precision precision, Lanes lanes = Lanes::kAll);
+RenderTileFast render_tile_fast_function(const Features& features);
 
 /// The same loop, which also fills the tile's records.
 ///
 /// Domain     tiles have records
-RenderTile record_tile_function(Precision precision);
-RenderTileFast record_tile_fast_function();
+RenderTile record_tile_function(const Features& features, Precision precision);
+RenderTileFast record_tile_fast_function(const Features& features);
 
 }  // namespace orrery::kernel

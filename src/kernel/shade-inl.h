@@ -91,8 +91,8 @@ struct Lookup {
 
 /// Fetches spheres and materials of the lanes that hit something; the others get those of sphere 0.
 ///
-/// `times`    of the rays; read only where spheres move
-template <class D>
+/// `times`    of the rays; read only where kMoves
+template <class D, bool kMoves>
 HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
@@ -114,7 +114,7 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
       d, [&](std::size_t i) { return material[i]->eta; }, glass);
   Lookup<D> out;
   out.sphere = {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
-  if (HWY_UNLIKELY(scene.moving_count > 0)) {
+  if (kMoves && scene.moving_count > 0) {
     static constexpr Sphere kAtRest{0, 0, 0, 0};
     hn::Vec<D> change[4];
     gather4(
@@ -135,10 +135,10 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
 }
 
 /// Finds point, normal and side of every hit, and the material's constants for that side.
-template <class D, Precision kPrecision>
+template <class D, Precision kPrecision, bool kMoves>
 HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
                                    hn::Vec<D> distance, const hn::TFromD<D>* times) {
-  Lookup<D> at = look_up(d, scene, hits, times);
+  Lookup<D> at = look_up<D, kMoves>(d, scene, hits, times);
   Surface<D>& surface = at.surface;
   const auto is_self = hn::RebindMask(d, hits == ray.self);
   surface.direction = ray.direction;
@@ -217,7 +217,7 @@ HWY_INLINE hn::Mask<D> survives_roulette(D d, V u, Vec3<V>& throughput) {
 /// Shades a traced packet: what left the scene adds its light, what goes on is appended to the stream.
 ///
 /// Result     number of paths in the stream, `alive` before the call
-template <class D, Precision kPrecision, bool kRecords, class Stream, class Carried>
+template <class D, Precision kPrecision, bool kRecords, bool kMoves, class Stream, class Carried>
 HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_t depth, const Carried& carried,
                      Stream& stream, int alive, TileCounts& counts) {
   const IdTag<D> du;
@@ -260,13 +260,12 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     const bool ends = scene.shading == Shading::kPath && depth >= scene.max_depth;
     if (ends && !(kRecords && depth == 0)) continue;
     const auto at =
-        reach_surface<D, kPrecision>(d, scene, ray, hits, hn::Load(d, packet.distance + v), packet.time + v);
+        reach_surface<D, kPrecision, kMoves>(d, scene, ray, hits, hn::Load(d, packet.distance + v), packet.time + v);
     const Vec3<hn::Vec<D>> tinted = {throughput.x * at.albedo.x, throughput.y * at.albedo.y,
                                      throughput.z * at.albedo.z};
     if constexpr (kRecords) {
       if (depth == 0)
-        record.first_hit(d, hit, hits, at.surface.offset, ray.direction,
-                         scene.features.motion ? packet.time + v : nullptr);
+        record.first_hit(d, hit, hits, at.surface.offset, ray.direction, kMoves ? packet.time + v : nullptr);
       if (tile.record_guides)
         record.guide(d, hn::AndNot(is_sharp(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
       if (ends) continue;

@@ -64,12 +64,14 @@ double seconds_to_trace(const kernel::Tracer& tracer, std::vector<Packet>& packe
 
 RecordedRays<kernel::RayPacket> record_rays(const kernel::SceneView& view, const accel::Accel& accel,
                                             kernel::Precision precision, const std::vector<kernel::Tile>& tiles) {
-  return record<kernel::RayPacket, kernel::PathStream>(view, accel, tiles, kernel::render_tile_function(precision));
+  return record<kernel::RayPacket, kernel::PathStream>(view, accel, tiles,
+                                                       kernel::render_tile_function(view.features, precision));
 }
 
 RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& view, const accel::Accel& accel,
                                                      const std::vector<kernel::Tile>& tiles) {
-  return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, tiles, kernel::render_tile_fast_function());
+  return record<kernel::RayPacketFast, kernel::PathStreamFast>(view, accel, tiles,
+                                                               kernel::render_tile_fast_function(view.features));
 }
 
 double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket>& packets) {

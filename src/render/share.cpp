@@ -6,7 +6,8 @@
 namespace orrery::render {
 
 std::vector<bool> pixels_of(const Share& share, int width_px, int height_px) {
-  std::vector<bool> out(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
+  std::vector<bool> out(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), true);
+  if (share.count == 1) return out;
   const int across = (width_px + kShareSide - 1) / kShareSide;
   std::size_t at = 0;
   for (int y = 0; y < height_px; ++y)

@@ -32,9 +32,11 @@ TileRenderer::TileRenderer(const compile::World& world, const accel::Accel& acce
   const bool layers = request.any();
   if (request.coverage) view_.background_visible = false;
   if (world.precision == compile::Precision::kFast) {
-    render_fast_ = layers ? kernel::record_tile_fast_function() : kernel::render_tile_fast_function();
+    render_fast_ =
+        layers ? kernel::record_tile_fast_function(view_.features) : kernel::render_tile_fast_function(view_.features);
   } else {
-    render_ = layers ? kernel::record_tile_function(world.precision) : kernel::render_tile_function(world.precision);
+    render_ = layers ? kernel::record_tile_function(view_.features, world.precision)
+                     : kernel::render_tile_function(view_.features, world.precision);
   }
 }
 

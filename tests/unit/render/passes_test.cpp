@@ -48,8 +48,9 @@ std::vector<float> rendered_in_pieces(const compile::World& world, int side, int
       }
   std::reverse(pieces.begin(), pieces.end());
   const auto stream = std::make_unique<kernel::PathStream>();
-  const kernel::RenderTile render_tile = kernel::render_tile_function(world.precision, lanes);
-  for (const kernel::Tile& piece : pieces) render_tile(world.view(), accel->tracer(), piece, *stream);
+  const kernel::SceneView view = world.view();
+  const kernel::RenderTile render_tile = kernel::render_tile_function(view.features, world.precision, lanes);
+  for (const kernel::Tile& piece : pieces) render_tile(view, accel->tracer(), piece, *stream);
   return values(film.picture());
 }
 
