@@ -4,7 +4,8 @@
 
     bench/interruptions.py PROGRAM [--scene FILE] [--times N] [--seconds S]
 
-Both are timed as whole processes, one after the other; the pictures must be the same bytes.
+All are timed as whole processes; the one that is not stopped runs before and after the other, and its mean counts. The
+pictures must be the same bytes.
 """
 import argparse
 import pathlib
@@ -31,16 +32,17 @@ with tempfile.TemporaryDirectory() as folder:
         subprocess.run([*base, "--samples", str(samples), "-o", name], check=True, cwd=folder)
         return time.monotonic() - start
 
-    samples = max(16, int(16 * arguments.seconds / run(16, "speed.exr")))
-    whole = run(samples, "whole.exr")
+    seconds_per_sample = (run(64, "speed.exr") - run(16, "speed.exr")) / 48
+    samples = max(16, int(arguments.seconds / seconds_per_sample))
+    before = run(samples, "whole.exr")
     command = [*base, "--samples", str(samples), "-o", "parts.exr", "--resume"]
     spent, interruptions = 0.0, 0
     while True:
         start = time.monotonic()
-        process = subprocess.Popen(command, cwd=folder)
+        process = subprocess.Popen(command, cwd=folder, stderr=subprocess.DEVNULL)
         if interruptions < arguments.times:
             try:
-                process.wait(random.uniform(0.3, 2 * whole / (arguments.times + 1)))
+                process.wait(random.uniform(0.3, 1.8 * before / (arguments.times + 1)))
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGTERM)
         status = process.wait()
@@ -48,7 +50,10 @@ with tempfile.TemporaryDirectory() as folder:
         if status not in (75, -signal.SIGTERM):  # the second: it had not yet begun to listen
             break
         interruptions += 1
+    after = run(samples, "whole.exr")
+    whole = (before + after) / 2
     same = pathlib.Path(folder, "whole.exr").read_bytes() == pathlib.Path(folder, "parts.exr").read_bytes()
-    print(f"{samples} samples: {whole:.1f} s in one go, {spent:.1f} s with {interruptions} interruptions, "
+    print(f"{samples} samples: {before:.1f} s in one go, {after:.1f} s once more, "
+          f"{spent:.1f} s with {interruptions} interruptions, "
           f"ratio {spent / whole:.3f}; exit status {status}; the pictures are {'the same' if same else 'DIFFERENT'}")
     raise SystemExit(0 if same and status == 0 else 1)
