@@ -80,6 +80,7 @@ if [ -z "$work" ]; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
 fi
+rm -rf "$work/tree"  # a kept one may hold files that are no more
 mkdir -p "$work/tree"
 (cd "$root" && tar -cf - --exclude=./.git --exclude=./build --exclude=./out .) | tar -xf - -C "$work/tree"
 # A kept build may hold a mutant of the last run, newer than the true file: build those files again.
