@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Turns benchmark results (Google Benchmark's JSON, with repetitions) into a table of ratios with their spread.
+"""Prints ratios of benchmark results (Google Benchmark JSON with repetitions) as a table with their spread.
 
-    compare.py OLD.json NEW.json              NEW against OLD, case by case
-    compare.py RESULT.json --to CASE          every case against one case of the same run
-    compare.py RESULT.json                    rates alone
+    compare.py OLD.json NEW.json              NEW relative to OLD, case by case
+    compare.py RESULT.json --to CASE          every case relative to one case of the same run
+    compare.py RESULT.json                    rates only
 
-A rate is items per second: rays, tests, paths or spheres, as the case says. Each is the median of its repetitions;
-its spread is half the distance of the quartiles. A ratio's spread puts the quartiles of both against each other: if its
-interval holds 1, the two can't be told apart.
+A rate is items per second; an item is a ray, an intersection test, a path or a sphere, depending on the case. Rates are
+medians over the repetitions, and their spread is half the interquartile range. The interval of a ratio combines the
+quartiles of both rates: if it contains 1, the difference is not significant.
 
-Exit status: 0; with --fail-below LIMIT it is 1 where a whole interval lies below LIMIT; 2 where input makes no sense.
+Exit status: 0 on success; 1 if --fail-below LIMIT is given and the whole interval of a ratio is below LIMIT; 2 for
+invalid input.
 """
 
 import argparse
@@ -21,18 +22,18 @@ import sys
 
 
 class BadInput(Exception):
-    """What is wrong with a file, and where."""
+    """An input error; the message names the file and the problem."""
 
 
 def read_rates(path):
-    """Rates of all repetitions by case, cases in the order of their names."""
+    """Rates of all repetitions by case, sorted by case name."""
     try:
         with open(path, encoding="utf-8") as file:
             runs = list(json.load(file)["benchmarks"])
     except OSError as error:
         raise BadInput(f"{path}: {error.strerror}") from error
     except (ValueError, KeyError, TypeError) as error:
-        raise BadInput(f"{path}: not a result of Google Benchmark (--benchmark_out_format=json)") from error
+        raise BadInput(f"{path}: not a Google Benchmark result (use --benchmark_out_format=json)") from error
     rates = {}
     for run in runs:
         if run.get("error_occurred"):
@@ -40,17 +41,17 @@ def read_rates(path):
         if run.get("run_type") == "iteration" and "items_per_second" in run:
             rates.setdefault(run["name"], []).append(run["items_per_second"])
     if not rates:
-        raise BadInput(f"{path}: holds no repetitions; was it run with --benchmark_report_aggregates_only?")
+        raise BadInput(f"{path}: contains no repetitions; was it run with --benchmark_report_aggregates_only?")
     return dict(sorted(rates.items(), key=lambda item: natural(item[0])))
 
 
 def natural(name):
-    """Sorts 10 before 9000, part by part."""
+    """Sort key that compares numeric name components by value, so that 10 precedes 9000."""
     return [(part.isdigit(), int(part) if part.isdigit() else 0, part) for part in name.split("/")]
 
 
 def quartiles(values):
-    """First quartile, median, third; of a few values the outermost ones stand for the quartiles."""
+    """First quartile, median and third quartile; minimum, median and maximum for fewer than four values."""
     if len(values) < 4:
         return min(values), statistics.median(values), max(values)
     low, middle, high = statistics.quantiles(values, n=4, method="inclusive")
@@ -58,7 +59,7 @@ def quartiles(values):
 
 
 def ratio(new, old):
-    """Median ratio and its interval."""
+    """Ratio of the medians, and its interval."""
     new_low, new_middle, new_high = quartiles(new)
     old_low, old_middle, old_high = quartiles(old)
     return new_middle / old_middle, new_low / old_high, new_high / old_low
@@ -83,7 +84,7 @@ def print_table(header, rows):
 
 
 def compare(pairs, old_name, new_name):
-    """Prints the table of (case, old rates, new rates); gives the upper ends of the ratios' intervals."""
+    """Prints the table of (case, old rates, new rates). Returns the upper bounds of the ratios' intervals."""
     rows, uppers = [], []
     for case, old, new in pairs:
         middle, low, high = ratio(new, old)
@@ -95,15 +96,16 @@ def compare(pairs, old_name, new_name):
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("result", nargs="+", metavar="RESULT.json", help="one result, or the old and the new one")
-    parser.add_argument("--to", metavar="CASE", help="with one result: the case that all others are set against")
-    parser.add_argument("--filter", metavar="REGEX", default="", help="only cases whose name this is found in")
-    parser.add_argument("--fail-below", metavar="LIMIT", type=float, help="exit with 1 where a ratio is surely below")
+    parser.add_argument("result", nargs="+", metavar="RESULT.json", help="one result, or the old and the new result")
+    parser.add_argument("--to", metavar="CASE", help="with one result: the reference case for all ratios")
+    parser.add_argument("--filter", metavar="REGEX", default="", help="include only cases whose name matches REGEX")
+    parser.add_argument("--fail-below", metavar="LIMIT", type=float,
+                        help="exit with status 1 if the whole interval of a ratio is below LIMIT")
     options = parser.parse_args(arguments)
     if len(options.result) > 2 or (len(options.result) == 2 and options.to):
         parser.error("give two results, or one with --to")
     if options.fail_below is not None and len(options.result) == 1 and not options.to:
-        parser.error("--fail-below needs ratios: a second result, or --to")
+        parser.error("--fail-below requires a second result or --to")
     try:
         wanted = re.compile(options.filter)
     except re.error as error:
@@ -116,16 +118,16 @@ def main(arguments):
         second = read_rates(options.result[1])
         both = [case for case in cases if case in second]
         if not both:
-            raise BadInput("the two results have no case in common that passes the filter")
+            raise BadInput("the two results have no case in common that matches the filter")
         uppers = compare([(case, first[case], second[case]) for case in both], "old", "new")
         for case in sorted({case for case in [*first, *second] if wanted.search(case)} - set(both)):
-            print(f"only in {'the first' if case in first else 'the second'}: {case}", file=sys.stderr)
+            print(f"only in the {'first' if case in first else 'second'} result: {case}", file=sys.stderr)
     elif not cases:
-        raise BadInput(f"{options.result[0]}: no case passes the filter")
+        raise BadInput(f"{options.result[0]}: no case matches the filter")
     elif options.to:
         if options.to not in first:
-            raise BadInput(f"{options.result[0]}: has no case {options.to}")
-        uppers = compare([(case, first[options.to], first[case]) for case in cases], "that case", "this case")
+            raise BadInput(f"{options.result[0]}: no case is named {options.to}")
+        uppers = compare([(case, first[options.to], first[case]) for case in cases], "reference", "this case")
     else:
         print_table(["case", "rate"], [[case, rate_cell(first[case])] for case in cases])
     return int(options.fail_below is not None and any(upper < options.fail_below for upper in uppers))

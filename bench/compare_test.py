@@ -25,7 +25,7 @@ class CompareTest(unittest.TestCase):
             for case, rates in cases.items()
             for rate in rates
         ]
-        # Aggregates stand in the same list and must not count as repetitions.
+        # Aggregates are in the same list and must not be counted as repetitions.
         runs += [{"name": f"{case}_mean", "run_type": "aggregate", "items_per_second": 1e99} for case in cases]
         with open(path, "w", encoding="utf-8") as file:
             json.dump({"context": {}, "benchmarks": runs}, file)
@@ -37,16 +37,16 @@ class CompareTest(unittest.TestCase):
             status = compare.main(list(arguments))
         return status, out.getvalue()
 
-    def test_ratio_is_of_medians(self):
+    def test_ratio_uses_medians(self):
         middle, low, high = compare.ratio([20, 22, 24, 26, 400], [10, 11, 12, 13, 14])
         self.assertEqual(middle, 2)
         self.assertEqual((low, high), (22 / 13, 26 / 11))
 
-    def test_cases_sort_by_number(self):
+    def test_cases_are_sorted_by_number(self):
         path = self.write("a.json", {"a/1000": [1], "a/20": [1], "a/3": [1]})
         self.assertEqual(list(compare.read_rates(path)), ["a/3", "a/20", "a/1000"])
 
-    def test_new_against_old(self):
+    def test_new_relative_to_old(self):
         old = self.write("old.json", {"a": [10, 10, 10], "gone": [1]})
         new = self.write("new.json", {"a": [15, 15, 15]})
         status, text = self.run_main(old, new)
@@ -54,19 +54,19 @@ class CompareTest(unittest.TestCase):
         self.assertIn("| a    | 10/s ±0 % | 15/s ±0 % | 1.5   | 1.5 .. 1.5 |", text)
         self.assertNotIn("gone", text)
 
-    def test_one_case_against_another(self):
+    def test_one_case_relative_to_another(self):
         path = self.write("a.json", {"list": [2e6], "embree": [8e6]})
         self.assertRegex(self.run_main(path, "--to", "list")[1], r"embree +\| 2 M/s ±0 % \| 8 M/s ±0 % \| 4 ")
 
-    def test_fails_only_where_the_whole_interval_is_below(self):
+    def test_fails_only_if_the_whole_interval_is_below_the_limit(self):
         old = self.write("old.json", {"a": [10, 10, 10, 10]})
         wide = self.write("wide.json", {"a": [5, 8, 8, 12]})
         slow = self.write("slow.json", {"a": [8, 8, 8, 8]})
-        self.assertEqual(self.run_main(old, wide, "--fail-below", "0.89")[0], 0)  # quartiles are 7.25 and 9
+        self.assertEqual(self.run_main(old, wide, "--fail-below", "0.89")[0], 0)  # the quartiles are 7.25 and 9
         self.assertEqual(self.run_main(old, wide, "--fail-below", "0.91")[0], 1)
         self.assertEqual(self.run_main(old, slow, "--fail-below", "0.9")[0], 1)
 
-    def test_input_that_makes_no_sense(self):
+    def test_invalid_input_is_an_error(self):
         path = os.path.join(self.folder.name, "x.json")
         for text in ("", "[]", "{}", '{"benchmarks": 3}', '{"benchmarks": []}'):
             with open(path, "w", encoding="utf-8") as file:
@@ -76,7 +76,7 @@ class CompareTest(unittest.TestCase):
         with self.assertRaises(compare.BadInput):
             compare.read_rates(os.path.join(self.folder.name, "missing.json"))
 
-    def test_a_tidy_result_says_the_same(self):
+    def test_tidy_keeps_rates_and_drops_the_host_name(self):
         path = self.write("a.json", {"a/10": [1.5, 2.5], "a/9": [1.0]})
         with open(path, encoding="utf-8") as file:
             result = json.load(file)

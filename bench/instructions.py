@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Instructions that rendering the final scene takes in two builds, counted by valgrind.
+"""Counts the instructions that two builds execute to render the final scene, with Valgrind's Callgrind.
 
     bench/instructions.py ../older/build/src/orrery build/src/orrery
 
-A machine whose speed wanders can't tell a percent; a count is the same in every run. It knows nothing of caches and
-mispredicted branches, so it is for finding out what a change added, not for saying how fast a program is. Reading and
-writing files, which are the same in both, are taken out: two renders that differ in their samples only, and the
-difference is counted.
+Timing on a noisy machine cannot resolve differences of one percent; an instruction count is the same in every run. It
+ignores caches and branch mispredictions, so it shows what a change added, not how fast a program is. Reading the scene
+and writing files cancel out: each build renders twice with different sample counts, and the difference is reported.
 """
 import argparse
 import pathlib
@@ -29,8 +28,8 @@ def instructions(program, precision, samples, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("before")
-    parser.add_argument("after")
+    parser.add_argument("before", help="the orrery executable of the older build")
+    parser.add_argument("after", help="the orrery executable of the newer build")
     arguments = parser.parse_args()
     paths = 96 * 54 * (MANY - FEW)
     with tempfile.TemporaryDirectory() as folder:
@@ -38,7 +37,8 @@ def main():
             before, after = [(instructions(program, precision, MANY, folder) -
                               instructions(program, precision, FEW, folder)) / paths
                              for program in (arguments.before, arguments.after)]
-            print(f"{precision:6} {before:7.0f} instructions a path before, {after:7.0f} after: {after / before:.3f}")
+            print(f"{precision:6} {before:7.0f} instructions per path before, {after:7.0f} after, "
+                  f"ratio {after / before:.3f}")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What interruptions cost: a render that is stopped thirty times and resumed, against one that is not.
+"""Measures the cost of interruptions: a render stopped and resumed thirty times, relative to one that is not.
 
     bench/interruptions.py PROGRAM [--scene FILE] [--times N] [--seconds S]
 
-All are timed as whole processes; the one that is not stopped runs before and after the other, and its mean counts. The
-pictures must be the same bytes.
+All runs are timed as whole processes. The uninterrupted render runs once before and once after the interrupted one; the
+ratio is to the mean of the two. The images must be byte-identical. Exit status 1 if they differ or a render fails.
 """
 import argparse
 import pathlib
@@ -16,10 +16,10 @@ import tempfile
 import time
 
 parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-parser.add_argument("program", type=pathlib.Path)
+parser.add_argument("program", type=pathlib.Path, help="the orrery executable")
 parser.add_argument("--scene", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "scenes/book/final.toml")
-parser.add_argument("--times", type=int, default=30)
-parser.add_argument("--seconds", type=float, default=60, help="that the render shall take about")
+parser.add_argument("--times", type=int, default=30, help="number of interruptions")
+parser.add_argument("--seconds", type=float, default=60, help="approximate duration of the uninterrupted render")
 arguments = parser.parse_args()
 program = arguments.program.resolve()
 random.seed(1)
@@ -47,13 +47,13 @@ with tempfile.TemporaryDirectory() as folder:
                 process.send_signal(signal.SIGTERM)
         status = process.wait()
         spent += time.monotonic() - start
-        if status not in (75, -signal.SIGTERM):  # the second: it had not yet begun to listen
+        if status not in (75, -signal.SIGTERM):  # the second: no signal handler was installed yet
             break
         interruptions += 1
     after = run(samples, "whole.exr")
     whole = (before + after) / 2
     same = pathlib.Path(folder, "whole.exr").read_bytes() == pathlib.Path(folder, "parts.exr").read_bytes()
-    print(f"{samples} samples: {before:.1f} s in one go, {after:.1f} s once more, "
+    print(f"{samples} samples: {before:.1f} s uninterrupted before and {after:.1f} s after, "
           f"{spent:.1f} s with {interruptions} interruptions, "
-          f"ratio {spent / whole:.3f}; exit status {status}; the pictures are {'the same' if same else 'DIFFERENT'}")
+          f"ratio {spent / whole:.3f}; exit status {status}; the images are {'identical' if same else 'DIFFERENT'}")
     raise SystemExit(0 if same and status == 0 else 1)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What layers cost: paths a second with them, by those of the beauty alone, in alternating runs on one thread.
+"""Measures the cost of layers: paths per second relative to the beauty alone, in alternating runs on one thread.
 
     bench/layers.py build/src/orrery
     bench/layers.py build/src/orrery --before ../older/build/src/orrery
 
-The second form compares the beauty alone with that of another build, too.
+The second form also compares the beauty alone with that of another build.
 """
 import argparse
 import json
@@ -30,9 +30,9 @@ def paths_per_second(program, precision, layers, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("orrery")
-    parser.add_argument("--before", help="another build, whose beauty is measured in the same run")
-    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("orrery", help="the orrery executable")
+    parser.add_argument("--before", help="executable of another build whose beauty is measured in the same run")
+    parser.add_argument("--rounds", type=int, default=7, help="measurements of each case")
     arguments = parser.parse_args()
     cases = {"beauty": (arguments.orrery, ""), "Z": (arguments.orrery, "Z"),
              "light": (arguments.orrery, "diffuse,specular,transmission,background"),
@@ -48,7 +48,7 @@ def main():
             for case, speeds in seen.items():
                 ratios = [a / b for a, b in zip(speeds, seen["beauty"])]
                 print(f"{precision:6} {case:14} {statistics.median(speeds) / 1e6:6.2f} M paths/s, "
-                      f"{statistics.median(ratios):.2f} ({min(ratios):.2f} .. {max(ratios):.2f}) of the beauty alone")
+                      f"{statistics.median(ratios):.2f} ({min(ratios):.2f} .. {max(ratios):.2f}) times the beauty alone")
 
 
 if __name__ == "__main__":

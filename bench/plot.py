@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws rays a second over the number of spheres, from the JSON of bench_accel, as an SVG on standard output.
+"""Plots rays per second over the number of spheres from a bench_accel result, as SVG on standard output.
 
-    plot.py bench/results/MACHINE/accel.json > docs/list-against-embree.svg
+    plot.py bench/results/MACHINE/accel.json > docs/closest-hit-throughput.svg
 
-One panel for camera rays, one for bounced ones; both axes logarithmic; medians. The ring marks where Embree overtakes the
-naive list, straight between the two sizes around it.
+One panel each for camera rays and secondary rays, with logarithmic axes; values are medians. A ring marks the crossover
+where Embree becomes faster than the naive list, interpolated between the two neighbouring sizes.
 """
 
 import math
@@ -15,20 +15,21 @@ import sys
 
 from compare import BadInput, read_rates
 
+PANELS = {"camera": "camera rays", "bounced": "secondary rays"}
 CASE = re.compile(r"^accel/trace/cloud/(camera|bounced)/(.+)/(\d+)$")
-# In the order of the legend. Colours that the colour-blind tell apart, on white and on black.
+# In the order of the legend. The colours are distinguishable to colour-blind readers, on white and on black.
 WAYS = {
     "embree/fast": ("orrery on Embree, fast", "#009e73"),
     "embree/exact": ("orrery on Embree, exact", "#0072b2"),
-    "native_points": ("scalar loop, Embree's sphere points", "#cc79a7"),
-    "baseline": ("naive list, the book's", "#d55e00"),
+    "native_points": ("scalar loop on Embree's sphere points", "#cc79a7"),
+    "baseline": ("the book's naive list", "#d55e00"),
 }
-WIDTH, HEIGHT = 360, 300  # of a panel's plot, px
+WIDTH, HEIGHT = 360, 300  # plot area of a panel, px
 LEFT, TOP, GAP, BOTTOM = 64, 92, 40, 48
 
 
 def curves(rates):
-    """{rays: {way: [(spheres, median rate)]}}, by rising number."""
+    """{rays: {way: [(spheres, median rate)]}}, sorted by number of spheres."""
     out = {"camera": {}, "bounced": {}}
     for case, values in rates.items():
         match = CASE.match(case)
@@ -38,12 +39,12 @@ def curves(rates):
         for points in panel.values():
             points.sort()
     if not all(out.values()):
-        raise BadInput("no cases accel/trace/cloud/camera/... and accel/trace/cloud/bounced/...")
+        raise BadInput("contains no cases accel/trace/cloud/camera/... or accel/trace/cloud/bounced/...")
     return out
 
 
 def crossover(slow, fast):
-    """(spheres, rate) where `fast` overtakes `slow` for good, or None: never, or from the first size on."""
+    """(spheres, rate) of the last crossover where `fast` overtakes `slow`; None if the curves do not cross."""
     both = [(n, math.log(a), math.log(dict(fast)[n])) for n, a in slow if n in dict(fast)]
     for (n0, a0, b0), (n1, a1, b1) in reversed(list(zip(both, both[1:]))):
         if b0 < a0 and b1 >= a1:
@@ -100,13 +101,13 @@ def svg(panels):
     )
     yield "<style>.grid{stroke:#ccc;fill:none}.curve{fill:none;stroke-width:2}</style>"
     yield f'<rect width="{width}" height="{height}" fill="#fff"/>'
-    yield f'<text x="{LEFT}" y="20" font-size="14">Nearest hits, rays a second on one thread</text>'
+    yield f'<text x="{LEFT}" y="20" font-size="14">Closest-hit queries, rays per second on one thread</text>'
     for i, (label, color) in enumerate(WAYS.values()):
         x, y = LEFT + (i % 2) * 260, 40 + (i // 2) * 18
         yield f'<path class="curve" stroke="{color}" d="M{x} {y - 4}h20"/><text x="{x + 26}" y="{y}">{label}</text>'
     for i, (name, panel) in enumerate(panels.items()):
         place = Panel(LEFT + i * (WIDTH + GAP), decades_x, decades_y)
-        yield from place.frame(f"{name} rays")
+        yield from place.frame(PANELS[name])
         for way, (_, color) in WAYS.items():
             if way in panel:
                 yield from place.curve(panel[way], color)

@@ -10,7 +10,7 @@ import plot
 
 
 def rates(**curves):
-    """Rates of cases, the same for both kinds of rays; curves by way, from ten spheres on."""
+    """Rates of cases, the same for camera and secondary rays; one curve per keyword, starting at ten spheres."""
     return {
         f"accel/trace/cloud/{rays}/{way.replace('__', '/')}/{10 ** (i + 1)}": [rate]
         for rays in ("camera", "bounced")
@@ -20,7 +20,7 @@ def rates(**curves):
 
 
 class PlotTest(unittest.TestCase):
-    def test_crossover_lies_between_the_sizes_on_log_axes(self):
+    def test_crossover_is_interpolated_on_log_axes(self):
         spheres, rate = plot.crossover([(10, 100), (1000, 1)], [(10, 10), (1000, 10)])
         self.assertAlmostEqual(spheres, 100)
         self.assertAlmostEqual(rate, 10)
@@ -34,7 +34,7 @@ class PlotTest(unittest.TestCase):
         self.assertIsNone(plot.crossover([(1, 1), (10, 1)], [(1, 2), (10, 2)]))
         self.assertIsNone(plot.crossover([(1, 3), (10, 3)], [(1, 2), (10, 2)]))
 
-    def test_both_panels_hold_every_curve_within_the_frame(self):
+    def test_both_panels_contain_every_curve_within_the_frame(self):
         text = "\n".join(plot.svg(plot.curves(rates(baseline=[1e6, 1e4], embree__exact=[5e5, 3e5]))))
         root = xml.etree.ElementTree.fromstring(text)
         circles = [c for c in root.iter() if c.tag.endswith("circle")]
@@ -43,7 +43,7 @@ class PlotTest(unittest.TestCase):
         for c in circles:
             self.assertTrue(plot.TOP <= float(c.get("cy")) <= plot.TOP + plot.HEIGHT, c.attrib)
 
-    def test_a_result_without_these_cases(self):
+    def test_a_result_without_cloud_cases_is_an_error(self):
         with self.assertRaises(compare.BadInput):
             plot.curves({"accel/build/1000": [1.0]})
 

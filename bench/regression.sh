@@ -1,26 +1,27 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Fails where orrery has become slower than it may be, beside the program of the book and beside a scalar loop on Embree's
-# own sphere points. Only ratios within one run are judged, and only where a whole interval lies below the limit, so the
-# machine does not matter much; the limits lie a quarter below what docs/benchmarks.md shows. Half a minute.
+# Fails if orrery's speed relative to the book's program, or to a scalar loop on Embree's sphere points, is below a
+# limit. Only ratios within one run are tested, and a ratio fails only if its whole interval is below the limit, so the
+# result depends little on the machine. The limits are a quarter below the figures in docs/benchmarks.md. Takes half a
+# minute.
 #
-#   bench/regression.sh BUILD       a build folder that was configured with -DORRERY_BENCH=ON
+#   bench/regression.sh BUILD       BUILD: a build folder configured with -DORRERY_BENCH=ON
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-programs=${1:?name the build folder}/bench
+programs=${1:?missing argument: the build folder}/bench
 part=$(mktemp -d)
 trap 'rm -rf "$part"' EXIT
 
-# measure PROGRAM FILTER: alternating repetitions of these cases, as $part/PROGRAM.json.
+# measure PROGRAM FILTER: runs the matching cases in interleaved repetitions and writes $part/PROGRAM.json.
 measure() {
   "$programs/$1" --benchmark_filter="$2" --benchmark_repetitions=7 --benchmark_enable_random_interleaving=true \
     --benchmark_min_time=0.1 --benchmark_out_format=json --benchmark_out="$part/$1.json" >/dev/null 2>&1
 }
 
-# hold PROGRAM CASE LIMIT REFERENCE: the case is LIMIT times as fast as the reference, or the run fails.
+# hold PROGRAM CASE LIMIT REFERENCE: fails if CASE is less than LIMIT times as fast as REFERENCE.
 status=0
 hold() {
-  printf '%s: at least %s times %s\n' "$2" "$3" "$4"
+  printf '%s: must be at least %s times as fast as %s\n' "$2" "$3" "$4"
   "$root/bench/compare.py" "$part/$1.json" --to "$4" --filter "^$2\$" --fail-below "$3" || status=1
 }
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Brings a result of Google Benchmark into the form that is checked in, on standard output.
+"""Converts a Google Benchmark result to the form that is checked in, on standard output.
 
     tidy.py RESULT.json >TIDY.json
 
-One repetition a line, so that a difference of two results can be read. Left out: aggregates, which compare.py computes
-from the repetitions, and the host's name, which is nobody's business. It stays a Google Benchmark result.
+Writes one repetition per line, so that diffs are readable. Omits aggregates, which compare.py computes from the
+repetitions, and the host name, which is private. The output is still a valid Google Benchmark result.
 """
 
 import json
@@ -17,7 +17,7 @@ DROPPED = {"family_index", "per_family_instance_index", "run_name", "repetitions
 
 
 def rounded(value):
-    """Six digits are more than these clocks know."""
+    """Six significant digits exceed the resolution of the clocks."""
     return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
@@ -35,6 +35,6 @@ if __name__ == "__main__":
         with open(sys.argv[1], encoding="utf-8") as file:
             sys.stdout.write(tidy(json.load(file)))
     except IndexError:
-        sys.exit("tidy.py: error: name a result: tidy.py RESULT.json")
+        sys.exit("tidy.py: error: no result given; usage: tidy.py RESULT.json")
     except (OSError, ValueError, KeyError) as error:
         sys.exit(f"tidy.py: error: {sys.argv[1]}: {error}")

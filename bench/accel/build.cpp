@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long Embree takes to build over spheres, ours and its own sphere points, spheres a second on all threads, and how
-// much memory the hierarchy then holds.
+// BVH build speed in spheres per second on all threads, and memory of the finished BVH, for our user geometry and for
+// Embree's sphere points.
 #include <benchmark/benchmark.h>
 
 #include <map>
@@ -37,7 +37,7 @@ void build(benchmark::State& state, std::uint64_t spheres, Geometry geometry) {
       auto* const registered =
           benchmark::RegisterBenchmark(("accel/build/" + (name + std::to_string(n))).c_str(), build, n, geometry);
       registered->UseRealTime()->Unit(benchmark::kMillisecond);
-      if (n == 10'000'000) registered->Iterations(1);  // ten seconds each
+      if (n == 10'000'000) registered->Iterations(1);  // takes ten seconds
     }
   }
   return true;

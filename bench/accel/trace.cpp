@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nearest hits, rays a second: Embree, the list, the book's own program and Embree's own sphere points, on the rays
-// that a render traces.
+// Closest-hit queries in rays per second: Embree, the list, the book's program and Embree's sphere points, on rays
+// recorded from a render.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
@@ -25,7 +25,7 @@ std::vector<Packet>& choose(render::RecordedRays<Packet>& rays, Rays which) {
   return which == Rays::kCamera ? rays.camera : rays.bounced;
 }
 
-/// One packet an iteration.
+/// One packet per iteration.
 template <class Packet>
 void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, Rays which, Traversal traversal) {
   auto& work = workload<Packet>(spheres, precision);
@@ -43,7 +43,7 @@ void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, 
   state.SetItemsProcessed(rays);
 }
 
-/// The rays of recorded packets, one by one.
+/// The rays of the recorded packets as single rays.
 std::vector<baseline::Ray> single_rays(const std::vector<kernel::RayPacket>& packets) {
   std::vector<baseline::Ray> rays;
   for (const kernel::RayPacket& p : packets) {
@@ -54,7 +54,7 @@ std::vector<baseline::Ray> single_rays(const std::vector<kernel::RayPacket>& pac
   return rays;
 }
 
-/// One ray an iteration, through the book's list of virtual objects or Embree's own sphere points.
+/// One ray per iteration, through the book's list of virtual objects or Embree's sphere points.
 void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which, baseline::Spheres how) {
   auto& work = workload<kernel::RayPacket>(spheres, Precision::kExact);
   const baseline::Program program(work.scene, how);
@@ -76,7 +76,7 @@ void register_trace(const std::string& name, std::uint64_t spheres, Precision pr
   benchmark::RegisterBenchmark(name.c_str(), run, spheres, precision, which, traversal);
 }
 
-/// Beyond this a packet takes the list longer than anybody cares to wait.
+/// Above this size the list takes too long to measure.
 constexpr std::uint64_t kLongestList = 10'000;
 
 [[maybe_unused]] const bool kRegistered = [] {

@@ -3,12 +3,11 @@
 
 #include "math/vec3.h"
 
-/// The program that a reader of *Ray Tracing in One Weekend* has at the end of the book, as fairly as it can be
-/// written: double, one ray at a time, virtual calls over a flat list. What orrery is measured against; nothing else
-/// links it.
+/// The final program of *Ray Tracing in One Weekend*, implemented as fairly as possible: double precision, one ray at a
+/// time, virtual calls over a flat list. It is the baseline of orrery's benchmarks; nothing else links it.
 ///
-/// It keeps the book's structure and formulas, and leaves out what slows that program down for no reason of its design:
-/// shared pointers that are copied in the loop, records that are copied twice, a slow random number generator.
+/// It keeps the book's structure and formulas, but omits costs that are not inherent in the design: shared pointers
+/// copied in the loop, hit records copied twice, a slow random number generator.
 namespace orrery::bench::baseline {
 
 using math::Vec3d;
@@ -22,7 +21,7 @@ struct Ray {
   Vec3d at(double t) const { return origin + t * direction; }
 };
 
-/// The distances that count, in lengths of the ray's direction, ends left out.
+/// An open interval of ray parameters t, in multiples of the direction's length.
 struct Interval {
   double min = 0, max = 0;
 
@@ -31,18 +30,18 @@ struct Interval {
 
 struct HitRecord {
   Vec3d point;
-  Vec3d normal;  ///< unit, against the ray
+  Vec3d normal;  ///< unit length, facing against the ray
   const Material* material = nullptr;
   double t = 0;
   bool front_face = true;
 };
 
-/// Whatever a ray can meet.
+/// Anything that a ray can hit.
 class Hittable {
  public:
   virtual ~Hittable() = default;
 
-  /// Result     whether there is a hit within the interval; only then `record` is written
+  /// Result     true if there is a hit within the interval; `record` is written only then
   virtual bool hit(const Ray& ray, Interval t, HitRecord& record) const = 0;
 };
 

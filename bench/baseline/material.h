@@ -9,7 +9,7 @@
 
 namespace orrery::bench::baseline {
 
-/// Where a ray goes on, and what is left of its light.
+/// The scattered ray and its attenuation.
 struct Scattered {
   Ray ray;
   Vec3d attenuation;
@@ -19,7 +19,7 @@ class Material {
  public:
   virtual ~Material() = default;
 
-  /// Result     false: absorbed, and `out` is not written
+  /// Result     false if the path is absorbed; `out` is not written then
   virtual bool scatter(const Ray& ray, const HitRecord& hit, Random& random, Scattered& out) const = 0;
 };
 

@@ -14,24 +14,25 @@
 namespace orrery::bench::baseline {
 namespace {
 
-/// The book's answer to rays that meet the sphere they leave, scene units.
+/// The book's ray epsilon against self-intersection, scene units.
 constexpr double kShortestDistance = 0.001;
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw base::Error(base::ErrorKind::kUsage,
-                    "the baseline has no " + what + "; benchmark scenes use what the book's last program has");
+  throw base::Error(
+      base::ErrorKind::kUsage,
+      "the baseline does not support " + what + "; benchmark scenes may only use features of the book's final program");
 }
 
 struct MakeMaterial {
   std::unique_ptr<const Material> operator()(const scene::Lambertian& m) const {
     return std::make_unique<Lambertian>(m.albedo);
   }
-  std::unique_ptr<const Material> operator()(const scene::Hemisphere&) const { refuse("hemisphere material"); }
+  std::unique_ptr<const Material> operator()(const scene::Hemisphere&) const { refuse("the hemisphere material"); }
   std::unique_ptr<const Material> operator()(const scene::Metal& m) const {
     return std::make_unique<Metal>(m.albedo, m.fuzz);
   }
   std::unique_ptr<const Material> operator()(const scene::Dielectric& m) const {
-    if (m.fresnel != scene::Fresnel::kSchlick) refuse("reflectance but Schlick's");
+    if (m.fresnel != scene::Fresnel::kSchlick) refuse("reflectance models other than Schlick's");
     return std::make_unique<Dielectric>(m.ior);
   }
 };
@@ -53,7 +54,7 @@ Program::Program(const scene::Scene& scene, Spheres spheres)
       samples_(scene.render.samples),
       max_depth_(scene.render.max_depth),
       has_lens_(scene.camera.defocus_angle > 0) {
-  if (scene.render.shading != scene::Shading::kPath) refuse("shading but of paths");
+  if (scene.render.shading != scene::Shading::kPath) refuse("shading modes other than path tracing");
   if (background_.type == scene::BackgroundType::kConstant) background_.bottom = background_.top = background_.color;
 
   for (const scene::Material& m : scene.materials) materials_.push_back(std::visit(MakeMaterial(), m.model));

@@ -10,25 +10,25 @@
 
 namespace orrery::bench::baseline {
 
-/// What rays are tested against: the book's list, or Embree's own sphere points.
+/// The accelerator: the book's list, or Embree's sphere points.
 enum class Spheres { kList, kNativePoints };
 
-/// A scene and its camera as the book's program holds them.
+/// A scene and camera in the representation of the book's program.
 class Program {
  public:
-  /// Takes spheres, camera, background and settings over from an authored scene.
+  /// Converts spheres, camera, background and settings from an authored scene.
   ///
-  /// Domain     a scene that scene::validate finds no error in
-  /// Errors     base::Error(kUsage) for what the book's last program does not have
+  /// Domain     a scene in which scene::validate finds no error
+  /// Errors     base::Error(kUsage) for features that the book's final program does not have
   explicit Program(const scene::Scene& scene, Spheres spheres = Spheres::kList);
 
   /// Renders on the calling thread.
   ///
-  /// Shape      one colour per pixel, rows from the top, left to right
-  /// Units      scene-linear, mean of the samples
+  /// Shape      one colour per pixel, row by row from the top, left to right
+  /// Units      scene-linear; mean of the samples
   std::vector<Vec3d> render(std::uint64_t seed);
 
-  /// Rays that render() has traced so far.
+  /// Number of rays traced by render() so far.
   std::uint64_t rays() const { return rays_; }
 
   const Hittable& world() const { return *world_; }

@@ -8,16 +8,17 @@
 
 namespace orrery::bench::baseline {
 
-/// Random numbers from a stream, and shapes by rejection, as in the book.
+/// A sequential random number generator, and rejection sampling of simple shapes, as in the book.
 ///
-/// A few operations a number, where the standard library's generators take many: the baseline shall not lose by them.
+/// Takes a few operations per number where the standard library's generators take many, so that the generator does not
+/// put the baseline at a disadvantage.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
 
-  /// Result     0..1, without 1
+  /// Result     in [0, 1)
   double unit() {
-    // SplitMix64: a counter and a mix of its bits.
+    // SplitMix64: a counter whose bits are mixed.
     std::uint64_t z = state_ += 0x9E3779B97F4A7C15u;
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
     z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;

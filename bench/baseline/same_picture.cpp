@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds the baseline's picture of the final scene against orrery's: a ratio of speeds counts only between equals.
+// Checks that the baseline and orrery compute the same image of the final scene; only then is a speed ratio meaningful.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -15,11 +15,11 @@ namespace {
 
 constexpr int kWidth = 48, kHeight = 27, kSamples = 256;
 
-/// The mean of many thousand independent differences is normal; 5 sigma is one false alarm in a million runs of a
-/// seed, and the seeds are fixed.
+/// The mean of many thousand independent differences is normally distributed. Five sigma is one false alarm in a
+/// million seeds, and the seeds are fixed.
 constexpr double kSigmas = 5;
 
-/// Pixel by pixel, red, green and blue: is the mean of the differences zero?
+/// Tests for each colour channel whether the mean difference over the pixels is zero.
 bool holds(const std::vector<math::Vec3d>& baseline, const film::Picture& picture) {
   bool same = true;
   const char* const names[3] = {"R", "G", "B"};
@@ -50,7 +50,7 @@ int run() {
                                       std::pair{"the baseline on sphere points", baseline::Spheres::kNativePoints}}) {
     baseline::Program program(scene, spheres);
     if (holds(program.render(1), result.picture)) continue;
-    std::fprintf(stderr, "%s computes another picture: ratios to it mean nothing\n", name);
+    std::fprintf(stderr, "%s computes a different image: speed ratios to it are meaningless\n", name);
     return 1;
   }
   return 0;

@@ -44,7 +44,7 @@ class Sphere final : public Hittable {
   const Material* material_;
 };
 
-/// One thing after the other.
+/// A linear list that tests every object.
 class HittableList final : public Hittable {
  public:
   void add(std::unique_ptr<const Hittable> object) { objects_.push_back(std::move(object)); }

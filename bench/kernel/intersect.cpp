@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The intersection alone: rays against one sphere, tests a second, and the point that a ray has reached.
+// Ray-sphere intersection alone: intersection tests per second, and hit points per second.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -14,9 +14,9 @@ namespace {
 using kernel::Lanes;
 using kernel::Precision;
 
-/// As many spheres as a packet is tested against in one iteration; they and the packet stay in the first cache.
+/// Spheres that a packet is tested against in one iteration; they and the packet fit into the L1 cache.
 constexpr std::size_t kSpheres = 64;
-/// As many packets as points are computed for in turn.
+/// Packets whose hit points are computed in one iteration.
 constexpr std::size_t kPackets = 16;
 
 template <class Packet>
@@ -29,7 +29,7 @@ IntersectFunctions<kernel::RayPacketFast, float> functions_for(const kernel::Ray
   return intersect_float(l);
 }
 
-/// Bounced rays of the book's final scene, sixteen in each packet.
+/// Full packets of sixteen secondary rays each, from the book's final scene.
 template <class Packet>
 std::vector<Packet> full_packets(const Workload<Packet>& work) {
   std::vector<Packet> full;
@@ -40,7 +40,7 @@ std::vector<Packet> full_packets(const Workload<Packet>& work) {
   return full;
 }
 
-/// The sphere that each ray has hit; where there is none any other does.
+/// The sphere that each ray has hit; an arbitrary sphere for rays that missed.
 template <class Packet, class T = ScalarOf<Packet>>
 SphereLanes<T> spheres_of(const compile::World& world, const Packet& packet) {
   SphereLanes<T> out;

@@ -23,13 +23,13 @@ struct alignas(64) PointLanes {
   T outward[3][kernel::kPacketSize];
 };
 
-/// The kernel's text, instantiated alone: no traversal, no shading. A full packet each time.
+/// The kernel's intersection code instantiated on its own, without traversal or shading. Packets must be full.
 template <class Packet, class T>
 struct IntersectFunctions {
-  /// All rays against one sphere after the other; distance and hit as a traversal leaves them.
+  /// Intersects all rays with each sphere in turn, and sets distance and hit as a traversal does.
   void (*nearest)(Packet& packet, const kernel::Sphere* spheres, std::size_t count);
 
-  /// The point that each ray has reached on its own sphere, packet.hit at packet.distance.
+  /// Computes each ray's hit point on its own sphere, packet.hit, at packet.distance.
   void (*hit_point)(const Packet& packet, const SphereLanes<T>& spheres, PointLanes<T>& out);
 };
 
@@ -39,7 +39,7 @@ using IntersectFloat = IntersectFunctions<kernel::RayPacketFast, float>;
 /// Domain     kExact or kBook
 IntersectDouble intersect_double(kernel::Precision precision, kernel::Lanes lanes);
 
-/// The precision `fast`.
+/// For the precision `fast`.
 IntersectFloat intersect_float(kernel::Lanes lanes);
 
 }  // namespace orrery::bench

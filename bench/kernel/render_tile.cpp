@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path loop on one thread, one lane against all, paths a second: Embree's packets beneath both.
+// The path loop in paths per second on one thread, with one lane and with all lanes; both use Embree's packets.
 #include <benchmark/benchmark.h>
 
 #include <memory>

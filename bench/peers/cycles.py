@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders a scene file with Cycles, in Blender's own Python, and prints the seconds that rendering took.
+"""Renders a scene file with Cycles from Blender's Python, and prints the rendering time in seconds.
 
     blender --background --factory-startup --python-exit-code 1 --python cycles.py -- SCENE.toml WxH SAMPLES THREADS OUT.exr
 
-Spheres are points of point clouds, which Cycles intersects as spheres; each point is a cloud of its own, to have a material of
-its own.
+Spheres become points of point clouds, which Cycles intersects as spheres. Each point is a point cloud of its own, so
+that it can have its own material.
 """
 
 import os
@@ -14,11 +14,11 @@ import time
 import bpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from scene_file import Scene  # noqa: E402  (Blender's Python does not look here by itself)
+from scene_file import Scene  # noqa: E402  (not on the search path of Blender's Python)
 
 
 def z_up(v):
-    """From y up to Blender's z up."""
+    """Converts from y-up to Blender's z-up coordinates."""
     return [v[0], -v[2], v[1]]
 
 
@@ -40,7 +40,7 @@ def make_material(name, m):
 
 
 def make_points_group():
-    """Geometry nodes: vertices become points of a radius and a material."""
+    """Geometry node group that converts vertices to points with a radius and a material."""
     group = bpy.data.node_groups.new("points", "GeometryNodeTree")
     group.inputs.new("NodeSocketGeometry", "Geometry")
     group.inputs.new("NodeSocketFloat", "Radius")
@@ -84,7 +84,7 @@ def make_sky(scene):
     links.new(up.outputs[0], mix.inputs["Fac"])
     links.new(mix.outputs[0], light.inputs["Color"])
     links.new(light.outputs[0], out.inputs["Surface"])
-    # The book has no light sampling; with a sky of one map sample it is nearly free, but it is work.
+    # The book has no light sampling. For a sky with one map sample it is nearly free, but not entirely.
     world.cycles.sampling_method = "NONE"
     return world
 
@@ -101,7 +101,7 @@ def make_camera(scene):
     if scene.lens_radius > 0:
         data.dof.use_dof = True
         data.dof.focus_distance = scene.focus_distance
-        # f-number: focal length over aperture's diameter; Blender's unit is the metre, its lens is in millimetres.
+        # f-number = focal length / aperture diameter. Blender's length unit is the metre; its lens is in millimetres.
         data.dof.aperture_fstop = data.lens / 1000 / (2 * scene.lens_radius)
     camera = bpy.data.objects.new("camera", data)
     camera.matrix_world = Matrix.Translation(eye) @ Matrix((right, back.cross(right), back)).transposed().to_4x4()

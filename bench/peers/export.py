@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a scene file as POV-Ray's or Tachyon's, on standard output. What they cannot do as orrery does stands in
-docs/benchmarks.md.
+"""Converts a scene file to POV-Ray or Tachyon input, on standard output. docs/benchmarks.md lists the differences in
+what the renderers compute.
 
     export.py pov SCENE.toml --size 480x270 --samples 16 > scene.pov
     export.py tachyon SCENE.toml --size 480x270 --samples 16 > scene.dat
@@ -32,7 +32,7 @@ def pov_vector(v):
 
 
 def pov(scene, samples):
-    """Right-handed, by a negative `right`; light is what the sky gives: one ambient term, no light source."""
+    """Right-handed through a negative `right` vector. The only light is the sky: one ambient term, no light source."""
     yield "#version 3.7;"
     yield f"global_settings {{ assumed_gamma 1.0 max_trace_level {scene.max_depth} }}"
     height = 2 * math.tan(math.radians(scene.vfov) / 2)
@@ -43,7 +43,7 @@ def pov(scene, samples):
     yield f"  right {pov_vector([x * height * scene.width / scene.height for x in right])}"
     yield f"  up {pov_vector([x * height for x in up])}"
     if scene.lens_radius > 0:
-        # As many rays in every pixel: variance 0 with full confidence stops none early.
+        # Variance 0 with full confidence never stops a pixel early, so every pixel gets the same number of rays.
         focus = [p + scene.focus_distance * f for p, f in zip(scene.look_from, forward)]
         yield f"  aperture {2 * scene.lens_radius:.9g} focal_point {pov_vector(focus)}"
         yield f"  blur_samples {samples}, {samples} confidence 0.999 variance 0"
@@ -66,12 +66,12 @@ def pov(scene, samples):
 
 
 def tachyon(scene, samples):
-    """No lens; light is the sky's, by one ambient occlusion ray at each diffuse hit."""
+    """No lens. The only light is the sky, through one ambient occlusion ray at each diffuse hit."""
     yield "BEGIN_SCENE"
     yield f"RESOLUTION {scene.width} {scene.height}"
     zoom = 1 / (2 * math.tan(math.radians(scene.vfov) / 2))
     yield f"CAMERA ZOOM {zoom:.9g} ASPECTRATIO 1.0 ANTIALIASING {samples - 1} RAYDEPTH {scene.max_depth}"
-    # Left-handed: z turns round.
+    # Tachyon is left-handed: negate z.
     flip = [1, 1, -1]
     at = [x * f for x, f in zip(scene.look_from, flip)]
     view = [x * f for x, f in zip(unit(sub(scene.look_at, scene.look_from)), flip)]

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Renders one scene with orrery and with the renderers that Debian has, one thread each, in rounds that alternate between all
-of them, and prints paths a second and the ratio to orrery's exact. docs/benchmarks.md tells what is not equal.
+"""Compares the speed of orrery with other renderers in Debian: renders one scene on one thread each, in alternating
+rounds, and prints paths per second and the ratio to orrery exact. docs/benchmarks.md lists the differences in what the
+renderers compute.
 
     apt-get install povray tachyon blender
     bench/peers/run.py build/src/orrery scenes/book/final.toml [--size 480x270] [--samples 64] [--rounds 5]
 
-What is not installed is left out, and said so. Only rendering counts, as each program reports it, not start and parsing.
+Renderers that are not installed are skipped with a message. Times are the rendering times that each program reports;
+start-up and parsing do not count.
 """
 
 import argparse
@@ -23,7 +25,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 class Failed(Exception):
-    """A program that did not do what it was asked for."""
+    """A program failed or printed unexpected output."""
 
 
 def run(*command):
@@ -36,12 +38,12 @@ def run(*command):
 def seconds_in(output, pattern):
     found = re.search(pattern, output)
     if not found:
-        raise Failed(f"tells no time:\n{output[-2000:]}")
+        raise Failed(f"no rendering time found in the output:\n{output[-2000:]}")
     return float(found[1])
 
 
 class Peers:
-    """Each method renders once and gives the seconds."""
+    """Each method renders once and returns the time in seconds."""
 
     def __init__(self, options, folder):
         self.options, self.folder = options, folder
@@ -86,11 +88,11 @@ class Peers:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("orrery", metavar="ORRERY", help="the program")
+    parser.add_argument("orrery", metavar="ORRERY", help="the orrery executable")
     parser.add_argument("scene", metavar="SCENE.toml")
     parser.add_argument("--size", default="480x270", metavar="WxH")
     parser.add_argument("--samples", type=int, default=64, help="per pixel")
-    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--rounds", type=int, default=5, help="measurements of each renderer")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         peers = Peers(options, folder)
@@ -100,14 +102,14 @@ def main():
             if shutil.which(program):
                 ways[name] = way
             else:
-                print(f"left out: {name}; there is no {program}", file=sys.stderr)
+                print(f"skipped: {name}; {program} is not installed", file=sys.stderr)
         took = {name: [] for name in ways}
         for _ in range(options.rounds):
             for name, way in ways.items():
                 took[name].append(way())
     paths = int(peers.width) * int(peers.height) * options.samples
     print(f"{options.size}, {options.samples} samples per pixel, 1 thread, {options.rounds} rounds\n")
-    print(f"{'':14}{'M paths/s':>10}  ratio to orrery exact (lowest .. highest of a round)")
+    print(f"{'':14}{'M paths/s':>10}  ratio to orrery exact (lowest .. highest round)")
     for name, seconds in took.items():
         ratios = sorted(own / other for own, other in zip(took["orrery exact"], seconds))
         print(f"{name:14}{paths / statistics.median(seconds) / 1e6:10.3g}  {statistics.median(ratios):.3g} "

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scene file as other renderers need it: every default filled in, spheres resolved to their materials.
+"""Reads a scene file for export to other renderers, with all defaults filled in and material references resolved.
 
-Reads what the book's final scene uses: [[sphere]] tables, lambertian, metal and dielectric, a gradient sky. Anything else
-is an error: a comparison must not leave it out without a word.
+Supports what the book's final scene uses: [[sphere]] tables, lambertian, metal and dielectric materials, a gradient
+sky. Anything else is an error, because a comparison must not drop it silently.
 """
 
 import math
@@ -10,7 +10,7 @@ import tomllib
 
 
 class Unsupported(Exception):
-    """What the scene has that the exporters have not."""
+    """The scene uses a feature that the exporters do not support."""
 
 
 class Scene:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clouds of many small spheres from built accelerator to picture, paths a second on one thread: orrery, and the scalar
-// loop on Embree's own sphere points.
+// Rendering clouds of many small spheres, in paths per second on one thread, BVH build excluded: orrery, and the scalar
+// loop on Embree's sphere points.
 #include <benchmark/benchmark.h>
 
 #include <map>
@@ -18,11 +18,11 @@ namespace {
 using kernel::Precision;
 
 constexpr int kWidth = 240, kHeight = 135;  // px
-/// So many that a packet of camera rays looks at one pixel, as in a render of any quality.
+/// One packet of camera rays per pixel, as in a render of any useful quality.
 constexpr int kSamples = kernel::kPacketSize;
 constexpr std::int64_t kPaths = std::int64_t{kWidth} * kHeight * kSamples;
 
-/// A cloud with its accelerator, made when it is first asked for and kept: building takes longer than rendering.
+/// A cloud with its accelerator, built on first use and cached, because building takes longer than rendering.
 struct Cloud {
   compile::World world;
   std::unique_ptr<accel::Accel> embree;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The book's final scene from compiled world to picture, paths a second.
+// Rendering the book's final scene in paths per second, from compiled scene to finished image.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -20,8 +20,8 @@ struct Size {
   std::int64_t paths() const { return std::int64_t{width} * height * samples; }
 };
 constexpr Size kLarge{480, 270, 4};
-/// For what is slow. Embree is measured at this size too: a small picture pays more for its build and its ragged
-/// packets.
+/// For the slow cases. Embree is also measured at this size, because BVH build and partly filled packets weigh more in
+/// a small image.
 constexpr Size kSmall{96, 54, 8};
 
 void render(benchmark::State& state, Size size, compile::Accelerator accelerator, Precision precision, int threads) {
@@ -57,7 +57,7 @@ void register_render(const std::string& name, Size size, compile::Accelerator ac
   auto* const registered = benchmark::RegisterBenchmark(("render/final_scene/" + name).c_str(), render, size,
                                                         accelerator, precision, threads);
   registered->Unit(benchmark::kMillisecond);
-  // One thread is the calling one, and its processor time does not count what others do on this machine.
+  // A single thread is the calling thread, and its CPU time excludes other processes on the machine.
   if (threads != 1) registered->UseRealTime();
 }
 

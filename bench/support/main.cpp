@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The main function of every benchmark program: Google Benchmark's, and what a result must say to be compared.
+// The main function of all benchmark programs: Google Benchmark's, plus context that identifies a result.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

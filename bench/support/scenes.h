@@ -9,17 +9,17 @@
 
 namespace orrery::bench {
 
-/// The random final scene of the book, as scenes/book/final.toml has it but for the size.
+/// The book's random final scene, as in scenes/book/final.toml except for the image size and sample count.
 scene::Scene final_scene(int width_px, int height_px, int samples);
 
-/// Small spheres in the air, as `orrery generate cloud` makes them: the larger `count`, the smaller they are, so that
-/// the picture stays about as full.
+/// Small floating spheres, as made by `orrery generate cloud`. Their size decreases with `count`, so that coverage of
+/// the image stays about the same.
 scene::Scene cloud_scene(std::uint64_t count, int width_px, int height_px, int samples);
 
-/// The scene, compiled for one precision.
+/// Compiles the scene for one precision.
 compile::World compile_for(scene::Scene scene, kernel::Precision precision);
 
-/// The precision's name in the name of a benchmark, the same as in a scene file.
+/// The precision's name in benchmark names, as in scene files.
 std::string name_of(kernel::Precision precision);
 
 }  // namespace orrery::bench

@@ -14,11 +14,11 @@
 
 namespace orrery::bench {
 
-/// The picture that is rendered to record its rays.
+/// Size of the image rendered to record rays.
 inline constexpr int kRecordedWidth = 48, kRecordedHeight = 27;  // px
 inline constexpr int kRecordedSamples = kernel::kPacketSize;     // per pixel
 
-/// A scene with everything that is made before the clock starts.
+/// A scene and everything that is prepared outside the timed loop.
 template <class Packet>
 struct Workload {
   scene::Scene scene;
@@ -44,8 +44,8 @@ struct Workload {
   }
 };
 
-/// The book's final scene (`spheres` = 0) or a cloud, made when it is first asked for and kept: repetitions that
-/// alternate with others come back to it many times.
+/// The book's final scene (`spheres` = 0) or a cloud, created on first use and cached, because interleaved repetitions
+/// return to it many times.
 template <class Packet>
 Workload<Packet>& workload(std::uint64_t spheres, kernel::Precision precision) {
   static std::map<std::pair<std::uint64_t, kernel::Precision>, std::unique_ptr<Workload<Packet>>> known;
