@@ -8,7 +8,7 @@
 #   bench/regression.sh BUILD       BUILD: a build folder configured with -DORRERY_BENCH=ON
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-programs=${1:?missing argument: the build folder}/bench
+programs=${1:?usage: bench/regression.sh BUILD}/bench
 part=$(mktemp -d)
 trap 'rm -rf "$part"' EXIT
 

@@ -95,7 +95,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("format", choices=("pov", "tachyon"))
     parser.add_argument("scene", metavar="SCENE.toml")
-    parser.add_argument("--size", default="480x270", metavar="WxH")
+    parser.add_argument("--size", default="480x270", metavar="WxH", help="image size, px")
     parser.add_argument("--samples", type=int, default=16, help="per pixel")
     options = parser.parse_args()
     width, height = map(int, options.size.split("x"))

@@ -90,7 +90,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("orrery", metavar="ORRERY", help="the orrery executable")
     parser.add_argument("scene", metavar="SCENE.toml")
-    parser.add_argument("--size", default="480x270", metavar="WxH")
+    parser.add_argument("--size", default="480x270", metavar="WxH", help="image size, px")
     parser.add_argument("--samples", type=int, default=64, help="per pixel")
     parser.add_argument("--rounds", type=int, default=5, help="measurements of each renderer")
     options = parser.parse_args()
