@@ -21,9 +21,9 @@ struct BakeOptions {
 
 }  // namespace
 
-void add_bake(CLI::App& program, Action& action) {
+void add_bake(Command& program, Action& action) {
   const auto options = std::make_shared<BakeOptions>();
-  CLI::App& command = *program.add_subcommand("bake", "Write a display transform as a table for other programs");
+  Command& command = *program.add_subcommand("bake", "Write a display transform as a table for other programs");
   command.add_option("-o,--output", options->output, "File to write: .cube, or .clf, exact where its steps have words")
       ->required()
       ->type_name("FILE");

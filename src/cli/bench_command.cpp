@@ -40,9 +40,9 @@ int bench(BenchOptions& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& program, Action& action) {
+void add_bench(Command& program, Action& action) {
   const auto options = std::make_shared<BenchOptions>();
-  CLI::App& command = *program.add_subcommand("bench", "Measure how fast a scene renders, in every precision");
+  Command& command = *program.add_subcommand("bench", "Measure how fast a scene renders, in every precision");
   command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
   options->scene.add_to(command);
   command.add_option("-t,--threads", options->request.threads, "Threads; default 1")

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
+
+#include "cli/arguments.h"
 
 namespace orrery::cli {
 
@@ -15,16 +15,16 @@ using Action = std::function<int()>;
 /// Adds one command to the program; where argv names it, parsing puts what it does into `action`.
 ///
 /// Domain     `action` outlives the parsing
-void add_submit(CLI::App& program, Action& action);
-void add_merge(CLI::App& program, Action& action);
-void add_render(CLI::App& program, Action& action);
-void add_info(CLI::App& program, Action& action);
-void add_check(CLI::App& program, Action& action);
-void add_generate(CLI::App& program, Action& action);
-void add_develop(CLI::App& program, Action& action);
-void add_bake(CLI::App& program, Action& action);
-void add_compare(CLI::App& program, Action& action);
-void add_bench(CLI::App& program, Action& action);
-void add_study(CLI::App& program, Action& action);
+void add_submit(Command& program, Action& action);
+void add_merge(Command& program, Action& action);
+void add_render(Command& program, Action& action);
+void add_info(Command& program, Action& action);
+void add_check(Command& program, Action& action);
+void add_generate(Command& program, Action& action);
+void add_develop(Command& program, Action& action);
+void add_bake(Command& program, Action& action);
+void add_compare(Command& program, Action& action);
+void add_bench(Command& program, Action& action);
+void add_study(Command& program, Action& action);
 
 }  // namespace orrery::cli

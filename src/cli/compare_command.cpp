@@ -87,17 +87,17 @@ int compare(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& program, Action& action) {
+void add_compare(Command& program, Action& action) {
   const auto options = std::make_shared<CompareOptions>();
-  CLI::App& command = *program.add_subcommand("compare", "Tell how much two pictures differ");
+  Command& command = *program.add_subcommand("compare", "Tell how much two pictures differ");
   command.add_option("A", options->picture, "Picture to judge")->required()->type_name("FILE");
   command.add_option("B", options->reference, "Picture to judge it by")->required()->type_name("FILE");
-  repeatable(
-      *command
-           .add_option(
-               "--fail-above", options->limits,
-               "Exit with 1 if a metric is larger: rmse, relmse, mae, max, display, flip, bias or z; can be repeated")
-           ->type_name("METRIC=VALUE"));
+  command
+      .add_option(
+          "--fail-above", options->limits,
+          "Exit with 1 if a metric is larger: rmse, relmse, mae, max, display, flip, bias or z; can be repeated")
+      ->type_name("METRIC=VALUE")
+      ->repeatable();
   command.add_option("--layer", options->layer, "Compare this layer, not the beauty")->type_name("NAME");
   command.add_option("--difference", options->pictures.difference, "Write A - B as a picture")->type_name("FILE");
   command.add_option("--heat", options->pictures.heat, "Write the display error as a heat map")->type_name("FILE");

@@ -29,18 +29,18 @@ int develop(const DevelopOptions& options) {
 
 }  // namespace
 
-void add_develop(CLI::App& program, Action& action) {
+void add_develop(Command& program, Action& action) {
   const auto options = std::make_shared<DevelopOptions>();
   app::Development& development = options->development;
   development.display.working_space.clear();
-  CLI::App& command = *program.add_subcommand("develop", "Develop an EXR on disk for a display, through OCIO");
+  Command& command = *program.add_subcommand("develop", "Develop an EXR on disk for a display, through OCIO");
   command.add_option("IN", development.input, "Picture with scene-linear light: EXR or HDR")
       ->required()
       ->type_name("FILE");
-  repeatable(
-      *command.add_option("-o,--output", development.outputs, "File to write: PNG, TIFF, JPEG or PPM; can be repeated")
-           ->required()
-           ->type_name("FILE"));
+  command.add_option("-o,--output", development.outputs, "File to write: PNG, TIFF, JPEG or PPM; can be repeated")
+      ->required()
+      ->type_name("FILE")
+      ->repeatable();
   add_display_options(command, development.display, development.bits);
   command
       .add_option("--space", development.display.working_space,

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "cli/option_checks.h"
 
 namespace orrery::cli {
@@ -12,7 +10,7 @@ inline constexpr double kMostStops = 100;
 
 /// Flags that choose how light is shown. Settings is display::Settings, which this room gets through app.
 template <class Settings>
-void add_view_options(CLI::App& command, Settings& settings) {
+void add_view_options(Command& command, Settings& settings) {
   command.add_option("--ocio", settings.config, "OCIO config; default: $OCIO, and without it the built-in one")
       ->type_name("FILE");
   command.add_option("--display", settings.display, "Display of the OCIO config, such as \"sRGB\"")->type_name("NAME");
@@ -25,7 +23,7 @@ void add_view_options(CLI::App& command, Settings& settings) {
 
 /// The same for display formats.
 template <class Settings>
-void add_display_options(CLI::App& command, Settings& settings, int& bits) {
+void add_display_options(Command& command, Settings& settings, int& bits) {
   add_view_options(command, settings);
   command
       .add_option("--bits", bits,

@@ -19,15 +19,15 @@ struct GenerateOptions {
 constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::uint64_t>::max();
 
 /// What all kinds of scenes have.
-void add_common(CLI::App& command, std::filesystem::path& output, std::uint64_t& seed) {
+void add_common(Command& command, std::filesystem::path& output, std::uint64_t& seed) {
   command.add_option("-o,--output", output, "Scene file to write")->required()->type_name("FILE");
   command.add_option("--seed", seed, "Another seed is another scene; default 1")
       ->transform(whole_number(0, kLargestSeed))
       ->type_name("N");
 }
 
-void add_final(CLI::App& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
-  CLI::App& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
+void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+  Command& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
   add_common(command, options->output, options->final_scene.seed);
   command.add_option("--grid", options->final_scene.grid, "Cells from the middle to the edge; default 11, the book's")
       ->transform(whole_number(0, app::kLargestFinalGrid))
@@ -42,8 +42,8 @@ void add_final(CLI::App& generate, const std::shared_ptr<GenerateOptions>& optio
   });
 }
 
-void add_cloud(CLI::App& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
-  CLI::App& command = *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY beside it");
+void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+  Command& command = *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY beside it");
   add_common(command, options->output, options->cloud.seed);
   command.add_option("--count", options->cloud.count, "Spheres; default 1000")
       ->transform(whole_number(1, app::kLargestCloud))
@@ -63,10 +63,10 @@ void add_cloud(CLI::App& generate, const std::shared_ptr<GenerateOptions>& optio
 
 }  // namespace
 
-void add_generate(CLI::App& program, Action& action) {
+void add_generate(Command& program, Action& action) {
   const auto options = std::make_shared<GenerateOptions>();
-  CLI::App& command = *program.add_subcommand("generate", "Make a scene file");
-  command.require_subcommand(1);
+  Command& command = *program.add_subcommand("generate", "Make a scene file");
+  command.require_subcommand();
   add_final(command, options, action);
   add_cloud(command, options, action);
   command.footer(

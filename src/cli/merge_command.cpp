@@ -38,9 +38,9 @@ int merge(MergeOptions& options) {
 
 }  // namespace
 
-void add_merge(CLI::App& program, Action& action) {
+void add_merge(Command& program, Action& action) {
   const auto options = std::make_shared<MergeOptions>();
-  CLI::App& command = *program.add_subcommand("merge", "Join parts of a picture that were rendered apart");
+  Command& command = *program.add_subcommand("merge", "Join parts of a picture that were rendered apart");
   command.add_option("PART", options->parts, "EXR files that --samples A:B or --tiles I/N have made, in any order")
       ->required()
       ->type_name("FILE");

@@ -15,11 +15,6 @@
 namespace orrery::cli {
 namespace {
 
-/// A check that shows no text of its own in the help: the option's says it better.
-CLI::Validator check(std::function<std::string(std::string&)> function, const char* name) {
-  return CLI::Validator(std::move(function), "", name);
-}
-
 std::string text_of(double value) {
   char out[32];
   std::snprintf(out, sizeof(out), "%g", value);
@@ -36,81 +31,68 @@ bool parse(const std::string& text, Number& value) {
 
 }  // namespace
 
-CLI::Validator one_of(std::vector<std::string> names) {
-  return check(
-      [names = std::move(names)](std::string& word) -> std::string {
-        if (std::find(names.begin(), names.end(), word) != names.end()) return {};
-        const bool is_number = !word.empty() && word[0] >= '0' && word[0] <= '9';  // 12 is not meant to be 16
-        const std::string remedy = is_number ? "" : base::did_you_mean(word, names);
-        return "there is no `" + word + "`; " + (remedy.empty() ? "there are " + base::joined(names) : remedy);
-      },
-      "one_of");
+Check one_of(std::vector<std::string> names) {
+  return [names = std::move(names)](std::string& word) -> std::string {
+    if (std::find(names.begin(), names.end(), word) != names.end()) return {};
+    const bool is_number = !word.empty() && word[0] >= '0' && word[0] <= '9';  // 12 is not meant to be 16
+    const std::string remedy = is_number ? "" : base::did_you_mean(word, names);
+    return "there is no `" + word + "`; " + (remedy.empty() ? "there are " + base::joined(names) : remedy);
+  };
 }
 
-CLI::Validator whole_number(std::uint64_t from, std::uint64_t to) {
-  return check(
-      [from, to](std::string& text) -> std::string {
-        std::uint64_t value = 0;
-        if (parse(text, value) && value >= from && value <= to) {
-          text = std::to_string(value);  // the library would take 010 for eight
-          return {};
-        }
-        return "must be a whole number from " + std::to_string(from) + " to " + std::to_string(to) + ", not `" + text +
-               "`";
-      },
-      "whole_number");
+Check whole_number(std::uint64_t from, std::uint64_t to) {
+  return [from, to](std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    if (parse(text, value) && value >= from && value <= to) {
+      text = std::to_string(value);  // the library would take 010 for eight
+      return {};
+    }
+    return "must be a whole number from " + std::to_string(from) + " to " + std::to_string(to) + ", not `" + text + "`";
+  };
 }
 
-CLI::Validator real_number(double from, double to) {
-  return check(
-      [from, to](std::string& text) -> std::string {
-        double value = 0;
-        const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
-        if (parse(plus ? text.substr(1) : text, value) && value >= from && value <= to) return {};
-        return "must be a number from " + text_of(from) + " to " + text_of(to) + ", not `" + text + "`";
-      },
-      "real_number");
+Check real_number(double from, double to) {
+  return [from, to](std::string& text) -> std::string {
+    double value = 0;
+    const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+    if (parse(plus ? text.substr(1) : text, value) && value >= from && value <= to) return {};
+    return "must be a number from " + text_of(from) + " to " + text_of(to) + ", not `" + text + "`";
+  };
 }
 
-CLI::Validator byte_size() {
-  return check(
-      [](std::string& text) -> std::string {
-        constexpr std::string_view kUnits = "KMGT";
-        const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
-        double value = 0;
-        if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
-          value = std::ldexp(value, 10 * (static_cast<int>(unit) + 1));
-          if (value >= 1 && value < 0x1p63) {
-            text = std::to_string(static_cast<std::uint64_t>(value));
-            return {};
-          }
-        }
-        return "must be a size with its unit, as 512M or 1.5G, not `" + text + "`";
-      },
-      "byte_size");
+Check byte_size() {
+  return [](std::string& text) -> std::string {
+    constexpr std::string_view kUnits = "KMGT";
+    const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
+    double value = 0;
+    if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
+      value = std::ldexp(value, 10 * (static_cast<int>(unit) + 1));
+      if (value >= 1 && value < 0x1p63) {
+        text = std::to_string(static_cast<std::uint64_t>(value));
+        return {};
+      }
+    }
+    return "must be a size with its unit, as 512M or 1.5G, not `" + text + "`";
+  };
 }
 
-CLI::Validator duration() {
-  return check(
-      [](std::string& text) -> std::string {
-        constexpr std::string_view kUnits = "smh";
-        const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
-        double value = 0;
-        if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
-          value *= unit == 0 ? 1 : unit == 1 ? 60 : 3600;
-          if (value >= 0.01 && value <= kLongestTime) {
-            std::ostringstream seconds;
-            seconds.precision(17);
-            seconds << value;
-            text = seconds.str();
-            return {};
-          }
-        }
-        return "must be a time with its unit, as 90s, 5m or 1.5h, not `" + text + "`";
-      },
-      "duration");
+Check duration() {
+  return [](std::string& text) -> std::string {
+    constexpr std::string_view kUnits = "smh";
+    const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
+    double value = 0;
+    if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
+      value *= unit == 0 ? 1 : unit == 1 ? 60 : 3600;
+      if (value >= 0.01 && value <= kLongestTime) {
+        std::ostringstream seconds;
+        seconds.precision(17);
+        seconds << value;
+        text = seconds.str();
+        return {};
+      }
+    }
+    return "must be a time with its unit, as 90s, 5m or 1.5h, not `" + text + "`";
+  };
 }
-
-void repeatable(CLI::Option& option) { option.take_all()->expected(1)->allow_extra_args(false); }
 
 }  // namespace orrery::cli

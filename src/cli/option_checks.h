@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "cli/arguments.h"
 
 namespace orrery::cli {
 
@@ -15,26 +15,23 @@ inline constexpr std::uint64_t kMostThreads = 4096;
 // Checks of what is given to an option, in our own words: those of the library differ between its versions.
 
 /// Refuses a word that is not among `names`, and says which one was meant.
-CLI::Validator one_of(std::vector<std::string> names);
+Check one_of(std::vector<std::string> names);
 
 // Those that say what they leave behind are given by transform(), for check() keeps what was typed.
 
 /// Refuses what is no whole number from..to; leaves its digits without leading zeros, which would make them octal.
-CLI::Validator whole_number(std::uint64_t from, std::uint64_t to);
+Check whole_number(std::uint64_t from, std::uint64_t to);
 
 /// Refuses what is no finite number from..to.
-CLI::Validator real_number(double from, double to);
+Check real_number(double from, double to);
 
 /// Refuses what is no size, as 512M or 1.5G; leaves bytes behind. K, M, G and T are powers of 1024.
-CLI::Validator byte_size();
+Check byte_size();
 
 /// A year: who asks for more has mistaken the unit.
 inline constexpr double kLongestTime = 365.0 * 24 * 3600;
 
 /// Refuses what is no time, as 90s, 5m or 1.5h, of a hundredth of a second or more; leaves seconds behind.
-CLI::Validator duration();
-
-/// An option that can be given several times, and takes one value each time: what follows is the next argument.
-void repeatable(CLI::Option& option);
+Check duration();
 
 }  // namespace orrery::cli

@@ -6,12 +6,13 @@
 
 namespace orrery::cli {
 
-void PictureOptions::add_to(CLI::App& command, app::Job& job) {
-  repeatable(*command
-                  .add_option("-o,--output", job.outputs,
-                              "File to write; its extension chooses EXR, HDR, PNG, TIFF, JPEG or PPM; can be repeated")
-                  ->required()
-                  ->type_name("FILE"));
+void PictureOptions::add_to(Command& command, app::Job& job) {
+  command
+      .add_option("-o,--output", job.outputs,
+                  "File to write; its extension chooses EXR, HDR, PNG, TIFF, JPEG or PPM; can be repeated")
+      ->required()
+      ->type_name("FILE")
+      ->repeatable();
   add_display_options(command, job.display, job.bits);
   command.add_option("--type", type_, "EXR channels: half, the default, or float")
       ->check(one_of({"half", "float"}))

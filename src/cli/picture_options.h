@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 
 #include "app/job.h"
+#include "cli/arguments.h"
 
 namespace orrery::cli {
 
@@ -13,7 +12,7 @@ namespace orrery::cli {
 class PictureOptions {
  public:
   /// Domain     called once; neither this nor `job` moves until the command line is read
-  void add_to(CLI::App& command, app::Job& job);
+  void add_to(Command& command, app::Job& job);
 
   /// What flags say that are no members of a job as they are.
   void finish(app::Job& job) const { job.exr.as_float = type_ == "float"; }

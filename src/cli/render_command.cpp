@@ -160,9 +160,9 @@ int render(RenderOptions& options) {
 
 }  // namespace
 
-void add_render(CLI::App& program, Action& action) {
+void add_render(Command& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
-  CLI::App& command = *program.add_subcommand("render", "Render a scene into one or more picture files");
+  Command& command = *program.add_subcommand("render", "Render a scene into one or more picture files");
   command.add_option("SCENE", options->batch.scenes, "Scene file; several: their outputs are named with {scene}")
       ->required()
       ->type_name("FILE");

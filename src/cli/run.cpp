@@ -24,13 +24,17 @@ std::string versions_text() {
   return out + "  CLI11 " CLI11_VERSION;
 }
 
-void add_commands(CLI::App& program, Action& action) {
+void configure(CLI::App& program) {
   program.set_version_flag("--version", versions_text, "Print the versions of the program and its libraries and exit");
   program.set_help_flag("-h,--help", "Print this help message and exit");
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
   // What a script says after its own defaults shall count.
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  program.footer("orrery COMMAND --help tells more, with examples.");
+}
+
+void add_commands(Command& program, Action& action) {
   add_render(program, action);
   add_merge(program, action);
   add_submit(program, action);
@@ -42,7 +46,6 @@ void add_commands(CLI::App& program, Action& action) {
   add_compare(program, action);
   add_bench(program, action);
   add_study(program, action);
-  program.footer("orrery COMMAND --help tells more, with examples.");
 }
 
 /// What --help and --version print.
@@ -61,8 +64,10 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error, con
 
 int parse_and_act(int argc, const char* const* argv) {
   CLI::App program("orrery renders scenes made of spheres, fast and right.", "orrery");
+  configure(program);
+  Command commands(program);
   Action action;
-  add_commands(program, action);
+  add_commands(commands, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {

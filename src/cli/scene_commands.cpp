@@ -56,9 +56,9 @@ int check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_info(CLI::App& program, Action& action) {
+void add_info(Command& program, Action& action) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App& command = *program.add_subcommand("info", "Tell what a scene is, what it requires, and what is left out");
+  Command& command = *program.add_subcommand("info", "Tell what a scene is, what it requires, and what is left out");
   command.add_option("SCENE", options->scene, "Scene file")->required()->type_name("FILE");
   options->overrides.add_to(command);
   command.add_flag("--measure", options->measure, "Measure what leaving out saves; takes some seconds");
@@ -71,9 +71,9 @@ void add_info(CLI::App& program, Action& action) {
   command.callback([options, &action] { action = [options] { return info(*options); }; });
 }
 
-void add_check(CLI::App& program, Action& action) {
+void add_check(Command& program, Action& action) {
   const auto options = std::make_shared<CheckOptions>();
-  CLI::App& command = *program.add_subcommand("check", "Find everything that is wrong with scenes, without rendering");
+  Command& command = *program.add_subcommand("check", "Find everything that is wrong with scenes, without rendering");
   command.add_option("SCENE", options->scenes, "Scene files")->required()->type_name("FILE")->take_all();
   options->overrides.add_to(command);
   command.add_flag("-q,--quiet", options->quiet, "Say nothing about scenes that are right");

@@ -21,11 +21,11 @@ std::string quoted_list(const std::string& words) {
 
 }  // namespace
 
-void SceneOptions::add_to(CLI::App& command, bool allows_range) {
+void SceneOptions::add_to(Command& command, bool allows_range) {
   allows_range_ = allows_range;
-  repeatable(
-      *command.add_option("--set", set_, "Override a key of the scene file: --set camera.vfov=30; can be repeated")
-           ->type_name("KEY=VALUE"));
+  command.add_option("--set", set_, "Override a key of the scene file: --set camera.vfov=30; can be repeated")
+      ->type_name("KEY=VALUE")
+      ->repeatable();
   const auto add = [&](const char* flag, const char* key, const char* type, const std::string& what) {
     Short& option = short_forms_.emplace_back(Short{key, {}, nullptr, false});
     option.flag = command.add_option(flag, option.value, what + "; as --set " + key)->type_name(type);

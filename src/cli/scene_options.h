@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <deque>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "cli/arguments.h"
 
 namespace orrery::cli {
 
@@ -16,7 +16,7 @@ class SceneOptions {
   /// Domain     called once; neither this moves nor `command` goes until overrides() was asked
   ///
   /// `allows_range`  --samples may be A:B
-  void add_to(CLI::App& command, bool allows_range = false);
+  void add_to(Command& command, bool allows_range = false);
 
   /// What --samples says, where that is a range, A:B, of the scene's samples; then it overrides nothing.
   std::optional<std::string> sample_range() const;
@@ -28,7 +28,7 @@ class SceneOptions {
   struct Short {
     const char* key;
     std::string value;
-    const CLI::Option* flag;
+    const Option* flag;
     bool is_list;  ///< words between commas
   };
   bool is_range(const Short& option) const;

@@ -48,9 +48,9 @@ int run(StudyOptions& options) {
 
 }  // namespace
 
-void add_study(CLI::App& program, Action& action) {
+void add_study(Command& program, Action& action) {
   const auto options = std::make_shared<StudyOptions>();
-  CLI::App& command = *program.add_subcommand("study", "Measure what time buys in accuracy on a scene, and recommend");
+  Command& command = *program.add_subcommand("study", "Measure what time buys in accuracy on a scene, and recommend");
   command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
   command.add_option("-o,--output", options->report, "Write a report: one HTML file with plots and pictures")
       ->type_name("FILE");

@@ -18,8 +18,8 @@ struct SubmitOptions {
   SceneOptions scene;
   PictureOptions picture;
   std::filesystem::path scene_file;
-  int slurm = 0, openjd = 0, opencue = 0;
-  const CLI::Option* parallel = nullptr;
+  bool slurm = false, openjd = false, opencue = false;
+  const Option* parallel = nullptr;
 };
 
 int submit(SubmitOptions& options) {
@@ -42,10 +42,10 @@ int submit(SubmitOptions& options) {
 
 }  // namespace
 
-void add_submit(CLI::App& program, Action& action) {
+void add_submit(Command& program, Action& action) {
   const auto options = std::make_shared<SubmitOptions>();
   app::Submission& s = options->submission;
-  CLI::App& command = *program.add_subcommand("submit", "Print a job for Slurm, OpenJD, OpenCue or GNU parallel");
+  Command& command = *program.add_subcommand("submit", "Print a job for Slurm, OpenJD, OpenCue or GNU parallel");
   command.add_option("SCENE", options->scene_file, "Scene file")->required()->type_name("FILE");
   command.add_flag("--slurm", options->slurm, "A shell script that calls sbatch");
   command.add_flag("--openjd", options->openjd, "An Open Job Description template, jobtemplate-2023-09");

@@ -7,10 +7,10 @@ namespace orrery::cli {
 namespace {
 
 /// What a check says to a value; empty: it is fine.
-std::string verdict(const CLI::Validator& check, std::string value) { return check(value); }
+std::string verdict(const Check& check, std::string value) { return check(value); }
 
 TEST(CliOptionChecks, OneOfNamesWhatWasMeant) {
-  const CLI::Validator check = one_of({"half", "float"});
+  const Check check = one_of({"half", "float"});
   EXPECT_EQ(verdict(check, "float"), "");
   EXPECT_EQ(verdict(check, "flaot"), "there is no `flaot`; did you mean `float`?");
   EXPECT_EQ(verdict(check, "integer"), "there is no `integer`; there are half, float");
@@ -21,7 +21,7 @@ TEST(CliOptionChecks, OneOfGuessesNoNumbers) {
 }
 
 TEST(CliOptionChecks, WholeNumbersHaveLimitsAndNothingBehindThem) {
-  const CLI::Validator check = whole_number(1, 20);
+  const Check check = whole_number(1, 20);
   EXPECT_EQ(verdict(check, "1"), "");
   EXPECT_EQ(verdict(check, "20"), "");
   for (const char* wrong : {"0", "21", "-1", "1.5", "3x", "", " 3", "99999999999999999999999"})
@@ -35,7 +35,7 @@ TEST(CliOptionChecks, WholeNumbersAreDecimal) {
 }
 
 TEST(CliOptionChecks, RealNumbersAreFinite) {
-  const CLI::Validator check = real_number(-100, 100);
+  const Check check = real_number(-100, 100);
   for (const char* right : {"0", "-100", "+1.5", "1e2", ".5"}) EXPECT_EQ(verdict(check, right), "") << right;
   for (const char* wrong : {"nan", "inf", "100.1", "abc", "", "+", "+-1", "1,5"})
     EXPECT_EQ(verdict(check, wrong), std::string("must be a number from -100 to 100, not `") + wrong + "`");
@@ -51,18 +51,6 @@ TEST(CliOptionChecks, SizesAreBytesWithAUnit) {
   for (const char* wrong : {"", "G", "8", "8g", "-1G", "0G", "nanG", "1e300T", "8GB"})
     EXPECT_EQ(verdict(byte_size(), wrong),
               std::string("must be a size with its unit, as 512M or 1.5G, not `") + wrong + "`");
-}
-
-TEST(CliOptionChecks, RepeatableTakesOneValueEachTime) {
-  CLI::App app;
-  std::vector<std::string> outputs;
-  std::string scene;
-  repeatable(*app.add_option("-o", outputs));
-  app.add_option("SCENE", scene);
-  const char* const argv[] = {"program", "-o", "a", "-o", "b", "scene"};
-  app.parse(6, argv);
-  EXPECT_EQ(outputs, (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ(scene, "scene");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/scene_options.h"
 
+#include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
 namespace orrery::cli {
@@ -9,8 +10,9 @@ namespace {
 std::vector<std::string> overrides_of(const std::vector<const char*>& words) {
   CLI::App app;
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  Command command(app);
   SceneOptions options;
-  options.add_to(app);
+  options.add_to(command);
   std::vector<const char*> argv = {"program"};
   argv.insert(argv.end(), words.begin(), words.end());
   app.parse(static_cast<int>(argv.size()), argv.data());

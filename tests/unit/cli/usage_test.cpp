@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/option_checks.h"
+#include "cli/arguments.h"
 
 namespace orrery::cli {
 namespace {
@@ -12,15 +12,15 @@ namespace {
 class CliUsage : public testing::Test {
  protected:
   CliUsage() {
-    program_.require_subcommand(1);
-    CLI::App& render = *program_.add_subcommand("render", "");
-    render.add_option("SCENE", scene_)->required();
-    repeatable(*render.add_option("-o,--output", outputs_)->required());
-    render.add_option("--samples", samples_);
-    render.add_flag("-q,--quiet", quiet_);
-    CLI::App& generate = *program_.add_subcommand("generate", "");
-    generate.require_subcommand(1);
-    generate.add_subcommand("final", "")->add_option("--seed", samples_);
+    commands_.require_subcommand();
+    Command& render = *commands_.add_subcommand("render", "");
+    render.add_option("SCENE", scene_, "")->required();
+    render.add_option("-o,--output", outputs_, "")->required()->repeatable();
+    render.add_option("--samples", samples_, "");
+    render.add_flag("-q,--quiet", quiet_, "");
+    Command& generate = *commands_.add_subcommand("generate", "");
+    generate.require_subcommand();
+    generate.add_subcommand("final", "")->add_option("--seed", samples_, "");
     generate.add_subcommand("cloud", "");
   }
 
@@ -37,6 +37,7 @@ class CliUsage : public testing::Test {
   }
 
   CLI::App program_{"", "orrery"};
+  Command commands_{program_};
   std::string scene_, samples_;
   std::vector<std::string> outputs_;
   bool quiet_ = false;
@@ -45,6 +46,12 @@ class CliUsage : public testing::Test {
 TEST_F(CliUsage, NothingIsWrongWithWhatIsRight) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samples", "3"}), "");
   EXPECT_EQ(message({"generate", "final", "--seed=3"}), "");
+}
+
+TEST_F(CliUsage, ARepeatableOptionTakesOneValueEachTime) {
+  EXPECT_EQ(message({"render", "-o", "a.png", "-o", "b.png", "a.toml"}), "");
+  EXPECT_EQ(outputs_, (std::vector<std::string>{"a.png", "b.png"}));
+  EXPECT_EQ(scene_, "a.toml");
 }
 
 TEST_F(CliUsage, UnknownFlagsNameTheOneThatWasMeant) {
