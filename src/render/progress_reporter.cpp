@@ -7,6 +7,7 @@
 namespace orrery::render {
 
 double ProgressReporter::seconds() const {
+  if (settings_.clock) return seconds_before_ + settings_.clock(done());
   return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
@@ -20,13 +21,15 @@ void ProgressReporter::add(std::uint64_t samples) {
   const std::uint64_t done = done_.fetch_add(samples, std::memory_order_relaxed) + samples;
   if (!settings_.on_progress) return;
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock.owns_lock()) return;  // somebody else is just telling
+  if (!lock.owns_lock()) return;  // another thread is reporting
   const double now = seconds();
-  if (now - last_ < kInterval && done < total_) return;
-  last_ = now;
-  if (goal_.empty()) return settings_.on_progress({done, total_, now, goal_});
   double fraction = static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(total_, 1));
-  if (settings_.seconds > 0) fraction = std::max(fraction, std::min(now / settings_.seconds, 0.99));
+  if (!goal_.empty() && settings_.seconds > 0) fraction = std::max(fraction, std::min(now / settings_.seconds, 0.99));
+  const int percent = static_cast<int>(std::min(fraction, 1.0) * 100);
+  if (now - last_ < kInterval && percent == last_percent_ && done < total_) return;
+  last_ = now;
+  last_percent_ = percent;
+  if (goal_.empty()) return settings_.on_progress({done, total_, now, goal_});
   most_told_ = std::min(std::max(most_told_, fraction), 1.0);
   const auto total = most_told_ >= 1 ? done : static_cast<std::uint64_t>(static_cast<double>(done) / most_told_);
   settings_.on_progress({done, std::max(total, done), now, goal_});

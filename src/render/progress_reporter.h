@@ -11,7 +11,8 @@
 
 namespace orrery::render {
 
-/// Tells the caller how far the render is, from whichever thread comes by, at most a few times a second.
+/// Reports progress to the caller, from whichever thread has just done some of it: at each whole percent, and between
+/// these ten times a second at most.
 class ProgressReporter {
  public:
   /// `total` samples are to be done, as far as is known; `before` was done by earlier runs.
@@ -38,8 +39,9 @@ class ProgressReporter {
   std::mutex mutex_;  // of all below
   std::uint64_t total_;
   std::string goal_;
-  double most_told_ = 0;  ///< 0..1
-  double last_ = 0;
+  double most_told_ = 0;   ///< 0..1
+  double last_ = 0;        ///< report, seconds
+  int last_percent_ = -1;  ///< that was reported
   Clock::time_point start_ = Clock::now();
 };
 

@@ -41,8 +41,11 @@ struct Settings {
   double noise = 0;
   double seconds = 0;      ///< to sample for, wherever that helps most; 0: as long as it takes
   bool unlimited = false;  ///< with noise or seconds: the world's samples are no limit
-  /// Called from one thread at a time, a few times a second at the most.
+  /// Called from one thread at a time: at each whole percent, and ten times a second at most between these.
   std::function<void(const Progress&)> on_progress;
+  /// Seconds that rendering so many samples takes. For tests, which must not depend on the machine's speed; empty: the
+  /// steady clock is read. From any thread.
+  std::function<double(std::uint64_t samples_done)> clock;
   /// Called while the hierarchy is built, with what is done of it, 0..1, from any thread.
   std::function<void(double fraction)> on_build;
   const std::atomic<bool>* cancel = nullptr;  ///< looked at while building and between tiles; true stops the render

@@ -1,43 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is left of a render that is killed, runs out of disk, or loses its folder. ORRERY_CRASHES is the number of
-// moments and of bytes that are tried; all are chosen by a fixed seed.
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
+// What is left of a render that is killed, runs out of disk space, or loses its folder. ORRERY_CRASHES is the number of
+// interruptions and of file sizes that are tried; all are chosen by a fixed seed, and none by the clock.
 #include <cstdlib>
 #include <random>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "cli/program.h"
+#include "support/paced_program.h"
 
 namespace orrery::test {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 int tries() {
   const char* const text = std::getenv("ORRERY_CRASHES");
-  return text != nullptr ? std::atoi(text) : 40;
+  return text != nullptr ? std::atoi(text) : 30;
 }
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 class BatchCrash : public ProgramTest {
  protected:
-  /// What the picture is when nothing goes wrong, and how long that takes.
+  /// The picture when nothing goes wrong, and another one that may be there before.
   void SetUp() override {
     write("scene.toml", R"(
 [image]
 width = 160
 height = 90
 [render]
-samples = 200
+samples = 100
 [output]
 layers = ["Z"]
 [material.grey]
@@ -52,84 +42,73 @@ center = [0, -100.5, -1]
 radius = 100
 material = "grey"
 )");
-    const auto start = Clock::now();
     ASSERT_EQ(run("render scene.toml -o a.exr --reproducible -q").status, 0);
-    seconds_ = seconds_since(start);
     right_ = text_of(folder_ / "a.exr");
-    ASSERT_EQ(run("render scene.toml -o b.exr --reproducible -q --seed 5").status, 0);
-    old_ = text_of(folder_ / "b.exr");
+    ASSERT_EQ(run("render scene.toml -o a.exr --reproducible -q --seed 5 --samples 1").status, 0);
+    old_ = text_of(folder_ / "a.exr");
     ASSERT_NE(right_, old_);
-    std::filesystem::remove(folder_ / "b.exr");
   }
 
-  pid_t start(std::vector<const char*> words, rlim_t largest_file = RLIM_INFINITY) {
-    words.insert(words.begin(), "orrery");
-    words.push_back(nullptr);
-    const pid_t child = fork();
-    if (child != 0) return child;
-    const rlimit limit{largest_file, largest_file};
-    if (chdir(folder_.c_str()) != 0 || setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(126);
-    const int out = open("/dev/null", O_WRONLY);
-    dup2(out, 2);
-    execv(ORRERY_PROGRAM, const_cast<char* const*>(words.data()));
-    _exit(127);
+  PacedProgram start(std::vector<const char*> words, rlim_t largest_file = RLIM_INFINITY) const {
+    return PacedProgram(folder_, std::move(words), {largest_file, 0});
   }
-  static int wait_for(pid_t child) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-  static void sleep_for(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
   std::string picture() const { return text_of(folder_ / "a.exr"); }
   void put_old() const { support::write_bytes(folder_ / "a.exr", old_); }
-  /// Temporary files of processes that nothing could tell to clean up.
+  /// Temporary files of processes that could not remove them.
   void remove_leftovers() const {
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
       if (entry.path().filename().string().rfind(".a.", 0) == 0) std::filesystem::remove(entry.path());
   }
 
   std::string right_, old_;
-  double seconds_ = 0;
 };
 
-const std::vector<const char*> kRender = {"render", "scene.toml",   "-o",   "a.exr",   "--reproducible",
-                                          "-q",     "--checkpoint", "0.1s", "--resume"};
+const std::vector<const char*> kRender = {"render", "scene.toml", "-o",     "a.exr",    "--reproducible", "-t",
+                                          "1",      "--progress", "arnold", "--resume", "--checkpoint",   "0.01s"};
 
 TEST_F(BatchCrash, KilledAtAnyMomentTheOldPictureOrTheNewOneIsThere) {
   std::mt19937 random(11);
-  std::uniform_real_distribution<double> moment(0, 1.3 * seconds_);
-  put_old();
-  int finished = 0, interrupted = 0;
+  std::uniform_int_distribution<int> percent(0, 80), changes(1, 24);
+  int interrupted = 0;
   for (int i = 0; i < tries(); ++i) {
-    const pid_t child = start(kRender);
-    sleep_for(moment(random));
-    kill(child, SIGKILL);
-    const int status = wait_for(child);
-    ASSERT_TRUE(status == 0 || status == 128 + SIGKILL) << status;
+    PacedProgram render = start(kRender);
+    switch (i % 3) {
+      case 0: render.run_to(percent(random)); break;       // while it samples: it cannot have ended
+      case 1: render.run_changes(changes(random)); break;  // while it writes a checkpoint, most likely
+      default:                                             // while it writes the picture
+        render.run_to(100);
+        render.run_changes(changes(random));
+    }
+    render.send(SIGKILL);
+    const int status = render.wait();
+    ASSERT_TRUE(status == 0 || status == 128 + SIGKILL) << status << "\n" << render.text();
     const std::string found = picture();
     ASSERT_TRUE(found == old_ || found == right_) << "killed at try " << i;
-    ++(found == right_ ? finished : interrupted);
-    if (found == right_) put_old();  // and from the beginning, or from the checkpoint of one killed just before its end
+    interrupted += status != 0;
+    if (found == right_) put_old();
+    // From the beginning before those of the first kind, and from whatever checkpoint there is before the others.
+    if (i % 3 == 2) std::filesystem::remove(folder_ / "a.checkpoint.exr");
     remove_leftovers();
   }
-  EXPECT_GT(interrupted, tries() / 4);
-  // Whatever the last one left: it ends as if nothing had been.
-  ASSERT_EQ(wait_for(start(kRender)), 0);
+  EXPECT_GE(interrupted, tries() / 3);
+  // Whatever the last one left, the next one ends as if nothing had happened.
+  ASSERT_EQ(start(kRender).wait(), 0);
   EXPECT_EQ(picture(), right_);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
-  RecordProperty("finished", finished);
 }
 
 TEST_F(BatchCrash, AFullDiskAtAnyByteIsToldAndHarmless) {
+  const std::vector<const char*> words = {"render",         "scene.toml", "-o",        "a.exr",
+                                          "--reproducible", "-q",         "--samples", "1"};
+  ASSERT_EQ(start(words).wait(), 0);
+  const std::size_t whole = picture().size();
   put_old();
   std::mt19937 random(12);
-  std::uniform_int_distribution<std::size_t> size(0, right_.size() - 1);
+  std::uniform_int_distribution<std::size_t> size(0, whole - 1);
   for (int i = 0; i < tries(); ++i) {
-    const std::size_t bytes = i == 0 ? 0 : i == 1 ? right_.size() - 1 : size(random);
-    ASSERT_EQ(wait_for(start({"render", "scene.toml", "-o", "a.exr", "--reproducible", "-q", "--samples", "1"}, bytes)),
-              74)
-        << bytes;
+    const std::size_t bytes = i == 0 ? 0 : i == 1 ? whole - 1 : size(random);
+    ASSERT_EQ(start(words, bytes).wait(), 74) << bytes;
     ASSERT_EQ(picture(), old_) << bytes;
     ASSERT_EQ(file_count(), 1) << "something was left behind at " << bytes;
   }
@@ -137,10 +116,13 @@ TEST_F(BatchCrash, AFullDiskAtAnyByteIsToldAndHarmless) {
 
 TEST_F(BatchCrash, ACheckpointThatFindsNoRoomIsNoEndOfTheRender) {
   // The picture fits, its sums do not.
-  put_old();
-  EXPECT_EQ(wait_for(start({"render", "scene.toml", "-o", "a.exr", "--reproducible", "-q", "--checkpoint", "0.1s"},
-                           right_.size() + 1000)),
-            0);
+  PacedProgram render =
+      start({"render", "scene.toml", "-o", "a.exr", "--reproducible", "-t", "1", "--progress", "arnold"},
+            right_.size() + 1000);
+  ASSERT_TRUE(render.run_to(10));
+  render.send(SIGUSR1);
+  EXPECT_EQ(render.wait(), 0);
+  EXPECT_NE(render.text().find("a.checkpoint.exr: warning: no checkpoint: "), std::string::npos) << render.text();
   EXPECT_EQ(picture(), right_);
 }
 
@@ -169,47 +151,43 @@ TEST_F(BatchCrash, AReadOnlyDiskIsTold) {
 
 TEST_F(BatchCrash, AFolderThatVanishesIsTold) {
   std::filesystem::create_directory(folder_ / "out");
-  const pid_t child = start({"render", "scene.toml", "-o", "out/a.exr", "-q"});
-  sleep_for(seconds_ / 2);
+  PacedProgram render = start({"render", "scene.toml", "-o", "out/a.exr", "-t", "1", "--progress", "arnold"});
+  ASSERT_TRUE(render.run_to(50));
   std::filesystem::remove_all(folder_ / "out");
-  const int status = wait_for(child);
+  const int status = render.wait();
   EXPECT_TRUE(status == 73 || status == 74) << status;
 }
 
 TEST_F(BatchCrash, TwoProcessesOnOnePictureMakeOneWholePicture) {
-  put_old();
-  for (int i = 0; i < 5; ++i) {
-    const pid_t a = start(kRender);
-    sleep_for(seconds_ * i / 10);
-    const pid_t b = start(kRender);
-    EXPECT_EQ(wait_for(a), 0);
-    EXPECT_EQ(wait_for(b), 0);
+  for (const int percent : {0, 50, 90}) {
+    put_old();
+    PacedProgram first = start(kRender);
+    ASSERT_TRUE(first.run_to(percent));
+    PacedProgram second = start(kRender);
+    // Both write from here on, each as the machine lets it.
+    std::thread other([&] { EXPECT_EQ(second.wait(), 0) << second.text(); });
+    EXPECT_EQ(first.wait(), 0) << first.text();
+    other.join();
     ASSERT_EQ(picture(), right_);
   }
 }
 
 TEST_F(BatchCrash, InterruptedThirtyTimesItIsTheSameBytes) {
-  ASSERT_EQ(run("render scene.toml -o whole.exr --samples 4000 --reproducible -q").status, 0);
-  std::mt19937 random(13);
-  const std::vector<const char*> words = {"render",    "scene.toml", "-o", "a.exr",         "--resume",
-                                          "--samples", "4000",       "-q", "--reproducible"};
-  std::uniform_real_distribution<double> moment(0.02, 20 * seconds_ / 31 * 2);
-  int interruptions = 0, status = 75;
-  while (status == 75) {
-    const pid_t child = start(words);
-    if (interruptions < 30) {
-      sleep_for(moment(random));
-      kill(child, interruptions % 2 == 0 ? SIGTERM : SIGINT);
-    }
-    status = wait_for(child);
-    // A signal before the program listens ends it as any other.
-    if (status == 128 + SIGTERM || status == 128 + SIGINT) status = 75;
-    interruptions += status == 75 ? 1 : 0;
+  ASSERT_EQ(run("render scene.toml -o whole.exr --samples 1000 --reproducible -q").status, 0);
+  const std::vector<const char*> words = {"render",         "scene.toml", "-o",        "a.exr",
+                                          "--reproducible", "--resume",   "--samples", "1000",
+                                          "--progress",     "arnold",     "-t",        "1"};
+  // A percent is two squares and a half. A process stops at the third percent after its first line at the latest, so
+  // that every one of the thirty finds something to interrupt.
+  for (int i = 0; i < 30; ++i) {
+    PacedProgram render = start(words);
+    ASSERT_TRUE(render.run_to(3 * i)) << "interruption " << i << "\n" << render.text();
+    render.send(i % 2 == 0 ? SIGTERM : SIGINT);
+    ASSERT_EQ(render.wait(), 75) << "interruption " << i << "\n" << render.text();
   }
-  EXPECT_EQ(status, 0);
-  EXPECT_GT(interruptions, 10);
+  // The last one with as many threads as there are.
+  ASSERT_EQ(run("render scene.toml -o a.exr --samples 1000 --reproducible --resume -q").status, 0);
   EXPECT_EQ(picture(), text_of(folder_ / "whole.exr"));
-  RecordProperty("interruptions", interruptions);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/program.h"
+#include "support/paced_program.h"
 
 namespace orrery::test {
 namespace {
@@ -121,8 +122,13 @@ TEST_F(BatchParts, WhatIsMissingMayBeAllowed) {
 TEST_F(BatchParts, AnUnfinishedPartIsNamed) {
   render("b.exr", "--samples 10:35");
   // A render that is stopped at once leaves a checkpoint of its part.
-  run("render good.toml -o a.exr --set render.samples=3000000 --samples 0:2999965 --width 70 --height 45 -q",
-      "timeout -s TERM 1");
+  {
+    PacedProgram part(folder_, {"render", "good.toml", "-o", "a.exr", "--set", "render.samples=3000000", "--samples",
+                                "0:2999965", "--width", "70", "--height", "45", "--progress", "arnold", "-t", "1"});
+    ASSERT_TRUE(part.run_to(0)) << part.text();
+    part.send(SIGTERM);
+    ASSERT_EQ(part.wait(), 75) << part.text();
+  }
   ASSERT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
   ASSERT_EQ(run("render good.toml -o z.exr --set render.samples=3000000 --samples 2999965:3000000 --width 70 --height "
                 "45 -q")

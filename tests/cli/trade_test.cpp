@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is asked for by error or by time, and what comes of it.
-#include <chrono>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -38,13 +36,10 @@ TEST_F(CliTrade, ATargetThatSamplesDoNotReachIsTold) {
   EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0 -q").status, 0);
 }
 
-TEST_F(CliTrade, TimeIsKept) {
-  const auto begin = std::chrono::steady_clock::now();
-  const Outcome r = run("render good.toml -o a.exr --noise 1e-6 --time 1.5s --stats s.json --progress none");
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+TEST_F(CliTrade, TimeEndsARenderThatCannotReachItsNoise) {
+  // How well the time is kept is a test of render/rounds, whose clock counts samples.
+  const Outcome r = run("render good.toml -o a.exr --noise 1e-6 --time 0.5s --stats s.json --progress none");
   EXPECT_EQ(r.status, 0);
-  EXPECT_GT(seconds, 1.0);
-  EXPECT_LT(seconds, 4.0);  // the promise is 2.5, on a machine that does nothing else
   EXPECT_NE(r.err.find(" instead of 1e-06: time was over\n"), std::string::npos) << r.err;
   EXPECT_EQ(stats()["ended_by"], "time");
 }
