@@ -12,18 +12,22 @@ scene="$root/tests/determinism/everything.toml"
 reference=""
 status=0
 
-# picture NAME PROGRAM ARGS...: renders, hashes, compares with the first.
+# picture NAME PROGRAM ARGS...: renders, hashes, compares with the first. The instruction set is the one that ran, as
+# --stats reports it, not the one that was requested.
 picture() {
-  local name=$1 program=$2 hash
+  local name=$1 program=$2 hash isa
   shift 2
-  if ! "$program" render "$scene" -o "$work/picture.exr" --type float --reproducible -q "$@" 2>"$work/error"; then
+  if ! "$program" render "$scene" -o "$work/picture.exr" --type float --reproducible -q --stats "$work/stats.json" "$@" \
+    2>"$work/error"; then
     printf '%-44s left out: %s\n' "$name" "$(head -n 1 "$work/error")"
     return
   fi
+  isa=$(sed -n 's/.*"isa": "\(.*\)".*/\1/p' "$work/stats.json")
   hash=$(sha256sum <"$work/picture.exr" | cut -c1-16)
   reference=${reference:-$hash}
-  printf '%-44s %s\n' "$name" "$hash"
+  printf '%-44s %s  %s\n' "$name" "$hash" "$isa"
   [ "$hash" = "$reference" ] || status=1
+  case " $* " in *" --isa $isa "*) ;; *" --isa "*) echo "another instruction set than requested ran"; status=1 ;; esac
 }
 
 # program NAME COMPILER FLAGS: builds once, prints the path.

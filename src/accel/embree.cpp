@@ -89,7 +89,7 @@ class Embree final : public Accel {
     if (primitives > 0) build(primitives, monitor);
   }
 
-  kernel::Tracer tracer() const noexcept override { return {functions_.trace, functions_.trace_fast, &scene_}; }
+  kernel::Tracer tracer() const noexcept override { return functions_.tracer(scene_); }
   void use(Traversals traversals) noexcept override { scene_.traversals = traversals; }
   std::string name() const override { return "embree " + embree_version(); }
   std::size_t bytes() const noexcept override { return embree_.bytes(); }
@@ -156,7 +156,7 @@ class SimdList final : public Accel {
     std::iota(scene_.apart.begin(), scene_.apart.end(), 0u);
   }
 
-  kernel::Tracer tracer() const noexcept override { return {functions_.trace, functions_.trace_fast, &scene_}; }
+  kernel::Tracer tracer() const noexcept override { return functions_.tracer(scene_); }
   std::string name() const override { return "SIMD list"; }
   std::size_t bytes() const noexcept override { return scene_.apart.size() * sizeof(scene_.apart[0]); }
 

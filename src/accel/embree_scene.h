@@ -54,6 +54,9 @@ struct EmbreeFunctions {
   RTCIntersectFunctionN intersect = nullptr;
   void (*trace)(const void* scene, kernel::RayPacket& packet) = nullptr;
   void (*trace_fast)(const void* scene, kernel::RayPacketFast& packet) = nullptr;
+  std::int64_t target = 0;  ///< instruction set that they were compiled for, HWY_AVX2 etc.
+
+  kernel::Tracer tracer(const EmbreeScene& scene) const noexcept { return {trace, trace_fast, &scene, target}; }
 };
 EmbreeFunctions embree_functions(kernel::Precision precision, bool moves);
 

@@ -252,6 +252,7 @@ template <bool kMoves>
 EmbreeFunctions instance(kernel::Precision precision) {
   using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast;
   EmbreeFunctions f;
+  f.target = HWY_TARGET;
   switch (precision) {
     case Precision::kExact:
       f.intersect = intersect<RayPacket, Precision::kExact, kMoves>;

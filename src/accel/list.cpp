@@ -42,6 +42,7 @@ template <bool kMoves>
 kernel::Tracer instance(kernel::Precision precision) {
   using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast;
   kernel::Tracer t;
+  t.target = HWY_TARGET;
   t.trace = precision == Precision::kBook ? trace_list<double, Precision::kBook, kMoves, RayPacket>
                                           : trace_list<double, Precision::kExact, kMoves, RayPacket>;
   t.trace_fast = trace_list<float, Precision::kFast, kMoves, RayPacketFast>;

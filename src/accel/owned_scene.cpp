@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
+#include "kernel/isa.h"
 
 namespace orrery::accel {
 namespace {
@@ -14,9 +17,18 @@ namespace {
                     what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
 }
 
+/// Adds the limit to Embree's settings; without one Embree chooses by itself.
+std::string with_isa_limit(std::string settings) {
+  const std::vector<std::string> available = kernel::available_isas();
+  const std::string isa = kernel::isa_name();
+  if (available.empty() || isa == available.front()) return settings;
+  if (!settings.empty()) settings += ',';
+  return settings + "max_isa=" + (isa == "sse4" ? "sse4.2" : isa);
+}
+
 }  // namespace
 
-OwnedScene::OwnedScene(const char* settings) : device_(rtcNewDevice(settings)) {
+OwnedScene::OwnedScene(std::string settings) : device_(rtcNewDevice(with_isa_limit(std::move(settings)).c_str())) {
   if (device_ == nullptr) fail(rtcGetDeviceError(nullptr), "Embree does not start");
   rtcSetDeviceMemoryMonitorFunction(
       device_,

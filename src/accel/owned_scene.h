@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "accel/embree_compat.h"
 #include "kernel/sphere.h"
@@ -14,10 +15,10 @@ namespace orrery::accel {
 /// An Embree scene with a device of its own, and the count of its bytes.
 class OwnedScene {
  public:
-  /// `settings` are Embree's own words, "threads=1"; null: its defaults.
+  /// `settings` of Embree, such as "threads=1"; it uses no better instruction set than kernel::isa_name().
   ///
-  /// Errors     base::Error(kInternal) where Embree does not start
-  explicit OwnedScene(const char* settings = nullptr);
+  /// Errors     base::Error(kInternal) if Embree does not start
+  explicit OwnedScene(std::string settings = {});
   ~OwnedScene();
   OwnedScene(const OwnedScene&) = delete;
   OwnedScene& operator=(const OwnedScene&) = delete;

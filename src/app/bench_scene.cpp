@@ -16,7 +16,6 @@
 #include "base/error.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
-#include "kernel/isa.h"
 #include "render/recorded_rays.h"
 #include "render/render.h"
 
@@ -262,7 +261,6 @@ Benchmark bench_scene(const BenchRequest& request) {
   const compile::World& world = subject.world();
   Benchmark out;
   out.scene_hash = scene_hash(world);
-  out.isa = kernel::isa_name();
   out.spheres = world.spheres.size();
   out.width = world.width;
   out.height = world.height;
@@ -290,6 +288,7 @@ Benchmark bench_scene(const BenchRequest& request) {
         c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
       out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
       if (c.accelerator == Accelerator::kEmbree) out.accelerator = did.accelerator;
+      out.isa = did.isa;
       tell();
     });
     if (tracing) tracing->measure(round);

@@ -8,7 +8,7 @@
 namespace orrery::app {
 
 void choose_isa(const std::string& name) {
-  if (name.empty() || kernel::limit_isa(name)) return;
+  if (kernel::limit_isa(name)) return;
   throw base::Error(base::ErrorKind::kUsage, "no instruction set " + name + " here; this processor and program have " +
                                                  base::joined(kernel::available_isas()));
 }

@@ -5,9 +5,9 @@
 
 namespace orrery::app {
 
-/// Uses no better instruction set than the one that was asked for; empty: the best.
+/// Limits kernel and tracers to this instruction set; empty: the best one.
 ///
-/// Errors     base::Error(kUsage) where program or processor lack it; names those there are
+/// Errors     base::Error(kUsage) if program or processor lack it; names the available ones
 void choose_isa(const std::string& name);
 
 }  // namespace orrery::app

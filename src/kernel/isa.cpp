@@ -1,10 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/isa.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/isa.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
 #include <hwy/highway.h>
 
+#include "math/dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+std::int64_t compiled_target() { return HWY_TARGET; }
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace orrery::kernel {
 namespace {
+
+HWY_EXPORT(compiled_target);
 
 struct Isa {
   const char* name;
@@ -13,31 +30,37 @@ struct Isa {
 /// Best first; the same that the build leaves enabled.
 constexpr Isa kIsas[] = {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}};
 
-std::int64_t supported() { return static_cast<std::int64_t>(hwy::SupportedTargets()); }
-
 }  // namespace
+
+std::string isa_name(std::int64_t target) {
+  for (const Isa& isa : kIsas)
+    if (isa.target == target) return isa.name;
+  return hwy::TargetName(target);
+}
+
+std::string isa_name() { return isa_name(ORRERY_BEST(compiled_target)()); }
 
 std::vector<std::string> available_isas() {
   std::vector<std::string> names;
   for (const Isa& isa : kIsas)
-    if ((supported() & isa.target) != 0) names.emplace_back(isa.name);
+    if ((math::target_choice().available() & isa.target) != 0) names.emplace_back(isa.name);
   return names;
 }
 
-std::string isa_name() {
-  const auto names = available_isas();
-  return names.empty() ? "baseline" : names.front();
-}
-
 bool limit_isa(std::string_view name) {
+  math::TargetChoice& choice = math::target_choice();
+  if (name.empty()) {
+    choice.limit(choice.available());
+    return true;
+  }
   for (const Isa& isa : kIsas) {
     if (isa.name != name) continue;
-    if ((supported() & isa.target) == 0) return false;
-    hwy::DisableTargets(isa.target - 1);  // Highway gives better targets lower bits
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    if ((choice.available() & isa.target) == 0) return false;
+    choice.limit(~(isa.target - 1));  // Highway gives better targets lower bits
     return true;
   }
   return false;
 }
 
 }  // namespace orrery::kernel
+#endif

@@ -43,6 +43,7 @@ struct Tracer {
   void (*trace)(const void* self, RayPacket& packet) = nullptr;
   void (*trace_fast)(const void* self, RayPacketFast& packet) = nullptr;
   const void* self = nullptr;
+  std::int64_t target = 0;  ///< instruction set that it was compiled for, HWY_AVX2 etc.; 0: nothing of ours
 };
 
 inline void trace(const Tracer& tracer, RayPacket& packet) { tracer.trace(tracer.self, packet); }

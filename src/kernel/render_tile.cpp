@@ -137,6 +137,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   using T = hn::TFromD<D>;
   Passengers<T, IdFor<T>> carried;
   TileCounts counts;
+  counts.target = HWY_TARGET;
   const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const PixelPlace at = tile.pixel(i);

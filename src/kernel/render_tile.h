@@ -49,6 +49,7 @@ struct Tile {
 struct TileCounts {
   std::uint64_t rays = 0;
   std::uint64_t bad_samples = 0;  ///< not finite or above kLargestSample; left out of the sums
+  std::int64_t target = 0;        ///< instruction set that the loop was compiled for, HWY_AVX2 etc.
 };
 
 /// Renders a tile into its sums.

@@ -95,7 +95,6 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
               std::optional<film::Partial> from) {
   Statistics statistics;
   statistics.threads = threads_of(settings);
-  statistics.isa = kernel::isa_name();
   statistics.accelerator = accel.name();
 
   film::Partial state = from ? std::move(*from) : fresh_state(world, settings);
@@ -111,6 +110,8 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
                              ? render_in_rounds(world, settings, render_tile, pool, progress, state, statistics)
                              : render_in_passes(world, settings, render_tile, pool, progress, state, statistics);
   state.effort = effort_so_far(state.effort, pool, progress);
+  const std::int64_t target = pool.counts().target;
+  statistics.isa = target != 0 ? kernel::isa_name(target) : kernel::isa_name();  // 0: there was nothing left to do
   statistics.render_s = state.effort.seconds;
   statistics.paths = state.effort.paths;
   statistics.rays = state.effort.rays;

@@ -48,6 +48,7 @@ kernel::TileCounts TilePool::counts() const {
   for (const TileWorker& worker : impl_->workers) {
     sum.rays += worker.counts.rays;
     sum.bad_samples += worker.counts.bad_samples;
+    if (worker.counts.target != 0) sum.target = worker.counts.target;
   }
   return sum;
 }

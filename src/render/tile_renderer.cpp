@@ -60,6 +60,7 @@ void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
   }
   worker.counts.rays += counts.rays;
   worker.counts.bad_samples += counts.bad_samples;
+  worker.counts.target = counts.target;
 }
 
 void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const {

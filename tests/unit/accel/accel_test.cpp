@@ -197,14 +197,23 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
   return found;
 }
 
-/// Both ways through the hierarchy, and none at all, on every instruction set that this processor has: from the best
-/// down, since there is no way back up.
+/// Packets and single rays through the BVH, and a list in all lanes, on every instruction set that this processor has.
+/// Each instance reports what it was compiled for.
 TEST(AccelAccel, EmbreeFindsExactlyWhatTheListFinds) {
   const std::vector<std::string> isas = kernel::available_isas();
   const std::vector<Scene> all = scenes();
   const long parts = static_cast<long>(all.size() * isas.size() * std::size(kWays));
   for (const std::string& isa : isas) {
     ASSERT_TRUE(kernel::limit_isa(isa));
+    for (const Way& way : kWays) {
+      kernel::SceneView view;
+      view.spheres = all[0].spheres.data();
+      view.sphere_count = 1;
+      for (const auto precision : {kernel::Precision::kExact, kernel::Precision::kFast, kernel::Precision::kBook}) {
+        EXPECT_EQ(kernel::isa_name(way.make(view, precision)->tracer().target), isa) << way.name;
+        EXPECT_EQ(kernel::isa_name(make_list(view, precision)->tracer().target), isa);
+      }
+    }
     for (const Scene& scene : all)
       for (const Way& way : kWays) {
         const Differences found = differences(scene, way, ray_count() / parts);
@@ -213,6 +222,7 @@ TEST(AccelAccel, EmbreeFindsExactlyWhatTheListFinds) {
         EXPECT_GT(found.hits, found.rays / 10) << scene.name;
       }
   }
+  kernel::limit_isa("");
 }
 
 TEST(AccelAccel, ABuildTellsHowFarItIsAndCanBeStopped) {

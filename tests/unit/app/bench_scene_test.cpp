@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "kernel/isa.h"
 #include "support/scratch_folder.h"
 
 namespace orrery::app {
@@ -75,6 +76,15 @@ TEST_F(AppBenchScene, TracingAloneIsMeasuredInOneThreadOnly) {
   BenchRequest r = request();
   r.threads = 2;
   for (const BenchCase& c : bench_scene(r).cases) EXPECT_FALSE(c.tracing.has_value()) << c.name;
+}
+
+TEST_F(AppBenchScene, NamesTheInstructionSetThatRan) {
+  for (const std::string& isa : kernel::available_isas()) {
+    BenchRequest r = request();
+    r.isa = isa;
+    EXPECT_EQ(bench_scene(r).isa, isa);
+  }
+  EXPECT_EQ(bench_scene(request()).isa, kernel::available_isas().front());
 }
 
 TEST_F(AppBenchScene, StopsWhenAsked) {
