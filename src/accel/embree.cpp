@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <memory>
-#include <numeric>
 
 #include "accel/accel.h"
+#include "accel/duplicates.h"
 #include "accel/embree_scene.h"
 #include "accel/owned_scene.h"
 #include "base/error.h"
@@ -20,11 +22,28 @@ constexpr std::size_t kMostApart = 4;
 /// would hold every other sphere, and its size would decide the padding of theirs.
 constexpr double kApartRatio = 4;
 
-/// Ids, ascending, of spheres that dwarf the box around the rest.
-std::vector<std::uint32_t> find_apart(const kernel::Sphere* spheres, std::size_t count) {
-  std::vector<std::uint32_t> largest(count);
-  std::iota(largest.begin(), largest.end(), 0u);
-  const std::size_t candidates = std::min(count, kMostApart);
+/// Ids of all spheres but some.
+///
+/// Domain     `without` ascends
+std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, std::size_t count) {
+  std::vector<std::uint32_t> rest;
+  rest.reserve(count - without.size());
+  auto next = without.begin();
+  for (std::uint32_t id = 0; id < count; ++id) {
+    if (next != without.end() && *next == id) {
+      ++next;
+    } else {
+      rest.push_back(id);
+    }
+  }
+  return rest;
+}
+
+/// Ids, ascending, of spheres that dwarf the box around the rest; duplicates are neither.
+std::vector<std::uint32_t> find_apart(const kernel::Sphere* spheres, std::size_t count,
+                                      const std::vector<std::uint32_t>& duplicates) {
+  std::vector<std::uint32_t> largest = all_but(duplicates, count);
+  const std::size_t candidates = std::min(largest.size(), kMostApart);
   std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(candidates), largest.end(),
                     [&](std::uint32_t a, std::uint32_t b) {
                       return spheres[a].radius != spheres[b].radius ? spheres[a].radius > spheres[b].radius : a < b;
@@ -42,12 +61,12 @@ std::vector<std::uint32_t> find_apart(const kernel::Sphere* spheres, std::size_t
   return apart;
 }
 
-std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& apart, std::size_t count) {
-  std::vector<std::uint32_t> rest;
-  rest.reserve(count);
-  for (std::uint32_t id = 0; id < count; ++id)
-    if (!std::binary_search(apart.begin(), apart.end(), id)) rest.push_back(id);
-  return rest;
+/// Ids of the spheres that have boxes.
+std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
+  std::vector<std::uint32_t> without;
+  std::set_union(scene.apart.begin(), scene.apart.end(), scene.duplicates.begin(), scene.duplicates.end(),
+                 std::back_inserter(without));
+  return all_but(without, count);
 }
 
 /// Where a sphere is at Embree's time step, 0 or 1.
@@ -67,9 +86,15 @@ struct BuildState {
 void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
   auto& state = *static_cast<BuildState*>(arguments->geometryUserPtr);
   const auto& scene = *state.scene;
-  const BoxFrame::Box box =
-      scene.frame.box(sphere_at_step(scene, scene.sphere_id(state.geometry, arguments->primID), arguments->timeStep));
+  const std::uint32_t id = scene.sphere_id(state.geometry, arguments->primID);
   RTCBounds& out = *arguments->bounds_o;
+  if (std::binary_search(scene.duplicates.begin(), scene.duplicates.end(), id)) {
+    // Embree leaves out primitives with an empty box.
+    out.lower_x = out.lower_y = out.lower_z = std::numeric_limits<float>::infinity();
+    out.upper_x = out.upper_y = out.upper_z = -std::numeric_limits<float>::infinity();
+    return;
+  }
+  const BoxFrame::Box box = scene.frame.box(sphere_at_step(scene, id, arguments->timeStep));
   out.lower_x = box.lower[0];
   out.lower_y = box.lower[1];
   out.lower_z = box.lower[2];
@@ -84,7 +109,7 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
 class Embree final : public Accel {
  public:
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor)
-      : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view)) {
+      : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view, precision)) {
     const std::size_t primitives = view.sphere_count - scene_.apart.size();
     if (primitives > 0) build(primitives, monitor);
   }
@@ -95,13 +120,14 @@ class Embree final : public Accel {
   std::size_t bytes() const noexcept override { return embree_.bytes(); }
 
  private:
-  static EmbreeScene make_scene(const kernel::SceneView& view) {
+  static EmbreeScene make_scene(const kernel::SceneView& view, kernel::Precision precision) {
     EmbreeScene scene;
     scene.spheres = view.spheres;
     scene.motion = view.motion;
     scene.moving_count = view.moving_count;
-    scene.apart = find_apart(view.spheres, view.sphere_count);
-    scene.frame = BoxFrame(view.spheres, all_but(scene.apart, view.sphere_count), view.motion, view.moving_count);
+    scene.duplicates = duplicates(view, precision);
+    scene.apart = find_apart(view.spheres, view.sphere_count, scene.duplicates);
+    scene.frame = BoxFrame(view.spheres, boxed(scene, view.sphere_count), view.motion, view.moving_count);
     const auto moving_apart = std::lower_bound(scene.apart.begin(), scene.apart.end(), view.moving_count);
     scene.moving_primitives =
         static_cast<std::uint32_t>(view.moving_count) - static_cast<std::uint32_t>(moving_apart - scene.apart.begin());
@@ -152,8 +178,7 @@ class SimdList final : public Accel {
     scene_.spheres = view.spheres;
     scene_.motion = view.motion;
     scene_.moving_count = view.moving_count;
-    scene_.apart.resize(view.sphere_count);
-    std::iota(scene_.apart.begin(), scene_.apart.end(), 0u);
+    scene_.apart = all_but(duplicates(view, precision), view.sphere_count);
   }
 
   kernel::Tracer tracer() const noexcept override { return functions_.tracer(scene_); }

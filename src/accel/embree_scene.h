@@ -26,6 +26,7 @@ struct EmbreeScene {
   /// Spheres so much larger than the rest that a box around them would hold everything (a ground): ascending ids,
   /// tested by every ray before the hierarchy is entered, which they shorten.
   std::vector<std::uint32_t> apart;
+  std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that no ray meets: their boxes are empty
   Traversals traversals;
 
   /// The sphere behind a primitive: ids count all spheres, primitives those that do not stand apart.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "accel/accel.h"
+#include "accel/duplicates.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "accel/list.cpp"
@@ -22,19 +23,28 @@ void trace_list(const void* self, Packet& packet) {
   namespace k = kernel::HWY_NAMESPACE;
   using D = hn::FixedTag<T, 1>;
   const D d;
-  const auto& scene = *static_cast<const kernel::SceneView*>(self);
+  const auto& [scene, duplicates] = *static_cast<const DistinctSpheres*>(self);
   for (int i = 0; i < packet.count; ++i) {
     const auto ray = k::load_rays(d, packet, i);
-    for (std::size_t id = 0; id < scene.sphere_count; ++id) {
-      const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
-      const auto found = k::nearest<D, kPrecision>(
-          d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
-      if (hn::AllFalse(d, found.mask)) continue;
-      const T distance = hn::GetLane(found.value);
-      if (distance >= packet.distance[i]) continue;  // ids ascend: of two at the same place the smaller was first
-      packet.distance[i] = distance;
-      packet.hit[i] = static_cast<std::remove_reference_t<decltype(packet.hit[0])>>(id);
+    std::size_t id = 0;
+    const auto trace_up_to = [&](std::size_t end) {
+      for (; id < end; ++id) {
+        const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
+        const auto found = k::nearest<D, kPrecision>(
+            d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
+        if (hn::AllFalse(d, found.mask)) continue;
+        const T distance = hn::GetLane(found.value);
+        if (distance >= packet.distance[i])
+          continue;  // ids ascend: of two hits at the same distance the smaller was first
+        packet.distance[i] = distance;
+        packet.hit[i] = static_cast<std::remove_reference_t<decltype(packet.hit[0])>>(id);
+      }
+    };
+    for (const std::uint32_t duplicate : duplicates) {
+      trace_up_to(duplicate);
+      ++id;
     }
+    trace_up_to(scene.sphere_count);
   }
 }
 
@@ -64,18 +74,19 @@ HWY_EXPORT(list_tracer);
 
 class List final : public Accel {
  public:
-  List(const kernel::SceneView& scene, kernel::Precision precision) : scene_(scene), precision_(precision) {}
+  List(const kernel::SceneView& view, kernel::Precision precision)
+      : scene_{view, duplicates(view, precision)}, precision_(precision) {}
 
   kernel::Tracer tracer() const noexcept override {
-    kernel::Tracer t = ORRERY_BEST(list_tracer)(precision_, scene_.moving_count > 0);
+    kernel::Tracer t = ORRERY_BEST(list_tracer)(precision_, scene_.view.moving_count > 0);
     t.self = &scene_;
     return t;
   }
   std::string name() const override { return "list"; }
-  std::size_t bytes() const noexcept override { return 0; }
+  std::size_t bytes() const noexcept override { return scene_.duplicates.size() * sizeof(scene_.duplicates[0]); }
 
  private:
-  kernel::SceneView scene_;
+  DistinctSpheres scene_;
   kernel::Precision precision_;
 };
 

@@ -140,11 +140,12 @@ bool is_error(const base::Finding& finding) { return finding.severity == base::S
 
 /// Adds what is wrong with the whole. A value that could not be read stands at its default: what the whole makes of
 /// that would be a finding too many, and nobody is warned of a scene that is wrong.
-void add_problems(Reading& reading, const toml::table& root, const scene::Scene& scene, const std::string& file) {
+void add_problems(Reading& reading, const toml::table& root, const ReadResult& result, const std::string& file) {
   const bool has_errors = std::any_of(reading.findings.begin(), reading.findings.end(), is_error);
   const auto is_of_camera = [](const std::string& key) { return key.rfind("camera.", 0) == 0; };
   const bool camera_is_read = std::none_of(reading.unread.begin(), reading.unread.end(), is_of_camera);
-  for (const scene::Problem& problem : scene::validate(scene)) {
+  const scene::Scene* closing = result.closing ? &*result.closing : nullptr;
+  for (const scene::Problem& problem : scene::validate(result.scene, closing)) {
     if (has_errors && problem.severity == base::Severity::kWarning) continue;
     if (reading.unread.count(problem.key) != 0 || (is_of_camera(problem.key) && !camera_is_read)) continue;
     const toml::node* node = node_of(root, problem.key);
@@ -239,7 +240,7 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::
   if (std::none_of(reading.findings.begin(), reading.findings.end(), is_error))
     pose(reading, root, file.string(), frame, result);
   read_points(reading, root, file.parent_path(), frame, index, result.scene);
-  add_problems(reading, root, result.scene, file.string());
+  add_problems(reading, root, result, file.string());
   throw_errors(file, reading.findings);
   result.warnings = std::move(reading.findings);
   result.settings = settings_of(root, result.scene);

@@ -1,74 +1,80 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/coincident.h"
 
-#include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
-#include <cstdint>
-#include <unordered_map>
+
+#include "base/repeated.h"
 
 namespace orrery::scene {
 namespace {
 
-struct PlaceOfSphere {
-  Vec3d center;
-  double radius;
-  friend bool operator==(const PlaceOfSphere&, const PlaceOfSphere&) = default;
+/// Where a sphere of the whole scene is written.
+struct Place {
+  std::size_t points = 0;  ///< file, where it is not a table's
+  std::size_t index = 0;   ///< among the tables' or the file's
+  bool is_table = true;
 };
 
-struct PlaceHash {
-  std::size_t operator()(const PlaceOfSphere& p) const {
-    std::uint64_t h = 0x9E3779B97F4A7C15u;
-    for (const double x : {p.center.x, p.center.y, p.center.z, p.radius}) {
-      h = (h ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0xD6E8FEB86659FD93u;  // + 0.0: -0 is 0
-      h ^= h >> 32;
-    }
-    return static_cast<std::size_t>(h);
+/// Finds the spheres of a scene by their ids; quickest where ids ascend.
+class SphereIndex {
+ public:
+  explicit SphereIndex(const Scene& scene) : scene_(scene) {}
+
+  std::size_t count() const {
+    std::size_t count = scene_.spheres.size();
+    for (const Points& p : scene_.points) count += p.centers.size();
+    return count;
   }
+
+  Place at(std::size_t id) {
+    if (id < scene_.spheres.size()) return {0, id, true};
+    if (id < begin_) begin_ = scene_.spheres.size(), file_ = 0;
+    while (id - begin_ >= scene_.points[file_].centers.size()) begin_ += scene_.points[file_++].centers.size();
+    return {file_, id - begin_, false};
+  }
+
+ private:
+  const Scene& scene_;
+  std::size_t file_ = 0;
+  std::size_t begin_ = scene_.spheres.size();  ///< id of the first sphere of the file
 };
 
-/// Calls `visit(place)` for every sphere of the scene, always in the same order.
-template <class Visit>
-void for_each_sphere(const Scene& scene, Visit visit) {
-  for (const Sphere& s : scene.spheres) visit(PlaceOfSphere{s.center, std::abs(s.radius)});
-  for (const Points& p : scene.points)
-    for (std::size_t i = 0; i < p.centers.size(); ++i) visit(PlaceOfSphere{p.centers[i], std::abs(p.radii[i])});
-}
-
-/// The key of the sphere that is visited as the `index`-th.
-std::string key_of(const Scene& scene, std::size_t index) {
-  if (index < scene.spheres.size()) return "sphere[" + std::to_string(index) + "]";
-  index -= scene.spheres.size();
-  std::size_t p = 0;
-  while (index >= scene.points[p].centers.size()) index -= scene.points[p++].centers.size();
-  return "points[" + std::to_string(p) + "][" + std::to_string(index) + "]";
+std::string key_of(const Place& place) {
+  const std::string index = "[" + std::to_string(place.index) + "]";
+  return place.is_table ? "sphere" + index : "points[" + std::to_string(place.points) + "]" + index;
 }
 
 }  // namespace
 
-Coincidents coincident_spheres(const Scene& scene, std::size_t most_told) {
-  std::size_t count = scene.spheres.size();
-  for (const Points& p : scene.points) count += p.centers.size();
-  // A table of ten million places would be the largest thing in memory; their hashes are enough to find the few that
-  // can be alike.
-  std::vector<std::size_t> hashes;
-  hashes.reserve(count);
-  for_each_sphere(scene, [&](const PlaceOfSphere& place) { hashes.push_back(PlaceHash{}(place)); });
-  std::vector<std::size_t> sorted = hashes;
-  std::sort(sorted.begin(), sorted.end());
+Coincidents coincident_spheres(const Scene& scene, std::size_t most_told, const Scene* closing) {
+  const bool is_fast = scene.render.precision == Precision::kFast;
+  const auto number = [is_fast](double x) { return is_fast ? static_cast<double>(static_cast<float>(x)) : x; };
+  SphereIndex spheres(scene);
+  const auto place_of = [&](std::size_t id) {
+    const Place at = spheres.at(id);
+    const Vec3d c = at.is_table ? scene.spheres[at.index].center : scene.points[at.points].centers[at.index];
+    const double r = at.is_table ? scene.spheres[at.index].radius : scene.points[at.points].radii[at.index];
+    return std::array{number(c.x), number(c.y), number(c.z), number(std::abs(r))};
+  };
+  const auto path_of = [&](std::size_t id) {
+    const std::array<double, 4> p = place_of(id);
+    std::array<double, 8> path = {p[0], p[1], p[2], p[3], 0, 0, 0, 0};
+    if (id >= scene.spheres.size()) return path;  // points rest
+    const Sphere &from = scene.spheres[id], &to = closing->spheres[id];
+    const Vec3d way = to.center - from.center;
+    path[4] = number(way.x);
+    path[5] = number(way.y);
+    path[6] = number(way.z);
+    path[7] = number(std::abs(to.radius) - std::abs(from.radius));
+    return path;
+  };
+  const std::vector<base::Repeated> found = closing != nullptr ? base::find_repeated<8>(spheres.count(), path_of)
+                                                               : base::find_repeated<4>(spheres.count(), place_of);
   Coincidents out;
-  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return out;
-
-  std::unordered_map<PlaceOfSphere, std::size_t, PlaceHash> first;
-  std::size_t index = 0;
-  for_each_sphere(scene, [&](const PlaceOfSphere& place) {
-    const std::size_t own = index++;
-    const auto [begin, end] = std::equal_range(sorted.begin(), sorted.end(), hashes[own]);
-    if (end - begin < 2) return;
-    const auto [found, is_first] = first.try_emplace(place, own);
-    if (is_first) return;
-    if (++out.count <= most_told) out.told.push_back({key_of(scene, own), key_of(scene, found->second)});
-  });
+  out.count = found.size();
+  for (std::size_t i = 0; i < found.size() && i < most_told; ++i)
+    out.told.push_back({key_of(spheres.at(found[i].index)), key_of(spheres.at(found[i].first))});
   return out;
 }
 

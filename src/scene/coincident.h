@@ -20,9 +20,11 @@ struct Coincidents {
   std::size_t count = 0;         ///< of all, told or not
 };
 
-/// Spheres that are in exactly the same place as an earlier one; the first `most_told` of them by name.
+/// Spheres that coincide with an earlier one; the first `most_told` of them by name. With `precision = "fast"` spheres
+/// coincide that differ by less than single precision can tell.
 ///
-/// Cost       O(n log n), 16 bytes a sphere, and a table entry for each place that has several
-Coincidents coincident_spheres(const Scene& scene, std::size_t most_told);
+/// `closing`  the scene when the shutter closes: spheres that coincide only when it opens are left out. Null: no motion
+/// Cost       see base::find_repeated
+Coincidents coincident_spheres(const Scene& scene, std::size_t most_told, const Scene* closing = nullptr);
 
 }  // namespace orrery::scene

@@ -148,11 +148,11 @@ void check_points(const Points& points, const std::string& key, const Scene& sce
     problems.error(key, "and " + std::to_string(faults - kMostTold) + " more (" + std::to_string(faults) + " in all)");
 }
 
-/// Two surfaces in exactly the same place: which of them a ray meets is decided by their order alone.
-void check_coincident(const Scene& scene, Problems& problems) {
+/// Two surfaces in exactly the same place: their order alone decides which of them is rendered.
+void check_coincident(const Scene& scene, const Scene* closing, Problems& problems) {
   for (const Points& p : scene.points)
     if (p.radii.size() != p.centers.size()) return;  // told above, and not to be walked through
-  const Coincidents found = coincident_spheres(scene, kMostTold);
+  const Coincidents found = coincident_spheres(scene, kMostTold, closing);
   for (const Coincident& c : found.told)
     problems.warning(c.key, "has exactly the same place and size as " + c.first + "; rays meet the first of them only");
   if (found.count > kMostTold)
@@ -162,7 +162,7 @@ void check_coincident(const Scene& scene, Problems& problems) {
 
 }  // namespace
 
-std::vector<Problem> validate(const Scene& scene) {
+std::vector<Problem> validate(const Scene& scene, const Scene* closing) {
   Problems problems;
   check_image(scene.image, problems);
   check_camera(scene.camera, problems);
@@ -171,7 +171,7 @@ std::vector<Problem> validate(const Scene& scene) {
   check_spheres(scene, problems);
   for (std::size_t p = 0; p < scene.points.size(); ++p)
     check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, problems);
-  check_coincident(scene, problems);
+  check_coincident(scene, closing, problems);
   return problems.take();
 }
 

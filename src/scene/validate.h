@@ -24,10 +24,10 @@ struct Problem {
 /// no sensible size, numbers outside the domain, materials that are not there, spheres in the same place (a warning).
 ///
 /// Domain     any scene, also with numbers that are not finite
-/// Result     empty where all is well; each sphere of its own is told, of each points file and of all coincident
-/// spheres
-///            the first kMostTold and the number of the rest
-/// Cost       O(n log n), 16 bytes a sphere
-std::vector<Problem> validate(const Scene& scene);
+/// `closing`  the scene when the shutter closes, which is checked for coincident spheres only; null: no motion
+/// Result     empty if the scene is valid; every problem of a [[sphere]], and of each points file and of all coincident
+///            spheres the first kMostTold and the number of the rest
+/// Cost       linear in the number of spheres; see base::find_repeated
+std::vector<Problem> validate(const Scene& scene, const Scene* closing = nullptr);
 
 }  // namespace orrery::scene

@@ -33,6 +33,25 @@ TEST(SceneCoincident, OneBitApartIsNotCoincident) {
   EXPECT_EQ(coincident_spheres(scene, 10).count, 0u);
 }
 
+TEST(SceneCoincident, InFastWhatSinglePrecisionCannotTellApartCoincides) {
+  Scene scene;
+  scene.spheres = {sphere({1, 2, 3}, 1), sphere({1 + 1e-9, 2, 3}, -1 - 1e-9)};
+  EXPECT_EQ(coincident_spheres(scene, 10).count, 0u);
+  scene.render.precision = Precision::kFast;
+  EXPECT_EQ(coincident_spheres(scene, 10).count, 1u);
+}
+
+TEST(SceneCoincident, SpheresThatPartDoNotCoincide) {
+  Scene opening;
+  opening.spheres = {sphere({0, 0, 0}, 1), sphere({0, 0, 0}, 1), sphere({0, 0, 0}, -1)};
+  Scene closing = opening;
+  closing.spheres[1].center.x = 1;
+  EXPECT_EQ(coincident_spheres(opening, 10).count, 2u);
+  const auto found = coincident_spheres(opening, 10, &closing);
+  ASSERT_EQ(found.count, 1u);
+  EXPECT_EQ(found.told[0].key, "sphere[2]");
+}
+
 TEST(SceneCoincident, FindsThemAcrossSpheresAndPointsFiles) {
   Scene scene;
   scene.spheres = {sphere({1, 0, 0}, 2)};

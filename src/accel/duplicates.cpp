@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "accel/duplicates.h"
+
+#include <array>
+
+#include "base/repeated.h"
+
+namespace orrery::accel {
+
+std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision) {
+  const bool is_fast = precision == kernel::Precision::kFast;
+  const auto number = [is_fast](double x) { return is_fast ? static_cast<double>(static_cast<float>(x)) : x; };
+  const auto place = [&](std::size_t id) {
+    const kernel::Sphere& s = scene.spheres[id];
+    return std::array{number(s.x), number(s.y), number(s.z), number(s.radius)};
+  };
+  const auto path = [&](std::size_t id) {
+    const kernel::Sphere& s = scene.spheres[id];
+    const kernel::Sphere change = id < scene.moving_count ? scene.motion[id] : kernel::Sphere{0, 0, 0, 0};
+    return std::array{number(s.x),      number(s.y),      number(s.z),      number(s.radius),
+                      number(change.x), number(change.y), number(change.z), number(change.radius)};
+  };
+  const std::vector<base::Repeated> found = scene.moving_count > 0 ? base::find_repeated<8>(scene.sphere_count, path)
+                                                                   : base::find_repeated<4>(scene.sphere_count, place);
+  std::vector<std::uint32_t> ids;
+  ids.reserve(found.size());
+  for (const base::Repeated& r : found) ids.push_back(static_cast<std::uint32_t>(r.index));
+  return ids;
+}
+
+}  // namespace orrery::accel

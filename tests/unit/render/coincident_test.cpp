@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Spheres that coincide: the first of them is rendered, as if the others were not there.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "compile/compile.h"
+#include "render/render.h"
+#include "support/everything.h"
+
+namespace orrery::render {
+namespace {
+
+/// A sphere of one material that fills half of the picture, under a white sky.
+scene::Scene furnace(const scene::MaterialModel& material) {
+  scene::Scene s;
+  s.image = {16, 16};
+  s.camera.look_from = {0, 0, 3};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 50;
+  s.background.bottom = s.background.top = {1, 1, 1};
+  s.render.samples = 16;
+  s.render.max_depth = 100;
+  s.materials = {{"one", material}, {"black", scene::Lambertian{{0, 0, 0}}}};
+  s.spheres = {{{0, 0.25, 0}, 1, 0, ""}};
+  return s;
+}
+
+void add_point(scene::Scene& s, math::Vec3d center, double radius, std::uint32_t material) {
+  s.points.emplace_back();
+  s.points.back().material = material;
+  s.points.back().centers = {center};
+  s.points.back().radii = {radius};
+}
+
+struct Outcome {
+  std::vector<float> values;
+  std::uint64_t rays = 0;
+  friend bool operator==(const Outcome&, const Outcome&) = default;
+};
+
+Outcome outcome(const scene::Scene& s, const scene::Scene* closing, Traversal traversal) {
+  Settings settings;
+  settings.traversal = traversal;
+  const Result result = render(compile::compile(s, closing), settings);
+  Outcome out;
+  out.rays = result.statistics.rays;
+  for (const film::Plane& plane : result.picture.planes)
+    out.values.insert(out.values.end(), plane.values.begin(), plane.values.end());
+  return out;
+}
+
+/// Both scenes give the same picture by the same number of rays: by packets, single rays and the list, in every
+/// precision.
+void expect_equal(scene::Scene a, scene::Scene b, const std::string& what, const scene::Scene* a_closing = nullptr,
+                  const scene::Scene* b_closing = nullptr) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
+    for (const auto accelerator : {scene::Accelerator::kEmbree, scene::Accelerator::kList}) {
+      for (const Traversal traversal : {Traversal::kPacket, Traversal::kSingle}) {
+        a.render.precision = b.render.precision = precision;
+        a.render.accelerator = b.render.accelerator = accelerator;
+        EXPECT_TRUE(outcome(a, a_closing, traversal) == outcome(b, b_closing, traversal))
+            << what << ", precision " << static_cast<int>(precision) << ", accelerator "
+            << static_cast<int>(accelerator) << ", traversal " << static_cast<int>(traversal);
+      }
+    }
+  }
+}
+
+TEST(RenderCoincident, OnlyTheFirstIsRendered) {
+  const std::pair<const char*, scene::MaterialModel> materials[] = {
+      {"grey", scene::Lambertian{{0.5, 0.5, 0.5}}},
+      {"white", scene::Lambertian{{1, 1, 1}}},
+      {"metal", scene::Metal{{0.5, 0.5, 0.5}, 0}},
+      {"glass", scene::Dielectric{1.5, scene::Fresnel::kExact}},
+  };
+  for (const auto& [name, material] : materials) {
+    const scene::Scene one = furnace(material);
+    for (const double radius : {1.0, -1.0}) {
+      scene::Scene more = one;
+      for (const std::uint32_t other : {0u, 1u}) more.spheres.push_back({{0, 0.25, -0.0}, radius, other, ""});
+      add_point(more, {0, 0.25, 0}, radius, 1);
+      expect_equal(one, more, std::string(name) + " and radius " + std::to_string(radius));
+    }
+  }
+}
+
+/// Known: each path meets a convex sphere once, at most.
+TEST(RenderCoincident, AGreySphereInAWhiteFurnaceIsHalf) {
+  scene::Scene s = furnace(scene::Lambertian{{0.5, 0.5, 0.5}});
+  s.spheres.push_back(s.spheres[0]);
+  s.camera.look_at = s.spheres[0].center;
+  s.camera.vfov = 5;
+  for (const float value : outcome(s, nullptr, Traversal::kAuto).values) ASSERT_TRUE(value == 0.5f || value == 1.0f);
+  EXPECT_EQ(outcome(s, nullptr, Traversal::kAuto).values[0], 0.5f);
+}
+
+/// Everything twice: the ground, which stands apart from the boxes, too; and points twice in one file.
+TEST(RenderCoincident, AWholeSceneTwiceIsTheSceneOnce) {
+  const scene::Scene once = test::everything();
+  scene::Scene twice = once;
+  twice.spheres.insert(twice.spheres.end(), once.spheres.begin(), once.spheres.end());
+  expect_equal(once, twice, "spheres");
+  scene::Scene points = once;
+  add_point(points, {0.2, 0.2, 2}, 0.2, 0);
+  scene::Scene points_twice = points;
+  points_twice.points[0].centers.push_back(points.points[0].centers[0]);
+  points_twice.points[0].radii.push_back(points.points[0].radii[0]);
+  expect_equal(points, points_twice, "points");
+}
+
+TEST(RenderCoincident, TheSameWayIsTheSamePlaceAllTheTime) {
+  scene::Scene one = furnace(scene::Lambertian{{0.5, 0.5, 0.5}});
+  scene::Scene one_closing = one;
+  one_closing.spheres[0].center.x = 0.5;
+  scene::Scene two = one, two_closing = one_closing;
+  two.spheres.push_back({two.spheres[0].center, -1, 1, ""});
+  two_closing.spheres.push_back({two_closing.spheres[0].center, -1, 1, ""});
+  expect_equal(one, two, "moving", &one_closing, &two_closing);
+}
+
+TEST(RenderCoincident, SpheresThatPartAreBothRendered) {
+  scene::Scene s = furnace(scene::Lambertian{{0.5, 0.5, 0.5}});
+  s.spheres.push_back({s.spheres[0].center, 1, 1, ""});
+  scene::Scene closing = s;
+  closing.spheres[1].center.x = 0.5;
+  EXPECT_FALSE(outcome(s, &closing, Traversal::kAuto) == outcome(s, nullptr, Traversal::kAuto));
+}
+
+/// In single precision these two are one; in double they are not.
+TEST(RenderCoincident, FastComparesWhatItComputesWith) {
+  const scene::Scene one = furnace(scene::Lambertian{{0.5, 0.5, 0.5}});
+  scene::Scene two = one;
+  two.spheres.push_back({{0, 0.25 + 1e-12, 0}, 1 + 1e-12, 1, ""});
+  for (const auto precision : {scene::Precision::kFast, scene::Precision::kExact}) {
+    scene::Scene a = one, b = two;
+    a.render.precision = b.render.precision = precision;
+    EXPECT_EQ(outcome(a, nullptr, Traversal::kAuto) == outcome(b, nullptr, Traversal::kAuto),
+              precision == scene::Precision::kFast);
+  }
+}
+
+}  // namespace
+}  // namespace orrery::render
