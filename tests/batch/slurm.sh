@@ -28,7 +28,9 @@ stop_all() {
   for pid in cluster/slurmctld.pid cluster/slurmd.n*.pid cluster/keys/munged.pid; do
     [ -f "$pid" ] && kill -9 "$(cat "$pid")" 2> /dev/null || true
   done
-  pkill -9 -f "slurmstepd: \[" 2> /dev/null || true
+  for pid in $(pgrep slurmstepd); do
+    if grep -qzx "SLURM_CONF=$folder/cluster/slurm.conf" "/proc/$pid/environ" 2> /dev/null; then kill -9 "$pid"; fi
+  done
 }
 trap stop_all EXIT
 
@@ -86,24 +88,40 @@ wait_for() {  # seconds, what, command ...
   done
 }
 four_are_idle() { [ "$(sinfo --noheader --states=idle -o %D)" = 4 ]; }
-wait_for 60 "four nodes" four_are_idle
+wait_for 600 "four nodes" four_are_idle
 
-settings="--width 320 --height 180 --samples ${SAMPLES:-300} --set animation.turntable=48 --layers Z,CryptoObject --reproducible"
+settings="--width 320 --height 180 --samples ${SAMPLES:-30} --set animation.turntable=48 --layers Z,CryptoObject --reproducible"
 cp "$scenes/book/final.toml" shot.toml
+# The first task on n1 never ends by itself, so that the node is killed in the middle of a task on any machine.
+cat > first-hangs-on-n1 << END
+#!/bin/sh
+if [ "\$SLURMD_NODENAME" = n1 ] && mkdir "$folder/cluster/hangs" 2> /dev/null; then
+  echo \$\$ > "$folder/cluster/hangs/pid.new"
+  mv "$folder/cluster/hangs/pid.new" "$folder/cluster/hangs/pid"
+  exec sleep infinity
+fi
+exec "$program" "\$@"
+END
+chmod +x first-hangs-on-n1
 # shellcheck disable=SC2086  # words
-"$program" submit shot.toml -o shot.####.exr --frames 1-2 --shards 4 $settings --slurm --program "$program" > shot.sh
+"$program" submit shot.toml -o shot.####.exr --frames 1-2 --shards 4 $settings --slurm \
+  --program "$folder/first-hangs-on-n1" > shot.sh
 sh shot.sh
-node_is_busy() { [ "$(squeue --noheader --states=running --nodelist=n1 -o %i | wc -l)" -gt 0 ] && ls shot.parts/render.*.log > /dev/null 2>&1; }
-wait_for 60 "a task on n1" node_is_busy
-sleep 1
+wait_for 600 "a task on n1" test -f cluster/hangs/pid
 killed=$(squeue --noheader --states=running --nodelist=n1 -o %i)
 echo "slurm: killing node n1 with its task $killed"
 kill -9 "$(cat cluster/slurmd.n1.pid)"
-pkill -9 -f "slurmstepd: \[$(scontrol show job "$killed" | sed -n 's/^ *JobId=\([0-9]*\).*/\1/p' | head -1)" || true
-for pid in $(pgrep -f "tiles .*/4 --frames"); do
-  grep -qz "SLURMD_NODENAME=n1" "/proc/$pid/environ" 2> /dev/null && kill -9 "$pid" || true
-done
 rm -f cluster/slurmd.n1.pid
+# The daemon that watches the task first, so that it cannot report the task's end; then the job's script and the task.
+pid=$(cat cluster/hangs/pid)
+chain=$pid
+while [ "$(cat "/proc/$pid/comm")" != slurmstepd ] && [ "$pid" -gt 1 ]; do
+  pid=$(sed -n 's/^PPid:[[:space:]]*//p' "/proc/$pid/status")
+  chain="$pid $chain"
+done
+[ "$pid" -gt 1 ] || { echo "slurm: the task on n1 has no slurmstepd above it"; exit 1; }
+# shellcheck disable=SC2086  # words
+kill -9 $chain
 
 all_done() { [ "$(squeue --noheader -o %i | wc -l)" -eq 0 ]; }
 wait_for 600 "the end of all jobs" all_done
