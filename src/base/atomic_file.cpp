@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -13,6 +14,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/file_name.h"
 
 namespace orrery::base {
 namespace {
@@ -56,6 +58,10 @@ std::filesystem::path directory_of(const std::filesystem::path& path) {
 /// a rename would put a plain file in the place of /dev/null.
 std::filesystem::path renamed_onto(const std::filesystem::path& path) {
   std::error_code ignored;
+  struct stat entry {};
+  // A name that is too long, a loop of links, a folder that may not be searched: found here, not after the work.
+  if (::lstat(path.c_str(), &entry) != 0 && errno != ENOENT && errno != ENOTDIR)
+    cannot_create(path, std::strerror(errno));
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (path.filename().empty() || std::filesystem::is_directory(status)) cannot_create(path, "it is a directory");
   if (!std::filesystem::exists(status)) return path;
@@ -71,9 +77,12 @@ int create_beside(const std::filesystem::path& path, const std::filesystem::path
   const std::filesystem::path directory = directory_of(target);
   if (!std::filesystem::is_directory(directory, ignored))
     cannot_create(path, "there is no directory " + directory.string());
-  // A name of the greatest length must not fail because its temporary name is longer.
-  constexpr std::size_t kLongestStem = 200;
-  name = (directory / ("." + target.filename().string().substr(0, kLongestStem) + ".XXXXXX")).string();
+  // Where a name fits into the directory its temporary name must fit, too.
+  const long limit = ::pathconf(directory.c_str(), _PC_NAME_MAX);
+  const std::size_t longest = limit > 0 ? static_cast<std::size_t>(limit) : kLongestFileName;
+  const std::string stem = target.filename().string(), pattern = ".XXXXXX";
+  const std::size_t room = longest - std::min(longest, 1 + pattern.size());
+  name = (directory / ("." + std::string(utf8_prefix(stem, room)) + pattern)).string();
   const int file = ::mkstemp(name.data());
   if (file < 0) cannot_create(path, std::strerror(errno));
   return file;

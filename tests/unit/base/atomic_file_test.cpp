@@ -114,6 +114,26 @@ TEST(BaseAtomicFile, TakesANameOfTheGreatestLength) {
   EXPECT_EQ(file_bytes(folder / name), "x");
 }
 
+TEST(BaseAtomicFile, ANameThatIsTooLongIsFoundBeforeItIsWritten) {
+  const ScratchFolder folder;
+  for (const std::string& name :
+       {std::string(256, 'n'), std::string(128, 'n') + std::string(20, '/') + std::string(300, 'm')})
+    EXPECT_EQ(error_of([&] { check_creatable(folder.path() / name); }).kind(), ErrorKind::kCannotCreate);
+  EXPECT_EQ(error_of([&] { AtomicFile file(folder / std::string(256, 'n')); }).kind(), ErrorKind::kCannotCreate);
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(BaseAtomicFile, ATemporaryNameStaysUtf8) {
+  const ScratchFolder folder;
+  std::string name;
+  while (name.size() < 254) name += "ä";
+  const AtomicFile file(folder / name);
+  const std::string temporary = file.temporary().filename().string();
+  const std::string stem = temporary.substr(1, temporary.size() - 8);
+  EXPECT_LE(temporary.size(), 255u);
+  EXPECT_EQ(stem.size() % 2, 0u) << "a character was cut";
+}
+
 TEST(BaseAtomicFile, FullDiskIsAnIoErrorThatLeavesNothing) {
   // A limit on the size of files stands in for a full disk: write fails midway in the same manner.
   const ScratchFolder folder;

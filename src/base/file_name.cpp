@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/file_name.h"
+
+#include <cstdint>
+
+#include "base/text.h"
+
+namespace orrery::base {
+namespace {
+
+/// FNV-1a, 32 bits.
+std::uint32_t digest(std::string_view text) {
+  std::uint32_t hash = 0x811c9dc5u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193u;
+  return hash;
+}
+
+}  // namespace
+
+std::string_view utf8_prefix(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0u) == 0x80u) --bytes;
+  return text.substr(0, bytes);
+}
+
+std::string companion_name(std::string_view stem, std::string_view suffix) {
+  std::string out(stem);
+  if (stem.size() + suffix.size() > kLongestFileName) {
+    constexpr std::size_t kDigest = 9;  // a dot, eight digits
+    out = utf8_prefix(stem, kLongestFileName - suffix.size() - kDigest);
+    append(out, ".%08x", digest(stem));
+  }
+  return out.append(suffix);
+}
+
+}  // namespace orrery::base

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/file_set.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/scratch_folder.h"
+
+namespace orrery::base {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BaseFileSet : public testing::Test {
+ protected:
+  BaseFileSet() {
+    support::write_bytes(folder_ / "in", "data");
+    fs::create_directory(folder_ / "sub");
+    fs::create_directory_symlink("sub", folder_ / "link");
+  }
+
+  /// The complaint about writing one file where another is read or written; empty where there is none.
+  static std::string conflict(const fs::path& output, const fs::path& other, bool is_input) {
+    FileSet files, reverse;
+    std::string found[2];
+    const auto add = [&](FileSet& set, bool output_first, std::string& text) {
+      try {
+        if (output_first) set.add_output(output, "-o");
+        is_input ? static_cast<void>(set.add_input(other, "scene")) : set.add_output(other, "--stats");
+        if (!output_first) set.add_output(output, "-o");
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+        text = error.what();
+      }
+    };
+    add(files, false, found[0]);
+    add(reverse, true, found[1]);
+    EXPECT_EQ(found[0].empty(), found[1].empty()) << "the order of adding matters";
+    return found[0];
+  }
+
+  support::ScratchFolder folder_;
+};
+
+TEST_F(BaseFileSet, AnInputIsNotWrittenUnderAnyName) {
+  fs::create_symlink("in", folder_ / "soft");
+  fs::create_hard_link(folder_ / "in", folder_ / "hard");
+  fs::create_symlink("soft", folder_ / "sub/chain");
+  const fs::path in = folder_ / "in";
+  for (const char* name : {"in", "./in", "sub/../in", "link/../in", "soft", "hard"})
+    EXPECT_NE(conflict(folder_.path() / name, in, true), "") << name;
+  EXPECT_EQ(conflict(folder_ / "in", in, true),
+            in.string() + " (-o) would overwrite " + in.string() + " (scene); choose another name");
+  EXPECT_EQ(conflict(folder_ / "out", in, true), "");
+}
+
+TEST_F(BaseFileSet, TwoOutputsAreTwoFiles) {
+  const fs::path& f = folder_.path();
+  EXPECT_NE(conflict(f / "out", f / "out", false), "");
+  EXPECT_NE(conflict(f / "sub/out", f / "link/out", false), "") << "neither is there";
+  EXPECT_NE(conflict(f / "none/out", f / "none/../none/out", false), "") << "not even their folder is";
+  EXPECT_EQ(conflict(f / "sub/out", f / "out", false), "");
+  fs::create_hard_link(f / "in", f / "hard");
+  EXPECT_NE(conflict(f / "hard", f / "in", false), "");
+  fs::create_symlink("../later", f / "sub/dangling");  // a rename replaces the link, not what it may lead to one day
+  EXPECT_EQ(conflict(f / "sub/dangling", f / "later", false), "");
+}
+
+TEST_F(BaseFileSet, ANameStaysTakenWhenItsFileComesOrGoes) {
+  FileSet files;
+  files.add_output(folder_ / "later", "-o");
+  files.add_output(folder_ / "in", "-o");
+  support::write_bytes(folder_ / "later", "now");
+  fs::remove(folder_ / "in");
+  EXPECT_THROW(files.add_input(folder_ / "later", "points file"), Error);
+  EXPECT_THROW(files.add_input(folder_ / "in", "points file"), Error);
+}
+
+TEST_F(BaseFileSet, AnInputMayBeReadTwice) {
+  FileSet files;
+  EXPECT_TRUE(files.add_input(folder_ / "in", "part"));
+  EXPECT_FALSE(files.add_input(folder_.path() / "./in", "part"));
+}
+
+}  // namespace
+}  // namespace orrery::base
