@@ -22,6 +22,7 @@ find_dependency(CLI11 CONFIG)
 # Debian puts this package where CMake does not look by itself.
 find_dependency(OpenColorIO CONFIG PATHS /usr/share/cmake)
 find_dependency(OpenImageIO CONFIG)
+find_dependency(JPEG)
 
 # Debian's packages of these two name folders of headers that are not there; CMake stops at generate for it.
 foreach(target IN ITEMS OpenImageIO::OpenImageIO OpenColorIO::OpenColorIO)

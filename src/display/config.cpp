@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "display/builtin_config.h"
+#include "display/config_files.h"
 
 namespace orrery::display {
 namespace {
@@ -58,12 +59,24 @@ ocio::ConstConfigRcPtr load(const std::string& file) {
   }
 }
 
+/// The config of the environment; empty: none.
+std::string config_of_environment() {
+  const char* const name = std::getenv("OCIO");
+  return name != nullptr ? name : "";
+}
+
 }  // namespace
+
+std::vector<std::filesystem::path> config_files(const std::string& config) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : {config, config_of_environment()})
+    if (!name.empty() && !is_library_config(name)) files.emplace_back(name);
+  return files;
+}
 
 Config load_config(const std::string& file) {
   Config out;
-  std::string name = file;
-  if (const char* const environment = std::getenv("OCIO"); name.empty() && environment != nullptr) name = environment;
+  const std::string name = file.empty() ? config_of_environment() : file;
   const LogCapture capture(out.warnings);
   out.config = load(name);
   out.source = name.empty() ? "built-in" : name;

@@ -33,6 +33,9 @@ float fit(float v, float gain) {
   return std::clamp(v * gain, -film::kLargestHalf, film::kLargestHalf);
 }
 
+/// The light of what covers a pixel in part; none where nothing covers it.
+float unmultiplied(float v, float alpha) { return alpha > 0 ? v / alpha : 0.0f; }
+
 /// Evenly spread over -0.5 .. 0.5; consecutive numbers look unrelated.
 double noise(std::uint64_t number) {
   std::uint64_t x = number + 0x9e3779b97f4a7c15u;
@@ -51,7 +54,8 @@ std::uint16_t quantised(float v, double largest, double shift) {
 
 Choice choose(const Settings& settings) { return find_view(settings).choice; }
 
-film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither) {
+film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither,
+                             Alpha alpha) {
   if (bits != 8 && bits != 16) throw base::Error(base::ErrorKind::kInternal, "a developed picture has 8 or 16 bits");
   const std::vector<float>* const planes[3] = {&plane(picture, "R"), &plane(picture, "G"), &plane(picture, "B")};
   const View view = find_view(settings);
@@ -61,19 +65,27 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
   out.height = picture.height;
   out.bits = bits;
   out.is_srgb = view.is_srgb;
-  out.values.resize(pixels * 3);
+  const float* const covered = alpha == Alpha::kStraight ? plane(picture, "A").data() : nullptr;
+  out.channels = covered != nullptr ? 4 : 3;
+  const auto channels = static_cast<std::size_t>(out.channels);
+  out.values.resize(pixels * channels);
   const double largest = bits == 8 ? 255 : 65535;
   const float gain = static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMostStops, kMostStops)));
   std::vector<float> rgb(std::min(pixels, kPixelsAtATime) * 3);
   for (std::size_t begin = 0; begin < pixels; begin += kPixelsAtATime) {
     const std::size_t count = std::min(kPixelsAtATime, pixels - begin);
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t c = 0; c < 3; ++c) rgb[i * 3 + c] = fit((*planes[c])[begin + i], gain);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float v = (*planes[c])[begin + i];
+        rgb[i * 3 + c] = fit(covered != nullptr ? unmultiplied(v, covered[begin + i]) : v, gain);
+      }
     ocio::PackedImageDesc part(rgb.data(), static_cast<long>(count), 1, 3);
     view.processor->apply(part);
-    for (std::size_t i = 0; i < count * 3; ++i) {
-      const std::size_t at = begin * 3 + i;
-      out.values[at] = quantised(rgb[i], largest, dither ? noise(at) : 0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::uint16_t* const pixel = &out.values[(begin + i) * channels];
+      for (std::size_t c = 0; c < 3; ++c)
+        pixel[c] = quantised(rgb[i * 3 + c], largest, dither ? noise((begin + i) * 3 + c) : 0.0);
+      if (covered != nullptr) pixel[3] = quantised(covered[begin + i], largest, 0.0);
     }
   }
   return out;

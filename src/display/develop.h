@@ -27,8 +27,9 @@ struct Choice {
   std::string config;     ///< "built-in", or the config's file
   std::string config_id;  ///< OCIO's own digest of the config: another text gives another id
   std::string display, view;
-  std::string working_space;  ///< the config's own name of it
-  bool is_hdr = false;        ///< what comes out is for a display of high dynamic range
+  std::string working_space;       ///< the config's own name of it
+  std::vector<std::string> files;  ///< tables that the config's transforms read
+  bool is_hdr = false;             ///< what comes out is for a display of high dynamic range
 
   /// Bits in a channel where nobody asked: steps of 8 are seen on a display of high dynamic range.
   int default_bits() const { return is_hdr ? 16 : 8; }
@@ -43,9 +44,15 @@ struct Choice {
 ///            names, and for an exposure that is no finite number
 Choice choose(const Settings& settings);
 
+/// What becomes of a picture's alpha.
+enum class Alpha {
+  kOverBlack,  ///< what is there is shown as over black
+  kStraight,   ///< a channel of its own; colours are divided by it before the view is applied
+};
+
 /// Develops planes R, G, B: exposure, look, the display's view; rounded to the nearest of 2^bits values.
 ///
-/// Alpha does not count: what is there is shown as over black. NaN and infinities, which whoever calls has counted,
+/// NaN and infinities, which whoever calls has counted,
 /// become 0 as in files; light beyond the largest half after exposure becomes that. Values outside of the display are
 /// clamped. With dither, the fraction that rounding would lose decides how often the higher value is taken, in a
 /// pattern that depends on the pixel alone.
@@ -53,7 +60,8 @@ Choice choose(const Settings& settings);
 /// Domain     bits 8 or 16
 /// Errors     as choose; kBadData where a plane is missing
 /// Cost       40 ns a pixel in the built-in config, 160 through an ACES view
-film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither = false);
+film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither = false,
+                             Alpha alpha = Alpha::kOverBlack);
 
 /// The version of OpenColorIO that is loaded.
 std::string ocio_version();

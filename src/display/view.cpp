@@ -79,6 +79,8 @@ View find_view(const Settings& settings) {
     choose_names(source, settings, out.choice);
     out.transform = transform(*source.config, settings, out.choice);
     // Lossless: the default trades accuracy for tables.
+    const ocio::ConstProcessorMetadataRcPtr metadata = out.transform->getProcessorMetadata();
+    for (int i = 0; i < metadata->getNumFiles(); ++i) out.choice.files.emplace_back(metadata->getFile(i));
     out.processor = out.transform->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
     const std::string space = final_space(*source.config, out.choice);
     out.is_srgb = space.find("sRGB") != std::string::npos;

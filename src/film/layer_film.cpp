@@ -196,6 +196,7 @@ DeepPicture LayerFilm::take_deep() { return std::move(deep_); }
 void LayerFilm::move_to(Picture& picture) {
   for (Plane& plane : picture.planes)
     if (plane.name == "A" && request_.coverage) plane.values = std::move(coverage_);
+  picture.is_transparent = request_.coverage;
   for (Plane& plane : planes_) picture.planes.push_back(std::move(plane));
 }
 

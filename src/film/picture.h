@@ -32,6 +32,7 @@ struct Picture {
   int x = 0, y = 0;                       ///< px, where its upper left pixel stands within the frame
   int frame_width = 0, frame_height = 0;  ///< px; 0: the picture is the frame
   std::string color_interop_id = {};      ///< the space of its light, "lin_rec709_scene"; empty: not told
+  bool is_transparent = false;            ///< A is coverage, also where it is 1 in all pixels
   double pixel_aspect = 1;                ///< a pixel's width by its height
 
   const Plane* find(const std::string& name) const {

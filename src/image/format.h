@@ -26,6 +26,15 @@ Format format_of(const std::filesystem::path& file);
 /// transform.
 bool is_display_format(Format format);
 
+/// Whether a display format has a channel for alpha.
+bool holds_alpha(Format format);
+
+/// Checks that the format of a file takes a picture of this size, before there is one: an encoder that finds out later
+/// costs a render, or the process.
+///
+/// Errors     base::Error(kUsage) with the limit
+void check_size(const std::filesystem::path& file, int width_px, int height_px);
+
 /// The most bits that a display format holds in a channel.
 int most_bits(Format format);
 

@@ -20,7 +20,8 @@ void prepare_library() {
   static std::once_flag once;
   std::call_once(once, [] {
     use_threads(1);
-    OIIO::attribute("debug", 0);  // distributions build it with messages to the console
+    OIIO::attribute("limits:imagesize_MB", 0);  // it would refuse to read back what it has just written
+    OIIO::attribute("debug", 0);                // distributions build it with messages to the console
   });
 }
 

@@ -29,6 +29,9 @@ constexpr int kLargestSide = 65536;
 /// Rows decoded at a time: a multiple of what one block of any EXR compression holds but the rarest.
 constexpr int kRowsAtATime = 64;
 
+/// The line of orrery/settings that makes A coverage.
+constexpr const char* kTransparent = "background.alpha = 0\n";
+
 /// Says why a file cannot be opened, better than a picture library does.
 void require_readable(const std::filesystem::path& file) {
   const auto missing = [&](const std::string& reason) {
@@ -112,12 +115,20 @@ void check_spec(const std::filesystem::path& file, const ImageSpec& spec) {
   if (spec.deep) fail(file, "its pixels are deep; flatten them first");
 }
 
+/// Whether alpha is anything but 1 somewhere.
+bool has_holes(const film::Picture& picture) {
+  const film::Plane* const alpha = picture.find("A");
+  return alpha != nullptr && std::any_of(alpha->values.begin(), alpha->values.end(), [](float a) { return a != 1.0f; });
+}
+
 /// Memory grows with what is decoded, so that a damaged header cannot ask for all there is.
 film::Picture decode_all(const std::filesystem::path& file, ImageInput& in, const ImageSpec& spec) {
   film::Picture picture;
   picture.width = spec.full_width;
   picture.height = spec.full_height;
   picture.color_interop_id = std::string(spec.get_string_attribute("colorInteropID"));
+  picture.is_transparent =
+      std::string(spec.get_string_attribute("orrery/settings")).find(kTransparent) != std::string::npos;
   for (const std::string& name : spec.channelnames) picture.planes.push_back({name, {}});
   const auto append_empty = [&](int rows) {
     const std::size_t more = static_cast<std::size_t>(std::max(rows, 0)) * static_cast<std::size_t>(picture.width);
@@ -152,6 +163,7 @@ film::Picture read(const std::filesystem::path& file) {
   check_spec(file, spec);
   try {
     film::Picture picture = decode_all(file, *in, spec);
+    picture.is_transparent = picture.is_transparent || has_holes(picture);
     in->geterror();  // a remark that nobody asks for ends on the console
     return picture;
   } catch (const std::bad_alloc&) {

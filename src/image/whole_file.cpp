@@ -3,12 +3,15 @@
 
 #include <OpenImageIO/deepdata.h>
 
+#include <cstdint>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/checked_file.h"
+#include "image/encode_jpeg.h"
 #include "image/library.h"
 #include "image/seal.h"
 
@@ -91,12 +94,18 @@ void write_whole(const std::filesystem::path& file, const std::string& format, O
   const std::string name = target.temporary().string();
   // Declared before its user: an encoder that failed may still write while it is destroyed.
   CheckedFile bytes(target.temporary());
-  const auto out = OIIO::ImageOutput::create(format);
-  if (!out || !out->supports("ioproxy"))
-    throw base::Error(base::ErrorKind::kInternal,
-                      "this OpenImageIO cannot write " + format + " files " + OIIO::geterror());
-  out->set_ioproxy(&bytes);
-  const std::string complaint = encode(*out, name, type, parts);
+  std::string complaint;
+  std::unique_ptr<OIIO::ImageOutput> out;
+  if (format == "jpeg") {
+    complaint = encode_jpeg(parts.front().spec, static_cast<const std::uint8_t*>(parts.front().pixels), bytes);
+  } else {
+    out = OIIO::ImageOutput::create(format);
+    if (!out || !out->supports("ioproxy"))
+      throw base::Error(base::ErrorKind::kInternal,
+                        "this OpenImageIO cannot write " + format + " files " + OIIO::geterror());
+    out->set_ioproxy(&bytes);
+    complaint = encode(*out, name, type, parts);
+  }
   if (const int error = bytes.finish(); error != 0) io_failed(file, std::strerror(error));
   if (!complaint.empty()) io_failed(file, complaint);
   if (const std::string wrong = read_back(name, format, parts); !wrong.empty()) io_failed(file, wrong);

@@ -24,10 +24,7 @@ const char* add_format(Format format, ImageSpec& spec) {
       spec.attribute("tiff:write_exif", 0);
       leave_out_date(spec);
       return "tiff";
-    case Format::kJpeg:
-      spec.attribute("compression", "jpeg:95");
-      spec.attribute("jpeg:subsampling", "4:4:4");
-      return "jpeg";
+    case Format::kJpeg: return "jpeg";
     case Format::kPpm: return "pnm";
     case Format::kExr:
     case Format::kHdr: break;
@@ -42,13 +39,17 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
   const Format format = format_of(file);
   if (picture.bits > most_bits(format))
     throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits in a channel; PNG and TIFF hold 16");
-  constexpr int kChannels = 3;
-  if (picture.values.size() !=
-      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * kChannels)
+  check_size(file, picture.width, picture.height);
+  if (picture.channels > 3 && !holds_alpha(format))
+    throw base::Error(base::ErrorKind::kInternal, file.string() + " cannot hold alpha");
+  if (picture.values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
+                                   static_cast<std::size_t>(picture.channels))
     throw base::Error(base::ErrorKind::kInternal, "the values of " + file.string() + " are not of the picture's size");
-  ImageSpec spec(picture.width, picture.height, kChannels, picture.bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
+  ImageSpec spec(picture.width, picture.height, picture.channels,
+                 picture.bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
   if (!software.empty()) spec.attribute("Software", software);
   if (!stamp.empty()) spec.attribute("ImageDescription", std::string(kStampName) + " " + stamp);
+  if (picture.channels > 3) spec.attribute("oiio:UnassociatedAlpha", 1);  // else the library would divide by it
   if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
   const char* const name = add_format(format, spec);
   if (picture.bits == 8) {

@@ -187,6 +187,19 @@ TEST_F(DisplayDevelop, PutsEveryPixelInItsPlace) {
   }
 }
 
+TEST_F(DisplayDevelop, StraightAlphaShowsWhatCoversThePixel) {
+  film::Picture picture{4, 1, {}};
+  const std::vector<float> alpha = {0, 0.25f, 1, -0.5f};
+  const std::vector<float> light = {0, 0.1f, 0.4f, 0.3f};
+  picture.planes = {{"R", light}, {"G", light}, {"B", light}, {"A", alpha}};
+  const film::EncodedPicture out = develop(picture, on("sRGB", "Raw"), 8, false, Alpha::kStraight);
+  EXPECT_EQ(out.channels, 4);
+  EXPECT_EQ(out.values, (std::vector<std::uint16_t>{0, 0, 0, 0, 102, 102, 102, 64, 102, 102, 102, 255, 0, 0, 0, 0}));
+  EXPECT_EQ(develop(picture, on("sRGB", "Raw"), 8).channels, 3) << "over black, as ever";
+  picture.planes.pop_back();
+  EXPECT_THROW(develop(picture, on("sRGB"), 8, false, Alpha::kStraight), base::Error);
+}
+
 TEST_F(DisplayDevelop, RoundsToTheNearestLevel) {
   for (int level = 0; level < 255; ++level) {
     const float below = (static_cast<float>(level) + 0.49f) / 255, above = (static_cast<float>(level) + 0.51f) / 255;

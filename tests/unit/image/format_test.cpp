@@ -37,5 +37,14 @@ TEST(ImageFormat, SixteenBitsFitIntoPngAndTiff) {
   EXPECT_EQ(most_bits(Format::kPpm), 8);
 }
 
+TEST(ImageFormat, EveryFormatButJpegTakesTheLargestScene) {
+  constexpr int kLargest = 65536;  // scene::kLargestSide
+  for (const char* file : {"a.exr", "a.hdr", "a.png", "a.tif", "a.tiff", "a.ppm"})
+    EXPECT_NO_THROW(check_size(file, kLargest, kLargest)) << file;
+  EXPECT_NO_THROW(check_size("a.jpg", 65500, 65500));
+  expect_error(base::ErrorKind::kUsage, {"a.jpg", "65501 x 1", "65500"}, [] { check_size("a.jpg", 65501, 1); });
+  expect_error(base::ErrorKind::kUsage, {"1 x 65501"}, [] { check_size("a.jpeg", 1, 65501); });
+}
+
 }  // namespace
 }  // namespace orrery::image

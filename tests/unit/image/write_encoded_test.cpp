@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <OpenImageIO/imageio.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 
+#include "image/encode_jpeg.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "support/scratch_folder.h"
@@ -94,6 +98,73 @@ TEST_F(ImageWriteEncoded, NothingInAFileDependsOnTheTime) {
         EXPECT_FALSE(at + 4 < file.size() && file[at + 4] == ':') << name << " has a date: " << file.substr(at, 19);
     }
     EXPECT_TRUE(file == bytes(std::string("b") + name, picture)) << name;
+  }
+}
+
+TEST_F(ImageWriteEncoded, JpegIsWhatOpenImageIoWrites) {
+  const film::EncodedPicture picture = test_encoded(67, 43, 8);
+  const std::string ours = bytes("a.jpg", picture);
+  OIIO::ImageSpec spec(67, 43, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("Software", "orrery test");
+  spec.attribute("ImageDescription", "orrery/stamp 0123");
+  spec.attribute("compression", "jpeg:95");
+  spec.attribute("jpeg:subsampling", "4:4:4");
+  for (const bool is_srgb : {false, true}) {
+    film::EncodedPicture shown = picture;
+    shown.is_srgb = is_srgb;
+    write_encoded(folder_ / "ours.jpg", shown, "orrery test", "0123");
+    if (is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+    const auto out = OIIO::ImageOutput::create("jpeg");
+    ASSERT_TRUE(out->open((folder_ / "theirs.jpg").string(), spec));
+    const std::vector<std::uint8_t> codes(picture.values.begin(), picture.values.end());
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, codes.data()) && out->close());
+    EXPECT_TRUE(support::file_bytes(folder_ / "ours.jpg") == support::file_bytes(folder_ / "theirs.jpg")) << is_srgb;
+  }
+}
+
+TEST_F(ImageWriteEncoded, AnErrorOfLibjpegIsAMessageAndNoExit) {
+  // A side that libjpeg refuses, as it refuses to go on without memory: by a call that must not return.
+  support::write_bytes(folder_ / "a", "");
+  CheckedFile file(folder_ / "a");
+  const OIIO::ImageSpec spec(65501, 1, 3, OIIO::TypeDesc::UINT8);
+  const std::vector<std::uint8_t> pixels(65501 * 3);
+  EXPECT_NE(encode_jpeg(spec, pixels.data(), file).find("65500"), std::string::npos);
+}
+
+TEST_F(ImageWriteEncoded, AFullDiskStopsJpeg) {
+  CheckedFile full("/dev/full");
+  const OIIO::ImageSpec spec(600, 400, 3, OIIO::TypeDesc::UINT8);
+  const std::vector<std::uint8_t> pixels(600 * 400 * 3);
+  encode_jpeg(spec, pixels.data(), full);
+  EXPECT_EQ(full.finish(), ENOSPC);
+}
+
+TEST_F(ImageWriteEncoded, PngAndTiffHoldStraightAlpha) {
+  for (const int bits : {8, 16}) {
+    film::EncodedPicture picture = test_encoded(5, 4, bits);
+    const auto largest = static_cast<std::uint16_t>((1 << bits) - 1);
+    std::vector<std::uint16_t> values;
+    for (std::size_t i = 0; i < 20; ++i)
+      values.insert(values.end(), {picture.values[3 * i], picture.values[3 * i + 1], picture.values[3 * i + 2],
+                                   static_cast<std::uint16_t>(i * largest / 19)});
+    picture.values = values;
+    picture.channels = 4;
+    for (const char* name : {"a.png", "a.tif"}) {
+      write_encoded(folder_ / name, picture, "");
+      OIIO::ImageSpec as_it_is;
+      as_it_is.attribute("oiio:UnassociatedAlpha", 1);
+      const auto in = OIIO::ImageInput::open((folder_ / name).string(), &as_it_is);
+      ASSERT_TRUE(in);
+      EXPECT_EQ(in->spec().nchannels, 4);
+      EXPECT_EQ(in->spec().alpha_channel, 3);
+      std::vector<std::uint16_t> read(80);
+      ASSERT_TRUE(in->read_image(0, 0, 0, 4, OIIO::TypeDesc::UINT16, read.data()));
+      if (bits == 8)
+        for (std::uint16_t& v : read) v = static_cast<std::uint16_t>(v / 257);
+      EXPECT_EQ(read, values) << name << ", " << bits;
+    }
+    if (bits == 8)
+      expect_error(base::ErrorKind::kInternal, {"alpha"}, [&] { write_encoded(folder_ / "a.ppm", picture, ""); });
   }
 }
 

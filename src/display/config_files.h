@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace orrery::display {
+
+/// The files that load_config may open: the named config and that of $OCIO, where these are files.
+std::vector<std::filesystem::path> config_files(const std::string& config);
+
+}  // namespace orrery::display

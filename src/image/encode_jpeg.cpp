@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/encode_jpeg.h"
+
+#include <array>
+#include <csetjmp>
+#include <cstddef>
+#include <cstdio>  // jpeglib.h needs its types
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include <jpeglib.h>
+
+// As OpenImageIO/tiffutils.h declares them, which includes a header of libtiff that its package does not bring along.
+OIIO_NAMESPACE_BEGIN
+OIIO_API void encode_exif(const ImageSpec& spec, std::vector<char>& blob);
+OIIO_API void encode_iptc_iim(const ImageSpec& spec, std::vector<char>& iptc);
+OIIO_API std::string encode_xmp(const ImageSpec& spec, bool minimal);
+OIIO_NAMESPACE_END
+
+namespace orrery::image {
+namespace {
+
+/// Errors jump out of libjpeg, over C frames and frames without destructors only.
+struct ErrorManager {
+  jpeg_error_mgr base;  // first: libjpeg knows this much of it
+  std::jmp_buf jump;
+  char text[JMSG_LENGTH_MAX];
+};
+
+[[noreturn]] void on_error(j_common_ptr info) {
+  auto* const errors = reinterpret_cast<ErrorManager*>(info->err);
+  (*info->err->format_message)(info, errors->text);
+  std::longjmp(errors->jump, 1);
+}
+
+void on_message(j_common_ptr) {}  // warnings; libjpeg would print them
+
+/// Hands libjpeg's output to a CheckedFile.
+struct Destination {
+  jpeg_destination_mgr base;  // first, as above
+  CheckedFile* file;
+  std::array<JOCTET, std::size_t{1} << 16> buffer;
+};
+
+Destination& destination_of(j_compress_ptr info) { return *reinterpret_cast<Destination*>(info->dest); }
+
+void begin_buffer(j_compress_ptr info) {
+  Destination& out = destination_of(info);
+  out.base.next_output_byte = out.buffer.data();
+  out.base.free_in_buffer = out.buffer.size();
+}
+
+/// Result     FALSE where the file could not be written, which libjpeg reports as an error
+boolean empty_buffer(j_compress_ptr info) {
+  Destination& out = destination_of(info);
+  if (out.file->write(out.buffer.data(), out.buffer.size()) != out.buffer.size()) return FALSE;
+  begin_buffer(info);
+  return TRUE;
+}
+
+void end_buffer(j_compress_ptr info) {
+  Destination& out = destination_of(info);
+  // A failure stays in the file, which whoever finishes it looks at.
+  out.file->write(out.buffer.data(), out.buffer.size() - out.base.free_in_buffer);
+}
+
+struct Encoder {
+  jpeg_compress_struct info{};
+  ErrorManager errors{};
+  Destination destination{};
+};
+
+/// A marker's number and bytes.
+struct Marker {
+  int number;
+  std::vector<char> bytes;
+};
+
+std::vector<char> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
+
+/// Comment, EXIF, IPTC and XMP as OpenImageIO writes them.
+std::vector<Marker> markers_of(const OIIO::ImageSpec& spec) {
+  constexpr int kComment = 0xFE, kExif = 0xE1, kPhotoshop = 0xED;
+  std::vector<Marker> out;
+  if (std::string comment = spec.get_string_attribute("ImageDescription"); !comment.empty())
+    out.push_back({kComment, bytes_of(comment + '\0')});
+  Marker exif{kExif, bytes_of(std::string_view("Exif\0\0", 6))};
+  OIIO::encode_exif(spec, exif.bytes);
+  out.push_back(std::move(exif));
+  std::vector<char> iptc;
+  OIIO::encode_iptc_iim(spec, iptc);
+  if (!iptc.empty()) {
+    Marker photoshop{kPhotoshop, bytes_of(std::string_view("Photoshop 3.0\0"
+                                                           "8BIM\4\4\0\0\0\0",
+                                                           24))};
+    photoshop.bytes.push_back(static_cast<char>(iptc.size() >> 8));
+    photoshop.bytes.push_back(static_cast<char>(iptc.size() & 0xff));
+    photoshop.bytes.insert(photoshop.bytes.end(), iptc.begin(), iptc.end());
+    out.push_back(std::move(photoshop));
+  }
+  if (const std::string xmp = OIIO::encode_xmp(spec, true); !xmp.empty()) {
+    Marker packet{kExif, bytes_of(std::string_view("http://ns.adobe.com/xap/1.0/\0", 29))};
+    packet.bytes.insert(packet.bytes.end(), xmp.begin(), xmp.end());
+    out.push_back(std::move(packet));
+  }
+  return out;
+}
+
+/// All that libjpeg does. No object with a destructor lives here: errors jump over this frame.
+void compress(jpeg_compress_struct& info, const OIIO::ImageSpec& spec, const std::uint8_t* pixels,
+              const std::vector<Marker>& markers) {
+  info.image_width = static_cast<JDIMENSION>(spec.width);
+  info.image_height = static_cast<JDIMENSION>(spec.height);
+  info.input_components = 3;
+  info.in_color_space = JCS_RGB;
+  jpeg_set_defaults(&info);
+  jpeg_set_quality(&info, kJpegQuality, TRUE);
+  for (int c = 0; c < 3; ++c) info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
+  jpeg_start_compress(&info, TRUE);
+  for (const Marker& marker : markers)
+    jpeg_write_marker(&info, marker.number, reinterpret_cast<const JOCTET*>(marker.bytes.data()),
+                      static_cast<unsigned>(marker.bytes.size()));
+  const std::size_t row_bytes = static_cast<std::size_t>(spec.width) * 3;
+  while (info.next_scanline < info.image_height) {
+    auto* row = const_cast<JSAMPROW>(pixels + info.next_scanline * row_bytes);  // libjpeg only reads it
+    jpeg_write_scanlines(&info, &row, 1);
+  }
+  jpeg_finish_compress(&info);
+}
+
+}  // namespace
+
+std::string encode_jpeg(const OIIO::ImageSpec& spec, const std::uint8_t* pixels, CheckedFile& file) {
+  OIIO::ImageSpec described = spec;
+  if (spec.get_string_attribute("oiio:ColorSpace") == "sRGB") described.attribute("Exif:ColorSpace", 1);
+  const std::vector<Marker> markers = markers_of(described);
+  // Not on the stack: what changes between setjmp and a jump back must not be a variable of this function.
+  const auto state = std::make_unique<Encoder>();
+  state->info.err = jpeg_std_error(&state->errors.base);
+  state->errors.base.error_exit = on_error;
+  state->errors.base.output_message = on_message;
+  state->destination.base.init_destination = begin_buffer;
+  state->destination.base.empty_output_buffer = empty_buffer;
+  state->destination.base.term_destination = end_buffer;
+  state->destination.file = &file;
+  if (setjmp(state->errors.jump) == 0) {
+    jpeg_create_compress(&state->info);
+    state->info.dest = &state->destination.base;
+    compress(state->info, described, pixels, markers);
+  }
+  jpeg_destroy_compress(&state->info);
+  return state->errors.text;
+}
+
+}  // namespace orrery::image
