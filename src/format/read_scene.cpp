@@ -20,9 +20,6 @@
 namespace orrery::format {
 namespace {
 
-/// A scene of a million [[sphere]] tables; whoever has more has a points file.
-constexpr std::uint64_t kLargestSceneFile = 256u << 20;
-
 /// Materials by their names.
 using MaterialIndex = std::unordered_map<std::string, std::uint32_t>;
 

@@ -41,6 +41,9 @@ class SourceText {
   std::map<std::string, Text> texts_;
 };
 
+/// Bytes of the largest scene file: a million [[sphere]] tables. Larger scenes have points files.
+inline constexpr std::uint64_t kLargestSceneFile = 256u << 20;
+
 /// A whole file as bytes.
 ///
 /// Errors     base::Error(kMissingInput) where it cannot be opened, kBadData where it is larger than `largest_bytes`,

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -33,10 +35,12 @@ void append_float(std::string& out, double value, std::size_t index) {
   append_bytes(out, static_cast<float>(value));
 }
 
+/// The comment is how is_own_ply knows the file again.
+constexpr const char* kPlyBegin = "ply\nformat binary_little_endian 1.0\ncomment made by orrery\n";
+
 std::string header(const scene::Points& points, PlyReal real) {
   const std::string property = real == PlyReal::kDouble ? "property double " : "property float ";
-  std::string out =
-      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.centers.size()) + '\n';
+  std::string out = kPlyBegin + ("element vertex " + std::to_string(points.centers.size()) + '\n');
   for (const char* name : {"x", "y", "z", "radius"}) out += property + name + '\n';
   if (!points.materials.empty()) out += "property uint material\n";
   return out + "end_header\n";
@@ -60,6 +64,13 @@ void write_ply(const scene::Points& points, const std::filesystem::path& file, P
     if (!points.materials.empty()) append_bytes(out, points.materials[i]);
   }
   base::write_text_file(file, out);
+}
+
+bool is_own_ply(const std::filesystem::path& file) {
+  const std::string_view begin = kPlyBegin;
+  std::string found(begin.size(), '\0');
+  std::ifstream in(file, std::ios::binary);
+  return in.read(found.data(), static_cast<std::streamsize>(found.size())) && found == begin;
 }
 
 }  // namespace orrery::format

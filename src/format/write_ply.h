@@ -13,11 +13,15 @@ enum class PlyReal {
   kDouble,  ///< reads back to the same bits
 };
 
-/// Writes spheres as binary little-endian PLY: x, y, z, radius, and material as uint where there is one.
+/// Writes spheres as binary little-endian PLY: x, y, z, radius, and material as uint where there is one. A comment in
+/// the header says that orrery made it.
 ///
 /// Errors     base::Error: kCannotCreate, kIo; kBadData where a number does not fit into a float: it would be infinite
 /// Cost       the file stands in memory before it is written
 /// Reference  turk1994
 void write_ply(const scene::Points& points, const std::filesystem::path& file, PlyReal real = PlyReal::kDouble);
+
+/// Whether write_ply wrote a file, so that writing it again destroys nobody's data.
+bool is_own_ply(const std::filesystem::path& file);
 
 }  // namespace orrery::format

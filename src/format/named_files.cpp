@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/named_files.h"
+
+#include "base/error.h"
+#include "format/toml_tree.h"
+
+namespace orrery::format {
+
+NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<std::string>& overrides) {
+  SourceText source;
+  std::vector<base::Finding> findings;
+  const toml::table root =
+      parse_tree(scene_file.string(), read_file(scene_file, kLargestSceneFile), overrides, source, findings);
+  if (root.empty()) throw base::Error(base::ErrorKind::kBadData, scene_file.string() + " is not a scene", findings);
+  NamedFiles out;
+  out.ocio_config = root["color"]["config"].value_or(std::string());
+  if (const toml::array* points = root["points"].as_array())
+    for (const toml::node& node : *points)
+      if (const toml::table* table = node.as_table())
+        if (const auto file = (*table)["file"].value<std::string>()) out.points.push_back(*file);
+  return out;
+}
+
+}  // namespace orrery::format
