@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bake_file.h"
 
+#include "app/job_files.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 
@@ -11,6 +12,10 @@ void bake_file(const display::Settings& display, int cube_size, const std::files
   if (extension != ".cube" && extension != ".clf")
     throw base::Error(base::ErrorKind::kUsage,
                       file.string() + " has no extension of a display transform; known are .cube and .clf");
+  base::FileSet files;
+  add_ocio_configs(display.config, files);
+  files.add_output(file, "-o");
+  for (const std::string& table : display::choose(display).files) files.add_input(table, "table of the OCIO config");
   base::check_creatable(file);
   base::write_text_file(
       file, extension == ".cube" ? display::bake_cube(display, cube_size) : display::bake_clf(display, cube_size));

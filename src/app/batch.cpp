@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/batch.h"
 
-#include <map>
-
+#include "app/job_files.h"
 #include "base/frames.h"
 
 namespace orrery::app {
@@ -44,6 +43,16 @@ void check_name(const Batch& batch, const std::string& name) {
            " scenes; give it a place for their names, as in {scene}.png");
 }
 
+/// Adds what a scene names, where it can be parsed; its job reports what is wrong with one that cannot.
+void add_readable_files(const fs::path& scene, const std::vector<std::string>& overrides,
+                        const std::vector<int>& frames, base::FileSet& files) {
+  try {
+    add_named_files(scene, overrides, frames, files);
+  } catch (const base::Error& error) {
+    if (error.kind() == base::ErrorKind::kUsage) throw;
+  }
+}
+
 }  // namespace
 
 std::vector<Job> jobs_of(const Batch& batch) {
@@ -51,7 +60,11 @@ std::vector<Job> jobs_of(const Batch& batch) {
   for (const fs::path* name : names_of(common)) check_name(batch, name->string());
   const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{format::kFirstFrame} : batch.frames;
   std::vector<Job> jobs;
-  std::map<fs::path, fs::path> writer;
+  common.files = std::make_shared<base::FileSet>();
+  base::FileSet& files = *common.files;
+  if (!batch.log.empty()) files.add_output(batch.log, "--log");
+  for (const fs::path& scene : batch.scenes)
+    if (!files.add_input(scene, "scene")) refuse(scene.string() + " is given twice");
   for (const fs::path& scene : batch.scenes) {
     for (const int frame : frames) {
       Job job = common;
@@ -60,13 +73,14 @@ std::vector<Job> jobs_of(const Batch& batch) {
       for (fs::path* name : names_of(job)) {
         std::string text = with_scene(name->string(), scene.stem().string());
         *name = batch.frames.empty() ? text : base::with_frame(text, frame);
-        const auto [found, is_new] = writer.emplace(*name, scene);
-        if (!is_new && found->second != scene)
-          refuse(name->string() + " would be written for " + found->second.string() + " and for " + scene.string());
       }
+      add_job_files(job, files, batch.scenes.size() > 1 ? " of " + scene.string() : "");
       jobs.push_back(std::move(job));
     }
   }
+  // A job alone checks what its scene names once it is read; by then another one, or the log, may have overwritten it.
+  if (jobs.size() > 1 || !batch.log.empty())
+    for (const fs::path& scene : batch.scenes) add_readable_files(scene, common.overrides, frames, files);
   return jobs;
 }
 
@@ -74,8 +88,7 @@ std::string job_name(const Batch& batch, const Job& job) {
   return (batch.frames.empty() ? "" : "frame " + std::to_string(job.frame) + " of ") + job.scene.string();
 }
 
-BatchReport run_batch(const Batch& batch) {
-  const std::vector<Job> jobs = jobs_of(batch);
+BatchReport run_batch(const Batch& batch, const std::vector<Job>& jobs) {
   BatchReport report;
   report.jobs = jobs.size();
   for (std::size_t i = 0; i < jobs.size(); ++i) {

@@ -16,8 +16,9 @@ namespace orrery::app {
 struct Batch {
   Job job;  ///< what all have in common; its files' names have places for the frame and the scene
   std::vector<std::filesystem::path> scenes;
-  std::vector<int> frames;  ///< empty: each scene as it is, one picture
-  bool keep_going = false;  ///< after a job that fails
+  std::vector<int> frames;    ///< empty: each scene as it is, one picture
+  std::filesystem::path log;  ///< that the caller writes messages to; empty: none
+  bool keep_going = false;    ///< after a job that fails
 
   std::function<void(const Job&, std::size_t index, std::size_t count)> on_begin;
   std::function<void(const Job&, const JobReport&)> on_end;
@@ -27,7 +28,9 @@ struct Batch {
 /// One job for each frame of each scene. Names are filled in: `####` and `%04d` by the frame, `{scene}` by the scene's
 /// file name without its extension.
 ///
-/// Errors     base::Error(kUsage) where several jobs would write the same file, or frames have names without need
+/// No file of theirs is written twice, or is read and overwritten: the jobs share one set of all their files.
+///
+/// Errors     base::Error(kUsage) where they do, or frames have names without need
 std::vector<Job> jobs_of(const Batch& batch);
 
 /// What came of a batch.
@@ -42,8 +45,9 @@ struct BatchReport {
 
 /// Runs the jobs one after the other. A failure of one is told and, where the batch keeps going, not the end of all.
 ///
-/// Errors     of jobs_of; kStopped of a job that was stopped; the failure itself where the batch does not keep going
-BatchReport run_batch(const Batch& batch);
+/// `jobs`     jobs_of(batch)
+/// Errors     kStopped of a job that was stopped; the failure itself where the batch does not keep going
+BatchReport run_batch(const Batch& batch, const std::vector<Job>& jobs);
 
 /// "frame 7 of shot.toml"; of a batch without frames the scene alone.
 std::string job_name(const Batch& batch, const Job& job);

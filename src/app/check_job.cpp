@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/check_job.h"
 
-#include "app/checkpoint.h"
 #include "app/choose_isa.h"
+#include "app/job_files.h"
 #include "app/output_files.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/format.h"
 
@@ -29,16 +30,11 @@ render::Traversal traversal_of(const Job& job) {
 }
 
 void check_request(const Job& job) {
-  std::vector<std::filesystem::path> others;
-  if (!job.statistics.empty()) others.push_back(job.statistics);
-  if (!job.deep.empty()) others.push_back(job.deep);
-  if (job.parts.empty()) others.push_back(checkpoint_file(job.outputs.front()));
+  check_formats(job.outputs, job.bits);
   if (is_part(job)) check_part(job);
   if (!job.deep.empty() && image::format_of(job.deep) != image::Format::kExr)
     throw base::Error(base::ErrorKind::kUsage, job.deep.string() + " cannot hold samples in depth; EXR can");
-  std::vector<std::filesystem::path> inputs = {job.scene};
-  for (const PartFile& part : job.parts) inputs.push_back(part.file);
-  check_output_files(job.outputs, job.bits, others, inputs);
+  for (const OutputFile& output : outputs_of(job)) base::check_creatable(output.path);
   traversal_of(job);
   image::check_compression(job.exr.compression);
   choose_isa(job.isa);
@@ -50,6 +46,10 @@ void check_samples(const Job& job, const compile::World& world) {
                       "--samples " + std::to_string(job.sample_begin) + ":" + std::to_string(job.sample_end) +
                           " goes beyond the scene's " + std::to_string(world.samples) +
                           " samples; --set render.samples=" + std::to_string(job.sample_end) + " gives it more");
+}
+
+void check_sizes(const Job& job, const compile::World& world) {
+  for (const std::filesystem::path& output : job.outputs) image::check_size(output, world.width, world.height);
 }
 
 }  // namespace orrery::app

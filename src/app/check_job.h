@@ -16,6 +16,11 @@ void check_request(const Job& job);
 /// Errors     base::Error(kUsage)
 void check_samples(const Job& job, const compile::World& world);
 
+/// Checks that the formats of a job's files take a picture of this size.
+///
+/// Errors     base::Error(kUsage)
+void check_sizes(const Job& job, const compile::World& world);
+
 /// How rays shall go through the hierarchy.
 ///
 /// Errors     base::Error(kUsage) for a name that is none

@@ -5,6 +5,7 @@
 
 #include "app/provenance.h"
 #include "base/error.h"
+#include "base/file_name.h"
 
 namespace orrery::app {
 namespace {
@@ -17,8 +18,7 @@ std::chrono::steady_clock::duration interval(const Job& job) {
 }  // namespace
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& first_output) {
-  std::filesystem::path out = first_output;
-  return out.replace_extension(".checkpoint.exr");
+  return first_output.parent_path() / base::companion_name(first_output.stem().string(), ".checkpoint.exr");
 }
 
 Checkpoint::Checkpoint(const Job& job, image::Provenance provenance, Write write)

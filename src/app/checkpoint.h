@@ -11,7 +11,8 @@
 
 namespace orrery::app {
 
-/// Where a job that writes this picture keeps what is rendered of it: shot.0007.exr has shot.0007.checkpoint.exr.
+/// Where a job that writes this picture keeps what is rendered of it: shot.0007.exr has shot.0007.checkpoint.exr. A
+/// name that would be too long is shortened.
 std::filesystem::path checkpoint_file(const std::filesystem::path& first_output);
 
 /// The checkpoint of one job: when it is due, what is in it, and when it has done its work.

@@ -8,7 +8,9 @@
 
 #include "app/text.h"
 #include "app/version.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_set.h"
 #include "base/suggestion.h"
 #include "image/format.h"
 #include "image/read.h"
@@ -144,6 +146,22 @@ void write_map(const std::filesystem::path& file, const metrics::Map& map, doubl
   }
 }
 
+/// Checks the pictures to write before work begins: known extensions, no input and no two the same, creatable.
+void check_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
+                 const ComparisonPictures& pictures) {
+  base::FileSet files;
+  files.add_input(picture, "picture");
+  files.add_input(reference, "picture");
+  const std::pair<const std::filesystem::path&, const char*> outputs[] = {
+      {pictures.difference, "--difference"}, {pictures.heat, "--heat"}, {pictures.flip, "--flip"}};
+  for (const auto& [file, role] : outputs) {
+    if (file.empty()) continue;
+    image::format_of(file);
+    files.add_output(file, role);
+    base::check_creatable(file);
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& limitable_metrics() {
@@ -207,11 +225,12 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
                       linear.string() + " holds scene-linear light and the other picture what " +
                           "a display shows; develop it first: orrery develop " + linear.string() + " -o developed.png");
   }
-  for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
-    if (!file.empty()) image::format_of(file);  // an unknown extension is told before work begins
+  check_files(picture, reference, pictures);
   if (!layer.empty() && !pictures.flip.empty())
     throw base::Error(base::ErrorKind::kUsage, "--flip is of colours; leave --layer out");
   const film::Picture a = image::read(picture), b = image::read(reference);
+  for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
+    if (!file.empty()) image::check_size(file, a.width, a.height);
   Comparison out = compare(a, b, developed ? Encoding::kDisplay : Encoding::kLight, layer);
   if (!pictures.difference.empty()) {
     const Compared left = channels_of(a, b, layer), right = channels_of(b, a, layer);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/develop_file.h"
 
+#include "app/display_writer.h"
+#include "app/job_files.h"
 #include "app/output_files.h"
 #include "app/version.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/format.h"
 #include "image/read.h"
@@ -25,18 +28,26 @@ void check_kinds(const Development& development) {
 
 DevelopReport develop_file(const Development& development) {
   check_kinds(development);
-  check_output_files(development.outputs, development.bits, {}, {development.input});
+  check_formats(development.outputs, development.bits);
+  base::FileSet files;
+  files.add_input(development.input, "picture");
+  add_ocio_configs(development.display.config, files);
+  for (const auto& output : development.outputs) {
+    files.add_output(output, "-o");
+    base::check_creatable(output);
+  }
   DevelopReport report;
   const film::Picture picture = image::read(development.input);
+  for (const auto& output : development.outputs) image::check_size(output, picture.width, picture.height);
   display::Settings display = development.display;
   if (display.working_space.empty()) display.working_space = picture.color_interop_id;
   if (display.working_space.empty()) display.working_space = "lin_rec709";
   report.display = display::choose(display);
+  for (const std::string& table : report.display.files) files.add_input(table, "table of the OCIO config");
   for (const char* name : {"R", "G", "B"})  // no other plane is developed
     if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
-  const film::EncodedPicture developed =
-      display::develop(picture, display, development.bits != 0 ? development.bits : report.display.default_bits());
-  for (const auto& output : development.outputs) image::write_encoded(output, developed, "orrery " + program_version());
+  DisplayWriter developed(picture, display, development.bits != 0 ? development.bits : report.display.default_bits());
+  for (const auto& output : development.outputs) developed.write(output, "orrery " + program_version());
   return report;
 }
 

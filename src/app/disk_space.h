@@ -3,17 +3,23 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <vector>
+#include <map>
 
 #include "app/job.h"
 #include "compile/world.h"
 
 namespace orrery::app {
 
-/// Refuses a render whose files the disk has no room for, before it is begun. Files are taken for as large as they are
-/// without compression, but for JPEG; those that will be replaced are still there meanwhile.
+/// Bytes that the pictures of a job will take in each folder, as compressed as noisy pictures were measured to be.
 ///
 /// Domain     `layer_planes` beside R, G, B, A
+/// Precision  test AppDiskSpace.TheEstimateIsNearTheFiles
+std::map<std::filesystem::path, double> estimate_disk_space(const Job& job, int width_px, int height_px,
+                                                            std::size_t layer_planes);
+
+/// Refuses a render whose pictures the disk has no room for, or that need more than the job's limit, which counts in
+/// place of the room. Files that will be replaced stay until then and do not count as room.
+///
 /// Errors     base::Error(kCannotCreate) with both figures
 void require_disk_space(const Job& job, const compile::World& world, std::size_t layer_planes);
 

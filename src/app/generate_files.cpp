@@ -5,6 +5,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_set.h"
+#include "format/write_ply.h"
 #include "format/write_scene.h"
 #include "scene/schema.h"
 
@@ -41,25 +43,37 @@ std::filesystem::path points_file_of(const std::filesystem::path& file) {
   return file.filename().replace_extension(".ply");
 }
 
-/// What would only fail after a long time of generating, or overwrite the scene by its own points.
-void check(const std::filesystem::path& file) {
+/// Finds out before anything is generated what would fail afterwards. The user names the scene file; the points file
+/// beside it is replaced only where an earlier run made it.
+void check(const std::filesystem::path& file, bool has_points) {
   if (file.extension() == ".ply")
     throw base::Error(base::ErrorKind::kUsage, file.string() +
                                                    ": .ply is where the spheres go; name the scene, as in " +
                                                    std::filesystem::path(file).replace_extension(".toml").string());
   base::check_creatable(file);
+  if (!has_points) return;
+  const std::filesystem::path points = file.parent_path() / points_file_of(file);
+  base::FileSet files;
+  files.add_output(file, "-o");
+  files.add_output(points, "points file");
+  base::check_creatable(points);
+  std::error_code ignored;
+  if (std::filesystem::exists(points, ignored) && !format::is_own_ply(points))
+    throw base::Error(base::ErrorKind::kCannotCreate,
+                      "cannot create " + points.string() +
+                          ": a file is there that orrery generate did not make; move it, or choose another -o");
 }
 
 }  // namespace
 
 void generate_final(const FinalScene& options, const std::filesystem::path& file) {
-  check(file);
+  check(file, options.grid > kLargestWrittenGrid);
   format::write_scene(make_final_scene(options, points_file_of(file)), comment(options, file.filename().string()),
                       file);
 }
 
 void generate_cloud(const Cloud& options, const std::filesystem::path& file) {
-  check(file);
+  check(file, true);
   format::write_scene(make_cloud(options, points_file_of(file)), comment(options, file.filename().string()), file);
 }
 

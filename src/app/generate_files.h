@@ -11,8 +11,10 @@ namespace orrery::app {
 ///
 /// A comment at the head says what it shows and which command makes it again, the same byte for byte.
 ///
+/// A points file is replaced only where orrery made it.
+///
 /// Errors     base::Error: kUsage for options outside their range and for a `file` that itself ends in .ply;
-///            kCannotCreate before anything is generated; kIo
+///            kCannotCreate before anything is generated, also for a points file of other origin; kIo
 void generate_final(const FinalScene& options, const std::filesystem::path& file);
 void generate_cloud(const Cloud& options, const std::filesystem::path& file);
 

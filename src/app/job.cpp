@@ -8,6 +8,8 @@
 #include "app/check_job.h"
 #include "app/checkpoint.h"
 #include "app/disk_space.h"
+#include "app/display_writer.h"
+#include "app/job_files.h"
 #include "app/layers.h"
 #include "app/make_picture.h"
 #include "app/matte_manifest.h"
@@ -18,6 +20,7 @@
 #include "app/text.h"
 #include "app/threads.h"
 #include "app/working_space.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/exit_status.h"
 #include "compile/compile.h"
@@ -93,7 +96,7 @@ display::Settings choose_display(const Job& job, const scene::Scene& scene, JobR
 
 void write_outputs(const Job& job, const display::Settings& display, const film::Picture& picture,
                    const image::Header& header, const std::vector<MatteNames>& mattes, JobReport& report) {
-  std::optional<film::EncodedPicture> developed;  // once for all display formats
+  DisplayWriter developed(picture, display, job.bits != 0 ? job.bits : report.display.default_bits());
   const auto add = [&](const image::WriteReport& one) {
     report.written.clamped += one.clamped;
     report.written.not_finite += one.not_finite;
@@ -111,11 +114,7 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
       case image::Format::kPng:
       case image::Format::kTiff:
       case image::Format::kJpeg:
-      case image::Format::kPpm:
-        if (!developed)
-          developed = display::develop(picture, display, job.bits != 0 ? job.bits : report.display.default_bits());
-        image::write_encoded(output, *developed, header.software, header.stamp);
-        break;
+      case image::Format::kPpm: developed.write(output, header.software, header.stamp); break;
     }
   }
 }
@@ -164,11 +163,13 @@ MemoryEstimate memory_for(const Job& job, const compile::World& world, const fil
 }
 
 /// The way data takes.
-void run_phases(const Job& job, JobReport& report) {
+void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
   format::ReadResult read = format::read_scene(job.scene, job.overrides, job.frame);
+  add_scene_files(job.scene, read.scene, files);
   for (const base::Finding& warning : read.warnings) warn(job, warning);
   const display::Settings display = choose_display(job, read.scene, report);
+  for (const std::string& table : report.display.files) files.add_input(table, "table of the OCIO config");
   if (const int moved = to_working_space(display.config, read.scene); moved > 0) {
     base::Finding finding;
     finding.severity = base::Severity::kWarning;
@@ -182,7 +183,12 @@ void run_phases(const Job& job, JobReport& report) {
 
   const compile::World world = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   check_samples(job, world);
+  check_sizes(job, world);
   const Layers layers = layers_for(job, read.scene, world);
+  for (const auto& manifest : manifest_files(layers.mattes, job.outputs)) {
+    files.add_output(manifest, "Cryptomatte manifest");
+    base::check_creatable(manifest);
+  }
   const image::Provenance provenance = provenance_of(job, world, layers);
   const std::string stamp = stamp_of(job, provenance, display);
   report.scene_hash = provenance.at("sceneHash");
@@ -214,7 +220,8 @@ void run_phases(const Job& job, JobReport& report) {
   const render::Result result = job.parts.empty() ? render_job(job, world, settings, checkpoint, total.lap(), report)
                                                   : join_job(job, world, layers, provenance, report);
   report.render = result.statistics;
-  watch.lap();
+  const double made_s = watch.lap();
+  if (!job.parts.empty()) report.phases.finish_s = made_s;
 
   report.target_missed = missed_target(job, result.statistics);
   count_bad_values(result.picture, report);
@@ -228,6 +235,20 @@ void run_phases(const Job& job, JobReport& report) {
   }
   checkpoint.remove();
   report.phases.write_s = watch.lap();
+}
+
+/// Whether a failure may be written to the statistics file. It may not where the request was wrong, since that may be
+/// about this very file, nor where the scene names it, which is known only of a scene that was read.
+bool may_report(const Job& job, const JobReport& report, const base::Error& error, base::FileSet& files) {
+  if (error.kind() == base::ErrorKind::kUsage) return false;
+  if (!report.scene_hash.empty()) return true;
+  try {
+    add_named_files(job.scene, job.overrides, {job.frame}, files);
+    return true;
+  } catch (const base::Error& unreadable) {
+    std::error_code ignored;
+    return unreadable.kind() != base::ErrorKind::kUsage && !std::filesystem::exists(job.statistics, ignored);
+  }
 }
 
 /// What went wrong is written down as far as that still works; the error itself is what the caller shall hear.
@@ -249,12 +270,15 @@ bool is_limited(const Job& job) {
 }
 
 JobReport run_job(const Job& job) {
+  base::FileSet own;
+  base::FileSet& files = job.files ? *job.files : own;
+  if (!job.files) add_job_files(job, own);
   check_request(job);
   JobReport report;
   try {
-    run_phases(job, report);
+    run_phases(job, files, report);
   } catch (const base::Error& error) {
-    write_failure(job, report, error);
+    if (may_report(job, report, error, files)) write_failure(job, report, error);
     throw;
   }
   if (!job.statistics.empty() && !report.was_skipped) write_statistics(job.statistics, report, {});

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/file_set.h"
 #include "base/finding.h"
 #include "display/develop.h"
 #include "film/picture.h"
@@ -38,6 +40,7 @@ struct Job {
   std::filesystem::path statistics;  ///< empty: none
   int threads = 0;                   ///< 0: default_threads()
   std::uint64_t memory_limit = 0;    ///< bytes; 0: what is free
+  std::uint64_t disk_limit = 0;      ///< bytes of each file system; 0: what is free
   std::string traversal = "auto";    ///< auto, packet or single; how rays go through the hierarchy, for comparison
   double noise = 0;                  ///< that the picture shall have, as film/display_error.h measures it; 0: not asked
   double seconds = 0;                ///< for all but writing the files; 0: as long as it takes
@@ -56,7 +59,9 @@ struct Job {
   std::vector<PartFile> parts;                      ///< join these instead of rendering
   bool allow_missing = false;                       ///< of parts
   int frame = format::kFirstFrame;                  ///< of the scene's animation
-  bool skip_existing = false;                       ///< do nothing where all files are there, whole, and of this job
+  /// Files of the batch that this job belongs to; null: the job stands alone.
+  std::shared_ptr<base::FileSet> files = nullptr;
+  bool skip_existing = false;  ///< do nothing where all files are there, whole, and of this job
 };
 
 /// True where the samples of the scene are a limit although something else ends the render.
@@ -67,7 +72,9 @@ inline bool is_part(const Job& job) { return job.as_part || job.sample_end > 0 |
 
 /// Seconds by phase.
 struct Phases {
-  double read_s = 0, compile_s = 0, build_s = 0, render_s = 0, write_s = 0;
+  double read_s = 0, compile_s = 0, build_s = 0, render_s = 0;
+  double finish_s = 0;  ///< from sums to the finished picture and its layers; of a merge also reading the parts
+  double write_s = 0;
 };
 
 /// What came of it.
@@ -93,6 +100,8 @@ struct JobReport {
 ///
 /// A part is an EXR of sums. A job that is stopped writes a checkpoint, of the same kind, and one that resumes ends
 /// with the bits of one that was never stopped.
+///
+/// No output replaces an input, the points files and OCIO configs of the scene included.
 ///
 /// That the files can be written, and that formats, compression, display and view exist, is known before rendering
 /// starts. A statistics file is written also where it was stopped or failed later.

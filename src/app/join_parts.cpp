@@ -10,6 +10,7 @@
 
 #include "app/provenance.h"
 #include "base/error.h"
+#include "base/file_set.h"
 #include "base/frames.h"
 #include "base/suggestion.h"
 
@@ -24,6 +25,13 @@ base::Finding finding_of(const std::filesystem::path& file, std::string text, st
   finding.file = file.string();
   finding.text = std::move(text);
   finding.remedy = std::move(remedy);
+  return finding;
+}
+
+/// What is wrong with a part as a warning: the picture is made without it.
+base::Finding as_left_out(base::Finding finding) {
+  finding.severity = base::Severity::kWarning;
+  finding.remedy = "left out";
   return finding;
 }
 
@@ -108,20 +116,19 @@ bool names_known_spheres(const film::Partial& partial, std::size_t spheres) {
 
 }  // namespace
 
-std::vector<PartFile> read_parts(const std::vector<std::filesystem::path>& files) {
+std::vector<PartFile> read_parts(const std::vector<std::filesystem::path>& files,
+                                 const std::function<void(const base::Finding&)>& on_left_out) {
   std::vector<PartFile> parts;
-  std::vector<base::Finding> findings;
+  std::vector<base::Finding> findings, left_out;
   bool only_missing = true;
-  std::set<std::filesystem::path> seen;
+  base::FileSet seen;
   for (const std::filesystem::path& file : files) {
-    std::error_code ignored;
-    if (!seen.insert(std::filesystem::weakly_canonical(file, ignored)).second)
-      throw base::Error(ErrorKind::kUsage, file.string() + " is given twice");
+    if (!seen.add_input(file, "part")) throw base::Error(ErrorKind::kUsage, file.string() + " is given twice");
     try {
       parts.push_back({file, image::read_provenance(file)});
     } catch (const base::Error& error) {
       only_missing = only_missing && error.kind() == ErrorKind::kMissingInput;
-      findings.push_back(finding_of(file, error.what()));
+      (on_left_out ? left_out : findings).push_back(finding_of(file, error.what()));
       continue;
     }
     const PartFile& part = parts.back();
@@ -139,7 +146,9 @@ std::vector<PartFile> read_parts(const std::vector<std::filesystem::path>& files
     only_missing = false;
     findings.push_back(finding_of(file, wrong));
   }
+  if (parts.empty()) findings = std::move(left_out);
   if (!findings.empty()) refuse(only_missing ? ErrorKind::kMissingInput : ErrorKind::kBadData, std::move(findings));
+  for (const base::Finding& finding : left_out) on_left_out(as_left_out(finding));
   return parts;
 }
 
@@ -168,7 +177,14 @@ Joined join_parts(std::vector<PartFile> parts, int width_px, int height_px, std:
   std::vector<base::Finding> findings;
   std::set<std::string> hosts;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const image::PartialFile file = image::read_partial(parts[i].file, width_px, height_px);
+    image::PartialFile file;
+    try {
+      file = image::read_partial(parts[i].file, width_px, height_px);
+    } catch (const base::Error& error) {
+      if (!allow_missing || error.kind() != ErrorKind::kBadData) throw;
+      out.left_out.push_back(as_left_out(finding_of(parts[i].file, error.what())));
+      continue;
+    }
     const film::Partial& part = file.partial;
     const SampleRange range = sample_range(parts[i].provenance);
     const auto wrong = [&](std::string text, std::string remedy = {}) {
@@ -204,6 +220,7 @@ Joined join_parts(std::vector<PartFile> parts, int width_px, int height_px, std:
     out.partial.effort += part.effort;
     hosts.insert(parts[i].provenance.count("host") > 0 ? parts[i].provenance.at("host") : "");
   }
+  if (out.left_out.size() == parts.size()) findings = out.left_out;
   if (!findings.empty()) refuse(ErrorKind::kBadData, std::move(findings));
   out.hosts.assign(hosts.begin(), hosts.end());
   out.missing = coverage.missing(samples);

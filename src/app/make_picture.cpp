@@ -50,6 +50,8 @@ render::Result join_job(const Job& job, const compile::World& world, const Layer
                                                      " comes to now; the scene has changed, or --scene names another");
   Joined joined = join_parts(job.parts, world.width, world.height, static_cast<std::uint32_t>(world.samples),
                              world.spheres.size(), job.allow_missing);
+  for (const base::Finding& finding : joined.left_out)
+    if (job.on_warning) job.on_warning(finding);
   report.missing = joined.missing;
   report.hosts = joined.hosts;
   const film::Effort effort = joined.partial.effort;
@@ -99,6 +101,7 @@ render::Result render_job(const Job& job, const compile::World& world, render::S
   report.render = result.statistics;
   report.phases.build_s = result.statistics.build_s;
   report.phases.render_s = result.statistics.render_s;
+  report.phases.finish_s = result.statistics.finish_s;
   if (result.completed) return result;
   if (!result.partial)
     stop_job(report.was_resumed ? "; " + checkpoint.file().string() + " still keeps what was rendered before" : "");

@@ -4,22 +4,28 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/file_name.h"
 #include "film/cryptomatte.h"
+#include "image/format.h"
 
 namespace orrery::app {
 namespace {
 
-/// {"name": "13851a76", ...}, in the order of the scene file.
+/// {"name":"13851a76",...}, in the order of the scene file. Written directly: an ordered object of the JSON library
+/// searches all names for each that is added.
 std::string manifest(const MatteNames& matte) {
-  nlohmann::ordered_json out = nlohmann::ordered_json::object();
-  for (const auto& [name, id] : matte.things) out[name] = film::matte_id_text(id);
-  return out.dump();
+  std::string out = "{";
+  for (const auto& [name, id] : matte.things) {
+    if (out.size() > 1) out += ',';
+    out += nlohmann::json(name).dump() + ":\"" + film::matte_id_text(id) + '"';
+  }
+  return out + '}';
 }
 
 bool is_large(const MatteNames& matte) { return matte.things.size() > kMostNamesInHeader; }
 
 std::filesystem::path manifest_file(const MatteNames& matte, const std::filesystem::path& picture) {
-  return picture.parent_path() / (picture.stem().string() + "." + matte.layer + ".json");
+  return picture.parent_path() / base::companion_name(picture.stem().string(), "." + matte.layer + ".json");
 }
 
 }  // namespace
@@ -39,6 +45,16 @@ std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& ma
     }
   }
   return out;
+}
+
+std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>& mattes,
+                                                  const std::vector<std::filesystem::path>& pictures) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& picture : pictures)
+    for (const MatteNames& matte : mattes)
+      if (is_large(matte) && image::format_of(picture) == image::Format::kExr)
+        files.push_back(manifest_file(matte, picture));
+  return files;
 }
 
 void write_manifests(const std::vector<MatteNames>& mattes, const std::filesystem::path& picture) {

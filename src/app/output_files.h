@@ -6,13 +6,10 @@
 
 namespace orrery::app {
 
-/// Finds out everything about pictures to write that can be known to fail before hours are spent: unknown extensions,
-/// more bits than a format holds, a name that is given twice or that is an input, directories that take no file.
+/// Checks that pictures have known extensions, and that their formats hold that many bits in a channel.
 ///
-/// Domain     `bits` of display formats, 0: nobody asked; `others` are files to write that are no pictures
-/// Errors     base::Error: kUsage, kCannotCreate
-void check_output_files(const std::vector<std::filesystem::path>& pictures, int bits,
-                        const std::vector<std::filesystem::path>& others,
-                        const std::vector<std::filesystem::path>& inputs);
+/// Domain     `bits` of display formats, 0: the default
+/// Errors     base::Error(kUsage)
+void check_formats(const std::vector<std::filesystem::path>& pictures, int bits);
 
 }  // namespace orrery::app

@@ -58,6 +58,7 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
                 {"compile", report.phases.compile_s},
                 {"build", report.phases.build_s},
                 {"render", report.phases.render_s},
+                {"finish", report.phases.finish_s},
                 {"write", report.phases.write_s}}},
               {"peak_memory_bytes", peak_memory()},
               {"bad_samples", r.bad_samples},

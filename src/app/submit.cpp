@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "app/job_files.h"
 #include "app/text.h"
 #include "base/frames.h"
 #include "format/read_scene.h"
@@ -32,6 +33,11 @@ void add_picture_flags(std::vector<std::string>& words, const Job& job) {
   if (job.exr.compression != image::ExrOptions().compression) add("--compression", job.exr.compression);
   if (job.exr.multipart) words.push_back("--multipart");
   if (job.reproducible) words.push_back("--reproducible");
+  if (job.disk_limit > 0) {
+    std::string size;
+    append(size, "%.17gK", static_cast<double>(job.disk_limit) / 1024);
+    add("--disk-limit", size);
+  }
   if (job.bits > 0) add("--bits", std::to_string(job.bits));
   add("--ocio", job.display.config);
   add("--display", job.display.display);
@@ -49,10 +55,11 @@ void add_picture_flags(std::vector<std::string>& words, const Job& job) {
 Commands commands_of(const Submission& submission) {
   const Batch& batch = submission.batch;
   const Job& job = batch.job;
-  jobs_of(batch);
+  const std::vector<Job> jobs = jobs_of(batch);
   Commands out;
   out.frames = batch.frames.empty() ? std::vector<int>{format::kFirstFrame} : batch.frames;
-  format::read_scene(batch.scenes.front(), job.overrides, out.frames.front());
+  const format::ReadResult read = format::read_scene(batch.scenes.front(), job.overrides, out.frames.front());
+  add_scene_files(batch.scenes.front(), read.scene, *jobs.front().files);
   for (const auto& output : job.outputs) image::format_of(output);
   out.name = job_name_of(batch.scenes.front());
   out.parts = job.outputs.front().parent_path() / (out.name + ".parts");

@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
+#include "cli/signals.h"
 
 namespace orrery::cli {
 namespace {
@@ -65,6 +66,7 @@ void warn_of_layers(const CompareOptions& options, const app::Comparison& found)
 }
 
 int compare(const CompareOptions& options) {
+  end_on_signals();
   std::vector<Limit> limits;
   for (const std::string& text : options.limits) limits.push_back(limit_of(text));
   const app::Comparison found = app::compare_files(options.picture, options.reference, options.layer, options.pictures);

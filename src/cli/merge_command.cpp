@@ -25,12 +25,12 @@ struct MergeOptions {
 int merge(MergeOptions& options) {
   app::Job& job = options.job;
   options.picture.finish(job);
-  job.parts = app::read_parts(options.parts);
-  app::take_scene(job.parts.front(), job);
-  job.cancel = &stop_on_signals();
   job.on_warning = [&](const base::Finding& warning) {
     if (!options.quiet) tell(base::formatted(warning));
   };
+  job.parts = app::read_parts(options.parts, job.allow_missing ? job.on_warning : nullptr);
+  app::take_scene(job.parts.front(), job);
+  job.cancel = &stop_on_signals();
   const app::JobReport report = app::run_job(job);
   if (!options.quiet) tell(report_text(job, report, options.verbose));
   return 0;

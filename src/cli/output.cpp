@@ -12,8 +12,9 @@ namespace orrery::cli {
 
 void print_result(const std::string& text) {
   // What stdio holds back is only known to have arrived once it is flushed.
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw base::Error(base::ErrorKind::kIo, std::string("writing to standard output failed: ") + std::strerror(errno));
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+  if (errno == EPIPE) throw ReaderLeft();
+  throw base::Error(base::ErrorKind::kIo, std::string("writing to standard output failed: ") + std::strerror(errno));
 }
 
 std::string error_text(const base::Error& error) {

@@ -7,9 +7,13 @@
 
 namespace orrery::cli {
 
+/// Whoever read stdout through a pipe has enough, as head(1) has: the command ends without a message.
+struct ReaderLeft {};
+
 /// Prints a result to stdout, all of it.
 ///
-/// Errors     base::Error(kIo): a result that nobody got is a failure, also of a command that writes no file
+/// Errors     ReaderLeft; base::Error(kIo): a result that nobody got is a failure, also of a command that writes no
+/// file
 void print_result(const std::string& text);
 
 /// An error in whole lines: each finding with its place, then the error itself.

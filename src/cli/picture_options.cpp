@@ -22,6 +22,11 @@ void PictureOptions::add_to(Command& command, app::Job& job) {
   command.add_option("--deep", job.deep, "Write also an EXR of samples in depth, one for each sphere in a pixel")
       ->type_name("FILE");
   command.add_flag("--multipart", job.exr.multipart, "Give each layer of an EXR a part of its own");
+  command
+      .add_option("--disk-limit", job.disk_limit,
+                  "Refuse pictures that need more than this, e.g. 8G; default: the free space of their disk")
+      ->transform(byte_size())
+      ->type_name("SIZE");
   command.add_flag("--reproducible", job.reproducible, "Leave out of headers what changes between runs");
 }
 

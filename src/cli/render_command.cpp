@@ -33,7 +33,6 @@ struct RenderOptions {
   SceneOptions scene;
   PictureOptions picture;
   std::string progress = "auto", tiles, frames;
-  std::filesystem::path log;
   bool quiet = false, verbose = false, strict = false, fail_fast = false;
 };
 
@@ -123,9 +122,8 @@ int render(RenderOptions& options) {
   if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
   const bool is_many = batch.scenes.size() * std::max<std::size_t>(batch.frames.size(), 1) > 1;
   batch.keep_going = is_many && !options.fail_fast;
-  if (!options.log.empty()) open_log(options.log);
   job.cancel = &stop_on_signals();
-  job.snapshot = &snapshot_on_signal();
+  job.snapshot = &snapshot_request();
   ProgressPrinter printer(style_of(options), stderr);
   BatchProgress progress(printer);
   int status = 0;
@@ -151,7 +149,9 @@ int render(RenderOptions& options) {
     if (options.strict) status = base::exit_status(base::ErrorKind::kStopped);
   };
   batch.on_failure = [&](const app::Job&, const base::Error& error) { printer.note(error_text(error)); };
-  const app::BatchReport report = app::run_batch(batch);
+  const std::vector<app::Job> jobs = app::jobs_of(batch);
+  if (!batch.log.empty()) open_log(batch.log);  // not before it is known to be no input
+  const app::BatchReport report = app::run_batch(batch, jobs);
   printer.finish();
   if (!is_many) return status;
   const int failed = print_summary(report, options.quiet);
@@ -211,7 +211,8 @@ void add_render(Command& program, Action& action) {
       ->check(one_of(progress_style_names()))
       ->type_name("STYLE");
   command.add_option("--stats", options->batch.job.statistics, "Write what the render did as JSON")->type_name("FILE");
-  command.add_option("--log", options->log, "Append all messages to this file, too, with the time")->type_name("FILE");
+  command.add_option("--log", options->batch.log, "Append all messages to this file, too, with the time")
+      ->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
   command.add_flag("-v,--verbose", options->verbose, "Say what was done and how long it took");
   command.footer(

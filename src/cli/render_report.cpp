@@ -46,8 +46,8 @@ void add_summary(std::string& out, const app::Job& job, const app::JobReport& re
          report.render.accelerator.c_str(), report.render.isa.c_str(), report.render.traversal.c_str(),
          report.render.threads, static_cast<unsigned long long>(report.render.rays), report.scene_hash.c_str());
   const app::Phases& phases = report.phases;
-  append(out, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, write %.3f s\n", phases.read_s,
-         phases.compile_s, phases.build_s, phases.render_s, phases.write_s);
+  append(out, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, finish %.3f s, write %.3f s\n", phases.read_s,
+         phases.compile_s, phases.build_s, phases.render_s, phases.finish_s, phases.write_s);
   const display::Choice& display = report.display;
   if (!display.display.empty())
     append(out, "display %s, view %s, OCIO config %s\n", display.display.c_str(), display.view.c_str(),

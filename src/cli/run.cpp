@@ -13,6 +13,7 @@
 #include "base/exit_status.h"
 #include "cli/commands.h"
 #include "cli/output.h"
+#include "cli/signals.h"
 #include "cli/usage.h"
 
 namespace orrery::cli {
@@ -81,8 +82,11 @@ int parse_and_act(int argc, const char* const* argv) {
 }  // namespace
 
 int run(int argc, const char* const* argv) {
+  prepare_signals();
   try {
     return parse_and_act(argc, argv);
+  } catch (const ReaderLeft&) {
+    return base::exit_status(base::ErrorKind::kIo);
   } catch (const base::Error& error) {
     return print_error(error);
   } catch (const std::bad_alloc&) {

@@ -20,23 +20,34 @@ void on_signal(int signal) {
 
 void on_snapshot(int) { snapshot.store(true, std::memory_order_relaxed); }
 
-void handle_signals() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
+/// Handles a signal unless the process was started with it ignored.
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action {
+  }, before{};
+  action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction before {};
-    sigaction(signal, nullptr, &before);
-    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
-  }
-  // A limit on the size of files is a full disk to us: the write fails and says so, instead of ending the process.
-  struct sigaction ignore {};
-  ignore.sa_handler = SIG_IGN;
-  sigaction(SIGXFSZ, &ignore, nullptr);
+  sigaction(signal, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+}
+
+void handle_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, on_signal);
 }
 
 }  // namespace
+
+void prepare_signals() {
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &ignore, nullptr);
+  sigaction(SIGXFSZ, &ignore, nullptr);
+  handle(SIGUSR1, on_snapshot);
+  sigset_t ours;
+  sigemptyset(&ours);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&ours, signal);
+  sigprocmask(SIG_UNBLOCK, &ours, nullptr);
+}
 
 const std::atomic<bool>& stop_on_signals() {
   handle_signals();
@@ -48,13 +59,6 @@ void end_on_signals() {
   handle_signals();
 }
 
-std::atomic<bool>& snapshot_on_signal() {
-  struct sigaction action {};
-  action.sa_handler = on_snapshot;
-  sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
-  sigaction(SIGUSR1, &action, nullptr);
-  return snapshot;
-}
+std::atomic<bool>& snapshot_request() { return snapshot; }
 
 }  // namespace orrery::cli

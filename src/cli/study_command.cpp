@@ -19,7 +19,6 @@ namespace {
 struct StudyOptions {
   study::Request request;
   SceneOptions scene;
-  std::filesystem::path report;
   bool json = false, quiet = false;
 };
 
@@ -39,9 +38,8 @@ int run(StudyOptions& options) {
       }
       last = percent;
     };
-  if (!options.report.empty()) base::check_creatable(options.report);  // known before the budget is spent
   const study::Study found = study::run_study(request);
-  if (!options.report.empty()) base::write_text_file(options.report, study::study_html(found));
+  if (!request.report.empty()) base::write_text_file(request.report, study::study_html(found));
   print_result(options.json ? study::study_json(found) : study::study_text(found));
   return 0;
 }
@@ -52,7 +50,7 @@ void add_study(Command& program, Action& action) {
   const auto options = std::make_shared<StudyOptions>();
   Command& command = *program.add_subcommand("study", "Measure what time buys in accuracy on a scene, and recommend");
   command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
-  command.add_option("-o,--output", options->report, "Write a report: one HTML file with plots and pictures")
+  command.add_option("-o,--output", options->request.report, "Write a report: one HTML file with plots and pictures")
       ->type_name("FILE");
   options->scene.add_to(command);
   command.add_option("--budget", options->request.budget_s, "Time for all of it, as 90s or 5m; default 2m")

@@ -118,6 +118,7 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
   statistics.bad_samples = state.effort.bad_samples;
   count_samples(world, settings, state, statistics);
 
+  const auto rendered = Clock::now();
   Result result;
   if (!completed) {
     result.partial = std::move(state);
@@ -127,6 +128,7 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
   } else {
     result = finished(world, settings.layers, std::move(state));
   }
+  statistics.finish_s = seconds_since(rendered);
   result.statistics = std::move(statistics);
   return result;
 }

@@ -65,6 +65,7 @@ struct Statistics {
   std::uint64_t bad_samples = 0;  ///< not finite; counted and left out of their pixel's mean
   double build_s = 0;             ///< acceleration structure
   double render_s = 0;
+  double finish_s = 0;      ///< from sums to the finished picture and its layers
   std::string isa;          ///< instruction set that the kernel ran with, "avx2"
   std::string accelerator;  ///< "embree 3.13.5", "list"
   std::string traversal;    ///< "packet, bounced single": of camera rays, and of bounced ones where it differs

@@ -10,12 +10,15 @@
 
 #include "app/bench_scene.h"
 #include "app/choose_isa.h"
+#include "app/job_files.h"
 #include "app/memory.h"
 #include "app/scene_hash.h"
 #include "app/threads.h"
 #include "app/version.h"
 #include "app/working_space.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_set.h"
 #include "base/text.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
@@ -82,7 +85,14 @@ class Runner {
 
   void load() {
     tell("reading", 0);
+    base::FileSet files;
+    files.add_input(request_.scene, "scene");
+    if (!request_.report.empty()) {
+      files.add_output(request_.report, "-o");
+      base::check_creatable(request_.report);
+    }
     scene_ = format::read_scene(request_.scene, request_.overrides).scene;
+    app::add_scene_files(request_.scene, scene_, files);
     if (scene_.render.shading != scene::Shading::kPath)
       throw base::Error(base::ErrorKind::kUsage,
                         "render.shading shows no light, so there is nothing to trade; set it to \"path\"");

@@ -17,10 +17,11 @@ namespace orrery::study {
 struct Request {
   std::filesystem::path scene;
   std::vector<std::string> overrides;
-  std::string isa;        ///< empty: the processor's best
-  int threads = 0;        ///< 0: as many as this process may use
-  double budget_s = 120;  ///< for everything
-  double noise = 0.01;    ///< that the recommendation shall reach
+  std::filesystem::path report;  ///< file that the caller will write; refused where it is read
+  std::string isa;               ///< empty: the processor's best
+  int threads = 0;               ///< 0: as many as this process may use
+  double budget_s = 120;         ///< for everything
+  double noise = 0.01;           ///< that the recommendation shall reach
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const std::string& what, double fraction)> on_progress;
 };

@@ -119,6 +119,26 @@ TEST_F(BatchParts, WhatIsMissingMayBeAllowed) {
   EXPECT_EQ(run("compare merged.exr whole.exr -q --fail-above bias=0.01").status, 0);
 }
 
+TEST_F(BatchParts, ADamagedPartMayBeMissing) {
+  render("a.exr", "--samples 0:10");
+  render("b.exr", "--samples 10:35");
+  const std::string bytes = text_of(folder_ / "b.exr");
+  std::string flipped = bytes;
+  flipped[bytes.size() / 2] = static_cast<char>(flipped[bytes.size() / 2] ^ 1);
+  for (const std::string& damaged : {flipped, bytes.substr(0, bytes.size() / 2), std::string()}) {
+    write("b.exr", damaged);
+    expect_refused(run("merge a.exr b.exr -o merged.exr"), 65, {"b.exr: error"});
+    for (const char* parts : {"merge a.exr b.exr", "merge b.exr a.exr", "merge b.exr a.exr nothing.exr"}) {
+      const Outcome r = run(std::string(parts) + " --allow-missing -o m.exr --stats m.json");
+      ASSERT_EQ(r.status, 0) << r.err;
+      EXPECT_NE(r.err.find("b.exr: warning: "), std::string::npos) << r.err;
+      EXPECT_NE(r.err.find("warning: samples 10:35 of all pixels are missing"), std::string::npos) << r.err;
+      EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "m.json"))["samples"], 10);
+    }
+    expect_refused(run("merge b.exr nothing.exr --allow-missing -o merged.exr"), 65, {"b.exr: error", "nothing.exr"});
+  }
+}
+
 TEST_F(BatchParts, AnUnfinishedPartIsNamed) {
   render("b.exr", "--samples 10:35");
   // A render that is stopped at once leaves a checkpoint of its part.

@@ -53,8 +53,10 @@ const Case kCases[] = {
      "last two also with a "
      "level, as in dwaa:45\n"},
     {"render good.toml -o a.jpg --bits 16", 2, "orrery: a.jpg holds 8 bits in a channel; PNG and TIFF hold 16\n"},
-    {"render good.toml -o a.png -o ./a.png", 2, "orrery: ./a.png is to be written twice\n"},
-    {"render good.toml -o a.png --stats good.toml", 2, "orrery: good.toml is read and would be overwritten\n"},
+    {"render good.toml -o a.png -o ./a.png", 2,
+     "orrery: ./a.png (-o) and a.png (-o) are the same file; choose another name\n"},
+    {"render good.toml -o a.png --stats good.toml", 2,
+     "orrery: good.toml (--stats) would overwrite good.toml (scene); choose another name\n"},
     {"render none.toml -o a.png", 66, "orrery: cannot open none.toml: No such file or directory\n"},
     {"render good.toml -o none/a.png", 73, "orrery: cannot create none/a.png: there is no directory none\n"},
     {"info good.toml --json --settings", 2,

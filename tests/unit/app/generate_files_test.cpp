@@ -115,5 +115,36 @@ TEST_F(AppGenerateFiles, OptionsOutsideTheirRangeLeaveNothingBehind) {
   EXPECT_EQ(files(), 0u);
 }
 
+TEST_F(AppGenerateFiles, APointsFileOfOtherOriginStays) {
+  std::ofstream(folder_ / "c.ply") << "ply\nformat ascii 1.0\nmy own data\n";
+  const std::string mine = bytes_of(folder_ / "c.ply");
+  try {
+    generate_cloud({1, 50}, folder_ / "c.toml");
+    ADD_FAILURE() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
+    EXPECT_NE(std::string(error.what()).find("move it, or choose another -o"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(generate_final({1, 40}, folder_ / "c.toml"), base::Error);
+  EXPECT_EQ(bytes_of(folder_ / "c.ply"), mine);
+  EXPECT_EQ(files(), 1u) << "no scene either";
+  generate_final({1, 3}, folder_ / "c.toml");  // has no points file
+  EXPECT_EQ(bytes_of(folder_ / "c.ply"), mine);
+}
+
+TEST_F(AppGenerateFiles, APointsFileOfTheirOwnIsReplaced) {
+  generate_cloud({1, 50}, folder_ / "c.toml");
+  const std::string first = bytes_of(folder_ / "c.ply");
+  generate_cloud({2, 60}, folder_ / "c.toml");
+  EXPECT_NE(bytes_of(folder_ / "c.ply"), first);
+}
+
+TEST_F(AppGenerateFiles, SceneAndPointsAreTwoFiles) {
+  generate_cloud({1, 50}, folder_ / "c.toml");
+  std::filesystem::remove(folder_ / "c.toml");
+  std::filesystem::create_symlink("c.ply", folder_ / "c.toml");
+  EXPECT_THROW(generate_cloud({1, 50}, folder_ / "c.toml"), base::Error);
+}
+
 }  // namespace
 }  // namespace orrery::app

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <ctime>
+
 #include <nlohmann/json.hpp>
 
 #include "app/matte_manifest.h"
@@ -120,6 +123,36 @@ TEST(AppMatteManifest, SaysHowNamesBecameNumbers) {
   EXPECT_EQ(manifest["bunny"], "13851a76");
   EXPECT_EQ(manifest.size(), 2u);
   EXPECT_TRUE(manifest.contains("a \"b\""));
+}
+
+/// Processor seconds that the header of so many names takes: the least of three tries.
+double seconds_of_header(std::size_t names) {
+  MatteNames matte;
+  matte.layer = "CryptoObject";
+  for (std::size_t i = 0; i < names; ++i) matte.things.emplace_back("sphere number " + std::to_string(i), i);
+  double least = 1e9;
+  const support::ScratchFolder folder;
+  for (int i = 0; i < 3; ++i) {
+    const std::clock_t begin = std::clock();
+    write_manifests({matte}, folder / "shot.exr");
+    least = std::min(least, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  return least;
+}
+
+TEST(AppMatteManifest, TakesTimeInProportionToItsNames) {
+  // Sixteen times the names: 16 times as long, and 256 times where each name is held against all others.
+  const std::size_t few = 12'000;
+  EXPECT_LT(seconds_of_header(16 * few), 80 * seconds_of_header(few));
+}
+
+TEST(AppMatteManifest, ManifestsAreFilesOfLargeMattesInExr) {
+  MatteNames small, large;
+  small.layer = "CryptoMaterial";
+  large.layer = "CryptoObject";
+  large.things.resize(kMostNamesInHeader + 1);
+  const std::vector<std::filesystem::path> files = manifest_files({small, large}, {"a/shot.exr", "shot.png", "b.exr"});
+  EXPECT_EQ(files, (std::vector<std::filesystem::path>{"a/shot.CryptoObject.json", "b.CryptoObject.json"}));
 }
 
 TEST(AppMatteManifest, ManyNamesStandInAFileBesideThePicture) {

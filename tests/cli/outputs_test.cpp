@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Outputs are checked before any work: no input is overwritten, names and formats fit.
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+constexpr const char* kPly =
+    "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float radius\nend_header\n0 0 -1 0.5\n";
+
+class CliOutputs : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write("points.toml", with_points("use.ply"));
+    write("picture.toml", with_points("in.png"));
+    write("frames.toml", with_points("p.##.png"));
+    for (const char* name : {"use.ply", "in.png", "p.01.png", "p.02.png"}) write(name, kPly);
+  }
+  static std::string with_points(const std::string& file) {
+    return kGoodScene + ("[[points]]\nfile = \"" + file + "\"\nmaterial = \"grey\"\n");
+  }
+
+  /// The bytes of all files, by name.
+  std::map<std::string, std::string> contents() const {
+    std::map<std::string, std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      if (const std::string name = entry.path().filename().string(); name != ".out" && name != ".err")
+        out[name] = entry.is_regular_file() ? text_of(entry.path()) : "";
+    return out;
+  }
+
+  /// Expects exit status 2, a message with that text, and every file as it was.
+  void expect_refused(const std::string& arguments, const std::string& text, const std::string& before = "") {
+    const auto files = contents();
+    const Outcome r = run(arguments, before);
+    EXPECT_EQ(r.status, 2) << before << arguments << "\n" << r.err;
+    EXPECT_NE(r.err.find(text), std::string::npos) << arguments << "\n" << r.err;
+    EXPECT_TRUE(contents() == files) << arguments << " changed a file";
+  }
+};
+
+TEST_F(CliOutputs, ARenderOverwritesNothingThatItReads) {
+  expect_refused("render good.toml -o a.png --stats ./good.toml", "would overwrite good.toml (scene)");
+  expect_refused("render good.toml -o a.png --log good.toml", "good.toml (--log) would overwrite good.toml (scene)");
+  expect_refused("render points.toml -o a.png --stats use.ply", "would overwrite use.ply (points file)");
+  expect_refused("render points.toml -o a.png --log use.ply", "would overwrite use.ply (points file)");
+  expect_refused("render picture.toml -o in.png", "in.png (-o) would overwrite in.png (points file)");
+  expect_refused("render picture.toml -o a.exr --deep in.png", "in.png");
+  expect_refused("render frames.toml -o p.##.png --frames 1-2", "p.01.png (points file)");
+  std::filesystem::create_hard_link(folder_ / "use.ply", folder_ / "hard.json");
+  std::filesystem::create_symlink("good.toml", folder_ / "soft.json");
+  expect_refused("render points.toml -o a.png --stats hard.json", "points file");
+  expect_refused("render good.toml -o a.png --stats soft.json", "scene");
+}
+
+TEST_F(CliOutputs, AConfigIsAnInput) {
+  write("my.ocio", "no config, but somebody's file");
+  expect_refused("render good.toml -o a.png --ocio my.ocio --stats my.ocio", "my.ocio (OCIO config)");
+  expect_refused("render good.toml -o a.png --stats my.ocio", "my.ocio (OCIO config)", "OCIO=my.ocio");
+  expect_refused("bake --ocio my.cube -o my.cube", "my.cube (OCIO config)");
+  write("config.toml", std::string("[color]\nconfig = \"my.ocio\"\n") + kGoodScene);
+  expect_refused("render config.toml -o a.exr --stats my.ocio", "my.ocio (OCIO config)");
+}
+
+TEST_F(CliOutputs, ATableOfAConfigIsAnInput) {
+  write("film.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
+  write("my.ocio",
+        "ocio_profile_version: 2\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+        "file_rules:\n  - !<Rule> {name: Default, colorspace: default}\n"
+        "displays:\n  d:\n    - !<View> {name: film, colorspace: film}\n"
+        "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
+        "  - !<ColorSpace> {name: film, from_reference: !<FileTransform> {src: film.cube}}\n");
+  ASSERT_EQ(run("render good.toml -o a.png -q --ocio my.ocio").status, 0) << text_of(folder_ / ".err");
+  expect_refused("bake --ocio my.ocio -o film.cube", "film.cube (table of the OCIO config)");
+  expect_refused("render good.toml -o a.png --ocio my.ocio --stats film.cube", "table of the OCIO config");
+}
+
+TEST_F(CliOutputs, NoTwoOutputsAreOneFile) {
+  expect_refused("render good.toml -o a.png -o ./a.png", "are the same file");
+  expect_refused("render good.toml -o a.png --stats s --log ./s", "are the same file");
+  expect_refused("render good.toml -o a.exr -o a.checkpoint.exr", "a.checkpoint.exr (checkpoint)");
+  expect_refused("render good.toml ./good.toml -o {scene}.png", "./good.toml is given twice");
+  std::filesystem::create_directory(folder_ / "sub");
+  write("sub/good.toml", kGoodScene);
+  expect_refused("render good.toml sub/good.toml -o {scene}.png", "good.png (-o of good.toml)");
+}
+
+TEST_F(CliOutputs, ABatchChecksAllItsScenesFirst) {
+  // The second scene reads what the first one would write.
+  write("in.toml", kGoodScene);
+  expect_refused("render in.toml picture.toml -o {scene}.png", "in.png");
+}
+
+TEST_F(CliOutputs, AFailedRenderKeepsThePointsFile) {
+  // The scene cannot be read, but it names the file for the statistics.
+  write("wrong.toml", with_points("use.ply") + "[camera]\nvfov = 1000\n");
+  const auto files = contents();
+  EXPECT_EQ(run("render wrong.toml -o a.png --stats use.ply").status, 65);
+  write("broken.toml", with_points("use.ply") + "[camera\n");
+  EXPECT_EQ(run("render broken.toml -o a.png --stats use.ply").status, 65);
+  EXPECT_EQ(text_of(folder_ / "use.ply"), kPly);
+  EXPECT_EQ(run("render wrong.toml -o a.png --stats s.json").status, 65);
+  EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "s.json"))["exit_status"], 65);
+}
+
+TEST_F(CliOutputs, OtherCommandsOverwriteNothingEither) {
+  expect_refused("study good.toml -o good.toml", "good.toml (-o) would overwrite good.toml (scene)");
+  expect_refused("study points.toml -o use.ply", "points file");
+  expect_refused("submit points.toml -o a.png --stats use.ply --slurm", "points file");
+  expect_refused("submit frames.toml -o p.##.png --frames 1-2 --slurm", "points file");
+  ASSERT_EQ(run("render good.toml -o a.exr -o b.exr -q").status, 0);
+  expect_refused("compare a.exr b.exr --difference ./a.exr", "would overwrite");
+  expect_refused("compare a.exr b.exr --heat b.exr", "would overwrite");
+  expect_refused("compare a.exr b.exr --flip b.exr", "would overwrite");
+  expect_refused("compare a.exr b.exr --heat c.png --flip ./c.png", "are the same file");
+  std::filesystem::create_symlink("a.exr", folder_ / "soft.png");
+  expect_refused("develop a.exr -o soft.png", "would overwrite");
+  ASSERT_EQ(run("render good.toml -o part.exr --samples 0:2 -q").status, 0);
+  expect_refused("merge part.exr -o part.exr --allow-missing", "part.exr (part)");
+  expect_refused("merge part.exr -o m.exr --allow-missing --stats good.toml", "scene");
+  expect_refused("merge part.exr ./part.exr -o m.exr --allow-missing", "given twice");
+}
+
+TEST_F(CliOutputs, AJpegThatWouldBeTooWideIsRefusedBeforeTheRender) {
+  // A render of that many samples would take hours.
+  expect_refused("render good.toml -o a.jpg --width 65501 --samples 1000000000", "65500");
+  expect_refused("render good.toml -o a.exr -o a.jpg --height 65536 --samples 1000000000", "65500");
+  EXPECT_EQ(run("render good.toml -o a.jpg --width 65500 --height 1 --samples 1 -q").status, 0);
+  EXPECT_EQ(run("render good.toml -o a.exr -o a.png -o a.tif -o a.hdr -o a.ppm --width 65536 --height 1 --samples 1 -q")
+                .status,
+            0);
+  expect_refused("develop a.exr -o b.jpg", "65500");
+  expect_refused("compare a.exr a.exr --difference b.jpg", "65500");
+}
+
+TEST_F(CliOutputs, NamesOfTheGreatestLengthWorkAndLongerOnesAre73) {
+  const std::string stem(251, 'n');
+  EXPECT_EQ(run("render good.toml -q -o " + stem + ".exr").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / (stem + ".exr")));
+  const Outcome r = run("render good.toml --samples 1000000000 -o " + stem + "n.exr");
+  EXPECT_EQ(r.status, 73) << r.err;
+  EXPECT_NE(r.err.find("File name too long"), std::string::npos) << r.err;
+  EXPECT_EQ(run("render good.toml --samples 1000000000 -o a.png --stats " + stem + ".json").status, 73);
+  EXPECT_EQ(run("study good.toml -o " + stem + ".html").status, 73);
+  EXPECT_EQ(run("generate cloud -o " + std::string(252, 'n')).status, 73) << "its points file";
+}
+
+TEST_F(CliOutputs, ADiskLimitIsKeptOrInsistedOn) {
+  const Outcome r = run("render good.toml -o a.exr --samples 1000000000 --disk-limit 1K");
+  EXPECT_EQ(r.status, 73) << r.err;
+  EXPECT_NE(r.err.find("1.0 KiB is what --disk-limit allows"), std::string::npos) << r.err;
+  EXPECT_EQ(run("render good.toml -o a.exr -q --disk-limit 1G").status, 0);
+}
+
+TEST_F(CliOutputs, PngAndTiffKeepTheAlphaOfAnEmptyBackground) {
+  const std::string empty = "render good.toml -q --type float --set background.alpha=0 ";
+  ASSERT_EQ(run(empty + "-o a.exr -o a.png -o a.tif -o a.jpg").status, 0);
+  ASSERT_EQ(run("develop a.exr -o d.png -o d.tif -o d.jpg").status, 0);
+  // Channels in which a render's file and the developed one agree.
+  const auto agreeing = [&](const std::string& a, const std::string& b) {
+    const auto found = nlohmann::json::parse(run("compare " + a + " " + b + " --json").out);
+    EXPECT_EQ(found["differing"], 0) << a;
+    return found["values"].get<int>() / (32 * 18);
+  };
+  EXPECT_EQ(agreeing("a.png", "d.png"), 4);
+  EXPECT_EQ(agreeing("a.tif", "d.tif"), 4);
+  EXPECT_EQ(agreeing("a.jpg", "d.jpg"), 3);
+  // A frame that is covered all over has as many channels as the others of its sequence.
+  ASSERT_EQ(run(empty + "-o full.exr -o full.png --set camera.vfov=5").status, 0);
+  ASSERT_EQ(run("develop full.exr -o full.tif").status, 0);
+  EXPECT_EQ(agreeing("full.png", "full.tif"), 4);
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a process inherits, and what reaches it before it has done anything.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/ptrace.h>
+#include <unistd.h>
+
+#include <functional>
+#include <vector>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+class CliStartup : public ProgramTest {
+ protected:
+  /// Runs `orrery WORDS`; `prepare` is called in the new process, before it becomes the program.
+  ///
+  /// Result     the exit status; 128 + the signal that ended it
+  int run_prepared(std::vector<const char*> words, const std::function<void()>& prepare) {
+    words.insert(words.begin(), "orrery");
+    words.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+      if (chdir(folder_.c_str()) != 0) _exit(126);
+      dup2(open(".err", O_WRONLY | O_CREAT | O_TRUNC, 0600), 2);
+      dup2(open(".out", O_WRONLY | O_CREAT | O_TRUNC, 0600), 1);
+      signal(SIGPIPE, SIG_DFL);
+      signal(SIGUSR1, SIG_DFL);
+      prepare();
+      execv(ORRERY_PROGRAM, const_cast<char* const*>(words.data()));
+      _exit(127);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+  /// Leaves USR1 blocked and pending across exec: it comes the moment that it is let through.
+  static void raise_blocked() {
+    sigset_t usr1;
+    sigemptyset(&usr1);
+    sigaddset(&usr1, SIGUSR1);
+    sigprocmask(SIG_BLOCK, &usr1, nullptr);
+    raise(SIGUSR1);
+  }
+
+  /// Makes a file descriptor one end of a pipe whose other end is closed.
+  static void break_pipe(int descriptor) {
+    int ends[2];
+    if (pipe(ends) != 0) _exit(125);
+    close(ends[0]);
+    dup2(ends[1], descriptor);
+  }
+};
+
+TEST_F(CliStartup, Usr1ThatIsThereFromTheBeginningIsASnapshot) {
+  EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "a.png"}, raise_blocked), 0);
+  EXPECT_NE(text_of(folder_ / ".err").find("wrote a.checkpoint.exr"), std::string::npos) << text_of(folder_ / ".err");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
+}
+
+TEST_F(CliStartup, Usr1WaitsWhileTheLibrariesAreLoaded) {
+  // The launcher becomes the program: at this moment, before the dynamic loader runs, the signal comes.
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder_.c_str()) != 0) _exit(126);
+    signal(SIGUSR1, SIG_DFL);
+    if (ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) != 0) _exit(77);
+    raise(SIGSTOP);
+    execl(ORRERY_PROGRAM, "orrery", "render", "good.toml", "-o", "a.png", "-q", nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (!WIFSTOPPED(status)) GTEST_SKIP() << "processes cannot be traced here";
+  ptrace(PTRACE_SETOPTIONS, child, nullptr, PTRACE_O_TRACEEXEC);
+  for (int i = 0; i < 2; ++i) {
+    ptrace(PTRACE_CONT, child, nullptr, nullptr);
+    waitpid(child, &status, 0);
+    ASSERT_EQ(status >> 8, SIGTRAP | PTRACE_EVENT_EXEC << 8) << "exec " << i;
+  }
+  kill(child, SIGUSR1);
+  ptrace(PTRACE_DETACH, child, nullptr, nullptr);
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
+}
+
+TEST_F(CliStartup, ACheckpointOfTheLongestNameIsWritten) {
+  const std::string picture = std::string(251, 'n') + ".exr";
+  EXPECT_EQ(run_prepared({"render", "good.toml", "-o", picture.c_str()}, raise_blocked), 0);
+  EXPECT_NE(text_of(folder_ / ".err").find(".checkpoint.exr\n"), std::string::npos) << text_of(folder_ / ".err");
+  EXPECT_EQ(text_of(folder_ / ".err").find("no checkpoint"), std::string::npos) << text_of(folder_ / ".err");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / picture));
+}
+
+TEST_F(CliStartup, Usr1EndsNoCommand) {
+  EXPECT_EQ(run_prepared({"info", "good.toml"}, raise_blocked), 0);
+  EXPECT_EQ(run_prepared({"generate", "final", "-o", "f.toml"}, raise_blocked), 0);
+}
+
+TEST_F(CliStartup, AReaderOfMessagesThatLeavesStopsNoRender) {
+  EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "a.png", "-v"}, [] { break_pipe(2); }), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
+  EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "b.png"},
+                         [] {
+                           break_pipe(2);
+                           dup2(2, 1);
+                         }),
+            0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "b.png"));
+}
+
+TEST_F(CliStartup, AReaderOfResultsThatLeavesIsNoMessage) {
+  for (const std::vector<const char*>& words : std::vector<std::vector<const char*>>{
+           {"info", "good.toml"}, {"check", "good.toml"}, {"--help"}, {"--version"}}) {
+    EXPECT_EQ(run_prepared(words, [] { break_pipe(1); }), 74) << words[0];
+    EXPECT_EQ(text_of(folder_ / ".err"), "") << words[0];
+  }
+}
+
+TEST_F(CliStartup, AResultThatCannotBePrintedIsAFailure) {
+  EXPECT_EQ(run_prepared({"info", "good.toml"}, [] { close(1); }), 74);
+  EXPECT_NE(text_of(folder_ / ".err"), "");
+}
+
+}  // namespace
+}  // namespace orrery::test
