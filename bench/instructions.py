@@ -19,8 +19,9 @@ FEW, MANY = 16, 48
 
 
 def instructions(program, precision, samples, folder):
-    subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/counts", f"--log-file={folder}/log",
-                    program, "render", SCENE, "-q", "-t", "1", "--traversal", "packet", "--precision", precision,
+    subprocess.run(["valgrind", "--tool=callgrind", "--trace-children=yes",  # the launcher becomes the program
+                    f"--callgrind-out-file={folder}/counts", f"--log-file={folder}/log", program, "render",
+                    SCENE, "-q", "-t", "1", "--traversal", "packet", "--precision", precision,
                     "--width", "96", "--height", "54", "--samples", str(samples), "-o", f"{folder}/picture.exr"],
                    check=True)
     return int(re.search(r"^(?:totals|summary): (\d+)", pathlib.Path(folder, "counts").read_text(), re.M).group(1))

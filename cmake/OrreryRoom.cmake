@@ -16,7 +16,7 @@ function(orrery_room name)
   set(folder ${CMAKE_CURRENT_SOURCE_DIR}/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.h)
-  list(REMOVE_ITEM sources ${folder}/main.cpp)
+  list(REMOVE_ITEM sources ${folder}/main.cpp ${folder}/launcher.cpp)
 
   set(target orrery_${name})
   if(sources)
