@@ -32,7 +32,7 @@ mkdir -p "$debs/partial"
 work=$(mktemp -d "${TMPDIR:-/var/tmp}/orrery-root.XXXXXX")
 root="$work/root"
 cleanup() {
-  for mount in "$root/var/cache/apt/archives" "$root/proc"; do
+  for mount in "$root/var/cache/apt/archives" "$root/dev/shm" "$root/proc"; do
     if mountpoint -q "$mount"; then umount "$mount" || umount -l "$mount"; fi
   done
   if [ -n "${KEEP:-}" ]; then
@@ -59,6 +59,9 @@ for file in /etc/apt/apt.conf.d/*proxy* /etc/resolv.conf; do
 done
 mount -t proc proc "$root/proc" 2>/dev/null || skip "proc cannot be mounted here"
 mount --bind "$debs" "$root/var/cache/apt/archives"
+# For the files of tests, as on any running Debian; without it they go to the disk.
+mkdir -p "$root/dev/shm"
+mount -t tmpfs tmpfs "$root/dev/shm" 2>/dev/null || true
 
 # A checkout may belong to somebody else than root; this one is to be read all the same.
 HOME=$work git config --global --add safe.directory '*'

@@ -70,11 +70,14 @@ configure() {
 }
 
 # build MINUTES TARGET: builds a target in build/. MINUTES is what that takes one core the first time, for the message.
+# Sets build_seconds.
 build() {
-  local cpu_minutes=$1 target=$2
+  local cpu_minutes=$1 target=$2 begin=$SECONDS
   local stamp="$root/build/.built-$target" cores
   cores=$(nproc)
+  local first=0
   if [ ! -f "$stamp" ]; then
+    first=1
     say "Building orrery (first time: about $(((cpu_minutes + cores - 1) / cores)) minutes) ..."
   elif [ -n "$(find "$root/src" "$root/tests" "$root/bench" "$root/cmake" "$root/CMakeLists.txt" -newer "$stamp" -print -quit)" ]; then
     say "Building what has changed ..."
@@ -88,4 +91,7 @@ build() {
   fi
   exec 9>&-
   touch "$stamp"
+  # shellcheck disable=SC2034  # for the scripts that source this
+  build_seconds=$((SECONDS - begin))
+  if [ "$first" = 1 ]; then say "Built in $build_seconds s."; fi
 }

@@ -25,7 +25,7 @@ std::vector<std::string> seeds_of(const std::filesystem::path& folder) {
   for (const auto& file : files) seeds.push_back(support::file_bytes(file));
   return seeds;
 }
-std::filesystem::path here() { return std::filesystem::path(__FILE__).parent_path(); }
+std::filesystem::path corpus() { return ORRERY_CORPUS; }
 
 std::vector<std::string> scene_words() {
   return {"[",
@@ -111,11 +111,11 @@ void expect_no_fault_with_noise(Fault fault, std::uint64_t seed, int count, cons
 
 TEST(FuzzReaders, SeedsAreGood) {
   const support::ScratchFolder folder;
-  for (const std::string& seed : seeds_of(here() / "corpus" / "scene"))
+  for (const std::string& seed : seeds_of(corpus() / "scene"))
     EXPECT_EQ(fault_with_scene(folder.path(), seed), "");
-  for (const std::string& seed : seeds_of(here() / "corpus" / "ply"))
+  for (const std::string& seed : seeds_of(corpus() / "ply"))
     EXPECT_EQ(fault_with_ply(folder.path(), seed), "");
-  for (const std::string& seed : seeds_of(here() / "corpus" / "override"))
+  for (const std::string& seed : seeds_of(corpus() / "override"))
     EXPECT_EQ(fault_with_overrides(folder.path(), seed), "");
 }
 
@@ -136,17 +136,17 @@ TEST(FuzzReaders, NoiseBehindAGoodHeader) {
 TEST(FuzzReaders, NoiseIsNoOverride) { expect_no_fault_with_noise(fault_with_overrides, 4, 3000); }
 
 TEST(FuzzReaders, BrokenScenes) {
-  std::vector<std::string> seeds = seeds_of(here() / "corpus" / "scene");
+  std::vector<std::string> seeds = seeds_of(corpus() / "scene");
   expect_no_fault_with_mutants(fault_with_scene, Mutator(5, seeds, scene_words()), 6000);
 }
 
 TEST(FuzzReaders, BrokenPlys) {
-  expect_no_fault_with_mutants(fault_with_ply, Mutator(6, seeds_of(here() / "corpus" / "ply"), ply_words()), 10000);
+  expect_no_fault_with_mutants(fault_with_ply, Mutator(6, seeds_of(corpus() / "ply"), ply_words()), 10000);
 }
 
 TEST(FuzzReaders, BrokenOverrides) {
   expect_no_fault_with_mutants(fault_with_overrides,
-                               Mutator(7, seeds_of(here() / "corpus" / "override"), scene_words()), 6000);
+                               Mutator(7, seeds_of(corpus() / "override"), scene_words()), 6000);
 }
 
 /// A character of U+0800 and more, as UTF-8.

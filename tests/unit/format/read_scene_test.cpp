@@ -392,7 +392,7 @@ TEST(FormatReadScene, ManyMistakesDoNotTakeForever) {
 }
 
 TEST(FormatReadScene, EveryPictureOfTheBookReadsWithoutAFinding) {
-  const auto folder = std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / "scenes" / "book";
+  const auto folder = std::filesystem::path(ORRERY_ROOT) / "scenes" / "book";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".toml") continue;

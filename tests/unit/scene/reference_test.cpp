@@ -15,7 +15,7 @@ constexpr const char* kBegin = "<!-- made out of the schema: begin -->\n";
 constexpr const char* kEnd = "<!-- made out of the schema: end -->\n";
 
 std::filesystem::path document() {
-  return std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / "docs" / "scene-format.md";
+  return std::filesystem::path(ORRERY_ROOT) / "docs" / "scene-format.md";
 }
 
 // With ORRERY_UPDATE_DOCS in the environment the document is brought up to date instead.
