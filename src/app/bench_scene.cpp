@@ -10,6 +10,7 @@
 
 #include "app/bench_tracing.h"
 #include "app/choose_isa.h"
+#include "app/reduced_picture.h"
 #include "app/scene_hash.h"
 #include "app/text.h"
 #include "app/working_space.h"
@@ -61,22 +62,20 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
 /// The scene's picture, small.
 compile::World small_world(const BenchRequest& request) {
   format::ReadResult read = format::read_scene(request.scene, request.overrides);
-  scene::Image& image = read.scene.image;
-  const double scale = std::min(1.0, std::sqrt(kPixels / (static_cast<double>(image.width) * image.height)));
-  image.crop.reset();
-  image.overscan = 0;
-  image.width = std::max(1, static_cast<int>(std::lround(image.width * scale)));
-  image.height = std::max(1, static_cast<int>(std::lround(image.height * scale)));
+  reduce_picture(read, kPixels);
   to_working_space(config_of(request.scene, read.scene.color), read.scene);
-  return compile::compile(read.scene);
+  return compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
 }
 
 /// One scene, to be rendered in many ways.
 class Subject {
  public:
-  explicit Subject(const BenchRequest& request) : request_(request), world_(small_world(request)) {}
+  explicit Subject(const BenchRequest& request)
+      : request_(request), world_(small_world(request)), required_(world_.features) {}
 
   const compile::World& world() const { return world_; }
+  /// The scene's own features; the world has those of the case that was rendered last.
+  const kernel::Features& required() const { return required_; }
 
   /// Paths a second of one render.
   render::Statistics run(const Case& c) {
@@ -105,7 +104,7 @@ class Subject {
   TracingBench tracing_bench(bool with_lists) {
     Case fast;
     fast.precision = Precision::kFast;
-    fast.features = world_.features;
+    fast.features = required_;
     prepare(fast);
     accel::Accel& with = accel(fast);
     return TracingBench(world_.view(), with, fast_rays(with), with_lists);
@@ -154,6 +153,7 @@ class Subject {
 
   const BenchRequest& request_;
   compile::World world_;
+  kernel::Features required_;
   std::map<std::pair<Accelerator, Precision>, std::unique_ptr<accel::Accel>> accels_;
   std::map<Precision, render::RecordedRays<kernel::RayPacket>> rays_;
   render::RecordedRays<kernel::RayPacketFast> fast_rays_;
@@ -248,7 +248,7 @@ std::vector<FeatureCost> bench_features(const BenchRequest& request) {
   for (int round = 0; round < request.rounds; ++round) measure_all(subject, cases, round, [](Case&, const auto&) {});
   std::vector<FeatureCost> out;
   for (const auto& [name, feature] : known_features()) {
-    FeatureCost& cost = out.emplace_back(FeatureCost{name, world.features.*feature, 0});
+    FeatureCost& cost = out.emplace_back(FeatureCost{name, subject.required().*feature, 0});
     for (const Case& c : cases)
       if (c.name == name) cost.saves = 1 - result_of(c, cases[0].paths_per_s).ratio.median;
   }

@@ -61,13 +61,13 @@ Benchmark bench_scene(const BenchRequest& request);
 /// A feature of the kernel.
 struct FeatureCost {
   std::string name;       ///< "thin lens"
-  bool required = false;  ///< the scene asks for it
-  double saves = 0;       ///< where it does not: of the time that a render with it would take, median
+  bool required = false;  ///< by the scene
+  double saves = 0;       ///< if it is not required: of the time that a render with it would take, median
 };
 
 /// Renders the scene, small and exact, as it is and as if it had each feature more, in turn.
 ///
-/// Result     all features, those that the scene asks for unmeasured
+/// Result     all features; those that the scene requires are not measured
 /// Errors     as bench_scene
 std::vector<FeatureCost> bench_features(const BenchRequest& request);
 

@@ -87,9 +87,7 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
   }
   info.isa = kernel::isa_name();
   info.traversal = render::planned_traversal(world);
-  info.memory = estimate_memory(world.width, world.height, film::planes_of(layers).size(), info.spheres,
-                                info.accelerator == "embree");
-  info.memory.film += estimate_state(world.width, world.height, false, layers.any());
+  info.memory = estimate_memory(memory_needs(world, layers));
   info.warnings = std::move(read.warnings);
   for (const std::string& advice : precision_advice(world)) {
     base::Finding warning;

@@ -155,13 +155,6 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
   return out;
 }
 
-MemoryEstimate memory_for(const Job& job, const compile::World& world, const film::LayerRequest& layers) {
-  MemoryEstimate memory = estimate_memory(world.width, world.height, film::planes_of(layers).size(),
-                                          world.spheres.size(), world.accelerator == compile::Accelerator::kEmbree);
-  memory.film += estimate_state(world.width, world.height, job.noise > 0 || job.seconds > 0, layers.any());
-  return memory;
-}
-
 /// The way data takes.
 void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
@@ -195,7 +188,8 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.was_skipped = job.skip_existing && is_there(job, world, provenance, stamp);
   if (report.was_skipped) return;
   require_disk_space(job, world, film::planes_of(layers.request).size());
-  require_memory(memory_for(job, world, layers.request), job.memory_limit);
+  require_memory(estimate_memory(memory_needs(world, layers.request, job.noise > 0 || job.seconds > 0)),
+                 job.memory_limit);
   read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
   report.hosts = {provenance.at("host")};
   report.width = world.width;

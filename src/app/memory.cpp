@@ -7,6 +7,7 @@
 
 #include "app/text.h"
 #include "base/error.h"
+#include "film/layer_film.h"
 #include "film/layer_pixel.h"
 #include "kernel/pixel_sum.h"
 #include "kernel/sphere.h"
@@ -53,21 +54,29 @@ std::optional<std::uint64_t> granted_by(const std::filesystem::path& group) {
 
 }  // namespace
 
-MemoryEstimate estimate_memory(int width, int height, std::uint64_t layer_planes, std::uint64_t spheres, bool embree) {
+MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
+  // The picture; a count and a goal; with layers all that is known of the pixel's paths so far; in rounds a second sum,
+  // two floats and a count for judging a pixel, twice while averages are made.
+  const std::uint64_t a_pixel = kFilmBytesPerPixel + needs.layer_planes * kBytesPerLayerPlane +
+                                2 * sizeof(std::uint32_t) + (needs.layers ? sizeof(film::LayerPixel) : 0) +
+                                (needs.in_rounds ? sizeof(kernel::PixelSum) + 5 * sizeof(float) : 0);
   MemoryEstimate m;
-  m.film = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
-           (kFilmBytesPerPixel + layer_planes * kBytesPerLayerPlane);
-  m.spheres = spheres * kBytesPerSphere;
-  m.accelerator = embree ? spheres * kAcceleratorBytesPerSphere : 0;
+  m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * a_pixel;
+  m.spheres = needs.spheres * kBytesPerSphere;
+  m.accelerator = needs.embree ? needs.spheres * kAcceleratorBytesPerSphere : 0;
   return m;
 }
 
-std::uint64_t estimate_state(int width, int height, bool in_rounds, bool has_layers) {
-  // A count and a goal; two floats and a count for judging a pixel, twice while averages are made.
-  const std::uint64_t a_pixel = 2 * sizeof(std::uint32_t) +
-                                (in_rounds ? sizeof(kernel::PixelSum) + 5 * sizeof(float) : 0) +
-                                (has_layers ? sizeof(film::LayerPixel) : 0);
-  return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * a_pixel;
+MemoryNeeds memory_needs(const compile::World& world, const film::LayerRequest& layers, bool in_rounds) {
+  MemoryNeeds needs;
+  needs.width = world.width;
+  needs.height = world.height;
+  needs.spheres = world.spheres.size();
+  needs.layer_planes = film::planes_of(layers).size();
+  needs.layers = layers.any();
+  needs.embree = world.accelerator == compile::Accelerator::kEmbree;
+  needs.in_rounds = in_rounds;
+  return needs;
 }
 
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root) {

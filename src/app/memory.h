@@ -6,6 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "compile/world.h"
+#include "film/layers.h"
+
 namespace orrery::app {
 
 /// What a render will hold at its fullest, found without building anything. Bytes.
@@ -15,12 +18,21 @@ struct MemoryEstimate {
   std::uint64_t total() const { return film + spheres + accelerator; }
 };
 
-/// Domain     `layer_planes` beside R, G, B, A; `spheres` counts those of tables and of points files
-MemoryEstimate estimate_memory(int width, int height, std::uint64_t layer_planes, std::uint64_t spheres, bool embree);
+/// What decides how much memory a render needs.
+struct MemoryNeeds {
+  int width = 0, height = 0;       ///< px
+  std::uint64_t spheres = 0;       ///< of tables and of points files
+  std::uint64_t layer_planes = 0;  ///< beside R, G, B, A
+  bool layers = false;             ///< any layers, also those without planes of their own
+  bool embree = true;              ///< and not the list
+  bool in_rounds = false;          ///< by --noise or --time: a second half of each pixel's samples, and its error
+};
 
-/// What a render holds beside that in order to go on: each pixel's count; with layers all that is known of its paths so
-/// far; in rounds a second half of its samples, and its error. Bytes.
-std::uint64_t estimate_state(int width, int height, bool in_rounds, bool has_layers);
+/// The one estimate: of `info`, of `study`, and of the check before a render.
+MemoryEstimate estimate_memory(const MemoryNeeds& needs);
+
+/// The needs of a render of this world.
+MemoryNeeds memory_needs(const compile::World& world, const film::LayerRequest& layers, bool in_rounds = false);
 
 /// Bytes that this process may still take: what the machine has free or can free at once, and no more than its control
 /// group still grants. Nothing where neither can be told.

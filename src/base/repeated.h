@@ -12,6 +12,8 @@
 namespace orrery::base {
 
 /// A Bloom filter of hashes: it has every hash that was inserted, and one in fifty others at the most.
+///
+/// Reference  bloom1970
 class HashFilter {
  public:
   explicit HashFilter(std::size_t count)

@@ -8,6 +8,24 @@
 
 namespace orrery::study {
 
+void judge_bias(std::vector<Point>& points) {
+  std::vector<Point*> by_chance;
+  for (Point& p : points) {
+    p.bias = 0;
+    p.error = p.noise;
+    by_chance.push_back(&p);
+  }
+  std::stable_sort(by_chance.begin(), by_chance.end(),
+                   [](const Point* a, const Point* b) { return a->bias_chance < b->bias_chance; });
+  auto untested = static_cast<double>(points.size());
+  for (Point* p : by_chance) {
+    if (p->bias_chance * untested-- > kFalseAlarm) break;
+    p->bias = std::sqrt(p->bias_squared);
+    p->error = std::hypot(p->noise, p->bias);
+  }
+  for (Point& p : points) p.efficiency = 1 / (p.error * p.error * p.seconds);
+}
+
 std::vector<Slope> slopes_of(const std::vector<Point>& all) {
   std::vector<Slope> out;
   std::map<std::string, std::vector<const Point*>> lines;

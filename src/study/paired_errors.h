@@ -5,16 +5,35 @@
 
 namespace orrery::study {
 
-/// What two pictures of the same choice, with different seeds, are off by; as in Point.
-struct Errors {
-  double error = 0, bias = 0, noise = 0, energy = 0;
+/// Two renders of the same picture that share no random number.
+struct Pair {
+  film::Picture first, second;
 };
 
-/// Tells bias from noise. What two independent pictures are off by together is the square of the bias, and of the
-/// reference's own noise, which is known; half of what they differ by is noise.
+/// The mean of both.
+film::Picture mean_of(const Pair& pair);
+
+/// Display error of that mean, from how much the two differ.
+double noise_of_mean(const Pair& pair);
+
+/// Errors of the pictures of a pair, as in Point.
+struct Errors {
+  double noise = 0;
+  double bias_squared = 0;
+  double bias_chance = 1;
+  double energy = 0;
+};
+
+/// Compares a choice with the reference.
+///
+/// With x, y the choice and r, s the reference, the mean over pixels of (x - r)(y - s) estimates the squared bias
+/// without any contribution of noise, since the four are independent. Without a bias its terms are symmetric around
+/// zero, or skewed to the right, so that their sum, divided by the root of the sum of their squares, exceeds t with a
+/// probability of at most exp(-t^2 / 2), however much the noise differs between pixels. A bias of less than some 20
+/// pixels is not found.
 ///
 /// Domain     pictures of one size with planes R, G, B
-Errors errors_of(const film::Picture& a, const film::Picture& b, const film::Picture& reference,
-                 double reference_noise);
+/// Reference  efron1969
+Errors errors_of(const Pair& choice, const Pair& reference);
 
 }  // namespace orrery::study

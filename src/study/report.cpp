@@ -173,7 +173,7 @@ std::string study_text(const Study& s) {
   out += '\n';
   for (const auto& f : s.features) {
     if (f.required) {
-      append(out, "feature     %s: this scene asks for it\n", f.name.c_str());
+      append(out, "feature     %s: required by this scene\n", f.name.c_str());
     } else {
       append(out, "feature     %s: left out, saves %.1f %% of the time\n", f.name.c_str(), f.saves * 100);
     }

@@ -2,8 +2,10 @@
 #include "study/study.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -11,7 +13,9 @@
 #include "app/bench_scene.h"
 #include "app/choose_isa.h"
 #include "app/job_files.h"
+#include "app/layers.h"
 #include "app/memory.h"
+#include "app/reduced_picture.h"
 #include "app/scene_hash.h"
 #include "app/threads.h"
 #include "app/version.h"
@@ -22,7 +26,6 @@
 #include "base/text.h"
 #include "compile/compile.h"
 #include "format/read_scene.h"
-#include "kernel/isa.h"
 #include "render/render.h"
 #include "study/axes.h"
 #include "study/file_axis.h"
@@ -41,20 +44,25 @@ constexpr double kReferenceShare = 0.3;
 constexpr double kPilotShare = 0.2;  ///< the recommendation, at the scene's own size
 constexpr double kFeatureShare = 0.05;
 
-/// Samples of a pixel that the reference and all points together should be able to have; the study's picture is made so
-/// small that they can.
+/// Samples of a pixel that the reference and all points together should be able to have; the study's picture is reduced
+/// until they can.
 constexpr double kSamplesWanted = 6000;
 constexpr double kFewestPixels = 64 * 36;
 
-/// A seed for the reference that no point has.
-constexpr std::uint32_t kReferenceSeed = 0x5eed0000u;
+/// Samples of a pixel in each of the two renders of the reference.
+constexpr double kFewestReferenceSamples = 64, kMostReferenceSamples = 1 << 20;
+
+/// Choices that are measured whatever the budget: without two points there is nothing to compare.
+constexpr std::size_t kFewestChoices = 2;
+
+/// Samples of a pixel that a render with --noise takes at least.
+constexpr double kFewestAdaptiveSamples = 16;
 
 class Runner {
  public:
   explicit Runner(const Request& request) : request_(request) {
     app::choose_isa(request.isa);
     out_.threads = request.threads > 0 ? request.threads : app::default_threads();
-    out_.isa = kernel::isa_name();
     out_.budget_s = request.budget_s;
     out_.scene = request.scene.string();
     out_.version = app::program_version();
@@ -65,6 +73,7 @@ class Runner {
     choose_size();
     render_reference();
     measure_axes();
+    judge_bias(out_.points);
     measure_files();
     measure_features();
     out_.slopes = slopes_of(out_.points);
@@ -76,7 +85,10 @@ class Runner {
   }
 
  private:
-  double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  double elapsed() const {
+    return request_.paths_per_s > 0 ? paths_ / request_.paths_per_s
+                                    : std::chrono::duration<double>(Clock::now() - start_).count();
+  }
   double left() const { return request_.budget_s - elapsed(); }
   void tell(const std::string& what, double fraction) const {
     if (request_.on_progress) request_.on_progress(what, fraction);
@@ -91,80 +103,112 @@ class Runner {
       files.add_output(request_.report, "-o");
       base::check_creatable(request_.report);
     }
-    scene_ = format::read_scene(request_.scene, request_.overrides).scene;
-    app::add_scene_files(request_.scene, scene_, files);
-    if (scene_.render.shading != scene::Shading::kPath)
+    read_ = format::read_scene(request_.scene, request_.overrides);
+    scene::Scene& scene = read_.scene;
+    app::add_scene_files(request_.scene, scene, files);
+    if (scene.render.shading != scene::Shading::kPath)
       throw base::Error(base::ErrorKind::kUsage,
                         "render.shading shows no light, so there is nothing to trade; set it to \"path\"");
-    app::to_working_space(app::config_of(request_.scene, scene_.color), scene_);
-    full_ = compile::compile(scene_);
-    scene_.spheres = {};
-    scene_.points = {};
+    app::to_working_space(app::config_of(request_.scene, scene.color), scene);
+    full_ = compile::compile(scene, closing());
+    const film::LayerRequest layers = app::choose_layers(scene, full_).request;
+    memory_needs_ = app::memory_needs(full_, layers);
+    scene.spheres = {};
+    scene.points = {};
+    if (read_.closing) read_.closing->spheres = {};
+    read_s_ = elapsed();
     out_.scene_hash = app::scene_hash(full_);
     out_.scene_width = full_.width;
     out_.scene_height = full_.height;
     out_.spheres = full_.spheres.size();
-    plan_ = plan_axes(scene_, full_, request_.noise);
+    plan_ = plan_axes(scene, full_, request_.noise);
     spheres_.take_from(full_);
     world_ = full_;
   }
 
-  render::Result render(World& world, double noise, double seconds) {
-    const Spheres::Loan loan(spheres_, world);
-    // What finds hits looks at the spheres alone, and they stay where they are, whoever has them.
+  /// What the shutter closes on; null if it is never open.
+  const scene::Scene* closing() const { return read_.closing ? &*read_.closing : nullptr; }
+
+  accel::Accel& accel_of(const World& world) {
+    // It depends on the spheres alone, and these stay where they are, whoever holds them.
     std::unique_ptr<accel::Accel>& accel = accels_[{world.precision, world.accelerator}];
-    if (!accel) accel = render::build(world, out_.threads);
+    if (!accel) {
+      const double begin = elapsed();
+      accel = render::build(world, out_.threads);
+      build_s_ = std::max(build_s_, elapsed() - begin);
+    }
+    return *accel;
+  }
+
+  /// What a render took, by the clock or by its work.
+  double seconds_of(const render::Statistics& did) const {
+    return request_.paths_per_s > 0 ? static_cast<double>(did.paths) / request_.paths_per_s : did.render_s;
+  }
+
+  render::Result render(World& world, double noise = 0) {
+    const Spheres::Loan loan(spheres_, world);
     render::Settings settings;
     settings.threads = out_.threads;
     settings.noise = noise;
-    settings.seconds = seconds;
-    settings.unlimited = noise > 0 || seconds > 0;
+    settings.unlimited = noise > 0;
     settings.traversal = traversal_;
     settings.cancel = request_.cancel;
-    render::Result result = render::render(world, *accel, settings);
+    render::Result result = render::render(world, accel_of(world), settings);
     if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; the study is not complete");
     result.picture.planes.resize(3);
+    out_.isa = result.statistics.isa;
+    paths_ += static_cast<double>(result.statistics.paths);
     return result;
   }
 
-  /// Sees how fast this scene is, and makes the picture so small that the budget goes round.
-  void choose_size() {
-    tell("measuring the speed");
+  /// Paths a second of this scene.
+  double measured_speed() {
     World pilot = full_;
     pilot.samples = 1;
     // A small picture, for a large one may take longer than the budget for a single sample.
     resize(pilot, kFewestPixels);
-    render(pilot, 0, 0);  // builds, and warms up
+    render(pilot);  // builds, and warms up
+    if (request_.paths_per_s > 0) return request_.paths_per_s;
     const double begin = elapsed();
     double paths = 0;
     while (elapsed() - begin < std::min(0.5, request_.budget_s / 50)) {
       pilot.samples *= 2;
-      paths += static_cast<double>(render(pilot, 0, 0).statistics.paths);
+      paths += static_cast<double>(render(pilot).statistics.paths);
     }
-    paths_per_s_ = paths / (elapsed() - begin);
-    const double pixels = left() * (1 - kPilotShare) * paths_per_s_ / kSamplesWanted;
-    if (pixels < kFewestPixels) {
-      const double needed = elapsed() + kFewestPixels * kSamplesWanted / paths_per_s_ / (1 - kPilotShare);
+    return paths / (elapsed() - begin);
+  }
+
+  /// Measures how fast this scene is, and reduces the picture until everything fits into the budget, but not below
+  /// kFewestPixels: then choices are left out.
+  void choose_size() {
+    tell("measuring the speed");
+    paths_per_s_ = measured_speed();
+    const double most = static_cast<double>(full_.width) * full_.height;
+    const double least = std::min(kFewestPixels, most);
+    double samples = 2 * kFewestReferenceSamples;
+    for (std::size_t i = 0; i < std::min(kFewestChoices, plan_.choices.size()); ++i)
+      samples += 2 * plan_.choices[i].samples;
+    const double needed = least * samples / paths_per_s_;
+    if (needed > left()) {
       std::string text;
-      base::append(text, "--budget is too small for this scene: a study needs %.0f s at least",
-                   std::ceil(1.2 * needed));
+      base::append(text, "--budget is too small for this scene: reading it, a reference and two choices take %.3g s",
+                   1.2 * (elapsed() + needed));
       throw base::Error(base::ErrorKind::kUsage, text);
     }
-    resize(world_, pixels);
+    resize(world_, std::clamp(left() * (1 - kPilotShare) * paths_per_s_ / kSamplesWanted, least, most));
     out_.width = world_.width;
     out_.height = world_.height;
   }
 
   /// The same view in at most so many pixels.
   void resize(World& world, double pixels) const {
-    const double scale = std::min(1.0, std::sqrt(pixels / (static_cast<double>(world.width) * world.height)));
-    scene::Scene small = scene_;
-    small.image.crop.reset();
-    small.image.overscan = 0;
-    small.image.width = std::max(8, static_cast<int>(std::lround(out_.scene_width * scale)));
-    small.image.height = std::max(8, static_cast<int>(std::lround(out_.scene_height * scale)));
-    const World view = compile::compile(small);
+    format::ReadResult small;
+    small.scene = read_.scene;
+    small.closing = read_.closing;
+    app::reduce_picture(small, pixels);
+    const World view = compile::compile(small.scene, small.closing ? &*small.closing : nullptr);
     world.camera = view.camera;
+    world.camera_motion = view.camera_motion;
     world.width = view.width;
     world.height = view.height;
     world.window_x = world.window_y = 0;
@@ -172,34 +216,67 @@ class Runner {
     world.frame_height = view.height;
   }
 
+  /// Seeds of a study: of the two renders of each choice, 0 and 1, and of the reference, 2 and 3. Another seed of the
+  /// scene gives a study that shares no random number with this one.
+  std::uint32_t seed(std::uint32_t i) const { return 4 * full_.sampler.seed + i; }
+
+  /// All pixels get the same samples: where samples are chosen by their values, halves are not independent.
   void render_reference() {
     tell("rendering the reference");
     World world = world_;
     world.sampler.kind = kernel::SamplerKind::kSobol;
-    world.sampler.seed = kReferenceSeed;
     world.precision = compile::Precision::kExact;
-    render::Result result = render(world, 0, left() * kReferenceShare);
-    out_.reference_noise = result.statistics.noise.value_or(0);
-    out_.reference_samples = static_cast<double>(result.statistics.paths) / pixels();
-    out_.reference_s = result.statistics.render_s;
-    out_.reference = std::move(result.picture);
+    const double affordable = left() * kReferenceShare * paths_per_s_ / (2 * pixels());
+    const double samples = std::clamp(affordable, kFewestReferenceSamples, kMostReferenceSamples);
+    world.samples = static_cast<int>(std::bit_floor(static_cast<unsigned>(samples)));
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      world.sampler.seed = seed(2 + i);
+      render::Result result = render(world);
+      (i == 0 ? reference_.first : reference_.second) = std::move(result.picture);
+      out_.reference_s += seconds_of(result.statistics);
+    }
+    out_.reference_samples = 2.0 * world.samples;
+    out_.reference_noise = noise_of_mean(reference_);
+    out_.reference = mean_of(reference_);
   }
 
   double pixels() const { return static_cast<double>(world_.width) * world_.height; }
 
   void measure_axes() {
     out_.left_out = plan_.left_out;
-    for (const Choice& choice : plan_.choices) {
-      // What is told first matters most; what does not fit into the time is named.
-      const double cost = choice.noise > 0 ? expected_seconds(choice.noise) : choice.samples * pixels() / paths_per_s_;
+    std::map<std::string, std::string> too_expensive;  // names by axis
+    for (std::size_t i = 0; i < plan_.choices.size(); ++i) {
+      const Choice& choice = plan_.choices[i];
+      // The first choices matter most; what does not fit into the time is named.
       const double reserve = request_.budget_s * (kPilotShare + kFeatureShare);
-      if (2 * cost * choice.slowness > left() - reserve) {
-        out_.left_out.push_back(choice.axis + ", " + choice.name + ": the budget does not allow it");
+      if (i >= kFewestChoices && expected_seconds(choice) > left() - reserve) {
+        std::string& names = too_expensive[choice.axis];
+        names += (names.empty() ? "" : "; ") + choice.name;
         continue;
       }
       tell(choice.axis + ": " + choice.name);
       measure(choice);
     }
+    for (const auto& [axis, names] : too_expensive)
+      out_.left_out.push_back(axis + " (" + names + "): the budget does not allow it");
+  }
+
+  World world_of(const Choice& choice) const {
+    World world = world_;
+    world.samples = choice.samples;
+    if (choice.apply) choice.apply(world);
+    // Noise of neighbours is told apart by the samples that each has.
+    world.sampler.blue_noise_bits = compile::blue_noise_bits(choice.samples);
+    return world;
+  }
+
+  /// Of both renders, and of the accelerator that they need.
+  double expected_seconds(const Choice& choice) const {
+    const World world = world_of(choice);
+    const double build_s = accels_.count({world.precision, world.accelerator}) == 0 ? build_s_ : 0;
+    const double render_s =
+        choice.noise > 0 ? expected_seconds(choice.noise) : choice.samples * pixels() / paths_per_s_;
+    return build_s + 2 * render_s * choice.slowness;
   }
 
   /// From the points with --noise so far: time goes as the inverse square of the error.
@@ -217,29 +294,27 @@ class Runner {
     point.flags = choice.flags;
     point.is_shortcut = choice.is_shortcut;
     traversal_ = choice.traversal;
-    render::Result results[2];
+    World world = world_of(choice);
+    Pair pair;
+    point.seconds = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < 2; ++i) {
-      World world = world_;
-      world.samples = choice.samples;
-      world.sampler.seed = i + 1;
-      if (choice.apply) choice.apply(world);
-      // Noise of neighbours is told apart by the samples that each has.
-      world.sampler.blue_noise_bits = compile::blue_noise_bits(choice.samples);
-      results[i] = render(world, choice.noise, 0);
-      point.memory = app::estimate_memory(full_.width, full_.height, 0, out_.spheres,
-                                          world.accelerator == compile::Accelerator::kEmbree)
-                         .total();
+      world.sampler.seed = seed(i);
+      render::Result result = render(world, choice.noise);
+      (i == 0 ? pair.first : pair.second) = std::move(result.picture);
+      point.seconds = std::min(point.seconds, seconds_of(result.statistics));
+      point.samples = static_cast<double>(result.statistics.paths) / pixels();
     }
     traversal_ = render::Traversal::kAuto;
-    const Errors e = errors_of(results[0].picture, results[1].picture, out_.reference, out_.reference_noise);
-    point.error = e.error;
-    point.bias = e.bias;
-    point.noise = e.noise;
+    app::MemoryNeeds needs = memory_needs_;
+    needs.embree = world.accelerator == compile::Accelerator::kEmbree;
+    needs.in_rounds = choice.noise > 0;
+    point.memory = app::estimate_memory(needs).total();
+    const Errors e = errors_of(pair, reference_);
+    point.noise = point.error = e.noise;
+    point.bias_squared = e.bias_squared;
+    point.bias_chance = e.bias_chance;
     point.energy = e.energy;
-    point.seconds = std::min(results[0].statistics.render_s, results[1].statistics.render_s);
-    point.samples = static_cast<double>(results[0].statistics.paths) / pixels();
-    point.efficiency = 1 / (e.error * e.error * point.seconds);
-    point.picture = std::move(results[0].picture);
+    point.picture = std::move(pair.first);
     out_.points.push_back(std::move(point));
   }
 
@@ -249,6 +324,11 @@ class Runner {
   }
 
   void measure_features() {
+    // bench_features reads the scene and builds its accelerator once more.
+    if (read_s_ + build_s_ + 2 * request_.budget_s * kFeatureShare > left()) {
+      out_.left_out.push_back("features: the budget does not allow it");
+      return;
+    }
     tell("features");
     app::BenchRequest bench;
     bench.scene = request_.scene;
@@ -300,8 +380,8 @@ class Runner {
     r.samples = last.samples * growth(pilots, request_.noise, &Point::samples);
     r.command = "orrery render " + out_.scene + " -o final.exr " + flags;
     r.baseline_seconds = baseline_seconds();
-    base::append(r.words, "for %.3g %% noise: %s, %.3g s instead of %.3g s", request_.noise * 100, flags.c_str(),
-                 r.seconds, r.baseline_seconds);
+    base::append(r.words, "for %.3g %% noise: %s, %.3g s", request_.noise * 100, flags.c_str(), r.seconds);
+    if (r.baseline_seconds > 0) base::append(r.words, " instead of %.3g s", r.baseline_seconds);
     if (takes_fast) base::append(r.words, ", bias %.2g %%", r.bias * 100);
   }
 
@@ -312,24 +392,34 @@ class Runner {
   using Pilots = std::vector<Pilot>;
 
   /// Renders with half the noise again and again, until what was asked for is reached or the next would take too long.
+  /// Where even the first would, a point of the study's small pictures stands for it.
   Pilots pilot(World& world) {
     const double full_pixels = static_cast<double>(world.width) * world.height;
     Pilots out;
-    const auto add = [&](double noise, double seconds) {
-      const render::Statistics did = render(world, noise, seconds).statistics;
-      out.push_back({did.noise.value_or(0), did.render_s, static_cast<double>(did.paths) / full_pixels});
-    };
-    constexpr double kFewestSamples = 16;  // that a render with --noise takes
-    if (kFewestSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
-      add(request_.noise, std::max(0.8 * left(), 0.2));
+    if (kFewestAdaptiveSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
+      out_.left_out.push_back("trying the recommendation at the scene's own size: the budget does not allow it");
+      const Point& p = point_near(request_.noise);
+      out.push_back({p.error, p.seconds * full_pixels / pixels(), p.samples});
       return out;
     }
     for (double noise = 8 * request_.noise;; noise /= 2) {
       if (!out.empty() && noise >= out.back().noise && noise > request_.noise) continue;
       if (!out.empty() && out.back().seconds * growth(out, noise, &Point::seconds) > left()) return out;
-      add(noise, 0);
+      const render::Statistics did = render(world, noise).statistics;
+      out.push_back({did.noise.value_or(0), seconds_of(did), static_cast<double>(did.paths) / full_pixels});
       if (out.back().noise <= request_.noise) return out;
     }
+  }
+
+  /// The point whose error is nearest to a noise, of those with as many samples as --noise takes.
+  const Point& point_near(double noise) const {
+    const Point* nearest = nullptr;
+    const auto distance = [noise](const Point& p) { return std::abs(std::log(p.error / noise)); };
+    for (const Point& p : out_.points)
+      if ((p.axis == "samples" || p.axis == "noise") && p.samples >= kFewestAdaptiveSamples &&
+          (nearest == nullptr || distance(p) < distance(*nearest)))
+        nearest = &p;
+    return *nearest;  // the second choice of all has 16 samples
   }
 
   /// How many times as much of something than in the last try it takes to get down to a noise: as the study's small
@@ -364,12 +454,16 @@ class Runner {
 
   const Request& request_;
   Clock::time_point start_ = Clock::now();
-  scene::Scene scene_;
-  World world_, full_;  ///< of the study's size and of the scene's, both without spheres
+  format::ReadResult read_;  ///< without spheres
+  World world_, full_;       ///< of the study's size and of the scene's, both without spheres
+  app::MemoryNeeds memory_needs_;
+  Pair reference_;
   Spheres spheres_;
   AxisPlan plan_;
   std::map<std::pair<compile::Precision, compile::Accelerator>, std::unique_ptr<accel::Accel>> accels_;
   render::Traversal traversal_ = render::Traversal::kAuto;
+  double read_s_ = 0, build_s_ = 0;  ///< of the scene, and of its slowest accelerator
+  double paths_ = 0;                 ///< all that were traced
   double paths_per_s_ = 0;
   Study out_;
 };

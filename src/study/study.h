@@ -22,6 +22,9 @@ struct Request {
   int threads = 0;               ///< 0: as many as this process may use
   double budget_s = 120;         ///< for everything
   double noise = 0.01;           ///< that the recommendation shall reach
+  /// Above 0: seconds are counted in paths, so many a second, and not by the clock; then the same is measured on every
+  /// machine. For tests.
+  double paths_per_s = 0;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const std::string& what, double fraction)> on_progress;
 };
@@ -33,10 +36,12 @@ struct Point {
   std::string flags;         ///< that choose it on the command line
   double samples = 0;        ///< per pixel, mean
   double seconds = 0;        ///< to render one picture of the study's size
-  double error = 0;          ///< against the reference, whose own is taken off
-  double bias = 0;           ///< part of it that more samples would not take away; 0 where none was found
+  double error = 0;          ///< root of noise^2 + bias^2
+  double bias = 0;           ///< part of it that more samples would not take away; 0 if none was found
   double noise = 0;          ///< the rest
-  double energy = 0;         ///< light that is too much, of all light
+  double bias_squared = 0;   ///< unbiased estimate, also below 0
+  double bias_chance = 1;    ///< bound on the probability that an unbiased choice gives as large an estimate
+  double energy = 0;         ///< excess light, relative to all light
   double efficiency = 0;     ///< 1 / (error^2 seconds)
   std::uint64_t memory = 0;  ///< bytes, estimated
   bool is_shortcut = false;  ///< gives another picture than the scene asks for, however many samples
@@ -88,10 +93,12 @@ struct Study {
 
 /// Measures what this scene's shortcuts cost and bring.
 ///
-/// Renders a reference, then each choice twice with different seeds: what both are off by together is bias, the rest
-/// noise. Finds a recommendation, and tries it at the scene's own size.
+/// Renders a reference and each choice twice, with different seeds: errors that all of them have in common are bias,
+/// the rest is noise. Finds a recommendation, and tries it at the scene's own size. What the budget does not allow is
+/// left out and named.
 ///
-/// Errors     as app::run_job; base::Error(kUsage) for a budget that is too small, with what it needs; kStopped
+/// Errors     as app::run_job; base::Error(kUsage) if the budget does not allow a reference and two choices, with what
+///            these need; kStopped
 Study run_study(const Request& request);
 
 /// For people.

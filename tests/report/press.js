@@ -12,7 +12,7 @@
   result.sorts = rises(column()) && column().length === data.points.length;
   error.click();
   result.sortsBack = rises(column().reverse());
-  const row = at("points").tBodies[0].rows[2];
+  const row = at("points").tBodies[0].rows[1];
   row.click();
   result.chooses = at("flags").textContent === data.points[Number(row.dataset.row)].flags && row.classList.contains("chosen");
   at("cut").value = 20;
@@ -21,10 +21,14 @@
   const images = [at("before"), at("after"), at("heat")];
   await Promise.all(images.map(image => image.decode()));
   result.pictures = images.every(image => image.naturalWidth > 8);
+  // How much was measured depends on how fast the machine is.
+  const drawn = data.points.filter(p => p.error > 0 && p.seconds > 0);
   const front = document.querySelector("#pareto polyline.front");
-  result.front = front !== null && front.getAttribute("points").split(" ").length > 1 &&
-    document.querySelectorAll("#pareto circle").length > 10;
-  result.slopes = document.querySelectorAll("#convergence polyline").length === 3;
+  result.front = front !== null &&
+    front.getAttribute("points").split(" ").length === drawn.filter(p => p.on_front).length &&
+    drawn.length > 1 && document.querySelectorAll("#pareto circle").length === drawn.length;
+  result.slopes = data.slopes.length > 0 &&
+    document.querySelectorAll("#convergence polyline").length === data.slopes.length;
   const [r, g, b] = getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).map(Number);
   result.dark = r + g + b < 3 * 128;
   document.documentElement.dataset.result = JSON.stringify(result);

@@ -72,6 +72,20 @@ TEST_F(AppBenchScene, MeasuresTheFeaturesThatTheSceneLacks) {
   EXPECT_EQ(names(bench_scene(request()).features), (std::vector<std::string>{"thin lens", "hemisphere"}));
 }
 
+TEST_F(AppBenchScene, FeaturesAreRequiredByTheSceneAndNotByWhatWasMeasuredLast) {
+  for (const FeatureCost& cost : bench_features(request())) EXPECT_EQ(cost.required, cost.name == "gradient sky");
+}
+
+TEST_F(AppBenchScene, MeasuresMotionBlur) {
+  BenchRequest r = request();
+  std::ofstream(r.scene, std::ios::app) << "camera = { shutter_close = 0.5 }\n"
+                                           "key = [{ target = \"sphere[0].center\", frames = [1, 2], "
+                                           "values = [[0, 0, -2], [1, 0, -2]] }]\n";
+  const std::string moving = bench_scene(r).scene_hash;
+  r.overrides = {"camera.shutter_close=0"};
+  EXPECT_NE(bench_scene(r).scene_hash, moving);
+}
+
 TEST_F(AppBenchScene, TracingAloneIsMeasuredInOneThreadOnly) {
   BenchRequest r = request();
   r.threads = 2;

@@ -52,16 +52,30 @@ TEST_F(AppMemory, TheGroupOfTheWholeMachineCountsToo) {
   EXPECT_EQ(available(), 10 * kMega);
 }
 
+MemoryEstimate estimate(int width, std::uint64_t spheres, bool embree, std::uint64_t layer_planes = 0,
+                        bool in_rounds = false) {
+  MemoryNeeds needs;
+  needs.width = width;
+  needs.height = 10;
+  needs.spheres = spheres;
+  needs.embree = embree;
+  needs.layer_planes = layer_planes;
+  needs.layers = layer_planes > 0;
+  needs.in_rounds = in_rounds;
+  return estimate_memory(needs);
+}
+
 TEST(AppMemoryEstimate, GrowsWithPixelsAndSpheres) {
-  EXPECT_EQ(estimate_memory(10, 10, 0, 0, true).total(), estimate_memory(10, 10, 0, 0, false).total());
-  EXPECT_EQ(estimate_memory(20, 10, 0, 0, true).film, 2 * estimate_memory(10, 10, 0, 0, true).film);
-  EXPECT_GT(estimate_memory(10, 10, 3, 0, true).film, estimate_memory(10, 10, 0, 0, true).film);
-  EXPECT_EQ(estimate_memory(1, 1, 0, 100, false).accelerator, 0u);
-  EXPECT_EQ(estimate_memory(1, 1, 0, 100, true).accelerator, 100 * estimate_memory(1, 1, 0, 1, true).accelerator);
+  EXPECT_EQ(estimate(10, 0, true).total(), estimate(10, 0, false).total());
+  EXPECT_EQ(estimate(20, 0, true).film, 2 * estimate(10, 0, true).film);
+  EXPECT_GT(estimate(10, 0, true, 3).film, estimate(10, 0, true).film);
+  EXPECT_GT(estimate(10, 0, true, 0, true).film, estimate(10, 0, true).film);
+  EXPECT_EQ(estimate(1, 100, false).accelerator, 0u);
+  EXPECT_EQ(estimate(1, 100, true).accelerator, 100 * estimate(1, 1, true).accelerator);
 }
 
 TEST(AppMemoryEstimate, WhatDoesNotFitIsRefusedWithTheFigure) {
-  const MemoryEstimate million = estimate_memory(1, 1, 0, 1'000'000, true);
+  const MemoryEstimate million = estimate(1, 1'000'000, true);
   EXPECT_NO_THROW(require_memory(million, million.total()));
   try {
     require_memory(million, million.total() - 1);

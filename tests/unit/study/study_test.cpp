@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/info.h"
 #include "base/error.h"
 #include "compile/compile.h"
 #include "study/axes.h"
@@ -38,6 +39,9 @@ TEST(StudyAxes, OnlyWhatTheSceneCanFeelIsMeasured) {
   EXPECT_FALSE(has_axis(plan_of(plain), "depth"));
 }
 
+/// Budgets are counted in work: no test depends on how fast the machine is.
+constexpr double kPathsPerSecond = 1e6;
+
 class StudyRun : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -51,7 +55,8 @@ class StudyRun : public ::testing::Test {
            "[[sphere]]\ncenter = [0, 0.5, 0]\nradius = 0.5\nmaterial = \"glass\"\n";
     Request request;
     request.scene = *folder / "scene.toml";
-    request.budget_s = 12;
+    request.budget_s = 14;
+    request.paths_per_s = kPathsPerSecond;
     request.noise = 0.02;
     study = new Study(run_study(request));
   }
@@ -70,7 +75,16 @@ class StudyRun : public ::testing::Test {
 support::ScratchFolder* StudyRun::folder = nullptr;
 Study* StudyRun::study = nullptr;
 
-TEST_F(StudyRun, KeepsToItsBudget) { EXPECT_LT(study->seconds, 20); }
+TEST_F(StudyRun, KeepsToItsBudget) {
+  EXPECT_LT(study->seconds, study->budget_s);
+  EXPECT_GT(study->seconds, 0.5 * study->budget_s);
+}
+
+TEST_F(StudyRun, EstimatesMemoryAsInfoDoes) {
+  const app::SceneInfo info = app::scene_info(*folder / "scene.toml", {});
+  EXPECT_EQ(point("precision", "exact").memory, info.memory.total());
+  EXPECT_EQ(study->scene_hash, info.scene_hash);
+}
 
 TEST_F(StudyRun, TellsBiasFromNoise) {
   // One scattering event is not enough for glass; sixteen times the samples is a quarter of the noise.
@@ -129,18 +143,53 @@ TEST_F(StudyRun, JsonAndPageHoldIt) {
   EXPECT_NE(study_text(*study).find("* nothing measured is both quicker and better"), std::string::npos);
 }
 
-TEST_F(StudyRun, TooSmallABudgetSaysWhatItNeeds) {
+Study small_study(const std::filesystem::path& scene, double budget_s, std::vector<std::string> overrides = {}) {
   Request request;
-  request.scene = *folder / "scene.toml";
-  request.budget_s = 0.05;
+  request.scene = scene;
+  request.overrides = std::move(overrides);
+  request.budget_s = budget_s;
+  request.paths_per_s = kPathsPerSecond;
+  return run_study(request);
+}
+
+TEST_F(StudyRun, ASmallBudgetMeasuresWhatItAllowsAndNamesTheRest) {
+  const Study small = small_study(*folder / "scene.toml", 0.6);
+  ASSERT_GE(small.points.size(), 2u);
+  EXPECT_EQ(small.points[0].name, "4 sobol");
+  EXPECT_EQ(small.points[1].name, "16 sobol");
+  const auto is_left_out = [&](const std::string& text) {
+    return std::find(small.left_out.begin(), small.left_out.end(), text) != small.left_out.end();
+  };
+  EXPECT_TRUE(is_left_out("fresnel (exact; schlick; none): the budget does not allow it"));
+  EXPECT_TRUE(is_left_out("trying the recommendation at the scene's own size: the budget does not allow it"));
+  EXPECT_GT(small.recommendation.seconds, 0);
+  EXPECT_NE(study_text(small).find("--noise 0.01"), std::string::npos);
+  EXPECT_EQ(study_html(small).find("{{DATA}}"), std::string::npos);
+}
+
+TEST_F(StudyRun, ABudgetThatAllowsNothingIsRefusedWithWhatIsNeeded) {
   try {
-    run_study(request);
+    small_study(*folder / "scene.toml", 0.05);
     FAIL();
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
-    EXPECT_NE(std::string(error.what()).find("--budget is too small for this scene: a study needs "),
-              std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("a reference and two choices take 0.467 s"), std::string::npos)
+        << error.what();
   }
+}
+
+TEST_F(StudyRun, MotionBlurIsMeasured) {
+  const auto file = *folder / "moving.toml";
+  std::ofstream(file)
+      << "image = { width = 64, height = 36 }\n"
+         "camera = { look_from = [0, 0, 4], look_at = [0, 0, 0], shutter_close = 1 }\n"
+         "material.grey = { type = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n"
+         "sphere = [{ center = [0, 0, 0], radius = 1, material = \"grey\", name = \"ball\" }]\n"
+         "key = [{ target = \"sphere.ball.center\", frames = [1, 2], values = [[0, 0, 0], [2, 0, 0]] }]\n";
+  const Study moving = small_study(file, 1), resting = small_study(file, 1, {"camera.shutter_close=0"});
+  EXPECT_EQ(moving.scene_hash, app::scene_info(file, {}).scene_hash);
+  EXPECT_NE(moving.scene_hash, resting.scene_hash);
+  EXPECT_NE(moving.reference.planes[0].values, resting.reference.planes[0].values);
 }
 
 }  // namespace
