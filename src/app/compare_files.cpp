@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/compared_channels.h"
 #include "app/text.h"
+#include "app/threads.h"
 #include "app/version.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -19,6 +21,7 @@
 #include "metrics/flip.h"
 #include "metrics/srgb.h"
 #include "metrics/ssim.h"
+#include "render/tile_pool.h"
 
 namespace orrery::app {
 namespace {
@@ -30,35 +33,6 @@ std::string size_text(const film::Picture& picture) {
 }
 
 base::Error bad_data(const std::string& text) { return {base::ErrorKind::kBadData, text}; }
-
-/// The channels that a comparison is of: a layer's, up to three; one alone stands for all.
-struct Compared {
-  ColorView view;
-  std::vector<std::string> names;
-};
-
-Compared channels_of(const film::Picture& picture, const film::Picture& other, const std::string& layer) {
-  Compared out;
-  out.view = {picture.width, picture.height, {}};
-  const auto add = [&](const film::Plane& plane) {
-    if (out.names.size() == 3 || other.find(plane.name) == nullptr) return;
-    out.view.channel[out.names.size()] = plane.values.data();
-    out.names.push_back(plane.name);
-  };
-  if (layer.empty()) {
-    for (const char* name : {"R", "G", "B"})
-      if (const film::Plane* plane = picture.find(name)) add(*plane);
-    if (out.names.empty())
-      for (const film::Plane& plane : picture.planes)
-        if (plane.layer().empty()) add(plane);
-  } else {
-    for (const film::Plane& plane : picture.planes)
-      if (plane.layer() == layer || plane.name == layer) add(plane);
-  }
-  for (std::size_t c = std::max<std::size_t>(out.names.size(), 1); c < 3; ++c)
-    out.view.channel[c] = out.view.channel[c - 1];
-  return out;
-}
 
 void count_differing(const film::Picture& picture, const film::Picture& reference, Comparison& out) {
   for (const film::Plane& plane : picture.planes) {
@@ -108,21 +82,31 @@ struct Finite {
   }
 };
 
-film::Picture difference_picture(const Compared& a, const Compared& b, bool for_display) {
+film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
   film::Picture out;
-  out.width = a.view.width;
-  out.height = a.view.height;
+  out.width = c.picture.width;
+  out.height = c.picture.height;
   const char* const names[3] = {"R", "G", "B"};
-  for (int c = 0; c < 3; ++c) {
-    film::Plane plane{names[c], std::vector<float>(a.view.pixels())};
+  for (int k = 0; k < 3; ++k) {
+    film::Plane plane{names[k], std::vector<float>(c.picture.pixels())};
     for (std::size_t i = 0; i < plane.values.size(); ++i) {
-      const float d = a.view.channel[c][i] - b.view.channel[c][i];
+      const bool is_left_out = !c.left_out.empty() && c.left_out[i];
+      const float d = is_left_out ? 0 : c.picture.channel[k][i] - c.reference.channel[k][i];
       plane.values[i] = for_display ? 0.5f + d / 2 : d;
     }
     plane.kind = film::PlaneKind::kVector;  // below 0 is as good as above
     out.planes.push_back(std::move(plane));
   }
   return out;
+}
+
+/// Calls work from this many threads of the task scheduler.
+metrics::ForEach on_threads(int threads) {
+  return [threads](std::size_t count, const std::function<void(std::size_t)>& work) {
+    render::TilePool(threads > 0 ? threads : default_threads())
+        .run(
+            count, [&](std::size_t i, render::TileWorker&) { work(i); }, [] { return false; });
+  };
 }
 
 void write_codes(const std::filesystem::path& file, const film::Picture& codes) {
@@ -184,7 +168,7 @@ double Comparison::metric(const std::string& name) const {
 }
 
 Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
-                   const std::string& layer) {
+                   const std::string& layer, int threads) {
   if (picture.width != reference.width || picture.height != reference.height)
     throw bad_data("pictures of different sizes cannot be compared: " + size_text(picture) + " and " +
                    size_text(reference));
@@ -192,32 +176,30 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
   out.width = picture.width;
   out.height = picture.height;
   count_differing(picture, reference, out);
-  const Compared a = channels_of(picture, reference, layer), b = channels_of(reference, picture, layer);
-  if (a.names.empty() && layer.empty()) throw bad_data("the pictures have no channel of the same name");
-  if (a.names.empty()) {
-    std::vector<std::string> names;
-    for (const film::Plane& plane : picture.planes) {
-      const std::string name = plane.layer().empty() ? plane.name : plane.layer();
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    }
-    throw bad_data("layer " + layer + " is not in both pictures; the first has " + base::joined(names));
-  }
-  out.channels = a.names;
-  out.errors = metrics::pixel_errors(a.view, b.view);
-  out.display_map = metrics::display_error_map(a.view, b.view);
-  if (!layer.empty() || a.names.size() < 3) return out;
-  const Codes code_a(a.view, encoding), code_b(b.view, encoding);
+  const ComparedChannels c = compared_channels(picture, reference, layer);
+  out.channels = c.names;
+  out.is_matte = c.is_matte;
+  out.no_hit = c.no_hit;
+  out.no_hit_in_one = c.no_hit_in_one;
+  out.errors = metrics::pixel_errors(c.picture, c.reference, c.left_out);
+  if (out.errors.values == 0 && out.errors.not_finite + out.no_hit_in_one > 0)
+    throw bad_data("there is nothing to compare: no value of " + base::joined(c.names) +
+                   " is a finite number, and a hit, in both pictures");
+  out.display_map = metrics::display_error_map(c.picture, c.reference, c.left_out);
+  if (!layer.empty() || c.names.size() < 3) return out;
+  const Codes code_a(c.picture, encoding), code_b(c.reference, encoding);
   out.ssim = metrics::ssim(code_a.view, code_b.view);
   out.flip_map = encoding == Encoding::kDisplay ? metrics::flip(code_a.view, code_b.view)
-                                                : metrics::hdr_flip(Finite(a.view).view, Finite(b.view).view);
+                                                : metrics::hdr_flip(Finite(c.picture).view, Finite(c.reference).view,
+                                                                    metrics::kPixelsPerDegree, on_threads(threads));
   out.flip = out.flip_map.mean();
-  out.z_test =
-      metrics::z_test(a.view, metrics::color_of(picture, "variance"), b.view, metrics::color_of(reference, "variance"));
+  out.z_test = metrics::z_test(c.picture, metrics::color_of(picture, "variance"), c.reference,
+                               metrics::color_of(reference, "variance"));
   return out;
 }
 
 Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
-                         const std::string& layer, const ComparisonPictures& pictures) {
+                         const std::string& layer, const ComparisonPictures& pictures, int threads) {
   const bool developed = image::is_display_format(image::format_of(picture));
   if (developed != image::is_display_format(image::format_of(reference))) {
     const auto& linear = developed ? reference : picture;
@@ -231,13 +213,13 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
   const film::Picture a = image::read(picture), b = image::read(reference);
   for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
     if (!file.empty()) image::check_size(file, a.width, a.height);
-  Comparison out = compare(a, b, developed ? Encoding::kDisplay : Encoding::kLight, layer);
+  Comparison out = compare(a, b, developed ? Encoding::kDisplay : Encoding::kLight, layer, threads);
   if (!pictures.difference.empty()) {
-    const Compared left = channels_of(a, b, layer), right = channels_of(b, a, layer);
+    const ComparedChannels channels = compared_channels(a, b, layer);
     if (image::is_display_format(image::format_of(pictures.difference))) {
-      write_codes(pictures.difference, difference_picture(left, right, true));
+      write_codes(pictures.difference, difference_picture(channels, true));
     } else {
-      write_numbers(pictures.difference, difference_picture(left, right, false));
+      write_numbers(pictures.difference, difference_picture(channels, false));
     }
   }
   write_map(pictures.heat, out.display_map, kHottest);
@@ -249,6 +231,8 @@ std::string comparison_text(const Comparison& c) {
   std::string out;
   const metrics::PixelErrors& e = c.errors;
   append(out, "pictures    %d x %d, channels %s\n", c.width, c.height, base::joined(c.channels).c_str());
+  if (c.is_matte)
+    append(out, "matte       %.6g of the coverage belongs to other things; errors are of that share\n", e.mae);
   append(out, "rmse        %.6g\n", e.rmse);
   append(out, "relmse      %.6g\n", e.relative_mse);
   append(out, "mae         %.6g\n", e.mae);
@@ -277,6 +261,9 @@ std::string comparison_text(const Comparison& c) {
   }
   append(out, "differing   %llu of %llu values\n", static_cast<unsigned long long>(c.differing),
          static_cast<unsigned long long>(c.values));
+  if (c.no_hit > 0)
+    append(out, "left out    %llu pixels without a hit, %llu of them in one of the pictures only\n",
+           static_cast<unsigned long long>(c.no_hit), static_cast<unsigned long long>(c.no_hit_in_one));
   if (e.not_finite > 0)
     append(out, "left out    %llu values that are not finite\n", static_cast<unsigned long long>(e.not_finite));
   return out;
@@ -303,6 +290,8 @@ std::string comparison_json(const Comparison& c) {
               {"values", c.values},
               {"differing", c.differing},
               {"not_finite", e.not_finite},
+              {"no_hit", c.no_hit},
+              {"no_hit_in_one", c.no_hit_in_one},
               {"only_in_a", c.only_in_picture},
               {"only_in_b", c.only_in_reference}};
   if (e.max_channel >= 0)

@@ -21,11 +21,13 @@ struct Comparison {
   int width = 0, height = 0;          ///< px
   std::vector<std::string> channels;  ///< that the errors are of
   metrics::PixelErrors errors;
-  std::optional<double> ssim;               ///< of colours
-  std::optional<double> flip;               ///< the mean, of colours; of light the one for high dynamic range
-  std::optional<metrics::ZTest> z_test;     ///< where the picture has a layer `variance`
-  std::uint64_t values = 0, differing = 0;  ///< of all common channels, and those not equal
-  std::vector<std::string> only_in_picture, only_in_reference;  ///< channels that the other has not
+  std::optional<double> ssim;                   ///< of colours
+  std::optional<double> flip;                   ///< the mean, of colours; of light the one for high dynamic range
+  std::optional<metrics::ZTest> z_test;         ///< where the picture has a layer `variance`
+  std::uint64_t values = 0, differing = 0;      ///< of all common channels, and those not equal
+  bool is_matte = false;                        ///< the errors are of ComparedChannels::shares
+  std::uint64_t no_hit = 0, no_hit_in_one = 0;  ///< pixels left out, as in ComparedChannels
+  std::vector<std::string> only_in_picture, only_in_reference;  ///< channels that the other lacks
 
   // As pictures, of colours.
   metrics::Map flip_map, display_map;
@@ -43,9 +45,10 @@ const std::vector<std::string>& limitable_metrics();
 /// Compares the colours R, G, B, or the channels of another layer, which must be in both.
 ///
 /// `layer`    empty: the beauty
-/// Errors     base::Error(kBadData) where sizes differ or the channels are not in both; it names what differs
+/// `threads`  0: default_threads()
+/// Errors     base::Error(kBadData) if sizes differ, the channels are not in both, or no value can be compared
 Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
-                   const std::string& layer = {});
+                   const std::string& layer = {}, int threads = 0);
 
 /// Pictures of a comparison that were asked for; empty: none.
 struct ComparisonPictures {
@@ -59,7 +62,7 @@ struct ComparisonPictures {
 ///
 /// Errors     base::Error: as compare, image::read and image::write; kUsage for one file of each kind
 Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
-                         const std::string& layer, const ComparisonPictures& pictures);
+                         const std::string& layer, const ComparisonPictures& pictures, int threads = 0);
 
 /// The largest display error that the heat map tells apart.
 inline constexpr double kHottest = 0.1;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/compare_files.h"
+#include "app/compared_channels.h"
 #include "base/error.h"
 #include "base/suggestion.h"
 #include "cli/commands.h"
@@ -31,6 +32,7 @@ struct CompareOptions {
   std::vector<std::string> limits;
   std::string layer;
   app::ComparisonPictures pictures;
+  int threads = 0;
   bool json = false, quiet = false;
 };
 
@@ -59,7 +61,7 @@ void warn_of_layers(const CompareOptions& options, const app::Comparison& found)
   if (options.quiet) return;
   const auto tell = [](const std::vector<std::string>& channels, const std::filesystem::path& file) {
     if (!channels.empty())
-      std::fprintf(stderr, "warning: only in %s: %s\n", file.c_str(), base::joined(channels).c_str());
+      std::fprintf(stderr, "warning: only in %s: %s\n", file.c_str(), app::channels_text(channels).c_str());
   };
   tell(found.only_in_picture, options.picture);
   tell(found.only_in_reference, options.reference);
@@ -69,7 +71,8 @@ int compare(const CompareOptions& options) {
   end_on_signals();
   std::vector<Limit> limits;
   for (const std::string& text : options.limits) limits.push_back(limit_of(text));
-  const app::Comparison found = app::compare_files(options.picture, options.reference, options.layer, options.pictures);
+  const app::Comparison found =
+      app::compare_files(options.picture, options.reference, options.layer, options.pictures, options.threads);
   if (!found.only_in_picture.empty() || !found.only_in_reference.empty()) warn_of_layers(options, found);
   if (!options.quiet) print_result(options.json ? app::comparison_json(found) : app::comparison_text(found));
   int status = 0;
@@ -100,10 +103,14 @@ void add_compare(Command& program, Action& action) {
           "Exit with 1 if a metric is larger: rmse, relmse, mae, max, display, flip, bias or z; can be repeated")
       ->type_name("METRIC=VALUE")
       ->repeatable();
-  command.add_option("--layer", options->layer, "Compare this layer, not the beauty")->type_name("NAME");
+  command.add_option("--layer", options->layer, "Compare this layer instead of the beauty; a Cryptomatte by coverage")
+      ->type_name("NAME");
   command.add_option("--difference", options->pictures.difference, "Write A - B as a picture")->type_name("FILE");
   command.add_option("--heat", options->pictures.heat, "Write the display error as a heat map")->type_name("FILE");
   command.add_option("--flip", options->pictures.flip, "Write where eyes notice a difference")->type_name("FILE");
+  command.add_option("-t,--threads", options->threads, "Threads; default: as many as this process may use")
+      ->transform(whole_number(1, kMostThreads))
+      ->type_name("N");
   command.add_flag("--json", options->json, "As JSON");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing but errors and what is above its limit");
   command.footer(

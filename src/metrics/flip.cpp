@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
+#include <mutex>
 #include <numbers>
-#include <thread>
 
 #include "metrics/convolve.h"
 #include "metrics/srgb.h"
@@ -244,22 +243,21 @@ Map flip(const ColorView& picture, const ColorView& reference, double pixels_per
   return flip(seen(codes_of(picture), pixels_per_degree), seen(codes_of(reference), pixels_per_degree));
 }
 
-Map hdr_flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree) {
+Map hdr_flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree, const ForEach& for_each) {
   const std::vector<double> exposures = exposures_for(reference);
-  std::vector<Map> maps(exposures.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < exposures.size(); i = next++)
-      maps[i] = flip(seen(codes_at(picture, exposures[i]), pixels_per_degree),
-                     seen(codes_at(reference, exposures[i]), pixels_per_degree));
+  Map out{reference.width, reference.height, std::vector<float>(reference.pixels(), 0.0f)};
+  std::mutex merging;
+  const auto merge = [&](std::size_t i) {
+    const Map map = flip(seen(codes_at(picture, exposures[i]), pixels_per_degree),
+                         seen(codes_at(reference, exposures[i]), pixels_per_degree));
+    const std::lock_guard lock(merging);
+    for (std::size_t p = 0; p < out.values.size(); ++p) out.values[p] = std::max(out.values[p], map.values[p]);
   };
-  std::vector<std::thread> threads;
-  for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& t : threads) t.join();
-  Map out = maps[0];
-  for (const Map& map : maps)
-    for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] = std::max(out.values[i], map.values[i]);
+  if (for_each) {
+    for_each(exposures.size(), merge);
+  } else {
+    for (std::size_t i = 0; i < exposures.size(); ++i) merge(i);
+  }
   return out;
 }
 

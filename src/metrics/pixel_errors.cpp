@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "metrics/pixel_errors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,12 +13,12 @@ double PixelErrors::psnr_db() const {
   return rmse > 0 ? -20 * std::log10(rmse) : std::numeric_limits<double>::infinity();
 }
 
-PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference) {
+PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference, const std::vector<bool>& left_out) {
   PixelErrors out;
   double squares = 0, absolute = 0, relative = 0, signed_sum = 0, light = 0;
-  std::uint64_t count = 0;
   for (int c = 0; c < 3; ++c) {
     for (std::size_t i = 0; i < picture.pixels(); ++i) {
+      if (!left_out.empty() && left_out[i]) continue;
       const double a = static_cast<double>(picture.channel[c][i]), b = static_cast<double>(reference.channel[c][i]);
       if (!std::isfinite(a) || !std::isfinite(b)) {
         ++out.not_finite;
@@ -29,7 +30,7 @@ PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference) {
       relative += difference * difference / (b * b + kRelativeFloor);
       signed_sum += difference;
       light += b;
-      ++count;
+      ++out.values;
       if (std::abs(difference) <= out.max) continue;
       out.max = std::abs(difference);
       out.max_channel = c;
@@ -37,22 +38,25 @@ PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference) {
       out.max_y = static_cast<int>(i / static_cast<std::size_t>(picture.width));
     }
   }
-  if (count == 0) return out;
-  const auto n = static_cast<double>(count);
+  if (out.values == 0) return out;
+  const auto n = static_cast<double>(out.values);
   out.rmse = std::sqrt(squares / n);
   out.mae = absolute / n;
   out.relative_mse = relative / n;
   out.bias = light != 0 ? signed_sum / light : 0;
   double display = 0;
-  for (const float e : display_error_map(picture, reference).values)
+  for (const float e : display_error_map(picture, reference, left_out).values)
     display += static_cast<double>(e) * static_cast<double>(e);
-  out.display = std::sqrt(display / static_cast<double>(picture.pixels()));
+  const auto pixels =
+      static_cast<std::ptrdiff_t>(picture.pixels()) - std::count(left_out.begin(), left_out.end(), true);
+  out.display = std::sqrt(display / static_cast<double>(pixels));
   return out;
 }
 
-Map display_error_map(const ColorView& picture, const ColorView& reference) {
+Map display_error_map(const ColorView& picture, const ColorView& reference, const std::vector<bool>& left_out) {
   Map out{picture.width, picture.height, std::vector<float>(picture.pixels())};
   for (std::size_t i = 0; i < out.values.size(); ++i) {
+    if (!left_out.empty() && left_out[i]) continue;
     double squares = 0, light = 0;
     for (int c = 0; c < 3; ++c) {
       const double a = static_cast<double>(picture.channel[c][i]), b = static_cast<double>(reference.channel[c][i]);

@@ -40,12 +40,27 @@ TEST_F(CliCompare, OtherLayersAreNamedAndTheRestIsCompared) {
   ASSERT_EQ(run("render good.toml -o z.exr -q --layers Z,variance").status, 0);
   const Outcome r = run("compare z.exr a.exr");
   EXPECT_EQ(r.status, 0);
-  EXPECT_EQ(r.err, "warning: only in z.exr: Z, variance.R, variance.G, variance.B\n");
+  EXPECT_EQ(r.err, "warning: only in z.exr: Z, variance (3)\n");
   EXPECT_NE(r.out.find("z-test      no difference but noise"), std::string::npos) << r.out;
   const Outcome z = run("compare z.exr a.exr --layer Z");
   EXPECT_EQ(z.status, 65);
   EXPECT_NE(z.err.find("layer Z is not in both pictures"), std::string::npos) << z.err;
   EXPECT_EQ(run("compare a.exr b.exr --fail-above z=1").status, 2);
+}
+
+TEST_F(CliCompare, LayersOfHitsAndCryptomattesAreCompared) {
+  ASSERT_EQ(run("render good.toml -o l.exr -q --layers Z,CryptoObject").status, 0);
+  ASSERT_EQ(run("render good.toml -o m.exr -q --seed 2 --layers Z,CryptoObject").status, 0);
+  const auto of = [&](const std::string& layer) {
+    const Outcome r = run("compare l.exr m.exr -t 2 --json --layer " + layer);
+    EXPECT_EQ(r.status, 0) << r.err;
+    return nlohmann::json::parse(r.out);
+  };
+  const auto z = of("Z"), matte = of("CryptoObject");
+  EXPECT_LT(z["max"], 1e6);
+  EXPECT_GT(z["no_hit"], 0);
+  EXPECT_GT(matte["mae"], 0);
+  EXPECT_LE(matte["max"], 1);
 }
 
 TEST_F(CliCompare, ABrighterSceneIsMoreThanNoise) {

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/compared_channels.h"
 #include "base/error.h"
 #include "image/read.h"
 #include "image/write.h"
@@ -66,6 +67,76 @@ TEST(AppCompareFiles, ALayerIsComparedByItself) {
   } catch (const base::Error& error) {
     EXPECT_STREQ(error.what(), "layer depth is not in both pictures; the first has R, G, B, Z");
   }
+}
+
+TEST(AppCompareFiles, PixelsWithoutAHitAreLeftOut) {
+  film::Picture a = grey(4, 1, 0.5f), b = a;
+  a.planes.push_back({"Z", {1, 7, 1e30f, 1e30f}});
+  b.planes.push_back({"Z", {1, 5, 1e30f, 9}});
+  const Comparison c = compare(a, b, Encoding::kLight, "Z");
+  EXPECT_EQ(c.errors.max, 2);
+  EXPECT_DOUBLE_EQ(c.errors.rmse, std::sqrt(2));
+  EXPECT_EQ(c.no_hit, 2u);
+  EXPECT_EQ(c.no_hit_in_one, 1u);
+  EXPECT_NE(comparison_text(c).find("left out    2 pixels without a hit, 1 of them in one of the pictures only\n"),
+            std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(comparison_json(c))["no_hit_in_one"], 1);
+  // Where neither picture has a hit anywhere, they are equal; where only one has none, nothing can be said.
+  a.planes.back().values = b.planes.back().values = std::vector<float>(4, 1e30f);
+  EXPECT_EQ(compare(a, b, Encoding::kLight, "Z").errors.rmse, 0);
+  b.planes.back().values = {1, 2, 3, 4};
+  EXPECT_THROW(compare(a, b, Encoding::kLight, "Z"), base::Error);
+}
+
+TEST(AppCompareFiles, PicturesWithoutAnyFiniteValueCannotBeCompared) {
+  const film::Picture bad = grey(2, 2, std::nanf(""));
+  try {
+    of_light(bad, bad);
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+    EXPECT_STREQ(error.what(),
+                 "there is nothing to compare: no value of R, G, B is a finite number, and a hit, in both pictures");
+  }
+  film::Picture half_bad = grey(2, 2, 0.5f);
+  half_bad.planes[0].values[0] = std::nanf("");
+  EXPECT_EQ(of_light(half_bad, grey(2, 2, 0.5f)).errors.not_finite, 1u);
+}
+
+/// Known: by hand. Ids are in any order, and the background is a thing.
+TEST(AppCompareFiles, ACryptomatteIsComparedByCoverage) {
+  film::Picture a = grey(3, 1, 0.5f), b = a;
+  const auto add = [](film::Picture& p, const std::vector<std::vector<float>>& planes) {
+    const char* const names[] = {"R", "G", "B", "A"};
+    for (std::size_t i = 0; i < 4; ++i) p.planes.push_back({std::string("CryptoObject00.") + names[i], planes[i]});
+  };
+  add(a, {{7, 7, 7}, {0.75f, 1, 1}, {8, 0, 0}, {0.25f, 0, 0}});
+  add(b, {{8, 7, 0}, {0.5f, 1, 0}, {7, 0, 0}, {0.5f, 0, 0}});
+  const Comparison c = compare(a, b, Encoding::kLight, "CryptoObject");
+  EXPECT_EQ(c.channels, (std::vector<std::string>{"CryptoObject"}));
+  EXPECT_EQ(c.errors.max, 1) << "a sphere in one picture, nothing in the other";
+  EXPECT_DOUBLE_EQ(c.errors.mae, 1.25 / 3);
+  EXPECT_NE(comparison_text(c).find("matte       0.416667 of the coverage belongs to other things"), std::string::npos);
+  EXPECT_EQ(compare(a, a, Encoding::kLight, "CryptoObject").errors.max, 0);
+  EXPECT_THROW(compare(a, grey(3, 1, 0.5f), Encoding::kLight, "CryptoObject"), base::Error);
+}
+
+TEST(AppCompareFiles, ChannelsAreSummarisedByLayer) {
+  EXPECT_EQ(channels_text({"Z"}), "Z");
+  EXPECT_EQ(channels_text({"A", "N.X", "N.Y", "N.Z", "CryptoObject00.R", "CryptoObject01.R"}),
+            "A, N (3), CryptoObject (2)");
+  std::vector<std::string> many;
+  for (int i = 0; i < 10; ++i) many.push_back("layer" + std::to_string(i) + ".R");
+  EXPECT_EQ(channels_text(many), "layer0, layer1, layer2, layer3, layer4, layer5, layer6, layer7 and 2 more layers");
+}
+
+TEST(AppCompareFiles, ThreadsChangeNothing) {
+  film::Picture a = grey(40, 30, 0.5f);
+  for (std::size_t i = 0; i < a.planes[0].values.size(); ++i)
+    a.planes[i % 3].values[i] = 100.0f / static_cast<float>(i + 1);
+  const film::Picture b = grey(40, 30, 0.4f);
+  EXPECT_EQ(compare(a, b, Encoding::kLight, "", 1).flip_map.values,
+            compare(a, b, Encoding::kLight, "", 3).flip_map.values);
 }
 
 TEST(AppCompareFiles, AMetricThatIsNotThereCannotBeLimited) {

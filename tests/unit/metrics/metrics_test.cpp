@@ -241,6 +241,28 @@ TEST(MetricsHdrFlip, TakesTheExposureThatShowsMost) {
   EXPECT_NEAR(hdr_flip(b1000.view, a1000.view).mean(), map.mean(), 1e-5);
 }
 
+TEST(MetricsHdrFlip, ComputesExposuresByTheCallersThreadsInAnyOrder) {
+  const Own a(24, 16, [](int x, int y, int c) { return (x + 1) * (y + 1) * 0.1 + c; });
+  const Own b(24, 16, [](int x, int y, int c) { return (x + 2) * (y + 1) * 0.1 + c; });
+  std::size_t calls = 0;
+  const ForEach backwards = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+    for (std::size_t i = count; i-- > 0; ++calls) work(i);
+  };
+  EXPECT_EQ(hdr_flip(a.view, b.view, kPixelsPerDegree, backwards).values, hdr_flip(a.view, b.view).values);
+  EXPECT_GT(calls, 1u);
+}
+
+TEST(MetricsPixelErrors, PixelsThatAreLeftOutDoNotCount) {
+  const Own a(2, 1, [](int x, int, int) { return x == 0 ? 1e30 : 3.0; });
+  const Own b(2, 1, [](int, int, int) { return 2.0; });
+  const PixelErrors e = pixel_errors(a.view, b.view, {true, false});
+  EXPECT_EQ(e.values, 3u);
+  EXPECT_EQ(e.rmse, 1);
+  EXPECT_EQ(e.max, 1);
+  EXPECT_EQ(e.display, 0.25) << "half of the relative error, of the pixel that counts";
+  EXPECT_EQ(display_error_map(a.view, b.view, {true, false}).values[0], 0);
+}
+
 TEST(MetricsZTest, QuantilesAreThoseOfTables) {
   EXPECT_NEAR(two_sided_quantile(0.05), 1.959964, 1e-6);
   EXPECT_NEAR(two_sided_quantile(0.01), 2.575829, 1e-6);
