@@ -76,22 +76,51 @@ Check byte_size() {
   };
 }
 
+namespace {
+
+/// `next_unit` is the largest one that may follow.
+std::string missing_unit(const std::string& text, std::size_t next_unit) {
+  if (next_unit == 0) return "`" + text + "` has no unit; write " + text + "s, " + text + "m or " + text + "h";
+  return "`" + text + "` has no unit at its end; write " + text + (next_unit == 1 ? "m or " + text + "s" : "s");
+}
+
+/// Seconds of "1h30m" and its like: numbers with units, each unit at most once, the largest first.
+///
+/// Result     what is wrong, or nothing
+std::string parse_duration(const std::string& text, double& seconds) {
+  constexpr std::string_view kUnits = "hms";
+  constexpr double kSeconds[] = {3600, 60, 1};
+  const std::string wrong = "must be a time such as 90s, 5m, 1.5h or 1h30m, not `" + text + "`";
+  seconds = 0;
+  std::size_t next_unit = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find_first_not_of("0123456789.", begin);
+    double value = 0;
+    if (!parse(text.substr(begin, end - begin), value)) return wrong;
+    if (end == std::string::npos) return next_unit < kUnits.size() ? missing_unit(text, next_unit) : wrong;
+    const std::size_t unit = kUnits.find(text[end], next_unit);
+    if (unit == std::string_view::npos) return wrong;
+    seconds += value * kSeconds[unit];
+    next_unit = unit + 1;
+    begin = end + 1;
+  }
+  if (text.empty()) return wrong;
+  if (seconds < kShortestTime) return "must be at least " + text_of(kShortestTime) + "s, not `" + text + "`";
+  if (!(seconds <= kLongestTime)) return "must be at most " + text_of(kLongestTime / 3600) + "h, not `" + text + "`";
+  return {};
+}
+
+}  // namespace
+
 Check duration() {
   return [](std::string& text) -> std::string {
-    constexpr std::string_view kUnits = "smh";
-    const std::size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
-    double value = 0;
-    if (unit != std::string::npos && parse(text.substr(0, text.size() - 1), value)) {
-      value *= unit == 0 ? 1 : unit == 1 ? 60 : 3600;
-      if (value >= 0.01 && value <= kLongestTime) {
-        std::ostringstream seconds;
-        seconds.precision(17);
-        seconds << value;
-        text = seconds.str();
-        return {};
-      }
-    }
-    return "must be a time with its unit, as 90s, 5m or 1.5h, not `" + text + "`";
+    double seconds = 0;
+    if (std::string wrong = parse_duration(text, seconds); !wrong.empty()) return wrong;
+    std::ostringstream out;
+    out.precision(17);
+    out << seconds;
+    text = out.str();
+    return {};
   };
 }
 

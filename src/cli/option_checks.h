@@ -30,8 +30,10 @@ Check byte_size();
 
 /// A year: who asks for more has mistaken the unit.
 inline constexpr double kLongestTime = 365.0 * 24 * 3600;
+/// Nothing can be done in less, and none at all would mean no limit.
+inline constexpr double kShortestTime = 0.01;
 
-/// Refuses what is no time, as 90s, 5m or 1.5h, of a hundredth of a second or more; leaves seconds behind.
+/// Refuses what is no time from kShortestTime to kLongestTime, such as 90s, 5m, 1.5h or 1h30m; leaves seconds behind.
 Check duration();
 
 }  // namespace orrery::cli

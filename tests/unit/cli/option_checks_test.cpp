@@ -53,5 +53,26 @@ TEST(CliOptionChecks, SizesAreBytesWithAUnit) {
               std::string("must be a size with its unit, as 512M or 1.5G, not `") + wrong + "`");
 }
 
+TEST(CliOptionChecks, TimesAreSecondsWithUnits) {
+  for (const auto& [text, seconds] : {std::pair{"90s", "90"},
+                                      {"5m", "300"},
+                                      {"1.5h", "5400"},
+                                      {"1h30m", "5400"},
+                                      {"1h30m5.5s", "5405.5"},
+                                      {"0.01s", "0.01"},
+                                      {"1h5s", "3605"}}) {
+    std::string value = text;
+    EXPECT_EQ(duration()(value), "") << text;
+    EXPECT_EQ(value, seconds) << text;
+  }
+  EXPECT_EQ(verdict(duration(), "3"), "`3` has no unit; write 3s, 3m or 3h");
+  EXPECT_EQ(verdict(duration(), "1h30"), "`1h30` has no unit at its end; write 1h30m or 1h30s");
+  EXPECT_EQ(verdict(duration(), "0s"), "must be at least 0.01s, not `0s`");
+  EXPECT_EQ(verdict(duration(), "8761h"), "must be at most 8760h, not `8761h`");
+  for (const char* wrong : {"", "s", "-5s", "5d", "5s5", "1m1h", "5m5m", "1..5s", "5ms", "nans", "1e3s"})
+    EXPECT_EQ(verdict(duration(), wrong),
+              std::string("must be a time such as 90s, 5m, 1.5h or 1h30m, not `") + wrong + "`");
+}
+
 }  // namespace
 }  // namespace orrery::cli
