@@ -14,19 +14,24 @@ namespace orrery::base {
 namespace {
 
 constexpr int kLargestFrame = 9'999'999;
-/// More names than anybody wants to see in a summary, and a year of film.
-constexpr std::size_t kMostFrames = 1'000'000;
+/// More than an hour of film: each frame is a job, and all of them are known before the first one starts.
+constexpr std::size_t kMostFrames = 100'000;
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
-  throw Error(ErrorKind::kUsage, "`" + text + "` are no frames: " + why + "; write them like 1-10, 1-10x2 or 1,3,7-9");
+  throw Error(ErrorKind::kUsage, "`" + text + "` is not a frame range: " + why + "; write 1-10, 1-10x2 or 1,3,7-9");
 }
 
-/// Takes a number from the front of `text`.
-bool take_number(std::string_view& text, int& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || std::abs(number) > kLargestFrame) return false;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return true;
+/// Takes a number from the front of `rest`, a part of `text`.
+int take_number(const std::string& text, std::string_view& rest, const char* missing) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  if (error == std::errc::invalid_argument) refuse(text, missing);
+  const auto length = static_cast<std::size_t>(end - rest.data());
+  if (error != std::errc() || std::abs(number) > kLargestFrame)
+    refuse(text,
+           std::string(rest.substr(0, length)) + " is beyond the largest frame, " + std::to_string(kLargestFrame));
+  rest.remove_prefix(length);
+  return number;
 }
 
 struct Pattern {
@@ -57,31 +62,42 @@ std::vector<int> parse_frames(const std::string& text) {
   std::vector<int> frames;
   std::set<int> seen;
   std::string_view rest = text;
+  std::size_t count = 0;
   for (bool more = true; more;) {
-    int first = 0, last = 0, step = 1;
-    if (!take_number(rest, first)) refuse(text, "a number is missing");
-    last = first;
+    const int first = take_number(text, rest, "a number is missing");
+    int last = first, step = 1;
     if (!rest.empty() && rest[0] == '-') {
       rest.remove_prefix(1);
-      if (!take_number(rest, last)) refuse(text, "a range has no end");
+      last = take_number(text, rest, "the end of a range is missing");
     }
     if (!rest.empty() && (rest[0] == ':' || rest[0] == 'x')) {
       rest.remove_prefix(1);
-      if (!take_number(rest, step) || step < 1) refuse(text, "a step is a number from 1 on");
+      step = take_number(text, rest, "a step is a whole number of at least 1");
+      if (step < 1) refuse(text, "a step is a whole number of at least 1");
     }
     more = !rest.empty() && rest[0] == ',';
     if (more) {
       rest.remove_prefix(1);
     } else if (!rest.empty()) {
-      refuse(text, "`" + std::string(rest) + "` is too much");
+      refuse(text, "`" + std::string(rest) + "` is left over");
     }
+    count += static_cast<std::size_t>(std::abs(last - first) / step) + 1;
+    if (count > kMostFrames) refuse(text, "it has more than " + std::to_string(kMostFrames) + " frames");
     const int way = last < first ? -step : step;
-    for (int f = first; way > 0 ? f <= last : f >= last; f += way) {
+    for (int f = first; way > 0 ? f <= last : f >= last; f += way)
       if (seen.insert(f).second) frames.push_back(f);
-      if (frames.size() > kMostFrames) refuse(text, "they are more than a million");
-    }
   }
   return frames;
+}
+
+std::string frames_text(const std::vector<int>& frames) {
+  std::string out;
+  for (std::size_t i = 0, end = 0; i < frames.size(); i = end) {
+    for (end = i + 1; end < frames.size() && frames[end] == frames[end - 1] + 1;) ++end;
+    out += (out.empty() ? "" : ",") + std::to_string(frames[i]);
+    if (end - i > 1) out += "-" + std::to_string(frames[end - 1]);
+  }
+  return out;
 }
 
 bool has_frame_pattern(const std::string& name) { return find_pattern(name, 0).end > 0; }

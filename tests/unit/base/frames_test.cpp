@@ -32,6 +32,35 @@ TEST(BaseFrames, WhatIsNoRangeIsRefused) {
   }
 }
 
+TEST(BaseFrames, TooManyAreRefusedByTheirNumber) {
+  const auto told = [](const std::string& text) -> std::string {
+    try {
+      return std::to_string(parse_frames(text).size()) + " frames";
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+  const std::string forms = "; write 1-10, 1-10x2 or 1,3,7-9";
+  EXPECT_EQ(told("1-100000"), "100000 frames");
+  EXPECT_EQ(told("1-9999999x100"), "100000 frames");
+  EXPECT_EQ(told("1-100001"), "`1-100001` is not a frame range: it has more than 100000 frames" + forms);
+  EXPECT_EQ(told("1-60000,70001-120000"),
+            "`1-60000,70001-120000` is not a frame range: it has more than 100000 frames" + forms);
+  EXPECT_EQ(told("1-1000000000"),
+            "`1-1000000000` is not a frame range: 1000000000 is beyond the largest frame, 9999999" + forms);
+  EXPECT_EQ(told("1-99999999999999999999"),
+            "`1-99999999999999999999` is not a frame range: 99999999999999999999 is beyond the largest frame, 9999999" +
+                forms);
+  EXPECT_EQ(told("1-"), "`1-` is not a frame range: the end of a range is missing" + forms);
+}
+
+TEST(BaseFrames, TextsAreShort) {
+  EXPECT_EQ(frames_text({}), "");
+  EXPECT_EQ(frames_text({7}), "7");
+  EXPECT_EQ(frames_text({1, 2, 3, 5, 8, 9}), "1-3,5,8-9");
+  EXPECT_EQ(parse_frames(frames_text({-2, -1, 4})), (Frames{-2, -1, 4}));
+}
+
 TEST(BaseFrames, PlacesAreFilled) {
   EXPECT_EQ(with_frame("shot.####.exr", 7), "shot.0007.exr");
   EXPECT_EQ(with_frame("shot.####.exr", 12345), "shot.12345.exr");
