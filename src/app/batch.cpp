@@ -44,7 +44,7 @@ void check_name(const Batch& batch, const std::string& name) {
 }
 
 /// Adds what a scene names, where it can be parsed; its job reports what is wrong with one that cannot.
-void add_readable_files(const fs::path& scene, const std::vector<std::string>& overrides,
+void add_readable_files(const fs::path& scene, const std::vector<format::Override>& overrides,
                         const std::vector<int>& frames, base::FileSet& files) {
   try {
     add_named_files(scene, overrides, frames, files);

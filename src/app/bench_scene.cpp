@@ -10,13 +10,12 @@
 
 #include "app/bench_tracing.h"
 #include "app/choose_isa.h"
+#include "app/load_scene.h"
 #include "app/reduced_picture.h"
 #include "app/scene_hash.h"
 #include "app/text.h"
-#include "app/working_space.h"
 #include "base/error.h"
 #include "compile/compile.h"
-#include "format/read_scene.h"
 #include "render/recorded_rays.h"
 #include "render/render.h"
 
@@ -61,9 +60,12 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
 
 /// The scene's picture, small.
 compile::World small_world(const BenchRequest& request) {
-  format::ReadResult read = format::read_scene(request.scene, request.overrides);
+  SceneRequest load;
+  load.file = request.scene;
+  load.overrides = request.overrides;
+  load.frame = request.frame;
+  format::ReadResult read = std::move(load_scene(load).read);
   reduce_picture(read, kPixels);
-  to_working_space(config_of(request.scene, read.scene.color), read.scene);
   return compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
 }
 

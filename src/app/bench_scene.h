@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "app/quartiles.h"
+#include "format/override.h"
 
 namespace orrery::app {
 
 struct BenchRequest {
   std::filesystem::path scene;
-  std::vector<std::string> overrides;
+  std::vector<format::Override> overrides;
+  int frame = 1;
   std::string isa;  ///< empty: the best
   int threads = 1;
   int rounds = 7;         ///< each round measures every case once

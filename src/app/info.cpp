@@ -11,12 +11,12 @@
 #include "app/layers.h"
 #include "app/scene_hash.h"
 #include "app/text.h"
-#include "app/working_space.h"
+#include "base/suggestion.h"
 #include "compile/compile.h"
 #include "film/layer_film.h"
-#include "format/read_scene.h"
 #include "kernel/isa.h"
 #include "render/traversals.h"
+#include "scene/layers.h"
 #include "scene/schema.h"
 
 namespace orrery::app {
@@ -44,6 +44,31 @@ std::vector<Feature> features_of(const compile::World& world, bool has_layers) {
       feature("light paths", world.shading == kernel::Shading::kPath, "render.shading asks for the first hit only")};
 }
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Names of red, green and blue in the files of scanners and point cloud tools.
+bool has_colors(const std::vector<std::string>& properties) {
+  static const std::vector<std::vector<std::string>> known = {
+      {"red", "green", "blue"}, {"r", "g", "b"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}};
+  return std::any_of(known.begin(), known.end(), [&](const std::vector<std::string>& names) {
+    return std::all_of(names.begin(), names.end(), [&](const auto& name) { return contains(properties, name); });
+  });
+}
+
+std::string points_text(const std::vector<PointsInfo>& points) {
+  std::string out;
+  for (const PointsInfo& p : points) {
+    append(out, "%s %s: %llu %s", out.empty() ? "points     " : "           ", p.file.c_str(),
+           static_cast<unsigned long long>(p.spheres), p.spheres == 1 ? "sphere" : "spheres");
+    if (!p.unused.empty()) append(out, "; unused: %s", base::joined(p.unused).c_str());
+    if (has_colors(p.unused)) out += "; colours of points are not used, those of materials are";
+    out += '\n';
+  }
+  return out;
+}
+
 std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::World& world) {
   static constexpr const char* kNames[] = {"lambertian", "hemisphere", "metal", "dielectric"};
   std::array<std::uint64_t, 4> counts{};
@@ -56,13 +81,14 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 
 }  // namespace
 
-SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
-  format::ReadResult read = format::read_scene(scene, overrides);
-  to_working_space(config_of(scene, read.scene.color), read.scene);
+SceneInfo scene_info(const SceneRequest& request) {
+  LoadedScene loaded = load_scene(request);
+  const format::ReadResult& read = loaded.read;
   const compile::World world = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   const film::LayerRequest layers = choose_layers(read.scene, world).request;
   SceneInfo info;
   info.scene_hash = scene_hash(world);
+  info.frame = request.frame;
   info.width = world.width;
   info.height = world.height;
   info.samples = world.samples;
@@ -79,6 +105,9 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
     info.largest_radius = largest->radius;
   }
   info.materials = count_materials(world);
+  for (const scene::Points& p : read.scene.points) info.points.push_back({p.file.string(), p.centers.size(), p.unused});
+  info.layers = scene::requested_layers(read.scene);
+  info.available_layers = scene::available_layers(read.scene);
   info.features = features_of(world, layers.any());
   for (const format::Setting& s : read.settings) {
     info.settings.push_back({s.key, s.value, s.origin});
@@ -88,22 +117,23 @@ SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::
   info.isa = kernel::isa_name();
   info.traversal = render::planned_traversal(world);
   info.memory = estimate_memory(memory_needs(world, layers));
-  info.warnings = std::move(read.warnings);
+  info.warnings = std::move(loaded.warnings);
   for (const std::string& advice : precision_advice(world)) {
     base::Finding warning;
     warning.severity = base::Severity::kWarning;
-    warning.file = scene.string();
+    warning.file = request.file.string();
     warning.text = advice;
     info.warnings.push_back(std::move(warning));
   }
   return info;
 }
 
-void measure_savings(const std::filesystem::path& scene, const std::vector<std::string>& overrides, SceneInfo& info) {
-  BenchRequest request;
-  request.scene = scene;
-  request.overrides = overrides;
-  for (const FeatureCost& cost : bench_features(request))
+void measure_savings(const SceneRequest& request, SceneInfo& info) {
+  BenchRequest bench;
+  bench.scene = request.file;
+  bench.overrides = request.overrides;
+  bench.frame = request.frame;
+  for (const FeatureCost& cost : bench_features(bench))
     for (Feature& feature : info.features)
       if (feature.name == cost.name && !cost.required) feature.saves = cost.saves;
 }
@@ -111,6 +141,7 @@ void measure_savings(const std::filesystem::path& scene, const std::vector<std::
 std::string info_text(const SceneInfo& info) {
   std::string out;
   append(out, "scene       %s\n", info.scene_hash.c_str());
+  append(out, "frame       %d\n", info.frame);
   append(out, "picture     %d x %d, %d samples per pixel, at most %d scattering events\n", info.width, info.height,
          info.samples, info.max_depth);
   append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
@@ -121,7 +152,10 @@ std::string info_text(const SceneInfo& info) {
   for (std::size_t i = 0; i < info.materials.size(); ++i)
     append(out, "%s %llu %s", i == 0 ? "" : ",", static_cast<unsigned long long>(info.materials[i].second),
            info.materials[i].first.c_str());
-  append(out, "\nkernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
+  out += '\n' + points_text(info.points);
+  append(out, "layers      %s; available: %s\n", info.layers.empty() ? "none" : base::joined(info.layers).c_str(),
+         base::joined(info.available_layers).c_str());
+  append(out, "kernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
          info.accelerator.c_str());
   append(out, "traversal   %s\n", info.traversal.c_str());
   append(out, "memory      about %s: film %s, spheres %s, accelerator %s\n", bytes_text(info.memory.total()).c_str(),
@@ -152,6 +186,10 @@ std::string settings_text(const SceneInfo& info) {
 std::string info_json(const SceneInfo& info) {
   using nlohmann::json;
   json features = json::array(), settings = json::array(), materials = json::object(), warnings = json::array();
+  json points = json::array();
+  for (const PointsInfo& p : info.points)
+    points.push_back(
+        {{"file", p.file}, {"spheres", p.spheres}, {"unused", p.unused}, {"unused_colors", has_colors(p.unused)}});
   for (const Feature& f : info.features)
     features.push_back({{"name", f.name},
                         {"required", f.required},
@@ -164,6 +202,7 @@ std::string info_json(const SceneInfo& info) {
   json out = {
       {"schema", "orrery.info/1"},
       {"scene_hash", info.scene_hash},
+      {"frame", info.frame},
       {"width", info.width},
       {"height", info.height},
       {"samples", info.samples},
@@ -172,6 +211,8 @@ std::string info_json(const SceneInfo& info) {
       {"bounds", nullptr},
       {"radius", nullptr},
       {"materials", materials},
+      {"points", points},
+      {"layers", {{"requested", info.layers}, {"available", info.available_layers}}},
       {"features", features},
       {"precision", info.precision},
       {"accelerator", info.accelerator},

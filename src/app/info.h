@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/load_scene.h"
 #include "app/memory.h"
 #include "base/finding.h"
 
@@ -21,14 +21,24 @@ struct Feature {
   std::optional<double> saves = {};  ///< of the time, by leaving it out; where it was measured
 };
 
+/// A data file of a scene.
+struct PointsInfo {
+  std::string file;  ///< as the scene names it, with the frame's number
+  std::uint64_t spheres = 0;
+  std::vector<std::string> unused;  ///< properties of its vertices that nothing uses
+};
+
 /// What a scene is, before it is rendered.
 struct SceneInfo {
   std::string scene_hash;
+  int frame = format::kFirstFrame;
   int width = 0, height = 0, samples = 0, max_depth = 0;
   std::uint64_t spheres = 0;
   double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; mean something where spheres > 0
   double smallest_radius = 0, largest_radius = 0;
   std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< compiled materials by type
+  std::vector<PointsInfo> points;
+  std::vector<std::string> layers, available_layers;  ///< requested in [output], and all that the scene can have
   std::vector<Feature> features;
   std::string precision, accelerator, isa;
   std::string traversal;  ///< how rays will go through the hierarchy, as far as that is known before a render
@@ -40,15 +50,15 @@ struct SceneInfo {
   std::vector<base::Finding> warnings;
 };
 
-/// Reads a scene and finds out what it requires; renders nothing.
+/// Loads a scene and finds out what it requires; renders nothing.
 ///
-/// Errors     as format::read_scene
-SceneInfo scene_info(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
+/// Errors     as load_scene
+SceneInfo scene_info(const SceneRequest& request);
 
 /// Measures what is saved by leaving out what this scene does not ask for, as far as the kernel has it as a feature.
 ///
 /// Errors     as bench_features
-void measure_savings(const std::filesystem::path& scene, const std::vector<std::string>& overrides, SceneInfo& info);
+void measure_savings(const SceneRequest& request, SceneInfo& info);
 
 /// The same as text for people.
 std::string info_text(const SceneInfo& info);

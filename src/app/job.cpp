@@ -11,6 +11,7 @@
 #include "app/display_writer.h"
 #include "app/job_files.h"
 #include "app/layers.h"
+#include "app/load_scene.h"
 #include "app/make_picture.h"
 #include "app/matte_manifest.h"
 #include "app/memory.h"
@@ -19,13 +20,11 @@
 #include "app/statistics.h"
 #include "app/text.h"
 #include "app/threads.h"
-#include "app/working_space.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/exit_status.h"
 #include "compile/compile.h"
 #include "film/layer_film.h"
-#include "format/read_scene.h"
 #include "image/format.h"
 
 namespace orrery::app {
@@ -68,30 +67,21 @@ void require_bits(const display::Choice& display, const Job& job) {
   }
 }
 
-/// The display that display formats are developed for; nothing is looked up where there is none.
-display::Settings choose_display(const Job& job, const scene::Scene& scene, JobReport& report) {
-  display::Settings display = job.display;
-  const scene::Color& color = scene.color;
-  const auto otherwise = [](std::string& flag, const std::string& key) {
-    if (flag.empty()) flag = key;
-  };
-  otherwise(display.config, config_of(job.scene, color));
-  otherwise(display.display, color.display);
-  otherwise(display.view, color.view);
-  otherwise(display.look, color.look);
-  if (!display.exposure) display.exposure = color.exposure;
-  display.working_space = color.working_space();
-  if (!wants_display(job)) return display;
-  report.display = display::choose(display);
-  require_bits(report.display, job);
-  for (const std::string& text : report.display.warnings) {
-    base::Finding finding;
-    finding.severity = base::Severity::kWarning;
-    finding.file = report.display.config;
-    finding.text = text;
-    warn(job, finding);
+/// The scene, checked for the files that the job will write.
+LoadedScene load(const Job& job, JobReport& report) {
+  SceneRequest request;
+  request.file = job.scene;
+  request.overrides = job.overrides;
+  request.frame = job.frame;
+  request.display = job.display;
+  request.develops = wants_display(job);
+  LoadedScene loaded = load_scene(request);
+  for (const base::Finding& warning : loaded.warnings) warn(job, warning);
+  if (request.develops) {
+    report.display = *loaded.choice;
+    require_bits(report.display, job);
   }
-  return display;
+  return loaded;
 }
 
 void write_outputs(const Job& job, const display::Settings& display, const film::Picture& picture,
@@ -126,7 +116,7 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Worl
   image::check_lossless(film::planes_of(layers.request), job.exr);
   const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
   if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) return layers;
-  const auto is_explicit = [](const std::string& setting) { return setting.rfind("output.layers=", 0) == 0; };
+  const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
   if (job.parts.empty() && !scene.output.layers.empty() &&
       std::any_of(job.overrides.begin(), job.overrides.end(), is_explicit))
     throw base::Error(base::ErrorKind::kUsage, "layers were asked for, and no output can hold them; add -o FILE.exr");
@@ -158,19 +148,12 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
 /// The way data takes.
 void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
-  format::ReadResult read = format::read_scene(job.scene, job.overrides, job.frame);
+  LoadedScene loaded = load(job, report);
+  format::ReadResult& read = loaded.read;
+  const display::Settings& display = loaded.display;
   add_scene_files(job.scene, read.scene, files);
-  for (const base::Finding& warning : read.warnings) warn(job, warning);
-  const display::Settings display = choose_display(job, read.scene, report);
-  for (const std::string& table : report.display.files) files.add_input(table, "table of the OCIO config");
-  if (const int moved = to_working_space(display.config, read.scene); moved > 0) {
-    base::Finding finding;
-    finding.severity = base::Severity::kWarning;
-    finding.file = job.scene.string();
-    finding.text = std::to_string(moved) + " colours are out of range in " + read.scene.color.working_space() +
-                   " and were moved to its edge";
-    warn(job, finding);
-  }
+  if (loaded.choice)
+    for (const std::string& table : loaded.choice->files) files.add_input(table, "table of the OCIO config");
   report.phases.read_s = watch.lap();
   stop_if_asked(job);
 
@@ -259,7 +242,7 @@ void write_failure(const Job& job, const JobReport& report, const base::Error& e
 }  // namespace
 
 bool is_limited(const Job& job) {
-  const auto is_samples = [](const std::string& setting) { return setting.rfind("render.samples=", 0) == 0; };
+  const auto is_samples = [](const format::Override& o) { return o.sets("render.samples"); };
   return std::any_of(job.overrides.begin(), job.overrides.end(), is_samples);
 }
 

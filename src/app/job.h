@@ -30,7 +30,7 @@ struct PartFile {
 /// What `orrery render` or `orrery merge` was asked for.
 struct Job {
   std::filesystem::path scene;
-  std::vector<std::string> overrides;          ///< "camera.vfov=30"
+  std::vector<format::Override> overrides;     ///< "camera.vfov=30"
   std::vector<std::filesystem::path> outputs;  ///< the extension chooses the format
   display::Settings display;                   ///< for display formats; the working space is the scene's
   int bits = 0;                                ///< of display formats; 0: 8

@@ -32,7 +32,7 @@ void add_job_files(const Job& job, base::FileSet& files, const std::string& owne
   for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
 }
 
-void add_named_files(const fs::path& scene_file, const std::vector<std::string>& overrides,
+void add_named_files(const fs::path& scene_file, const std::vector<format::Override>& overrides,
                      const std::vector<int>& frames, base::FileSet& files) {
   const format::NamedFiles named = format::named_files(scene_file, overrides);
   scene::Color color;

@@ -29,7 +29,7 @@ void add_job_files(const Job& job, base::FileSet& files, const std::string& owne
 /// Adds what the scene of a job names at its frame. It is not read for this, only parsed.
 ///
 /// Errors     as add_job_files; those of format::named_files
-void add_named_files(const std::filesystem::path& scene_file, const std::vector<std::string>& overrides,
+void add_named_files(const std::filesystem::path& scene_file, const std::vector<format::Override>& overrides,
                      const std::vector<int>& frames, base::FileSet& files);
 
 /// The same of a scene that was read.

@@ -5,8 +5,8 @@
 #include <memory>
 #include <set>
 
-#include "base/error.h"
 #include "film/cryptomatte.h"
+#include "scene/layers.h"
 
 namespace orrery::app {
 namespace {
@@ -103,30 +103,13 @@ void add_material_matte(const scene::Scene& scene, const compile::World& world,
   maker.finish(layers, [ids, &of_sphere](std::uint32_t sphere) { return ids[of_sphere[sphere]]; });
 }
 
-[[noreturn]] void refuse(const std::string& layer, const std::string& reason) {
-  throw base::Error(base::ErrorKind::kBadData, "layer " + layer + ": " + reason);
-}
-
-void check(const scene::Scene& scene, const compile::World& world, const film::LayerRequest& r) {
-  if (r.lights() && scene.render.shading != scene::Shading::kPath)
-    refuse("diffuse, specular, transmission or background",
-           "light is told apart on light paths only; set render.shading to \"path\"");
-  // Whole numbers beyond this have no float of their own.
-  constexpr std::size_t kMostCounted = std::size_t{1} << 24;
-  if (r.object_id && world.spheres.size() >= kMostCounted)
-    refuse("object_id", std::to_string(world.spheres.size()) +
-                            " spheres are more than a float counts without loss; use CryptoObject");
-}
-
 }  // namespace
 
 Layers choose_layers(const scene::Scene& scene, const compile::World& world) {
   Layers out;
   film::LayerRequest& r = out.request;
-  const auto asked = [&](const char* name) {
-    const auto& names = scene.output.layers;
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
+  const std::vector<std::string> names = scene::requested_layers(scene);
+  const auto asked = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
   r.z = asked("Z");
   r.depth = asked("depth");
   r.normal = asked("N");
@@ -150,7 +133,6 @@ Layers choose_layers(const scene::Scene& scene, const compile::World& world) {
     if (asked("CryptoMaterial")) add_material_matte(scene, world, authored, out);
   }
   if (asked("CryptoGroup")) add_group_matte(scene, out);
-  check(scene, world, r);
   return out;
 }
 

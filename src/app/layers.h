@@ -24,11 +24,9 @@ struct Layers {
   std::vector<MatteNames> mattes;  ///< one for each of the request
 };
 
-/// Finds out what the names in [output] come to. Of a scene without groups CryptoGroup is empty.
+/// The request and the mattes for the names in [output]. Of a scene without groups CryptoGroup is empty.
 ///
-/// Domain     the world was compiled from this scene, and outlives the result
-/// Errors     base::Error(kBadData) for what the scene cannot give: light by surface without light paths, more spheres
-///            than a float counts
+/// Domain     the scene is valid, the world was compiled from it and outlives the result
 Layers choose_layers(const scene::Scene& scene, const compile::World& world);
 
 }  // namespace orrery::app

@@ -44,7 +44,7 @@ image::Provenance provenance_of(const Job& job, const compile::World& world, con
   out["layers"] = layers_text(layers);
   out["scene"] = std::filesystem::absolute(job.scene).lexically_normal().string();
   std::string& overrides = out["overrides"];
-  for (const std::string& setting : job.overrides) overrides += setting + "\n";
+  for (const format::Override& setting : job.overrides) overrides += setting.text + "\n";
   out["frame"] = std::to_string(job.frame);
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
@@ -57,9 +57,11 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
   for (const std::string& key : keys_of_checkpoints()) all += key + " " + provenance.at(key) + "\n";
   append(all, "%.17g s, frame %d, %d bits, float %d, multipart %d, reproducible %d, exposure %.17g\n", job.seconds,
          job.frame, job.bits, job.exr.as_float, job.exr.multipart, job.reproducible, display.exposure.value_or(0));
-  for (const std::string& word : {job.exr.compression, display.config, display.display, display.view, display.look,
-                                  display.working_space, provenance.at("overrides")})
+  for (const std::string& word :
+       {job.exr.compression, display.config, display.display, display.view, display.look, display.working_space})
     all += word + "\n";
+  for (const format::Override& setting : job.overrides)
+    if (!setting.sets("render.accelerator")) all += setting.text + "\n";  // either gives the same bits
   return text_hash(all);
 }
 

@@ -5,9 +5,9 @@
 #include <cctype>
 
 #include "app/job_files.h"
+#include "app/load_scene.h"
 #include "app/text.h"
 #include "base/frames.h"
-#include "format/read_scene.h"
 #include "image/format.h"
 
 namespace orrery::app {
@@ -58,8 +58,12 @@ Commands commands_of(const Submission& submission) {
   const std::vector<Job> jobs = jobs_of(batch);
   Commands out;
   out.frames = batch.frames.empty() ? std::vector<int>{format::kFirstFrame} : batch.frames;
-  const format::ReadResult read = format::read_scene(batch.scenes.front(), job.overrides, out.frames.front());
-  add_scene_files(batch.scenes.front(), read.scene, *jobs.front().files);
+  SceneRequest scene;
+  scene.file = batch.scenes.front();
+  scene.overrides = job.overrides;
+  scene.frame = out.frames.front();
+  scene.display = job.display;
+  add_scene_files(scene.file, load_scene(scene).read.scene, *jobs.front().files);
   for (const auto& output : job.outputs) image::format_of(output);
   out.name = job_name_of(batch.scenes.front());
   out.parts = job.outputs.front().parent_path() / (out.name + ".parts");
@@ -73,7 +77,7 @@ Commands commands_of(const Submission& submission) {
         "--noise, --time and --deep need the whole picture; leave --shards out, and each frame is a task");
 
   out.render = {submission.program, "render", batch.scenes.front().string()};
-  for (const std::string& setting : job.overrides) out.render.insert(out.render.end(), {"--set", setting});
+  for (const format::Override& setting : job.overrides) out.render.insert(out.render.end(), {"--set", setting.text});
   if (is_split) {
     const std::string part = prefix + "%d." + Commands::kShard + ".part.exr";
     out.render.insert(out.render.end(),

@@ -41,7 +41,7 @@ std::string caret_line(const Finding& finding) {
 std::string formatted(const Finding& finding) {
   std::string out = printable(finding.file);
   if (finding.line > 0) out += ':' + std::to_string(finding.line);
-  if (finding.column > 0) out += ':' + std::to_string(finding.column);
+  if (finding.line > 0 && finding.column > 0) out += ':' + std::to_string(finding.column);
   if (!out.empty()) out += ": ";
   out += finding.severity == Severity::kError ? "error: " : "warning: ";
   out += printable(finding.text);

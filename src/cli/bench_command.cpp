@@ -27,6 +27,7 @@ struct BenchOptions {
 int bench(BenchOptions& options) {
   app::BenchRequest& request = options.request;
   request.overrides = options.scene.overrides();
+  request.frame = options.scene.frame();
   request.cancel = &stop_on_signals();
   const bool shows_progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   if (shows_progress)
@@ -45,6 +46,7 @@ void add_bench(Command& program, Action& action) {
   Command& command = *program.add_subcommand("bench", "Measure how fast a scene renders, in every precision");
   command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
   options->scene.add_to(command);
+  options->scene.add_frame_to(command);
   command.add_option("-t,--threads", options->request.threads, "Threads; default 1")
       ->transform(whole_number(1, kMostThreads))
       ->type_name("N");

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "app/info.h"
 #include "base/error.h"
+#include "base/exit_status.h"
+#include "base/frames.h"
 #include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/scene_options.h"
@@ -22,34 +26,93 @@ struct InfoOptions {
 struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
   SceneOptions overrides;
+  std::string frames;
   bool quiet = false;
 };
 
-void print_warnings(const app::SceneInfo& info) {
-  for (const base::Finding& warning : info.warnings) std::fputs(base::formatted(warning).c_str(), stderr);
+std::string warnings_text(const app::SceneInfo& info) {
+  std::string out;
+  for (const base::Finding& warning : info.warnings) out += base::formatted(warning);
+  return out;
 }
 
 int info(const InfoOptions& options) {
-  app::SceneInfo found = app::scene_info(options.scene, options.overrides.overrides());
-  if (options.measure) app::measure_savings(options.scene, options.overrides.overrides(), found);
-  print_warnings(found);
+  app::SceneRequest request;
+  request.file = options.scene;
+  request.overrides = options.overrides.overrides();
+  request.frame = options.overrides.frame();
+  app::SceneInfo found = app::scene_info(request);
+  if (options.measure) app::measure_savings(request, found);
+  std::fputs(warnings_text(found).c_str(), stderr);
   print_result(options.json       ? app::info_json(found)
                : options.settings ? app::settings_text(found)
                                   : app::info_text(found));
   return 0;
 }
 
+/// That this machine is too small is no fault of the scene's.
+std::string memory_warning(const app::SceneInfo& info) {
+  try {
+    app::require_memory(info.memory, 0);
+    return {};
+  } catch (const base::Error& error) {
+    return std::string("warning: ") + error.what() + "\n";
+  }
+}
+
+/// Checks the frames of one scene. What is wrong with several frames in the same words is printed once.
+class FrameChecks {
+ public:
+  explicit FrameChecks(app::SceneRequest request) : request_(std::move(request)) {}
+
+  /// The exit status.
+  int run(const std::vector<int>& frames) {
+    for (const int frame : frames) {
+      request_.frame = frame;
+      try {
+        const app::SceneInfo info = app::scene_info(request_);
+        print_once(warnings_text(info) + memory_warning(info));
+      } catch (const base::Error& error) {
+        if (status_ == 0) status_ = base::exit_status(error.kind());
+        print_once(error_text(error));
+        if (error.findings().empty()) return status_;  // not of the scene: the other frames would say the same
+        bad_.push_back(frame);
+      }
+    }
+    if (frames.size() > 1 && !bad_.empty())
+      std::fprintf(stderr, "orrery: %s: %zu of %zu frames have errors: %s\n", request_.file.c_str(), bad_.size(),
+                   frames.size(), base::frames_text(bad_).c_str());
+    return status_;
+  }
+
+ private:
+  void print_once(const std::string& text) {
+    if (!text.empty() && printed_.size() < kMostTexts && printed_.insert(text).second) std::fputs(text.c_str(), stderr);
+  }
+
+  /// Of a thousand frames without their files it is enough to see some.
+  static constexpr std::size_t kMostTexts = 100;
+
+  app::SceneRequest request_;
+  std::set<std::string> printed_;
+  std::vector<int> bad_;
+  int status_ = 0;
+};
+
 /// All scenes are looked at, whatever is wrong with the first; the worst of them decides the status.
 int check(const CheckOptions& options) {
+  const std::vector<int> frames =
+      options.frames.empty() ? std::vector<int>{format::kFirstFrame} : base::parse_frames(options.frames);
   int status = 0;
   for (const auto& scene : options.scenes) {
-    try {
-      print_warnings(app::scene_info(scene, options.overrides.overrides()));
-    } catch (const base::Error& error) {
-      status = std::max(status, print_error(error));
-      continue;
-    }
-    if (!options.quiet) print_result(scene.string() + ": ok\n");
+    app::SceneRequest request;
+    request.file = scene;
+    request.overrides = options.overrides.overrides();
+    request.develops = true;  // what a render to a display format would refuse, too
+    const int own = FrameChecks(std::move(request)).run(frames);
+    status = std::max(status, own);
+    const std::string count = frames.size() > 1 ? ", " + std::to_string(frames.size()) + " frames" : "";
+    if (own == 0 && !options.quiet) print_result(scene.string() + ": ok" + count + "\n");
   }
   return status;
 }
@@ -61,6 +124,7 @@ void add_info(Command& program, Action& action) {
   Command& command = *program.add_subcommand("info", "Tell what a scene is, what it requires, and what is left out");
   command.add_option("SCENE", options->scene, "Scene file")->required()->type_name("FILE");
   options->overrides.add_to(command);
+  options->overrides.add_frame_to(command);
   command.add_flag("--measure", options->measure, "Measure what leaving out saves; takes some seconds");
   auto* json = command.add_flag("--json", options->json, "As JSON, with all settings");
   command.add_flag("--settings", options->settings, "Every setting, its value and where it came from")->excludes(json);
@@ -73,11 +137,16 @@ void add_info(Command& program, Action& action) {
 
 void add_check(Command& program, Action& action) {
   const auto options = std::make_shared<CheckOptions>();
-  Command& command = *program.add_subcommand("check", "Find everything that is wrong with scenes, without rendering");
+  Command& command = *program.add_subcommand("check", "Read and validate scenes without rendering");
   command.add_option("SCENE", options->scenes, "Scene files")->required()->type_name("FILE")->take_all();
   options->overrides.add_to(command);
-  command.add_flag("-q,--quiet", options->quiet, "Say nothing about scenes that are right");
-  command.footer("Example:\n  orrery check scenes/book/*.toml");
+  command.add_option("--frames", options->frames, "Frames to check, e.g. 1-48, 1-48x2 or 1,3,7-9; default: 1")
+      ->type_name("RANGE");
+  command.add_flag("-q,--quiet", options->quiet, "Print nothing about valid scenes");
+  command.footer(
+      "Examples:\n"
+      "  orrery check scenes/book/*.toml\n"
+      "  orrery check shot.toml --frames 1-240");
   command.callback([options, &action] { action = [options] { return check(*options); }; });
 }
 

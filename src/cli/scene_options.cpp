@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/scene_options.h"
 
-#include <sstream>
 #include <string_view>
-#include <utility>
 
+#include "base/error.h"
+#include "base/frames.h"
 #include "cli/option_checks.h"
 
 namespace orrery::cli {
-
-namespace {
-
-/// a,b as ["a","b"].
-std::string quoted_list(const std::string& words) {
-  std::string out = "[";
-  std::istringstream in(words);
-  for (std::string word; std::getline(in, word, ',');) out += (out.size() > 1 ? ",\"" : "\"") + word + '"';
-  return out + "]";
-}
-
-}  // namespace
 
 void SceneOptions::add_to(Command& command, bool allows_range) {
   allows_range_ = allows_range;
@@ -27,7 +15,7 @@ void SceneOptions::add_to(Command& command, bool allows_range) {
       ->type_name("KEY=VALUE")
       ->repeatable();
   const auto add = [&](const char* flag, const char* key, const char* type, const std::string& what) {
-    Short& option = short_forms_.emplace_back(Short{key, {}, nullptr, false});
+    Short& option = short_forms_.emplace_back(Short{flag, key, {}, nullptr, false});
     option.flag = command.add_option(flag, option.value, what + "; as --set " + key)->type_name(type);
   };
   add("--samples", "render.samples", allows_range ? "N or A:B" : "N",
@@ -39,7 +27,8 @@ void SceneOptions::add_to(Command& command, bool allows_range) {
   add("--max-depth", "render.max_depth", "N", "Most scattering events of a path");
   add("--precision", "render.precision", "NAME", "exact, fast or book");
   add("--accelerator", "render.accelerator", "NAME", "embree or list");
-  add("--layers", "output.layers", "NAMES", "Layers of EXR files beside the beauty, as in Z,N,diffuse; none: \"\"");
+  add("--layers", "output.layers", "NAMES",
+      "Layers of EXR files beside the beauty, e.g. Z,N,diffuse; all: every layer of this scene; \"\": none");
   short_forms_.back().is_list = true;
 }
 
@@ -54,13 +43,28 @@ std::optional<std::string> SceneOptions::sample_range() const {
   return {};
 }
 
-std::vector<std::string> SceneOptions::overrides() const {
-  std::vector<std::string> out;
-  for (const Short& option : short_forms_)
-    if (option.flag->count() > 0 && !is_range(option))
-      out.push_back(std::string(option.key) + "=" + (option.is_list ? quoted_list(option.value) : option.value));
+std::vector<format::Override> SceneOptions::overrides() const {
+  std::vector<format::Override> out;
+  for (const Short& option : short_forms_) {
+    if (option.flag->count() == 0 || is_range(option)) continue;
+    const std::string value = option.is_list ? "[" + option.value + "]" : option.value;
+    out.emplace_back(std::string(option.key) + "=" + value, option.name, option.value);
+  }
   out.insert(out.end(), set_.begin(), set_.end());
   return out;
+}
+
+void SceneOptions::add_frame_to(Command& command) {
+  command.add_option("--frame,--frames", frame_, "Frame of an animation; default: 1")->type_name("N");
+}
+
+int SceneOptions::frame() const {
+  if (frame_.empty()) return format::kFirstFrame;
+  const std::vector<int> frames = base::parse_frames(frame_);
+  if (frames.size() != 1)
+    throw base::Error(base::ErrorKind::kUsage, "--frame " + frame_ + " is " + std::to_string(frames.size()) +
+                                                   " frames; this command takes one, and orrery check takes many");
+  return frames.front();
 }
 
 }  // namespace orrery::cli

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/load_scene.h"
 #include "cli/arguments.h"
 
 namespace orrery::cli {
@@ -21,11 +22,20 @@ class SceneOptions {
   /// What --samples says, where that is a range, A:B, of the scene's samples; then it overrides nothing.
   std::optional<std::string> sample_range() const;
 
-  /// All of them as "key=value", in an order in which --set wins over the short forms.
-  std::vector<std::string> overrides() const;
+  /// All of them, in an order in which --set wins over the short forms.
+  std::vector<format::Override> overrides() const;
+
+  /// Adds --frame, for a command that looks at one frame.
+  void add_frame_to(Command& command);
+
+  /// What --frame says; without it the frame that a render without --frames gives.
+  ///
+  /// Errors     base::Error(kUsage) for what is not one frame
+  int frame() const;
 
  private:
   struct Short {
+    const char* name;  ///< "--samples"
     const char* key;
     std::string value;
     const Option* flag;
@@ -35,6 +45,7 @@ class SceneOptions {
 
   bool allows_range_ = false;
   std::vector<std::string> set_;
+  std::string frame_;
   std::deque<Short> short_forms_;  ///< a deque: the parser holds on to where the values are
 };
 

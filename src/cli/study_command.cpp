@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
@@ -22,9 +23,17 @@ struct StudyOptions {
   bool json = false, quiet = false;
 };
 
+void check_report_name(const std::filesystem::path& file) {
+  if (file.extension() != ".html" && file.extension() != ".htm")
+    throw base::Error(base::ErrorKind::kUsage, file.string() +
+                                                   " is not the name of an HTML page; a report is one, so "
+                                                   "name it .html, or print the figures with --json");
+}
+
 int run(StudyOptions& options) {
   study::Request& request = options.request;
   request.overrides = options.scene.overrides();
+  request.frame = options.scene.frame();
   request.cancel = &stop_on_signals();
   const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
   int last = -1;
@@ -38,6 +47,7 @@ int run(StudyOptions& options) {
       }
       last = percent;
     };
+  if (!request.report.empty()) check_report_name(request.report);
   const study::Study found = study::run_study(request);
   if (!request.report.empty()) base::write_text_file(request.report, study::study_html(found));
   print_result(options.json ? study::study_json(found) : study::study_text(found));
@@ -53,6 +63,7 @@ void add_study(Command& program, Action& action) {
   command.add_option("-o,--output", options->request.report, "Write a report: one HTML file with plots and pictures")
       ->type_name("FILE");
   options->scene.add_to(command);
+  options->scene.add_frame_to(command);
   command.add_option("--budget", options->request.budget_s, "Time for all of it, as 90s or 5m; default 2m")
       ->transform(duration())
       ->type_name("TIME");

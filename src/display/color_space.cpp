@@ -40,17 +40,6 @@ const Entry* entry_of(const std::string& name) {
   return nullptr;
 }
 
-/// Spaces of data, of cameras' logarithms and of displays hold no light that could be traced.
-std::string require_scene_linear(const Config& config, const std::string& name) {
-  const std::string found = find_color_space(config, name);
-  const ocio::ConstColorSpaceRcPtr space = config.config->getColorSpace(found.c_str());
-  const std::string encoding = space->getEncoding();
-  if (space->isData() || (!encoding.empty() && encoding != "scene-linear"))
-    throw base::Error(base::ErrorKind::kUsage, "colour space `" + name + "` of the OCIO config (" + config.source +
-                                                   ") is not scene-linear, so no light can be reckoned with in it");
-  return found;
-}
-
 }  // namespace
 
 std::string find_color_space(const Config& config, const std::string& name) {
@@ -66,13 +55,22 @@ std::string find_color_space(const Config& config, const std::string& name) {
           also);
 }
 
+std::string find_scene_linear(const Config& config, const std::string& name) {
+  const std::string found = find_color_space(config, name);
+  const ocio::ConstColorSpaceRcPtr space = config.config->getColorSpace(found.c_str());
+  const std::string encoding = space->getEncoding();
+  if (space->isData() || (!encoding.empty() && encoding != "scene-linear"))
+    throw base::Error(base::ErrorKind::kUsage, "colour space `" + name + "` of the OCIO config (" + config.source +
+                                                   ") is not scene-linear, so light cannot be computed in it");
+  return found;
+}
+
 void convert_colors(const std::string& config_file, const std::string& from, const std::string& to,
                     std::vector<std::array<double, 3>>& colors) {
   const Config source = load_config(config_file);
   try {
     const ocio::ConstCPUProcessorRcPtr processor =
-        source.config
-            ->getProcessor(require_scene_linear(source, from).c_str(), require_scene_linear(source, to).c_str())
+        source.config->getProcessor(find_scene_linear(source, from).c_str(), find_scene_linear(source, to).c_str())
             ->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
     for (std::array<double, 3>& color : colors) {
       float rgb[3] = {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};

@@ -2,12 +2,11 @@
 #include "display/config.h"
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "display/builtin_config.h"
 #include "display/config_files.h"
 
@@ -46,10 +45,7 @@ ocio::ConstConfigRcPtr load(const std::string& file) {
     std::istringstream text(kBuiltinConfig);
     return ocio::Config::CreateFromStream(text);
   }
-  std::error_code ignored;
-  if (!is_library_config(file) && (!std::filesystem::is_regular_file(file, ignored) || !std::ifstream(file)))
-    throw base::Error(base::ErrorKind::kMissingInput,
-                      "cannot open the OCIO config " + file + "; it is named by --ocio, the scene or $OCIO");
+  if (!is_library_config(file)) base::require_readable(file);
   try {
     ocio::ConstConfigRcPtr config = ocio::Config::CreateFromFile(file.c_str());
     config->validate();
@@ -76,9 +72,16 @@ std::vector<std::filesystem::path> config_files(const std::string& config) {
 
 Config load_config(const std::string& file) {
   Config out;
-  const std::string name = file.empty() ? config_of_environment() : file;
+  const std::string environment = config_of_environment();
+  const bool is_of_environment = file.empty() && !environment.empty();
+  const std::string name = is_of_environment ? environment : file;
   const LogCapture capture(out.warnings);
-  out.config = load(name);
+  try {
+    out.config = load(name);
+  } catch (const base::Error& error) {
+    if (!is_of_environment) throw;
+    throw base::Error(error.kind(), std::string("$OCIO: ") + error.what());
+  }
   out.source = name.empty() ? "built-in" : name;
   return out;
 }

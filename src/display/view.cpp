@@ -14,23 +14,9 @@ namespace orrery::display {
 namespace {
 
 namespace ocio = OCIO_NAMESPACE;
+
 void require(const Config& config, const std::string& what, const std::string& name, const Names& known) {
   if (std::find(known.begin(), known.end(), name) == known.end()) unknown(config, what, name, known);
-}
-
-void choose_names(const Config& source, const Settings& settings, Choice& choice) {
-  const ocio::Config& config = *source.config;
-  choice.display = settings.display.empty() ? config.getDefaultDisplay() : settings.display;
-  const char* const display = choice.display.c_str();
-  require(source, "display", choice.display,
-          names(config.getNumDisplays(), [&](int i) { return config.getDisplay(i); }));
-  choice.view = settings.view.empty() ? config.getDefaultView(display) : settings.view;
-  require(source, "view on display `" + choice.display + "` named", choice.view,
-          names(config.getNumViews(display), [&](int i) { return config.getView(display, i); }));
-  if (!settings.look.empty())
-    require(source, "look", settings.look,
-            names(config.getNumLooks(), [&](int i) { return config.getLookNameByIndex(i); }));
-  choice.working_space = find_color_space(source, settings.working_space);
 }
 
 /// The colour space that the view ends in.
@@ -67,16 +53,39 @@ ocio::ConstProcessorRcPtr transform(const ocio::Config& config, const Settings& 
 
 }  // namespace
 
-View find_view(const Settings& settings) {
+void choose_display(const Config& config, const Settings& settings, Choice& choice) {
+  choice.display = settings.display.empty() ? config.config->getDefaultDisplay() : settings.display;
+  require(config, "display", choice.display,
+          names(config.config->getNumDisplays(), [&](int i) { return config.config->getDisplay(i); }));
+}
+
+void choose_view(const Config& config, const Settings& settings, Choice& choice) {
+  const char* const display = choice.display.c_str();
+  choice.view = settings.view.empty() ? config.config->getDefaultView(display) : settings.view;
+  require(config, "view on display `" + choice.display + "` named", choice.view,
+          names(config.config->getNumViews(display), [&](int i) { return config.config->getView(display, i); }));
+}
+
+void check_look(const Config& config, const Settings& settings) {
+  if (settings.look.empty()) return;
+  require(config, "look", settings.look,
+          names(config.config->getNumLooks(), [&](int i) { return config.config->getLookNameByIndex(i); }));
+}
+
+View find_view(const Settings& settings) { return find_view(load_config(settings.config), settings); }
+
+View find_view(const Config& source, const Settings& settings) {
   if (!std::isfinite(settings.stops()))
     throw base::Error(base::ErrorKind::kUsage, "the exposure must be a finite number of stops");
-  const Config source = load_config(settings.config);
   View out;
   try {
     out.choice.config = source.source;
     out.choice.config_id = source.config->getCacheID();
     out.choice.warnings = source.warnings;
-    choose_names(source, settings, out.choice);
+    choose_display(source, settings, out.choice);
+    choose_view(source, settings, out.choice);
+    check_look(source, settings);
+    out.choice.working_space = find_color_space(source, settings.working_space);
     out.transform = transform(*source.config, settings, out.choice);
     // Lossless: the default trades accuracy for tables.
     const ocio::ConstProcessorMetadataRcPtr metadata = out.transform->getProcessorMetadata();

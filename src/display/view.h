@@ -3,6 +3,7 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 
+#include "display/config.h"
 #include "display/develop.h"
 
 namespace orrery::display {
@@ -19,5 +20,17 @@ struct View {
 ///
 /// Errors     as choose
 View find_view(const Settings& settings);
+
+/// The same in a config that is loaded already.
+View find_view(const Config& config, const Settings& settings);
+
+// Its steps. Errors: base::Error(kUsage) for a name that the config lacks.
+
+void choose_display(const Config& config, const Settings& settings, Choice& choice);
+
+/// Domain     the display is chosen
+void choose_view(const Config& config, const Settings& settings, Choice& choice);
+
+void check_look(const Config& config, const Settings& settings);
 
 }  // namespace orrery::display

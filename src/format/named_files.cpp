@@ -6,12 +6,12 @@
 
 namespace orrery::format {
 
-NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<std::string>& overrides) {
+NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<Override>& overrides) {
   SourceText source;
-  std::vector<base::Finding> findings;
+  Diagnostics diagnostics;
   const toml::table root =
-      parse_tree(scene_file.string(), read_file(scene_file, kLargestSceneFile), overrides, source, findings);
-  if (root.empty()) throw base::Error(base::ErrorKind::kBadData, scene_file.string() + " is not a scene", findings);
+      parse_tree(scene_file.string(), read_file(scene_file, kLargestSceneFile), overrides, source, diagnostics);
+  if (root.empty()) diagnostics.raise_errors(scene_file.string());
   NamedFiles out;
   out.ocio_config = root["color"]["config"].value_or(std::string());
   if (const toml::array* points = root["points"].as_array())

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "format/override.h"
+
 namespace orrery::format {
 
 /// The files that a scene names, as it spells them: relative to its folder, points files with places for a frame.
@@ -18,6 +20,6 @@ struct NamedFiles {
 ///
 /// Errors     base::Error(kBadData) for a file that is not TOML; kMissingInput, kIo
 /// Cost       parses the whole file
-NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<std::string>& overrides);
+NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<Override>& overrides);
 
 }  // namespace orrery::format

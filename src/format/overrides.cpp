@@ -2,10 +2,12 @@
 #include "format/overrides.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
-#include <stdexcept>
+#include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "format/key_depth.h"
 #include "format/toml_tree.h"
@@ -81,28 +83,92 @@ bool looks_like_toml(std::string_view value) {
   return begin != std::string_view::npos && std::string_view("[{\"'").find(value[begin]) != std::string_view::npos;
 }
 
-std::string in_quotes(std::string_view word) {
-  std::string out = "\"";
-  for (const char c : word) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
+/// A text in which some bytes were inserted, which messages must not count.
+struct Quoted {
+  std::string text;
+  std::vector<std::size_t> inserted;
+
+  void insert(char c) {
+    inserted.push_back(text.size());
+    text += c;
   }
-  return out + '"';
+  void quote(std::string_view word) {
+    insert('"');
+    for (const char c : word) {
+      if (c == '"' || c == '\\') insert('\\');
+      text += c;
+    }
+    insert('"');
+  }
+};
+
+/// True for what TOML knows as a value without quotes that begins with a letter, and for what begins otherwise.
+bool is_bare_value(std::string_view element) {
+  const auto first = static_cast<unsigned char>(element.front());
+  return std::isalpha(first) == 0 || element == "true" || element == "false" || element == "inf" || element == "nan";
 }
 
+/// A list of words without quotes, "[Z, N]", with quotes around them; false where it is no such list.
+bool quote_list(std::string_view value, Quoted& out) {
+  constexpr const char* kBlanks = " \t";
+  const std::size_t begin = value.find_first_not_of(kBlanks), end = value.find_last_not_of(kBlanks);
+  if (begin == std::string_view::npos || begin == end || value[begin] != '[' || value[end] != ']') return false;
+  const std::string_view elements = value.substr(begin + 1, end - begin - 1);
+  if (elements.find_first_of("[]{}\"'#") != std::string_view::npos) return false;
+  out.text += value.substr(0, begin + 1);
+  for (std::size_t at = 0; at < elements.size();) {
+    const std::size_t comma = std::min(elements.find(',', at), elements.size());
+    const std::string_view element = elements.substr(at, comma - at);
+    const std::size_t first = std::min(element.find_first_not_of(kBlanks), element.size());
+    const std::size_t last = element.find_last_not_of(kBlanks) + 1;  // 0 where there are only blanks
+    const std::string_view word = element.substr(first, std::max(last, first) - first);
+    out.text += element.substr(0, first);
+    const bool is_end = word.empty() && comma == elements.size();  // behind the last comma
+    if (is_end || (!word.empty() && is_bare_value(word))) {
+      out.text += word;
+    } else {
+      out.quote(word);
+    }
+    out.text += element.substr(first + word.size());
+    if (comma < elements.size()) out.text += ',';
+    at = comma + 1;
+  }
+  out.text += value.substr(end);
+  return true;
+}
+
+/// An override as the TOML library gets it: its key and value, with quotes where they were left out.
+struct Parsed {
+  toml::table tree;
+  Quoted line;
+};
+
 /// Key and value as a tree of their own. What stands before is filled with blanks, so that places are those of `text`.
-toml::table parse_override(const std::string& text, const Parts& parts, int line) {
-  const std::string filled(static_cast<std::size_t>(line) - 1, '\n');
+Parsed parse_override(const std::string& text, const Parts& parts, int line) {
+  const std::string above(static_cast<std::size_t>(line) - 1, '\n');
   const std::string key =
-      filled + std::string(parts.key_begin, ' ') + text.substr(parts.key_begin, parts.equals + 1 - parts.key_begin);
+      std::string(parts.key_begin, ' ') + text.substr(parts.key_begin, parts.equals + 1 - parts.key_begin);
   const std::string value = text.substr(parts.equals + 1);
   if (is_blank(value)) throw Fault{"there is no value behind the ="};
+  const auto parsed = [&](Quoted quoted) {
+    toml::table tree = toml::parse(std::string_view(above + quoted.text), std::string_view(kOverrideName));
+    return Parsed{std::move(tree), std::move(quoted)};
+  };
   try {
-    return toml::parse(std::string_view(key + value), std::string_view(kOverrideName));
+    return parsed({key + value, {}});
   } catch (const toml::parse_error&) {
+    Quoted list{key, {}};
+    if (quote_list(value, list)) {
+      try {
+        return parsed(std::move(list));
+      } catch (const toml::parse_error&) {  // of what nobody typed; the first one counts
+      }
+    }
     if (looks_like_toml(value)) throw;
   }
-  return toml::parse(std::string_view(key + in_quotes(value)), std::string_view(kOverrideName));
+  Quoted word{key, {}};
+  word.quote(value);
+  return parsed(std::move(word));
 }
 
 /// Moves `from` into `to`. Tables that only a dotted key made are gone into, a table that is the value replaces.
@@ -122,34 +188,40 @@ void merge(toml::table& to, toml::table& from) {
   }
 }
 
-void apply_override(toml::table& root, const std::string& text, int line) {
+/// Reads one override; `line` of kOverrideName is what the library is given for it.
+void apply_override(toml::table& root, const std::string& text, int line, Quoted& given) {
   if (text.find_first_of("\r\n") != std::string::npos) throw Fault{"an override is one line"};
   if (too_deep_key(text).line > 0) throw Fault{"a key of more than " + std::to_string(kDeepestKey) + " parts"};
   const Parts parts = parts_of(text);
   toml::table& target = parts.list.empty() ? root : element_of(root, parts.list);
-  toml::table parsed = parse_override(text, parts, line);
-  merge(target, parsed);
+  Parsed parsed = parse_override(text, parts, line);
+  given = std::move(parsed.line);
+  merge(target, parsed.tree);
 }
 
 }  // namespace
 
-void apply_overrides(toml::table& root, const std::vector<std::string>& overrides, SourceText& source,
-                     std::vector<base::Finding>& findings) {
+void apply_overrides(toml::table& root, const std::vector<Override>& overrides, SourceText& source,
+                     Diagnostics& diagnostics) {
   int line = 0;
-  for (const std::string& text : overrides) {
-    std::string shown = text;  // one line of the text of all overrides, whatever is in it
-    std::replace_if(
-        shown.begin(), shown.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    source.add(kOverrideName, shown);
+  for (const Override& override : overrides) {
     ++line;
+    Quoted given{override.text, {}};
+    std::optional<Fault> fault;
+    std::optional<toml::parse_error> parse_error;
     try {
-      apply_override(root, text, line);
-    } catch (const Fault& fault) {
-      const Place whole{kOverrideName, line, 1, static_cast<int>(text.size())};
-      findings.push_back(source.finding(base::Severity::kError, whole, fault.text, fault.remedy));
+      apply_override(root, override.text, line, given);
+    } catch (const Fault& found) {
+      fault = found;
     } catch (const toml::parse_error& error) {
-      findings.push_back(parse_finding(error, source));
+      parse_error = error;
     }
+    source.add_override(override, std::move(given.text), std::move(given.inserted));
+    if (parse_error) add_parse_error(*parse_error, source, diagnostics);
+    if (!fault) continue;
+    const Place whole{kOverrideName, line, 1, static_cast<int>(override.text.size())};
+    diagnostics.add(base::Severity::kError, whole, base::ErrorKind::kBadData,
+                    [&] { return source.finding(base::Severity::kError, whole, fault->text, fault->remedy); });
   }
 }
 

@@ -6,19 +6,19 @@
 #include <string>
 #include <vector>
 
-#include "base/finding.h"
+#include "format/diagnostics.h"
+#include "format/override.h"
 #include "format/source_text.h"
 
 namespace orrery::format {
 
-/// The name of the text that all overrides together are, a line each, in the place of a file's name.
-inline constexpr const char* kOverrideName = "--set";
-
-/// Puts "key=value" texts into a scene's tree, as if they stood in its file: "camera.vfov=30", "render.precision=fast",
-/// "material.\"my gold\".fuzz=0.3", "sphere[2].radius=0.5". Keys and values get their places in the override.
+/// Puts overrides into a scene's tree, as if they stood in its file: "camera.vfov=30", "render.precision=fast",
+/// "material.\"my gold\".fuzz=0.3", "sphere[2].radius=0.5", "output.layers=[Z,N]". Keys and values get their places in
+/// the override.
 ///
-/// A value is TOML, or a word without quotes. Tables on the way are made; elements of lists must be there.
-void apply_overrides(toml::table& root, const std::vector<std::string>& overrides, SourceText& source,
-                     std::vector<base::Finding>& findings);
+/// A value is TOML; a word, and a list of words, need no quotes. Missing tables are created; elements of lists must
+/// exist.
+void apply_overrides(toml::table& root, const std::vector<Override>& overrides, SourceText& source,
+                     Diagnostics& diagnostics);
 
 }  // namespace orrery::format

@@ -47,6 +47,7 @@ bool is_named(const std::vector<Named>& list, const std::string& name) {
 
 std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
   if (words.size() != 3) return "a format line is `format ENCODING 1.0`";
+  if (words[2] != "1.0") return "version `" + std::string(words[2]) + "` of the format is not known; known is 1.0";
   if (words[1] == "ascii") {
     header.encoding = PlyEncoding::kAscii;
   } else if (words[1] == "binary_little_endian") {
@@ -90,14 +91,17 @@ std::string parse_property(const std::vector<std::string_view>& words, PlyHeader
 
 std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line) {
   constexpr const char* kNoPly = "this is no PLY file: its first line is not `ply`";
-  constexpr std::size_t kLongestHeader = 1 << 20;
+  const std::string_view head = file.substr(0, kLongestHeader);
   std::size_t at = 0;
   bool has_format = false;
   for (line = 1;; ++line) {
-    const std::size_t end = file.find('\n', at);
-    if (end == std::string_view::npos || end > kLongestHeader)
-      return line == 1 ? kNoPly : "the header has no end_header";
-    const auto words = words_of(file.substr(at, end - at));
+    const std::size_t end = head.find('\n', at);
+    if (end == std::string_view::npos) {
+      if (line == 1) return kNoPly;
+      if (file.size() == head.size()) return "the header has no end_header";
+      return "the header is longer than " + std::to_string(kLongestHeader) + " bytes, which is the limit";
+    }
+    const auto words = words_of(head.substr(at, end - at));
     at = end + 1;
     std::string fault;
     if (line == 1) {
@@ -105,8 +109,8 @@ std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line
     } else if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
       continue;
     } else if (words[0] == "format") {
+      fault = has_format ? "the format stands twice" : parse_format(words, header);
       has_format = true;
-      fault = parse_format(words, header);
     } else if (words[0] == "element") {
       fault = parse_element(words, header);
     } else if (words[0] == "property") {

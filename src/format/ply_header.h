@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -51,6 +52,9 @@ struct PlyHeader {
   std::size_t bytes = 0;  ///< length of the header, the data follow
   int lines = 0;
 };
+
+/// Bytes of a header: ten thousand properties. A file without an end_header must not be searched to its end.
+inline constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
 /// Parses a PLY header.
 ///

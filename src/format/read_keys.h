@@ -17,11 +17,16 @@ namespace orrery::format {
 /// Collects what is wrong while a tree is read.
 struct Reading {
   SourceText source;
-  std::vector<base::Finding> findings;
+  Diagnostics diagnostics;
   std::set<std::string> unread;  ///< full names of keys whose values stayed at their defaults for an error
 
-  void error(const Place& place, std::string text, std::string remedy = {}) {
-    findings.push_back(source.finding(base::Severity::kError, place, std::move(text), std::move(remedy)));
+  void error(const Place& place, const std::string& text, const std::string& remedy = {},
+             base::ErrorKind kind = base::ErrorKind::kBadData) {
+    add(base::Severity::kError, place, text, remedy, kind);
+  }
+  void add(base::Severity severity, const Place& place, const std::string& text, const std::string& remedy = {},
+           base::ErrorKind kind = base::ErrorKind::kBadData) {
+    diagnostics.add(severity, place, kind, [&] { return source.finding(severity, place, text, remedy); });
   }
 };
 

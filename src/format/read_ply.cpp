@@ -50,20 +50,48 @@ double binary_value(const char* at, PlyType type, bool swap) {
   return 0;
 }
 
-/// Takes values one after the other out of the data behind the header.
+/// Takes values one after the other out of the data behind the header. In an ascii file each row is one line.
 class PlyCursor {
  public:
-  PlyCursor(std::string_view data, PlyEncoding encoding)
+  /// `line` is that of the first byte of the data.
+  PlyCursor(std::string_view data, PlyEncoding encoding, int line)
       : at_(data.data()),
         end_(data.data() + data.size()),
+        row_end_(end_),
+        line_(line),
         ascii_(encoding == PlyEncoding::kAscii),
-        swap_((encoding == PlyEncoding::kBigEndian) != (std::endian::native == std::endian::big)) {}
+        swap_((encoding == PlyEncoding::kBigEndian) != (std::endian::native == std::endian::big)) {
+    if (ascii_) row_end_ = at_;
+  }
 
-  /// False where the data end, or where an ascii value is no number.
+  /// Goes to the next row; lines that are blank are none.
+  void begin_row() {
+    if (!ascii_) return;
+    while (at_ < end_) {
+      const void* const found = std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_));
+      row_end_ = found != nullptr ? static_cast<const char*>(found) : end_;
+      row_line_ = line_;
+      skip_blanks();
+      if (at_ < row_end_) return;
+      step_over_line_end();
+    }
+  }
+  /// False where something is left of the row.
+  bool end_row() {
+    if (!ascii_) return true;
+    skip_blanks();
+    if (at_ < row_end_) return false;
+    step_over_line_end();
+    return true;
+  }
+  /// Of the row; 0 in a binary file.
+  int line() const { return row_line_; }
+
+  /// False where the row or the data end, or where an ascii value is no number.
   bool take(PlyType type, double& value) {
     if (ascii_) return take_word(value);
     const std::size_t size = ply_size(type);
-    if (static_cast<std::size_t>(end_ - at_) < size) return false;
+    if (bytes_left() < size) return false;
     value = binary_value(at_, type, swap_);
     at_ += size;
     return true;
@@ -80,30 +108,51 @@ class PlyCursor {
     }
     return true;
   }
+  /// Domain     a binary file that has as many
+  void skip_bytes(std::uint64_t bytes) { at_ += bytes; }
+
   std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
   /// Why the last take or skip was false.
-  std::string fault() {
-    if (is_bad_length_) return "a list's length is no whole number";
-    skip_blanks();
-    return ascii_ && at_ < end_ ? "what stands there is no number" : "the file ends";
+  std::string fault() const {
+    if (is_bad_length_) return "the length of a list is not a whole number";
+    if (ascii_ && at_ < row_end_) return "`" + word() + "` is not a number";
+    return ascii_ && row_end_ < end_ ? "the line ends; a row is one line" : "the file ends";
+  }
+  /// The word that comes next in the row.
+  std::string word() const {
+    constexpr std::ptrdiff_t kLongestShown = 40;
+    const char* const end =
+        std::find_if(at_, std::min(row_end_, at_ + std::min(kLongestShown, row_end_ - at_)), is_blank);
+    return {at_, end};
   }
 
  private:
+  static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
   void skip_blanks() {
-    while (at_ < end_ && (*at_ == ' ' || (*at_ >= '\t' && *at_ <= '\r'))) ++at_;
+    while (at_ < row_end_ && is_blank(*at_)) ++at_;
+  }
+  void step_over_line_end() {
+    if (row_end_ == end_) {
+      at_ = end_;
+    } else {
+      at_ = row_end_ + 1;
+      ++line_;
+    }
   }
   bool take_word(double& value) {
     skip_blanks();
-    const char* const begin = at_ < end_ && *at_ == '+' ? at_ + 1 : at_;
-    const auto [end, error] = std::from_chars(begin, end_, value);
+    const char* const begin = at_ < row_end_ && *at_ == '+' ? at_ + 1 : at_;
+    const auto [end, error] = std::from_chars(begin, row_end_, value);
     if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
-    if (end == begin || error == std::errc::invalid_argument) return false;
+    if (end == begin || error == std::errc::invalid_argument || (end < row_end_ && !is_blank(*end))) return false;
     at_ = end;
     return true;
   }
 
   const char* at_;
   const char* end_;
+  const char* row_end_;
+  int line_, row_line_ = 0;
   bool ascii_, swap_, is_bad_length_ = false;
 };
 
@@ -119,8 +168,8 @@ class PlyFaults {
     finding.text = text;
     findings_.push_back(std::move(finding));
   }
-  void add_of_many(const std::string& text) {
-    if (++many_ <= scene::kMostTold) add(0, text);
+  void add_of_many(int line, const std::string& text) {
+    if (++many_ <= scene::kMostTold) add(line, text);
   }
   [[noreturn]] void fail(int line, const std::string& text) {
     add(line, text);
@@ -144,12 +193,22 @@ class PlyFaults {
 /// Where in a vertex the values stand that we want; -1: nowhere.
 struct VertexLayout {
   int x = -1, y = -1, z = -1, radius = -1, material = -1;
+  bool r_is_color = false;
+
+  bool uses(int property) const {
+    return property == x || property == y || property == z || property == radius || property == material;
+  }
 };
 
 constexpr std::array<std::string_view, 3> kRadiusNames = {"radius", "scalar_radius", "r"};
 
 VertexLayout layout_of(const PlyElement& vertex) {
   VertexLayout layout;
+  const auto has = [&](const char* name) {
+    return std::any_of(vertex.properties.begin(), vertex.properties.end(),
+                       [&](const PlyProperty& p) { return p.name == name; });
+  };
+  layout.r_is_color = has("r") && has("g") && has("b");
   std::size_t radius_rank = kRadiusNames.size();
   for (int i = 0; i < static_cast<int>(vertex.properties.size()); ++i) {
     const PlyProperty& p = vertex.properties[static_cast<std::size_t>(i)];
@@ -158,7 +217,7 @@ VertexLayout layout_of(const PlyElement& vertex) {
     if (p.name == "y") layout.y = i;
     if (p.name == "z") layout.z = i;
     if (p.name == "material") layout.material = i;
-    // In this order: a file with `r` for red has its `radius` under that name.
+    if (p.name == "r" && layout.r_is_color) continue;
     for (std::size_t k = 0; k < kRadiusNames.size(); ++k)
       if (p.name == kRadiusNames[k] && k < radius_rank) {
         layout.radius = i;
@@ -185,35 +244,71 @@ void check_count(PlyFaults& faults, const PlyElement& element, const PlyHeader& 
                        std::to_string(bytes_left) + " bytes follow; the file is cut off, or its count is wrong");
 }
 
+/// Reads one row by `take(property, its number)`, which is false for a value that is none.
+///
+/// `name()` is the row's for messages
+template <class Name, class Take>
+void read_row(PlyFaults& faults, const PlyElement& element, PlyCursor& cursor, Name name, Take take) {
+  cursor.begin_row();
+  for (std::size_t k = 0; k < element.properties.size(); ++k)
+    if (!take(element.properties[k], k))
+      faults.fail(cursor.line(), name() + ", `" + element.properties[k].name + "`: " + cursor.fault());
+  if (!cursor.end_row())
+    faults.fail(cursor.line(), name() + ": `" + cursor.word() + "` follows the last value that the header promises");
+}
+
+/// Passes over an element that holds no spheres.
+void skip_element(PlyFaults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor) {
+  if (element.properties.empty()) return;
+  if (header.encoding != PlyEncoding::kAscii && !element.has_list())
+    return cursor.skip_bytes(element.count * fewest_bytes(element, header.encoding));
+  for (std::uint64_t i = 0; i < element.count; ++i)
+    read_row(
+        faults, element, cursor, [&] { return "row " + std::to_string(i) + " of `" + element.name + "`"; },
+        [&](const PlyProperty& property, std::size_t) { return cursor.skip(property); });
+}
+
+/// More rows than the header promises, or something else, behind the last one.
+void check_end(PlyFaults& faults, PlyCursor& cursor) {
+  cursor.begin_row();
+  if (cursor.bytes_left() == 0) return;
+  faults.fail(cursor.line(), std::to_string(cursor.bytes_left()) +
+                                 " bytes follow the last row that the header promises; its counts are wrong, or the "
+                                 "file is damaged");
+}
+
 void read_vertices(PlyFaults& faults, const PlyElement& vertex, PlyCursor& cursor, std::size_t material_count,
                    scene::Points& points) {
   const VertexLayout at = layout_of(vertex);
   if (at.x < 0 || at.y < 0 || at.z < 0) faults.fail(0, "`vertex` has no x, y and z");
   if (at.radius < 0 && !points.radius)
-    faults.fail(0, "`vertex` has no `radius`; add one, or set `radius` in [[points]]");
+    faults.fail(0, std::string("`vertex` has no `radius`") +
+                       (at.r_is_color ? ", and its `r` is a colour, beside `g` and `b`" : "") +
+                       "; add one, or set `radius` in [[points]]");
+  for (std::size_t k = 0; k < vertex.properties.size(); ++k)
+    if (!at.uses(static_cast<int>(k))) points.unused.push_back(vertex.properties[k].name);
   const auto count = static_cast<std::size_t>(vertex.count);
   points.centers.resize(count);
   points.radii.resize(count);
   if (at.material >= 0) points.materials.resize(count);
   std::vector<double> row(vertex.properties.size());
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const PlyProperty& property = vertex.properties[k];
-      const bool good = property.is_list ? cursor.skip(property) : cursor.take(property.type, row[k]);
-      if (!good)
-        faults.fail(0, "vertex " + std::to_string(i) + " of " + std::to_string(count) + ", `" + property.name +
-                           "`: " + cursor.fault());
-    }
+    read_row(
+        faults, vertex, cursor, [&] { return "vertex " + std::to_string(i) + " of " + std::to_string(count); },
+        [&](const PlyProperty& property, std::size_t k) {
+          return property.is_list ? cursor.skip(property) : cursor.take(property.type, row[k]);
+        });
     const auto value = [&](int property) { return row[static_cast<std::size_t>(property)]; };
     points.centers[i] = {value(at.x), value(at.y), value(at.z)};
     points.radii[i] = points.radius ? *points.radius : value(at.radius);
     if (!math::is_finite(points.centers[i]) || !std::isfinite(points.radii[i]))
-      faults.add_of_many("vertex " + std::to_string(i) + " has a number that is not finite");
+      faults.add_of_many(cursor.line(), "vertex " + std::to_string(i) + " has a number that is not finite");
     if (at.material < 0) continue;
     const double material = value(at.material);
     if (!(material >= 0 && material < static_cast<double>(material_count)) || material != std::floor(material)) {
-      faults.add_of_many("vertex " + std::to_string(i) + " has material " + scene::number_text(material) +
-                         "; the scene has " + std::to_string(material_count) + ", counted from 0");
+      faults.add_of_many(cursor.line(), "vertex " + std::to_string(i) + " has material " +
+                                            scene::number_text(material) + "; the scene has " +
+                                            std::to_string(material_count) + ", counted from 0");
     } else {
       points.materials[i] = static_cast<std::uint32_t>(material);
     }
@@ -228,26 +323,26 @@ void read_ply(const std::filesystem::path& file, std::size_t material_count, sce
   PlyHeader header;
   int line = 0;
   if (const std::string fault = parse_ply_header(bytes, header, line); !fault.empty()) faults.fail(line, fault);
-  PlyCursor cursor(std::string_view(bytes).substr(header.bytes), header.encoding);
+  PlyCursor cursor(std::string_view(bytes).substr(header.bytes), header.encoding, header.lines + 1);
+  scene::Points read;
+  read.radius = points.radius;
+  bool has_vertices = false;
   for (const PlyElement& element : header.elements) {
     check_count(faults, element, header, cursor.bytes_left());
-    if (element.name == "vertex") {
-      scene::Points read;
-      read.radius = points.radius;
-      read_vertices(faults, element, cursor, material_count, read);
-      faults.raise_if_any();
-      points.centers = std::move(read.centers);
-      points.radii = std::move(read.radii);
-      points.materials = std::move(read.materials);
-      return;  // what follows is not ours
+    if (element.name != "vertex") {
+      skip_element(faults, element, header, cursor);
+      continue;
     }
-    if (element.properties.empty()) continue;
-    for (std::uint64_t i = 0; i < element.count; ++i)
-      for (const PlyProperty& property : element.properties)
-        if (!cursor.skip(property))
-          faults.fail(0, "element `" + element.name + "`, row " + std::to_string(i) + ": " + cursor.fault());
+    has_vertices = true;
+    read_vertices(faults, element, cursor, material_count, read);
   }
-  faults.fail(0, "there is no element `vertex`");
+  if (!has_vertices) faults.fail(0, "there is no element `vertex`");
+  faults.raise_if_any();
+  check_end(faults, cursor);
+  points.centers = std::move(read.centers);
+  points.radii = std::move(read.radii);
+  points.materials = std::move(read.materials);
+  points.unused = std::move(read.unused);
 }
 
 }  // namespace orrery::format

@@ -88,6 +88,20 @@ void read_spheres(Reading& reading, const toml::table& root, const MaterialIndex
   }
 }
 
+/// Reads a data file; what is wrong is reported at the place in the scene that names it, then by the file itself.
+void read_points_file(Reading& reading, const Place& place, const std::string& full_name,
+                      const std::filesystem::path& file, std::size_t materials, scene::Points& points) {
+  try {
+    read_ply(file, materials, points);
+  } catch (const base::Error& error) {
+    if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
+    reading.error(place, full_name + ".file: " + error.what(), {}, error.kind());
+    for (const base::Finding& finding : error.findings())
+      reading.diagnostics.add(finding.severity, {finding.file, finding.line, 0, 1}, error.kind(),
+                              [&] { return finding; });
+  }
+}
+
 void read_points(Reading& reading, const toml::table& root, const std::filesystem::path& folder, int frame,
                  const MaterialIndex& index, scene::Scene& scene) {
   const toml::array* list = tables_under(reading, root, "points");
@@ -100,13 +114,8 @@ void read_points(Reading& reading, const toml::table& root, const std::filesyste
     points.material = read_material_name(reading, table, full_name, scene, index);
     if (reading.unread.count(full_name + ".file") == 0) {
       points.file = base::with_frame(points.file.string(), frame);
-      try {
-        read_ply(folder / points.file, scene.materials.size(), points);
-      } catch (const base::Error& error) {
-        // The place in the scene that names the file, then what the file itself has to say.
-        reading.error(place_of(*table.get("file")), full_name + ".file: " + error.what());
-        reading.findings.insert(reading.findings.end(), error.findings().begin(), error.findings().end());
-      }
+      read_points_file(reading, place_of(*table.get("file")), full_name, folder / points.file, scene.materials.size(),
+                       points);
     }
     scene.points.push_back(std::move(points));
   }
@@ -133,22 +142,24 @@ const toml::node* node_of(const toml::table& root, const std::string& key) {
   return at == &root ? nullptr : at;
 }
 
-bool is_error(const base::Finding& finding) { return finding.severity == base::Severity::kError; }
+/// Adds a problem at the place of its key; without one at the file.
+void add_problem(Reading& reading, const toml::table& root, const std::string& file, const scene::Problem& problem,
+                 const std::string& text) {
+  const toml::node* node = node_of(root, problem.key);
+  reading.add(problem.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, problem.kind);
+}
 
 /// Adds what is wrong with the whole. A value that could not be read stands at its default: what the whole makes of
 /// that would be a finding too many, and nobody is warned of a scene that is wrong.
-void add_problems(Reading& reading, const toml::table& root, const ReadResult& result, const std::string& file) {
-  const bool has_errors = std::any_of(reading.findings.begin(), reading.findings.end(), is_error);
+void add_problems(Reading& reading, const toml::table& root, const std::vector<scene::Problem>& problems,
+                  const std::string& file) {
+  const bool has_errors = reading.diagnostics.has_errors();
   const auto is_of_camera = [](const std::string& key) { return key.rfind("camera.", 0) == 0; };
   const bool camera_is_read = std::none_of(reading.unread.begin(), reading.unread.end(), is_of_camera);
-  const scene::Scene* closing = result.closing ? &*result.closing : nullptr;
-  for (const scene::Problem& problem : scene::validate(result.scene, closing)) {
+  for (const scene::Problem& problem : problems) {
     if (has_errors && problem.severity == base::Severity::kWarning) continue;
     if (reading.unread.count(problem.key) != 0 || (is_of_camera(problem.key) && !camera_is_read)) continue;
-    const toml::node* node = node_of(root, problem.key);
-    const Place place = node != nullptr ? place_of(*node) : Place{file, 0, 0, 1};
-    const std::string text = problem.key.empty() ? problem.text : problem.key + ": " + problem.text;
-    reading.findings.push_back(reading.source.finding(problem.severity, place, text));
+    add_problem(reading, root, file, problem, problem.key.empty() ? problem.text : problem.key + ": " + problem.text);
   }
 }
 
@@ -164,12 +175,9 @@ void pose(Reading& reading, const toml::table& root, const std::string& file, in
   }
   if (is_open) {
     result.closing = scene::posed(scene, closes);
-    for (scene::Problem problem : scene::validate(*result.closing)) {
+    for (const scene::Problem& problem : scene::validate(*result.closing)) {
       if (problem.severity == base::Severity::kWarning) continue;
-      const toml::node* node = node_of(root, problem.key);
-      reading.findings.push_back(reading.source.finding(problem.severity,
-                                                        node != nullptr ? place_of(*node) : Place{file, 0, 0, 1},
-                                                        problem.key + " when the shutter closes: " + problem.text));
+      add_problem(reading, root, file, problem, problem.key + " when the shutter closes: " + problem.text);
     }
   }
   scene = scene::posed(scene, opens);
@@ -188,7 +196,7 @@ void report_unknown_tables(Reading& reading, const toml::table& root) {
       report_unknown_key(reading, key, "the scene", known);
 }
 
-std::vector<Setting> settings_of(const toml::table& root, const scene::Scene& scene) {
+std::vector<Setting> settings_of(const SourceText& source, const toml::table& root, const scene::Scene& scene) {
   std::vector<Setting> settings;
   for (const scene::Table& table : scene::tables()) {
     const toml::table* written = root.get(table.name) != nullptr ? root.get(table.name)->as_table() : nullptr;
@@ -197,8 +205,8 @@ std::vector<Setting> settings_of(const toml::table& root, const scene::Scene& sc
       std::string origin = "default";
       if (node != nullptr) {
         const Place place = place_of(*node);
-        origin = place.text_name;
-        if (origin != kOverrideName) origin += ':' + std::to_string(place.line);
+        origin = place.text_name == kOverrideName ? source.option_at(place.line)
+                                                  : place.text_name + ':' + std::to_string(place.line);
       }
       settings.push_back({table.name + "." + key.name, key.text(scene), origin});
     }
@@ -206,24 +214,14 @@ std::vector<Setting> settings_of(const toml::table& root, const scene::Scene& sc
   return settings;
 }
 
-void throw_errors(const std::filesystem::path& file, std::vector<base::Finding> findings) {
-  const auto errors = std::count_if(findings.begin(), findings.end(), is_error);
-  if (errors == 0) return;
-  std::stable_sort(findings.begin(), findings.end(), [](const base::Finding& a, const base::Finding& b) {
-    return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
-  });
-  throw base::Error(base::ErrorKind::kBadData,
-                    file.string() + ": " + std::to_string(errors) + (errors == 1 ? " error" : " errors"),
-                    std::move(findings));
-}
-
 }  // namespace
 
-ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides, int frame) {
-  const std::string text = read_file(file, kLargestSceneFile);
+ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides, int frame,
+                      const SceneCheck& also) {
+  const std::string text = read_file(file, kLargestSceneFile), name = file.string();
   Reading reading;
-  const toml::table root = parse_tree(file.string(), text, overrides, reading.source, reading.findings);
-  if (root.empty()) throw_errors(file, reading.findings);
+  const toml::table root = parse_tree(name, text, overrides, reading.source, reading.diagnostics);
+  if (root.empty()) reading.diagnostics.raise_errors(name);
 
   ReadResult result;
   report_unknown_tables(reading, root);
@@ -234,13 +232,15 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
   read_spheres(reading, root, index, result.scene);
   if (const toml::array* keys = tables_under(reading, root, "key")) read_tracks(reading, *keys, result.scene);
-  if (std::none_of(reading.findings.begin(), reading.findings.end(), is_error))
-    pose(reading, root, file.string(), frame, result);
+  if (!reading.diagnostics.has_errors()) pose(reading, root, name, frame, result);
   read_points(reading, root, file.parent_path(), frame, index, result.scene);
-  add_problems(reading, root, result, file.string());
-  throw_errors(file, reading.findings);
-  result.warnings = std::move(reading.findings);
-  result.settings = settings_of(root, result.scene);
+  add_problems(reading, root, scene::validate(result.scene, result.closing ? &*result.closing : nullptr), name);
+  const auto is_of_color = [](const std::string& key) { return key.rfind("color.", 0) == 0; };
+  if (also && std::none_of(reading.unread.begin(), reading.unread.end(), is_of_color))
+    add_problems(reading, root, also(result.scene), name);
+  reading.diagnostics.raise_errors(name);
+  result.warnings = reading.diagnostics.take_warnings();
+  result.settings = settings_of(reading.source, root, result.scene);
   return result;
 }
 

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/finding.h"
+#include "format/override.h"
 #include "scene/scene.h"
+#include "scene/validate.h"
 
 namespace orrery::format {
 
@@ -15,7 +18,7 @@ namespace orrery::format {
 struct Setting {
   std::string key;     ///< "camera.vfov"
   std::string value;   ///< as it would stand in a scene file
-  std::string origin;  ///< "default", "scene.toml:12", "--set"
+  std::string origin;  ///< "default", "scene.toml:12", "--set", "--samples"
 };
 
 /// The frame of a scene that nobody asks for another one of.
@@ -30,17 +33,22 @@ struct ReadResult {
   std::optional<scene::Scene> closing = {};
 };
 
+/// What somebody else finds wrong with a scene that is valid by itself, such as names that an OCIO config lacks.
+using SceneCheck = std::function<std::vector<scene::Problem>(const scene::Scene&)>;
+
 /// Reads and checks a scene file, and the data files it names.
 ///
-/// `frame` chooses what its keys and its sequences of files come to.
+/// `frame` selects the values of animated keys and the files of sequences. `also` is asked where nothing in [color] is
+/// wrong by itself.
 ///
 /// `overrides` are "key=value" with the value as in the file; quotes around a word may be left out. Keys are dotted,
 /// spheres are counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5".
 ///
-/// Errors     base::Error: kMissingInput where the file cannot be opened; kBadData with all findings of the file, of
-///            the overrides and of the data files, each with its place
+/// Errors     base::Error: kMissingInput where the scene or nothing but data files cannot be opened; kIo; kBadData with
+///            the findings of the file, of the overrides and of the data files, each with its place, the first
+///            kMostErrors of them
 /// Reference  docs/scene-format.md
-ReadResult read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
-                      int frame = kFirstFrame);
+ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {},
+                      int frame = kFirstFrame, const SceneCheck& also = {});
 
 }  // namespace orrery::format

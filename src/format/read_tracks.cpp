@@ -68,6 +68,16 @@ std::optional<scene::Animated> read_target(Reading& reading, const toml::table& 
   if (!value) return {};
   name = std::get<std::string>(*value);
   auto target = scene::find_animated(scene, name);
+  if (const auto spheres = scene::spheres_of_target(scene, name); spheres.size() > 1) {
+    const auto numbered = [&](std::size_t i) {
+      return "sphere[" + std::to_string(spheres[i]) + "]" + name.substr(name.rfind('.'));
+    };
+    reading.error(
+        place_of(*node),
+        full_name + ".target: " + std::to_string(spheres.size()) + " spheres have the name in \"" + name + "\"",
+        "name one by its number, such as " + numbered(0) + " or " + numbered(1));
+    return {};
+  }
   if (target) return target;
   std::string remedy = base::did_you_mean(name, scene::animated_names(scene));
   if (remedy.empty())

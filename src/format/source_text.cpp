@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/source_text.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
+#include "base/input_file.h"
 
 namespace orrery::format {
 
@@ -31,11 +34,19 @@ std::size_t byte_of_character(std::string_view line, std::size_t index) {
 
 }  // namespace
 
-void SourceText::add(const std::string& name, std::string_view text) {
-  const auto [at, is_new] = texts_.try_emplace(name);
-  if (!is_new) at->second.bytes += '\n';
-  at->second.bytes += text;
-  at->second.begins.clear();
+void SourceText::add(const std::string& name, std::string_view text) { texts_[name] = {std::string(text), {}}; }
+
+void SourceText::add_override(const Override& override, std::string parsed, std::vector<std::size_t> inserted) {
+  ShownOverride own;
+  own.option = override.option;
+  own.shown = override.option + ' ' + override.typed;
+  // One line, whatever is in it.
+  std::replace_if(
+      own.shown.begin(), own.shown.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  own.parsed = std::move(parsed);
+  own.inserted = std::move(inserted);
+  own.typed_begin = std::min(override.text.rfind(override.typed), override.text.size());
+  overrides_.push_back(std::move(own));
 }
 
 std::string_view SourceText::line_of(const Text& text, int line) {
@@ -59,16 +70,38 @@ std::string_view SourceText::line_of(const Text& text, int line) {
   return out;
 }
 
+/// Brings a place in what was parsed back to what was typed.
+void SourceText::point_into(const ShownOverride& override, const Place& place, base::Finding& finding) {
+  const auto shown_byte = [&](int column) {
+    std::size_t at = byte_of_character(override.parsed, static_cast<std::size_t>(column) - 1);
+    at -= static_cast<std::size_t>(std::lower_bound(override.inserted.begin(), override.inserted.end(), at) -
+                                   override.inserted.begin());
+    const std::size_t begin = override.option.size() + 1;
+    return std::min(at < override.typed_begin ? begin : begin + at - override.typed_begin, override.shown.size());
+  };
+  const std::size_t first = shown_byte(place.column);
+  finding.column = static_cast<int>(first) + 1;
+  finding.width = std::max(1, static_cast<int>(shown_byte(place.column + place.width) - first));
+  if (override.shown.size() <= kLongestShown) finding.source_line = override.shown;
+}
+
 base::Finding SourceText::finding(base::Severity severity, const Place& place, std::string text,
                                   std::string remedy) const {
   base::Finding out;
   out.severity = severity;
+  out.text = std::move(text);
+  out.remedy = std::move(remedy);
+  if (place.text_name == kOverrideName && place.line >= 1 &&
+      static_cast<std::size_t>(place.line) <= overrides_.size()) {
+    const ShownOverride& override = overrides_[static_cast<std::size_t>(place.line) - 1];
+    out.file = override.option;
+    if (place.column >= 1) point_into(override, place, out);
+    return out;
+  }
   out.file = place.text_name;
   out.line = place.line;
   out.column = place.column;
   out.width = place.width;
-  out.text = std::move(text);
-  out.remedy = std::move(remedy);
   const auto found = texts_.find(place.text_name);
   if (found == texts_.end() || place.column < 1) return out;
   const std::string_view line = line_of(found->second, place.line);
@@ -86,8 +119,7 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
                                                       std::to_string(largest_bytes >> 20) + " MiB that are read");
   };
   std::error_code error;
-  if (std::filesystem::is_directory(file, error))
-    throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": it is a directory");
+  base::require_readable(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in)
     throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + std::strerror(errno));
@@ -97,7 +129,7 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
   bytes.resize(error ? 0 : static_cast<std::size_t>(size));
   std::size_t got = std::fread(bytes.data(), 1, bytes.size(), in.get());
   if (got < bytes.size()) bytes.resize(got);
-  // What has no size beforehand (a pipe), or grew meanwhile, is read on until its end.
+  // What grew meanwhile is read on until its end; files of /proc say that they are empty.
   char more[65536];
   while ((got = std::fread(more, 1, sizeof(more), in.get())) > 0) {
     bytes.append(more, got);

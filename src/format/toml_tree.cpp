@@ -22,7 +22,7 @@ Place place_of(const toml::source_region& region) {
 Place place_of(const toml::node& node) { return place_of(node.source()); }
 Place place_of(const toml::key& key) { return place_of(key.source()); }
 
-base::Finding parse_finding(const toml::parse_error& error, const SourceText& source) {
+void add_parse_error(const toml::parse_error& error, const SourceText& source, Diagnostics& diagnostics) {
   Place place = place_of(error.source());
   place.width = 1;
   std::string text(error.description());
@@ -33,26 +33,29 @@ base::Finding parse_finding(const toml::parse_error& error, const SourceText& so
     text = "this stands twice: " + text.substr(at);
     remedy = "remove one of them";
   }
-  return source.finding(base::Severity::kError, place, std::move(text), std::move(remedy));
+  diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData,
+                  [&] { return source.finding(base::Severity::kError, place, text, remedy); });
 }
 
-toml::table parse_tree(const std::string& file_name, const std::string& text, const std::vector<std::string>& overrides,
-                       SourceText& source, std::vector<base::Finding>& findings) {
+toml::table parse_tree(const std::string& file_name, const std::string& text, const std::vector<Override>& overrides,
+                       SourceText& source, Diagnostics& diagnostics) {
   source.add(file_name, text);
   if (Place place = too_deep_key(text); place.line > 0) {
     place.text_name = file_name;
-    findings.push_back(
-        source.finding(base::Severity::kError, place, "a key of more than " + std::to_string(kDeepestKey) + " parts"));
+    diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData, [&] {
+      return source.finding(base::Severity::kError, place,
+                            "a key of more than " + std::to_string(kDeepestKey) + " parts");
+    });
     return {};
   }
   toml::table root;
   try {
     root = toml::parse(std::string_view(text), std::string_view(file_name));
   } catch (const toml::parse_error& error) {
-    findings.push_back(parse_finding(error, source));
+    add_parse_error(error, source, diagnostics);
     return {};
   }
-  apply_overrides(root, overrides, source, findings);
+  apply_overrides(root, overrides, source, diagnostics);
   return root;
 }
 

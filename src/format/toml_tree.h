@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/finding.h"
+#include "format/diagnostics.h"
 #include "format/source_text.h"
 
 namespace orrery::format {
@@ -16,13 +16,13 @@ namespace orrery::format {
 Place place_of(const toml::node& node);
 Place place_of(const toml::key& key);
 
-/// A parse error of the library in our own words.
-base::Finding parse_finding(const toml::parse_error& error, const SourceText& source);
+/// Adds a parse error of the library, in our own words.
+void add_parse_error(const toml::parse_error& error, const SourceText& source, Diagnostics& diagnostics);
 
-/// Parses the scene file's text and puts the overrides in; what can't be parsed becomes findings.
+/// Parses the scene file's text and puts the overrides in; what cannot be parsed becomes diagnostics.
 ///
 /// Result     the tree as far as there is one; nodes know their places, also those of overrides
-toml::table parse_tree(const std::string& file_name, const std::string& text, const std::vector<std::string>& overrides,
-                       SourceText& source, std::vector<base::Finding>& findings);
+toml::table parse_tree(const std::string& file_name, const std::string& text, const std::vector<Override>& overrides,
+                       SourceText& source, Diagnostics& diagnostics);
 
 }  // namespace orrery::format

@@ -2,17 +2,13 @@
 #include "image/read.h"
 
 #include <OpenImageIO/imageio.h>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <new>
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "image/format.h"
 #include "image/library.h"
 
@@ -31,20 +27,6 @@ constexpr int kRowsAtATime = 64;
 
 /// The line of orrery/settings that makes A coverage.
 constexpr const char* kTransparent = "background.alpha = 0\n";
-
-/// Says why a file cannot be opened, better than a picture library does.
-void require_readable(const std::filesystem::path& file) {
-  const auto missing = [&](const std::string& reason) {
-    throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + reason);
-  };
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) missing(std::strerror(errno));
-  struct stat status {};
-  const int known = ::fstat(descriptor, &status);
-  ::close(descriptor);
-  if (known == 0 && S_ISDIR(status.st_mode)) missing("it is a directory");
-  if (known == 0 && !S_ISREG(status.st_mode)) missing("it is not a plain file");
-}
 
 const char* library_name(Format format) {
   switch (format) {
@@ -154,7 +136,7 @@ film::Picture decode_all(const std::filesystem::path& file, ImageInput& in, cons
 film::Picture read(const std::filesystem::path& file) {
   prepare_library();
   const Format format = format_of(file);
-  require_readable(file);
+  base::require_readable(file);
   const auto in = ImageInput::create(library_name(format));
   if (!in)
     throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read " + file.string() + OIIO::geterror());

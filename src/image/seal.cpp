@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/input_file.h"
 
 namespace orrery::image {
 namespace {
@@ -61,6 +62,7 @@ void seal(const std::filesystem::path& file, const std::filesystem::path& name) 
 }
 
 void require_seal(const std::filesystem::path& file) {
+  base::require_readable(file);
   const File in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in)
     throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + std::strerror(errno));

@@ -56,6 +56,25 @@ std::optional<Animated> animated_material(const Scene& scene, const std::string&
   return {};
 }
 
+/// "sphere[3].center" or "material.gold.fuzz" taken apart; of "camera.vfov" the name is empty.
+struct TargetParts {
+  std::string table, name, key;
+  bool is_index = false;
+};
+
+std::optional<TargetParts> parts_of(const std::string& target) {
+  const std::size_t last = target.rfind('.');
+  const std::size_t first = target.find_first_of(".[");
+  if (last == std::string::npos || first > last) return {};
+  TargetParts out{target.substr(0, first), {}, target.substr(last + 1), target[first] == '['};
+  if (first == last) return out;
+  out.name = target.substr(first + 1, last - first - 1);
+  if (!out.is_index) return out;
+  if (out.name.empty() || out.name.back() != ']') return {};
+  out.name.pop_back();
+  return out;
+}
+
 /// The slope at key i by the frames around it; at the ends by the one neighbour.
 Vec3d slope(const Track& t, std::size_t i) {
   const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, t.frames.size() - 1);
@@ -76,23 +95,28 @@ Vec3d turned(Vec3d v, Vec3d axis, double turns) {
 }  // namespace
 
 std::optional<Animated> find_animated(const Scene& scene, const std::string& target) {
-  const std::size_t last = target.rfind('.');
-  const std::size_t first = target.find_first_of(".[");
-  if (last == std::string::npos || first > last) return {};
-  const std::string table = target.substr(0, first), key = target.substr(last + 1);
-  if (first == last) {
-    if (!is_of_a_moment(table)) return {};
-    for (const Table& t : tables())
-      if (t.name == table)
-        if (const auto* found = find_key(t.keys, key)) return Animated{found->type, found->range, found->set};
-    return {};
+  const std::optional<TargetParts> parts = parts_of(target);
+  if (!parts) return {};
+  if (parts->table == "sphere") return animated_sphere(scene, parts->name, parts->is_index, parts->key);
+  if (parts->table == "material" && !parts->is_index) return animated_material(scene, parts->name, parts->key);
+  if (!parts->name.empty() || !is_of_a_moment(parts->table)) return {};
+  for (const Table& t : tables())
+    if (t.name == parts->table)
+      if (const auto* found = find_key(t.keys, parts->key)) return Animated{found->type, found->range, found->set};
+  return {};
+}
+
+std::vector<std::size_t> spheres_of_target(const Scene& scene, const std::string& target) {
+  const std::optional<TargetParts> parts = parts_of(target);
+  std::vector<std::size_t> out;
+  if (!parts || parts->table != "sphere") return out;
+  if (parts->is_index) {
+    if (const auto i = find_sphere(scene, parts->name, true)) out.push_back(*i);
+    return out;
   }
-  const bool is_index = target[first] == '[';
-  std::string name = target.substr(first + 1, last - first - 1);
-  if (is_index && (name.empty() || name.back() != ']')) return {};
-  if (is_index) name.pop_back();
-  if (table == "sphere") return animated_sphere(scene, name, is_index, key);
-  return table == "material" && !is_index ? animated_material(scene, name, key) : std::nullopt;
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
+    if (scene.spheres[i].name == parts->name) out.push_back(i);
+  return out;
 }
 
 std::vector<std::string> animated_names(const Scene& scene) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ struct Animated {
 /// Finds what "camera.look_from", "background.top", "sphere[3].center", "sphere.NAME.radius" or "material.NAME.albedo"
 /// names; nothing where the scene has no such number.
 std::optional<Animated> find_animated(const Scene& scene, const std::string& target);
+
+/// The spheres that a target may mean, by number: several where they share its name. Empty for other targets.
+std::vector<std::size_t> spheres_of_target(const Scene& scene, const std::string& target);
 
 /// All names that find_animated knows in this scene, of spheres only those that have names.
 std::vector<std::string> animated_names(const Scene& scene);

@@ -118,6 +118,7 @@ struct Points {
   std::vector<Vec3d> centers;
   std::vector<double> radii;             ///< as many as centers
   std::vector<std::uint32_t> materials;  ///< as many as centers, or empty: `material` for all
+  std::vector<std::string> unused = {};  ///< properties of the file's vertices that nothing uses, such as colours
 };
 
 /// What files hold beside the beauty.

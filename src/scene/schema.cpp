@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "scene/key_builders.h"
+#include "scene/layers.h"
 #include "scene/limits.h"
 
 namespace orrery::scene {
@@ -27,9 +28,10 @@ Table image_table() {
            optional_window<S>("crop",
                               {"px",
                                "[x, y, width, height]: only this part of the frame is rendered; its pixels are "
-                               "those of the whole, bit for bit"},
+                               "those of the whole, bit for bit; not together with `overscan`"},
                               "the whole frame", [](S& s) -> std::optional<Window>& { return s.image.crop; }),
-           integer<S>("overscan", {0, kWidestOverscan}, {"px", "rows and columns beyond each edge of the frame", cost},
+           integer<S>("overscan", {0, kWidestOverscan},
+                      {"px", "rows and columns beyond each edge of the frame; not together with `crop`", cost},
                       [](S& s) -> int& { return s.image.overscan; })}};
 }
 
@@ -143,8 +145,8 @@ Table output_table() {
           {choices<S>("layers",
                       {"Z", "depth", "N", "P", "albedo", "diffuse", "specular", "transmission", "background",
                        "variance", "samples", "object_id", "material_id", "denoise.albedo", "denoise.normal",
-                       "CryptoObject", "CryptoMaterial", "CryptoGroup"},
-                      {"", "what an EXR holds beside the beauty",
+                       "CryptoObject", "CryptoMaterial", "CryptoGroup", kAllLayers},
+                      {"", "what an EXR holds beside the beauty; `all`: every layer that the scene can have",
                        "one a tenth to a fifth of the time, all of them two fifths; files grow"},
                       [](S& s) -> std::vector<std::string>& { return s.output.layers; })}};
 }

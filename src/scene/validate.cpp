@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scene/coincident.h"
+#include "scene/layers.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
 
@@ -16,10 +17,10 @@ namespace {
 class Problems {
  public:
   void error(std::string key, std::string text) {
-    list_.push_back({base::Severity::kError, std::move(key), std::move(text)});
+    list_.push_back({base::Severity::kError, std::move(key), std::move(text), base::ErrorKind::kBadData});
   }
   void warning(std::string key, std::string text) {
-    list_.push_back({base::Severity::kWarning, std::move(key), std::move(text)});
+    list_.push_back({base::Severity::kWarning, std::move(key), std::move(text), base::ErrorKind::kBadData});
   }
   std::vector<Problem> take() { return std::move(list_); }
 
@@ -148,6 +149,12 @@ void check_points(const Points& points, const std::string& key, const Scene& sce
     problems.error(key, "and " + std::to_string(faults - kMostTold) + " more (" + std::to_string(faults) + " in all)");
 }
 
+void check_layers(const Scene& scene, Problems& problems) {
+  for (std::size_t i = 0; i < scene.output.layers.size(); ++i)
+    if (const std::string fault = layer_fault(scene, scene.output.layers[i]); !fault.empty())
+      problems.error("output.layers[" + std::to_string(i) + "]", fault);
+}
+
 /// Two surfaces in exactly the same place: their order alone decides which of them is rendered.
 void check_coincident(const Scene& scene, const Scene* closing, Problems& problems) {
   for (const Points& p : scene.points)
@@ -171,6 +178,7 @@ std::vector<Problem> validate(const Scene& scene, const Scene* closing) {
   check_spheres(scene, problems);
   for (std::size_t p = 0; p < scene.points.size(); ++p)
     check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, problems);
+  check_layers(scene, problems);
   check_coincident(scene, closing, problems);
   return problems.take();
 }

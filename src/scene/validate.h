@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/finding.h"
 #include "scene/scene.h"
 
@@ -18,10 +19,12 @@ struct Problem {
   base::Severity severity = base::Severity::kError;
   std::string key;  ///< "camera.up", "sphere[3].radius", "points[0][17].center", from 0; empty: the whole scene
   std::string text;
+  base::ErrorKind kind = base::ErrorKind::kBadData;  ///< of an error; or kMissingInput
 };
 
 /// Finds what makes no sense although every value by itself has the right type: a camera without direction, a lens of
-/// no sensible size, numbers outside the domain, materials that are not there, spheres in the same place (a warning).
+/// no sensible size, numbers outside the domain, materials that do not exist, layers that the scene cannot have,
+/// spheres in the same place (a warning).
 ///
 /// Domain     any scene, also with numbers that are not finite
 /// `closing`  the scene when the shutter closes, which is checked for coincident spheres only; null: no motion

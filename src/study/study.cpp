@@ -14,18 +14,18 @@
 #include "app/choose_isa.h"
 #include "app/job_files.h"
 #include "app/layers.h"
+#include "app/load_scene.h"
 #include "app/memory.h"
 #include "app/reduced_picture.h"
 #include "app/scene_hash.h"
+#include "app/submit.h"
 #include "app/threads.h"
 #include "app/version.h"
-#include "app/working_space.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/text.h"
 #include "compile/compile.h"
-#include "format/read_scene.h"
 #include "render/render.h"
 #include "study/axes.h"
 #include "study/file_axis.h"
@@ -103,13 +103,16 @@ class Runner {
       files.add_output(request_.report, "-o");
       base::check_creatable(request_.report);
     }
-    read_ = format::read_scene(request_.scene, request_.overrides);
+    app::SceneRequest load;
+    load.file = request_.scene;
+    load.overrides = request_.overrides;
+    load.frame = request_.frame;
+    read_ = std::move(app::load_scene(load).read);
     scene::Scene& scene = read_.scene;
     app::add_scene_files(request_.scene, scene, files);
     if (scene.render.shading != scene::Shading::kPath)
       throw base::Error(base::ErrorKind::kUsage,
                         "render.shading shows no light, so there is nothing to trade; set it to \"path\"");
-    app::to_working_space(app::config_of(request_.scene, scene.color), scene);
     full_ = compile::compile(scene, closing());
     const film::LayerRequest layers = app::choose_layers(scene, full_).request;
     memory_needs_ = app::memory_needs(full_, layers);
@@ -333,6 +336,7 @@ class Runner {
     app::BenchRequest bench;
     bench.scene = request_.scene;
     bench.overrides = request_.overrides;
+    bench.frame = request_.frame;
     bench.isa = request_.isa;
     bench.rounds = 5;
     bench.seconds = std::clamp(request_.budget_s * kFeatureShare / 5 / 6, 0.02, 0.25);
@@ -344,6 +348,15 @@ class Runner {
     for (const Point& p : out_.points)
       if (p.axis == axis && p.name == name) return &p;
     return nullptr;
+  }
+
+  /// The options that the study was given for the scene. The number of samples would limit --noise, and is left out.
+  std::string scene_flags() const {
+    std::string flags;
+    for (const format::Override& override : request_.overrides)
+      if (!override.sets("render.samples")) flags += override.option + " " + app::shell_quoted(override.typed) + " ";
+    if (request_.frame != format::kFirstFrame) base::append(flags, "--frames %d ", request_.frame);
+    return flags;
   }
 
   /// What to use for the noise that was asked for, tried at the scene's own size.
@@ -378,7 +391,7 @@ class Runner {
     r.noise = std::min(last.noise, request_.noise);
     r.seconds = last.seconds * growth(pilots, request_.noise, &Point::seconds);
     r.samples = last.samples * growth(pilots, request_.noise, &Point::samples);
-    r.command = "orrery render " + out_.scene + " -o final.exr " + flags;
+    r.command = "orrery render " + app::shell_quoted(out_.scene) + " -o final.exr " + scene_flags() + flags;
     r.baseline_seconds = baseline_seconds();
     base::append(r.words, "for %.3g %% noise: %s, %.3g s", request_.noise * 100, flags.c_str(), r.seconds);
     if (r.baseline_seconds > 0) base::append(r.words, " instead of %.3g s", r.baseline_seconds);

@@ -11,12 +11,14 @@
 
 #include "app/bench_scene.h"
 #include "film/picture.h"
+#include "format/override.h"
 
 namespace orrery::study {
 
 struct Request {
   std::filesystem::path scene;
-  std::vector<std::string> overrides;
+  std::vector<format::Override> overrides;
+  int frame = 1;
   std::filesystem::path report;  ///< file that the caller will write; refused where it is read
   std::string isa;               ///< empty: the processor's best
   int threads = 0;               ///< 0: as many as this process may use

@@ -93,7 +93,7 @@ TEST_F(BatchFrames, AFailureIsToldAndTheOthersGoOn) {
   for (const int frame : {1, 3}) write("cloud." + std::to_string(frame) + ".ply", kPly);
   write("cloud.toml", animated() + "[[points]]\nfile = \"cloud.%d.ply\"\nmaterial = \"grey\"\n");
   const Outcome r = run("render cloud.toml -o c.##.png --frames 1-3");
-  EXPECT_EQ(r.status, 65);
+  EXPECT_EQ(r.status, 66);
   EXPECT_TRUE(exists("c.01.png"));
   EXPECT_FALSE(exists("c.02.png"));
   EXPECT_TRUE(exists("c.03.png"));
@@ -101,7 +101,7 @@ TEST_F(BatchFrames, AFailureIsToldAndTheOthersGoOn) {
   EXPECT_NE(r.err.find("2 of 3 rendered, 0 were there, 1 failed\nfailed: frame 2 of cloud.toml"), std::string::npos)
       << r.err;
   std::filesystem::remove(folder_ / "c.03.png");
-  EXPECT_EQ(run("render cloud.toml -o c.##.png --frames 1-3 --fail-fast").status, 65);
+  EXPECT_EQ(run("render cloud.toml -o c.##.png --frames 1-3 --fail-fast").status, 66);
   EXPECT_FALSE(exists("c.03.png"));
 }
 

@@ -84,7 +84,7 @@ TEST_F(BatchSubmit, OpenJdTemplatesAreWhatTheSpecificationSays) {
 ///
 /// Reference  opencue-cjsl-1.12
 TEST_F(BatchSubmit, OpenCueJobsAreWhatTheSpecificationSays) {
-  const std::string text = submit("-o s.####.exr --frames 1-3 --shards 2 --opencue --set 'color.look=a & b < c'");
+  const std::string text = submit("-o s.####.exr --frames 1-3 --shards 2 --opencue --set 'sphere[0].name=a & b < c'");
   const std::map<std::string, std::regex> children = {
       {"spec", std::regex("(facility )?(dept )?show shot user (email )?(uid )?(job )*(depends )*")},
       {"job", std::regex("(paused )?(priority )?(maxretries )?(autoeat )?(localbook )?(os )?(env )*(layers )?")},

@@ -78,6 +78,7 @@ std::vector<std::string> ply_words() {
           "property list double double a\n",
           "property double x\n",
           "format ascii 1.0\n",
+          "format ascii 2.0\n",
           "format binary_big_endian 1.0\n",
           "end_header\n",
           "comment ",
@@ -111,10 +112,8 @@ void expect_no_fault_with_noise(Fault fault, std::uint64_t seed, int count, cons
 
 TEST(FuzzReaders, SeedsAreGood) {
   const support::ScratchFolder folder;
-  for (const std::string& seed : seeds_of(corpus() / "scene"))
-    EXPECT_EQ(fault_with_scene(folder.path(), seed), "");
-  for (const std::string& seed : seeds_of(corpus() / "ply"))
-    EXPECT_EQ(fault_with_ply(folder.path(), seed), "");
+  for (const std::string& seed : seeds_of(corpus() / "scene")) EXPECT_EQ(fault_with_scene(folder.path(), seed), "");
+  for (const std::string& seed : seeds_of(corpus() / "ply")) EXPECT_EQ(fault_with_ply(folder.path(), seed), "");
   for (const std::string& seed : seeds_of(corpus() / "override"))
     EXPECT_EQ(fault_with_overrides(folder.path(), seed), "");
 }
@@ -145,8 +144,7 @@ TEST(FuzzReaders, BrokenPlys) {
 }
 
 TEST(FuzzReaders, BrokenOverrides) {
-  expect_no_fault_with_mutants(fault_with_overrides,
-                               Mutator(7, seeds_of(corpus() / "override"), scene_words()), 6000);
+  expect_no_fault_with_mutants(fault_with_overrides, Mutator(7, seeds_of(corpus() / "override"), scene_words()), 6000);
 }
 
 /// A character of U+0800 and more, as UTF-8.

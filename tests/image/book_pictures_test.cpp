@@ -21,7 +21,7 @@ using math::Vec3d;
 
 constexpr int kWidth = 160, kHeight = 90;
 
-film::Picture picture_of(const std::string& name, std::vector<std::string> overrides = {}) {
+film::Picture picture_of(const std::string& name, std::vector<format::Override> overrides = {}) {
   overrides.push_back("image.width=" + std::to_string(kWidth));
   overrides.push_back("image.height=" + std::to_string(kHeight));
   const auto read = format::read_scene(std::filesystem::path(ORRERY_SCENES) / "book" / (name + ".toml"), overrides);

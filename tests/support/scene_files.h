@@ -18,7 +18,7 @@ class SceneFiles {
   void add(const std::string& name, const std::string& bytes) { write_bytes(folder_ / name, bytes); }
 
   /// Reads `text` as scene.toml; fails the test where it is refused.
-  format::ReadResult read(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  format::ReadResult read(const std::string& text, const std::vector<format::Override>& overrides = {}) {
     add("scene.toml", text);
     try {
       return format::read_scene(folder_ / "scene.toml", overrides);
@@ -29,7 +29,7 @@ class SceneFiles {
   }
 
   /// All findings as the user reads them, without the folder; what the reader warns of where there is no error.
-  std::string findings(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  std::string findings(const std::string& text, const std::vector<format::Override>& overrides = {}) {
     add("scene.toml", text);
     try {
       std::string out;

@@ -43,9 +43,12 @@ material = "grey"
 
 class AppInfo : public testing::Test {
  protected:
-  SceneInfo info(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+  SceneInfo info(const std::string& scene, const std::vector<format::Override>& overrides = {}) {
     support::write_bytes(folder_ / "scene.toml", scene);
-    return scene_info(folder_ / "scene.toml", overrides);
+    SceneRequest request;
+    request.file = folder_ / "scene.toml";
+    request.overrides = overrides;
+    return scene_info(request);
   }
   bool requires_(const SceneInfo& info, const std::string& name) {
     for (const Feature& feature : info.features)

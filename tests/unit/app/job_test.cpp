@@ -78,8 +78,12 @@ TEST_F(AppJob, WritesEveryOutputAndTellsWhatItDid) {
 
 TEST_F(AppJob, LooksForNoDisplayWhereNoneIsNeeded) {
   job_.outputs = {folder_ / "a.exr"};
+  ::setenv("OCIO", (folder_ / "nowhere.ocio").c_str(), 1);
+  const JobReport report = run_job(job_);
+  ::unsetenv("OCIO");
+  EXPECT_EQ(report.display.display, "");
   job_.display.config = folder_ / "nowhere.ocio";
-  EXPECT_EQ(run_job(job_).display.display, "");
+  EXPECT_EQ(error().kind(), base::ErrorKind::kMissingInput) << "somebody named it";
 }
 
 TEST_F(AppJob, WhatTheRequestGetsWrongIsKnownBeforeRendering) {
@@ -239,7 +243,8 @@ TEST_F(AppJob, AConfigOfTheSceneIsBesideTheScene) {
   job_.outputs = {folder_ / "a.png"};
   const base::Error missing = error();
   EXPECT_EQ(missing.kind(), base::ErrorKind::kMissingInput);
-  EXPECT_NE(std::string(missing.what()).find((folder_ / "none.ocio").string()), std::string::npos) << missing.what();
+  ASSERT_EQ(missing.findings().size(), 1u);
+  EXPECT_NE(missing.findings()[0].text.find((folder_ / "none.ocio").string()), std::string::npos);
   EXPECT_FALSE(rendered_);
 }
 

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/matte_manifest.h"
-#include "base/error.h"
 #include "compile/compile.h"
 #include "film/cryptomatte.h"
 #include "film/layer_film.h"
@@ -94,20 +93,6 @@ TEST(AppLayers, MaterialsAreTheAuthors) {
   const compile::World world = compile::compile(s);
   for (std::size_t i = 0; i < s.spheres.size(); ++i)
     EXPECT_EQ(layers.request.material_numbers[world.sphere_materials[i]], s.spheres[i].material + 1) << i;
-}
-
-TEST(AppLayers, LightBySurfaceNeedsLightPaths) {
-  scene::Scene s = with_layers({"diffuse"});
-  s.render.shading = scene::Shading::kNormal;
-  try {
-    layers_of(s);
-    FAIL() << "no error";
-  } catch (const base::Error& error) {
-    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-    EXPECT_NE(std::string(error.what()).find("render.shading"), std::string::npos) << error.what();
-  }
-  s.output.layers = {"N"};
-  EXPECT_NO_THROW(layers_of(s));
 }
 
 TEST(AppMatteManifest, SaysHowNamesBecameNumbers) {

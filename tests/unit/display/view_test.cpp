@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
+#include <sstream>
 
 #include "base/error.h"
+#include "base/suggestion.h"
 #include "display/builtin_config.h"
 #include "display/develop.h"
 #include "support/scratch_folder.h"
@@ -216,6 +220,65 @@ TEST_F(DisplayView, TheAcesProjectsConfigsLoad) {
   EXPECT_EQ(choose(settings).display, "sRGB - Display");
   settings.working_space = "acescg";
   EXPECT_EQ(choose(settings).working_space, "ACEScg");
+}
+
+/// The table of displays in docs/output.md: each with its views.
+std::vector<std::pair<std::string, std::vector<std::string>>> documented_displays() {
+  const auto source = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path().parent_path();
+  std::istringstream in(support::file_bytes(source / "docs" / "output.md"));
+  const auto quoted = [](const std::string& text) {
+    std::vector<std::string> names;
+    for (std::size_t at = text.find('`'); at != std::string::npos; at = text.find('`', at + 1)) {
+      const std::size_t end = text.find('`', at + 1);
+      names.push_back(text.substr(at + 1, end - at - 1));
+      at = end;
+    }
+    return names;
+  };
+  std::vector<std::pair<std::string, std::vector<std::string>>> out;
+  std::string line;
+  while (std::getline(in, line) && line.rfind("| display |", 0) != 0) {
+  }
+  std::getline(in, line);  // the rule below the header
+  while (std::getline(in, line) && !line.empty()) {
+    const std::size_t last = line.rfind('|', line.size() - 2);
+    out.emplace_back(quoted(line).front(), quoted(line.substr(last)));
+  }
+  return out;
+}
+
+TEST_F(DisplayView, TheBuiltInDisplaysAreThoseOfTheDocumentation) {
+  std::vector<std::string> displays;
+  for (const auto& [display, views] : documented_displays()) {
+    displays.push_back(display);
+    Settings settings;
+    settings.display = display;
+    EXPECT_EQ(choose(settings).view, views.front()) << display;
+    settings.view = "?";
+    expect_error(settings, base::ErrorKind::kUsage, {"it has " + base::joined(views)});
+    for (const std::string& view : views) {
+      settings.view = view;
+      EXPECT_EQ(choose(settings).view, view) << display;
+    }
+  }
+  std::sort(displays.begin(), displays.end());
+  Settings settings;
+  settings.display = "?";
+  try {
+    choose(settings);
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    std::string told = error.what();
+    told = told.substr(told.find("it has ") + 7);
+    std::vector<std::string> known;
+    for (std::size_t at = 0; at < told.size();) {
+      const std::size_t end = std::min(told.find(", ", at), told.size());
+      known.push_back(told.substr(at, end - at));
+      at = end + 2;
+    }
+    std::sort(known.begin(), known.end());
+    EXPECT_EQ(known, displays);
+  }
 }
 
 }  // namespace

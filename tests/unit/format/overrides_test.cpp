@@ -82,65 +82,100 @@ TEST(FormatOverrides, BlanksAroundTheSignsAreAllRight) {
 
 TEST(FormatOverrides, MistakesArePointedAtInTheOverride) {
   SceneFiles files;
+  EXPECT_EQ(files.findings(kScene, {"image.width=5", "camera.vfov=300", "camera.vfow=3", "sphere[1].radius=0",
+                                    "sphere[0].center=[0, 1]"}),
+            "--set: error: camera.vfov is 300; allowed is above 0, below 180\n"
+            "    --set camera.vfov=300\n"
+            "                      ^~~\n"
+            "--set: error: unknown key `vfow` in camera; did you mean `vfov`?\n"
+            "    --set camera.vfow=3\n"
+            "                 ^~~~\n"
+            "--set: error: sphere[1].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 for an inward "
+            "normal\n"
+            "    --set sphere[1].radius=0\n"
+            "                           ^\n"
+            "--set: error: sphere[0].center must be three numbers like [0, 1, 0], this is a list of 2\n"
+            "    --set sphere[0].center=[0, 1]\n"
+            "                           ^~~~~~\n");
+}
+
+TEST(FormatOverrides, AShortFormIsNamedByItsOption) {
+  SceneFiles files;
+  EXPECT_EQ(files.findings(kScene, {{"render.samples=0", "--samples", "0"},
+                                    "camera.vfov=0",
+                                    {"output.layers=[Z,Q,N]", "--layers", "Z,Q,N"}}),
+            "--samples: error: render.samples is 0; allowed is 1..2147483647\n"
+            "    --samples 0\n"
+            "              ^\n"
+            "--set: error: camera.vfov is 0; allowed is above 0, below 180\n"
+            "    --set camera.vfov=0\n"
+            "                      ^\n"
+            "--layers: error: output.layers[1] is \"Q\"; allowed is Z, depth, N, P, albedo, diffuse, specular, "
+            "transmission, background, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, "
+            "CryptoObject, CryptoMaterial, CryptoGroup, all\n"
+            "    --layers Z,Q,N\n"
+            "               ^\n");
+}
+
+TEST(FormatOverrides, ListsOfWordsNeedNoQuotes) {
+  SceneFiles files;
+  using Names = std::vector<std::string>;
+  const auto layers = [&](const std::string& value) {
+    return files.read(kScene, {"output.layers=" + value}).scene.output.layers;
+  };
+  EXPECT_EQ(layers("[Z,N]"), (Names{"Z", "N"}));
+  EXPECT_EQ(layers(" [ Z , denoise.albedo, ]"), (Names{"Z", "denoise.albedo"}));
+  EXPECT_EQ(layers("[\"Z\"]"), (Names{"Z"}));
+  EXPECT_EQ(layers("[]"), Names{});
   EXPECT_EQ(
-      files.findings(kScene, {"image.width=5", "camera.vfov=300", "camera.vfow=3", "sphere[1].radius=0",
-                              "sphere[0].center=[0, 1]"}),
-      "--set:2:13: error: camera.vfov is 300; allowed is above 0, below 180\n"
-      "    camera.vfov=300\n"
-      "                ^~~\n"
-      "--set:3:8: error: unknown key `vfow` in camera; did you mean `vfov`?\n"
-      "    camera.vfow=3\n"
-      "           ^~~~\n"
-      "--set:4:18: error: sphere[1].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 for an inward "
-      "normal\n"
-      "    sphere[1].radius=0\n"
-      "                     ^\n"
-      "--set:5:18: error: sphere[0].center must be three numbers like [0, 1, 0], this is a list of 2\n"
-      "    sphere[0].center=[0, 1]\n"
-      "                     ^~~~~~\n");
+      told("output.layers=[Z,,N]"),
+      "--set: error: output.layers[1] is \"\"; allowed is Z, depth, N, P, albedo, diffuse, specular, transmission, "
+      "background, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, CryptoObject, "
+      "CryptoMaterial, CryptoGroup, all");
+  EXPECT_EQ(told("camera.up=[0,1,x]"), "--set: error: camera.up[2] must be a number, this is a string");
 }
 
 TEST(FormatOverrides, SameChecksAsTheFile) {
   EXPECT_EQ(told("material.gold.ior=1.5"),
-            "--set:1:15: error: unknown key `ior` in material.gold of type metal; `ior` belongs to dielectric");
+            "--set: error: unknown key `ior` in material.gold of type metal; `ior` belongs to dielectric");
   EXPECT_EQ(told("sphere[0].material=glod"),
-            "--set:1:20: error: sphere[0].material is \"glod\", and there is no such material; did you mean `gold`?");
+            "--set: error: sphere[0].material is \"glod\", and there is no such material; did you mean `gold`?");
   EXPECT_EQ(told("render.samples=1.5"),
-            "--set:1:16: error: render.samples must be a whole number, this is a floating-point number");
-  EXPECT_EQ(told("camera=3"), "--set:1:8: error: `camera` must be a table; write [camera]");
+            "--set: error: render.samples must be a whole number, this is a floating-point number");
+  EXPECT_EQ(told("camera=3"), "--set: error: `camera` must be a table; write [camera]");
   EXPECT_EQ(told("material.new.fuzz=0.5"),
-            "--set:1:10: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric");
+            "--set: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric");
 }
 
 TEST(FormatOverrides, WhatIsNoOverrideIsTold) {
   const std::string example = "; write it like camera.vfov=30 or sphere[0].radius=2";
-  EXPECT_EQ(told("camera.vfov"), "--set:1:1: error: this is no key=value" + example);
-  EXPECT_EQ(told(""), "--set:1:1: error: this is no key=value" + example);
-  EXPECT_EQ(told("=3"), "--set:1:1: error: there is no key before the =" + example);
-  EXPECT_EQ(told("camera.vfov="), "--set:1:1: error: there is no value behind the =" + example);
-  EXPECT_EQ(told("camera.vfov=1\nimage.width=0"), "--set:1:1: error: an override is one line" + example);
-  EXPECT_EQ(told("a.b.c.d.e.f.g.h.i=1"), "--set:1:1: error: a key of more than 8 parts" + example);
+  EXPECT_EQ(told("camera.vfov"), "--set: error: this is no key=value" + example);
+  EXPECT_EQ(told(""), "--set: error: this is no key=value" + example);
+  EXPECT_EQ(told("=3"), "--set: error: there is no key before the =" + example);
+  EXPECT_EQ(told("camera.vfov="), "--set: error: there is no value behind the =" + example);
+  EXPECT_EQ(told("camera.vfov=1\nimage.width=0"), "--set: error: an override is one line" + example);
+  EXPECT_EQ(told("a.b.c.d.e.f.g.h.i=1"), "--set: error: a key of more than 8 parts" + example);
 }
 
 TEST(FormatOverrides, SyntaxOfAListIsToldAndNotTakenForAWord) {
-  EXPECT_EQ(told("camera.up=[1,2"), "--set:1:15: error: array: encountered end-of-file");
-  EXPECT_EQ(told("camera..vfov=1").rfind("--set:1:8: error: key: ", 0), 0u) << told("camera..vfov=1");
+  EXPECT_EQ(told("camera.up=[1,2"), "--set: error: array: encountered end-of-file");
+  EXPECT_EQ(told("camera..vfov=1").rfind("--set: error: key: ", 0), 0u) << told("camera..vfov=1");
 }
 
 TEST(FormatOverrides, ElementsOfListsMustBeThere) {
   EXPECT_EQ(told("sphere[2].radius=1"),
-            "--set:1:1: error: there is no sphere[2]; the scene has 2 of `sphere`, counted from 0");
-  EXPECT_EQ(told("points[0].radius=1").rfind("--set:1:1: error: the scene has no list `points`", 0), 0u);
-  EXPECT_EQ(told("camera[0].vfov=1").rfind("--set:1:1: error: the scene has no list `camera`", 0), 0u);
-  EXPECT_EQ(told("sphere[0]=1").rfind("--set:1:1: error: an element of a list is not set as a whole", 0), 0u);
-  EXPECT_EQ(told("sphere[].radius=1").rfind("--set:1:1: error: `sphere[]` is no element of a list", 0), 0u);
-  EXPECT_EQ(told("sphere[-1].radius=1").rfind("--set:1:1: error: `sphere[-1]` is no element of a list", 0), 0u);
-  EXPECT_EQ(told("sphere[0][1].radius=1").rfind("--set:1:1: error: `sphere[0][1]` is no element of a list", 0), 0u);
-  EXPECT_EQ(told("sphere[99999999999999999999].radius=1").rfind("--set:1:1: error: `sphere[9", 0), 0u);
-  EXPECT_EQ(told("].radius=1").rfind("--set:1:1: error: `]` is no element of a list", 0), 0u);
+            "--set: error: there is no sphere[2]; the scene has 2 of `sphere`, counted from 0");
+  EXPECT_EQ(told("points[0].radius=1").rfind("--set: error: the scene has no list `points`", 0), 0u);
+  EXPECT_EQ(told("camera[0].vfov=1").rfind("--set: error: the scene has no list `camera`", 0), 0u);
+  EXPECT_EQ(told("sphere[0]=1").rfind("--set: error: an element of a list is not set as a whole", 0), 0u);
+  EXPECT_EQ(told("sphere[].radius=1").rfind("--set: error: `sphere[]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("sphere[-1].radius=1").rfind("--set: error: `sphere[-1]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("sphere[0][1].radius=1").rfind("--set: error: `sphere[0][1]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("sphere[99999999999999999999].radius=1").rfind("--set: error: `sphere[9", 0), 0u);
+  EXPECT_EQ(told("].radius=1").rfind("--set: error: `]` is no element of a list", 0), 0u);
   EXPECT_EQ(told("sphere.radius=1"),
-            "--set:1:1: error: `sphere` is no table; name one of its elements, like sphere[0].radius=2");
-  EXPECT_EQ(told("camera.vfov.x=1"), "--set:1:1: error: `vfov` is no table");
+            "--set: error: `sphere` is no table; name one of its elements, like sphere[0].radius=2");
+  EXPECT_EQ(told("camera.vfov.x=1"), "--set: error: `vfov` is no table");
 }
 
 }  // namespace

@@ -106,10 +106,12 @@ TEST_F(FormatReadPly, PassesOverOtherElementsPropertiesAndLists) {
     data += bytes_of(99.f) + bytes_of(x) + bytes_of<std::uint16_t>(1) + bytes_of(77.f);
     for (const float v : {x + 1, x + 2, x + 3}) data += bytes_of(v);
   }
-  const auto points = read(header("binary_little_endian", elements) + data);  // the edges are not even there
+  for (int i = 0; i < 9; ++i) data += bytes_of(i);
+  const auto points = read(header("binary_little_endian", elements) + data);
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{1, 2, 3}, {5, 6, 7}}));
   EXPECT_EQ(points.radii, (std::vector<double>{4, 8}));
-  const auto ascii = read(header("ascii", elements) + "2 1 2 9 0 9 99 1 1 77 2 3 4 99 5 1 77 6 7 8");
+  const auto ascii =
+      read(header("ascii", elements) + "2 1 2 9\n0 9\n99 1 1 77 2 3 4\n\n99 5 1 77 6 7 8\n1\n2\n3\n4\n5\n6\n7\n8\n9\n");
   EXPECT_EQ(ascii.centers, points.centers);
   EXPECT_EQ(ascii.radii, points.radii);
 }
@@ -134,9 +136,9 @@ TEST_F(FormatReadPly, MaterialsAreIndices) {
   EXPECT_EQ(read(header("ascii", elements) + "0 0 0 1 2\n1 0 0 1 0\n2 0 0 1 1").materials,
             (std::vector<std::uint32_t>{2, 0, 1}));
   EXPECT_EQ(faults(header("ascii", elements) + "0 0 0 1 3\n1 0 0 1 -1\n2 0 0 1 0.5"),
-            "vertex 0 has material 3; the scene has 3, counted from 0\n"
-            "vertex 1 has material -1; the scene has 3, counted from 0\n"
-            "vertex 2 has material 0.5; the scene has 3, counted from 0\n");
+            "10: vertex 0 has material 3; the scene has 3, counted from 0\n"
+            "11: vertex 1 has material -1; the scene has 3, counted from 0\n"
+            "12: vertex 2 has material 0.5; the scene has 3, counted from 0\n");
 }
 
 TEST_F(FormatReadPly, NoVerticesAreNoMistake) {
@@ -173,16 +175,61 @@ TEST_F(FormatReadPly, ACountThatLiesIsRefusedBeforeMemoryIsAskedFor) {
   EXPECT_EQ(faults(header("binary_little_endian", std::string("element vertex 2\n") + kXyzr) + data)
                 .rfind("the header promises 2 of `vertex`, but only 31 bytes follow", 0),
             0u);
-  EXPECT_EQ(faults(header("binary_little_endian", std::string("element vertex 1\n") + kXyzr) + data), "");
+  EXPECT_EQ(faults(header("binary_little_endian", std::string("element vertex 1\n") + kXyzr) + data.substr(0, 16)), "");
   EXPECT_NE(faults(header("ascii", std::string("element vertex 3\n") + kXyzr) + "1 2 3 4 1 2 3 4"), "");
 }
 
 TEST_F(FormatReadPly, AListThatLies) {
   const std::string elements = "element face 1\nproperty list double float corners\nelement vertex 0\n";
   EXPECT_EQ(faults(header("binary_little_endian", elements + kXyzr) + bytes_of(1e300) + bytes_of(1.f)),
-            "element `face`, row 0: the file ends\n");
+            "row 0 of `face`, `corners`: the file ends\n");
   EXPECT_EQ(faults(header("binary_little_endian", elements + kXyzr) + bytes_of(-1.0) + bytes_of(1.f)),
-            "element `face`, row 0: a list's length is no whole number\n");
+            "row 0 of `face`, `corners`: the length of a list is not a whole number\n");
+}
+
+// The sixth line is blank, the rows are on lines 9 and 11.
+constexpr const char* kTwo =
+    "element vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float radius\n";
+
+TEST_F(FormatReadPly, AnAsciiRowIsOneLine) {
+  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n\n1 2 3\n4\n"),
+            "11: vertex 1 of 2, `radius`: the line ends; a row is one line\n");
+  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4 1\n2 3 4\n"),
+            "9: vertex 0 of 2: `1` follows the last value that the header promises\n");
+  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4x\n"),
+            "10: vertex 1 of 2, `radius`: `4x` is not a number\n");
+  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4 \r\n \t\n1 2 3 4\n"), "");
+  EXPECT_EQ(faults(header("ascii", std::string("element face 1\nproperty list uchar int v\n") + kTwo) +
+                   "3 1 2\n7\n1 2 3 4\n1 2 3 4\n"),
+            "11: row 0 of `face`, `v`: the line ends; a row is one line\n");
+}
+
+TEST_F(FormatReadPly, MoreThanTheHeaderPromisesIsRefused) {
+  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n5 6 7 8\n"),
+            "11: 8 bytes follow the last row that the header promises; its counts are wrong, or the file is damaged\n");
+  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n \n\r\n"), "") << "blank lines are no rows";
+  EXPECT_EQ(faults(header("binary_little_endian", kTwo) + std::string(2 * 16 + 3, '\0')),
+            "3 bytes follow the last row that the header promises; its counts are wrong, or the file is damaged\n");
+}
+
+TEST_F(FormatReadPly, ElementsBehindTheVerticesMustBeThere) {
+  const std::string elements = std::string(kTwo) + "element face 1\nproperty list uchar int v\n";
+  EXPECT_EQ(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n3 1 2 3\n"), "");
+  EXPECT_NE(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n"), "");
+  EXPECT_EQ(faults(header("binary_little_endian", elements) + std::string(2 * 16, '\0') + "\2abcd"),
+            "row 0 of `face`, `v`: the file ends\n");
+}
+
+TEST_F(FormatReadPly, RBesideGAndBIsAColour) {
+  const std::string xyz = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string rgb = "property uchar r\nproperty uchar g\nproperty uchar b\n";
+  EXPECT_EQ(faults(header("ascii", xyz + rgb) + "1 2 3 255 0 0"),
+            "`vertex` has no `radius`, and its `r` is a colour, beside `g` and `b`; add one, or set `radius` in "
+            "[[points]]\n");
+  const scene::Points points = read(header("ascii", xyz + rgb) + "1 2 3 255 0 0", 3, 0.5);
+  EXPECT_EQ(points.radii[0], 0.5);
+  EXPECT_EQ(points.unused, (std::vector<std::string>{"r", "g", "b"}));
+  EXPECT_TRUE(read(header("ascii", xyz + "property float r\n") + "1 2 3 4").unused.empty());
 }
 
 TEST_F(FormatReadPly, CutOffInsideOfAVertex) {
@@ -194,8 +241,8 @@ TEST_F(FormatReadPly, CutOffInsideOfAVertex) {
 }
 
 TEST_F(FormatReadPly, AWordThatIsNoNumber) {
-  EXPECT_EQ(faults(header("ascii", std::string("element vertex 2\n") + kXyzr) + "1 2 3 4 1 2 three 4"),
-            "vertex 1 of 2, `z`: what stands there is no number\n");
+  EXPECT_EQ(faults(header("ascii", std::string("element vertex 2\n") + kXyzr) + "1 2 3 4\n1 2 three 4"),
+            "10: vertex 1 of 2, `z`: `three` is not a number\n");
 }
 
 TEST_F(FormatReadPly, NumbersThatAreNotFiniteAreAllCountedAndTenAreTold) {
@@ -204,13 +251,13 @@ TEST_F(FormatReadPly, NumbersThatAreNotFiniteAreAllCountedAndTenAreTold) {
     data += i == 3 ? "1 2 3 4\n" : i == 4 ? "1 inf 3 4\n" : i == 5 ? "1 2 3 1e999\n" : "nan 2 3 4\n";
   const std::string told = faults(header("ascii", std::string("element vertex 25\n") + kXyzr) + data);
   EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 11);
-  EXPECT_NE(told.find("vertex 2 has a number that is not finite\nvertex 4 has"), std::string::npos) << told;
+  EXPECT_NE(told.find("11: vertex 2 has a number that is not finite\n13: vertex 4 has"), std::string::npos) << told;
   EXPECT_NE(told.find("and 14 more (24 in all)\n"), std::string::npos) << told;
 }
 
 TEST_F(FormatReadPly, AMistakeLeavesThePointsAsTheyWere) {
   support::write_bytes(folder_ / "a.ply",
-                       header("ascii", std::string("element vertex 2\n") + kXyzr) + "1 2 3 4 1 2 nan 4");
+                       header("ascii", std::string("element vertex 2\n") + kXyzr) + "1 2 3 4\n1 2 nan 4");
   scene::Points points;
   EXPECT_THROW(read_ply(folder_ / "a.ply", 1, points), base::Error);
   EXPECT_TRUE(points.centers.empty() && points.radii.empty());

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "format/diagnostics.h"
 #include "support/scene_files.h"
 
 namespace orrery::format {
@@ -361,13 +362,65 @@ TEST(FormatReadScene, FindingsOfAPointsFileFollowThePlaceThatNamesIt) {
       "[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"bad.ply\"\nmaterial = \"a\"\n"
       "[[points]]\nfile = \"none.ply\"\nmaterial = \"a\"\n";
   EXPECT_EQ(files.findings(scene),
-            "bad.ply: error: vertex 0 has a number that is not finite\n"
+            "bad.ply:9: error: vertex 0 has a number that is not finite\n"
             "scene.toml:4:8: error: points[0].file: cannot use bad.ply\n"
             "    file = \"bad.ply\"\n"
             "           ^~~~~~~~~\n"
             "scene.toml:7:8: error: points[1].file: cannot open none.ply: No such file or directory\n"
             "    file = \"none.ply\"\n"
             "           ^~~~~~~~~~\n");
+}
+
+TEST(FormatReadScene, NothingButMissingPointsFilesIsMissingInput) {
+  SceneFiles files;
+  const auto kind = [&](const std::string& text) {
+    files.add("scene.toml", text);
+    try {
+      read_scene(files.folder() / "scene.toml");
+      return base::ErrorKind::kInternal;
+    } catch (const base::Error& error) {
+      return error.kind();
+    }
+  };
+  const std::string missing =
+      "[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"none.ply\"\nmaterial = \"a\"\n";
+  EXPECT_EQ(kind(missing), base::ErrorKind::kMissingInput);
+  EXPECT_EQ(kind(missing + "[image]\nwidth = 0\n"), base::ErrorKind::kBadData) << "the scene is wrong anyway";
+  std::filesystem::create_directory(files.folder() / "none.ply");
+  EXPECT_EQ(kind(missing), base::ErrorKind::kMissingInput);
+}
+
+TEST(FormatReadScene, AHundredErrorsAreShownAndTheOthersCounted) {
+  SceneFiles files;
+  std::string text;
+  for (int i = 0; i < 50; ++i) text += "[[sphere]]\ncolor = 1\nradius = \"big\"\n";  // four errors each
+  files.add("scene.toml", text);
+  try {
+    read_scene(files.folder() / "scene.toml");
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    ASSERT_EQ(error.findings().size(), kMostErrors + 1);
+    EXPECT_EQ(error.findings()[0].line, 1);
+    EXPECT_EQ(error.findings()[99].line, 25 * 3) << "the first by place: 25 of 50 spheres";
+    EXPECT_EQ(error.findings()[100].text, "and 100 more (200 in all)");
+    EXPECT_NE(std::string(error.what()).find("scene.toml: 200 errors"), std::string::npos) << error.what();
+  }
+}
+
+TEST(FormatReadScene, AnotherChecksProblemsAreFindings) {
+  SceneFiles files;
+  files.add("scene.toml", "[color]\nspace = \"foo\"\n[image]\nwidth = 0\n");
+  const SceneCheck also = [](const scene::Scene& s) {
+    return std::vector<scene::Problem>{{base::Severity::kError, "color.space", "no " + s.color.space}};
+  };
+  try {
+    read_scene(files.folder() / "scene.toml", {}, kFirstFrame, also);
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(files.told(error),
+              "scene.toml:2:9: error: color.space: no foo\n    space = \"foo\"\n            ^~~~~\n"
+              "scene.toml:4:9: error: image.width is 0; allowed is 1..65536\n    width = 0\n            ^\n");
+  }
 }
 
 TEST(FormatReadScene, RadiiOutsideTheDomainAreFoundInPointsToo) {
@@ -388,7 +441,8 @@ TEST(FormatReadScene, ManyMistakesDoNotTakeForever) {
   std::string text;
   for (int i = 0; i < 3000; ++i) text += "[[sphere]]\ncenter = [0,0,0]\nradius = 0\nmaterial = \"x\"\n";
   const std::string told = files.findings(text);
-  EXPECT_EQ(std::count(told.begin(), told.end(), '^'), 6000);
+  EXPECT_EQ(std::count(told.begin(), told.end(), '^'), 100);
+  EXPECT_NE(told.find("and 5900 more (6000 in all)"), std::string::npos);
 }
 
 TEST(FormatReadScene, EveryPictureOfTheBookReadsWithoutAFinding) {

@@ -4,8 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <fstream>
-#include <thread>
+#include <string>
 
 #include "base/error.h"
 #include "support/scratch_folder.h"
@@ -28,16 +27,20 @@ TEST(FormatSourceText, FindsEveryLine) {
   EXPECT_EQ(line_of(source, 100000), "");
 }
 
-TEST(FormatSourceText, AddsLinesBehindOthers) {
+TEST(FormatSourceText, AnOverrideIsShownAsItWasTyped) {
   SourceText source;
-  source.add("a", "one");
-  EXPECT_EQ(line_of(source, 1), "one");
-  source.add("a", "two");
-  EXPECT_EQ(line_of(source, 2), "two") << "also after it has been asked";
-  for (int i = 3; i < 200; ++i) source.add("a", std::to_string(i));
-  EXPECT_EQ(line_of(source, 199), "199");
-  source.add("b", "other");
-  EXPECT_EQ(line_of(source, 200), "");
+  source.add_override({"render.samples=0", "--samples", "0"}, "render.samples=0", {});
+  source.add_override("camera.vfov=wide", "camera.vfov=\"wide\"", {12, 17});
+  source.add_override({"output.layers=[Z,Q]", "--layers", "Z,Q"}, "output.layers=[\"Z\",\"Q\"]", {15, 17, 19, 21});
+  const auto shown = [&](int line, int column, int width) {
+    return base::formatted(source.finding(base::Severity::kError, {kOverrideName, line, column, width}, "x"));
+  };
+  EXPECT_EQ(shown(1, 16, 1), "--samples: error: x\n    --samples 0\n              ^\n");
+  EXPECT_EQ(shown(1, 1, 1), "--samples: error: x\n    --samples 0\n              ^\n") << "the key was not typed";
+  EXPECT_EQ(shown(2, 13, 6), "--set: error: x\n    --set camera.vfov=wide\n                      ^~~~\n");
+  EXPECT_EQ(shown(2, 8, 4), "--set: error: x\n    --set camera.vfov=wide\n                 ^~~~\n");
+  EXPECT_EQ(shown(3, 20, 3), "--layers: error: x\n    --layers Z,Q\n               ^\n");
+  EXPECT_EQ(source.option_at(3), "--layers");
 }
 
 TEST(FormatSourceText, CharactersBecomeBytes) {
@@ -94,23 +97,21 @@ TEST(FormatSourceText, ALargerFileThanAllowedIsBadData) {
   }
 }
 
-TEST(FormatSourceText, APipeIsReadToItsEndAndNoFurtherThanAllowed) {
+TEST(FormatSourceText, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
   const support::ScratchFolder folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  const std::string text(200000, 'x');
-  const auto read_from_pipe = [&](std::uint64_t largest) {
-    std::thread writer([&] { std::ofstream(folder / "pipe") << text; });
-    std::string read;
+  const auto reason = [](const std::filesystem::path& file) -> std::string {
     try {
-      read = read_file(folder / "pipe", largest);
+      read_file(file, 1 << 20);
+      return "read";
     } catch (const base::Error& error) {
-      read = error.kind() == base::ErrorKind::kBadData ? "too large" : "other";
+      EXPECT_EQ(error.kind(), base::ErrorKind::kMissingInput);
+      return error.what();
     }
-    writer.join();
-    return read;
   };
-  EXPECT_EQ(read_from_pipe(1 << 20), text);
-  EXPECT_EQ(read_from_pipe(199999), "too large");
+  EXPECT_EQ(reason(folder / "pipe"), "cannot open " + (folder / "pipe").string() + ": it is not a regular file");
+  EXPECT_EQ(reason("/dev/zero"), "cannot open /dev/zero: it is not a regular file");
+  EXPECT_EQ(reason(folder.path()), "cannot open " + folder.path().string() + ": it is a directory");
 }
 
 }  // namespace

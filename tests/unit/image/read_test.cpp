@@ -48,7 +48,7 @@ TEST_F(ImageRead, AMissingFileIsAMissingInput) {
   std::filesystem::create_directory(folder_ / "d.exr");
   expect_error(ErrorKind::kMissingInput, {"d.exr", "it is a directory"}, [&] { read(folder_ / "d.exr"); });
   ASSERT_EQ(::mkfifo((folder_ / "p.exr").c_str(), 0600), 0);
-  expect_error(ErrorKind::kMissingInput, {"p.exr", "not a plain file"}, [&] { read(folder_ / "p.exr"); });
+  expect_error(ErrorKind::kMissingInput, {"p.exr", "not a regular file"}, [&] { read(folder_ / "p.exr"); });
   expect_error(ErrorKind::kUsage, {"known are"}, [&] { read(folder_ / "none.txt"); });
 }
 

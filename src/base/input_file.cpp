@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/input_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "base/error.h"
+
+namespace orrery::base {
+
+void require_readable(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& reason) {
+    throw Error(ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + reason);
+  };
+  // The type comes first: opening a pipe blocks, and opening a device may do more than that.
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) refuse(std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) refuse("it is a directory");
+  if (!S_ISREG(status.st_mode)) refuse("it is not a regular file");
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) refuse(std::strerror(errno));
+  ::close(descriptor);
+}
+
+}  // namespace orrery::base

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/look_up.h"
+
+#include <utility>
+
+#include "display/find_color_space.h"
+#include "display/view.h"
+
+namespace orrery::display {
+namespace {
+
+/// What `find` cannot find becomes a fault; false then.
+template <class Find>
+bool found(LookUp& out, Name name, Find find) {
+  try {
+    find();
+    return true;
+  } catch (const base::Error& error) {
+    out.faults.push_back({name, error});
+    return false;
+  }
+}
+
+}  // namespace
+
+LookUp look_up(const Settings& settings, const std::string& space) {
+  LookUp out;
+  Config config;
+  if (!found(out, Name::kConfig, [&] { config = load_config(settings.config); })) return out;
+  found(out, Name::kSpace, [&] { find_scene_linear(config, space); });
+  if (settings.working_space != space)
+    found(out, Name::kWorkingSpace, [&] { find_scene_linear(config, settings.working_space); });
+  Choice choice;
+  if (found(out, Name::kDisplay, [&] { choose_display(config, settings, choice); }))
+    found(out, Name::kView, [&] { choose_view(config, settings, choice); });
+  found(out, Name::kLook, [&] { check_look(config, settings); });
+  if (!out.faults.empty()) return out;
+  View view;  // the transform itself may name a file that is missing
+  if (found(out, Name::kConfig, [&] { view = find_view(config, settings); })) out.choice = std::move(view.choice);
+  return out;
+}
+
+}  // namespace orrery::display

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a scene is wrong for every command, in the same words.
+#include <sys/stat.h>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+struct Broken {
+  const char* name;     ///< of the scene's file
+  const char* text;     ///< behind the good scene
+  const char* options;  ///< of all commands
+  int status;
+  const char* told;  ///< a part of the message; what begins with a colon follows the file's name
+};
+
+const Broken kBroken[] = {
+    {"AColorSpace", "[color]\nspace = \"foo\"\n", "", 65, ":15:9: error: color.space: the OCIO config (built-in)"},
+    {"ASpaceOfADisplay", "[color]\nspace = \"srgb_texture\"\n", "", 65, "is not scene-linear"},
+    {"AWorkingSpace", "[color]\nworking = \"foo\"\n", "", 65, ":15:11: error: color.working: "},
+    {"ADisplay", "[color]\ndisplay = \"sGRB\"\n", "", 65, ":15:11: error: color.display: "},
+    {"AView", "[color]\nview = \"Filmik\"\n", "", 65, ":15:8: error: color.view: "},
+    {"AViewOfAnotherDisplay", "[color]\ndisplay = \"Gamma 2.0 Rec.709\"\nview = \"ACES 1.0 SDR Video\"\n", "", 65,
+     ":16:8: error: color.view: "},
+    {"ALook", "[color]\nlook = \"foo\"\n", "", 65, ":15:8: error: color.look: "},
+    {"AllNames", "[color]\nspace = \"a\"\nworking = \"b\"\ndisplay = \"c\"\nlook = \"d\"\n", "", 65, ": 4 errors"},
+    {"AMissingConfig", "[color]\nconfig = \"none.ocio\"\n", "", 66,
+     ":15:10: error: color.config: cannot open none.ocio: No such file"},
+    {"AConfigThatIsNone", "[color]\nconfig = \"good.toml\"\n", "", 65, ":15:10: error: color.config: "},
+    {"AConfigThatIsADevice", "[color]\nconfig = \"/dev/zero\"\n", "", 66, "it is not a regular file"},
+    {"AnOverriddenView", "", "--set color.view=Filmik", 65, "--set: error: color.view: "},
+    {"ALayer", "[output]\nlayers = [\"Z\", \"Y\"]\n", "", 65, ":15:16: error: output.layers[1] is \"Y\""},
+    {"ALayerWithoutLight", "[output]\nlayers = [\"Z\", \"diffuse\"]\n", "--set render.shading=normal", 65,
+     ":15:16: error: output.layers[1]: diffuse needs light paths"},
+    {"ALayerOption", "", "--layers Z,Y", 65, "--layers: error: output.layers[1] is \"Y\""},
+    {"ASampleCount", "", "--samples 0", 65, "--samples: error: render.samples is 0; allowed"},
+    {"ACameraWithoutDirection", "[camera]\nlook_at = [0, 0, 0]\n", "", 65, "error: camera.look_at: "},
+    {"AShutter", "[camera]\nshutter_open = 1\n", "", 65, "error: camera.shutter_close: "},
+    {"CropAndOverscan", "", "--set image.crop=[0,0,2,2] --set image.overscan=1", 65, "--set: error: image.overscan: "},
+    {"ATarget", "[[key]]\ntarget = \"camera.speed\"\nframes = [1]\nvalues = [1]\n", "", 65, ":15:10: error: key[0]"},
+    {"ATargetOfTwoSpheres",
+     "[[sphere]]\nname = \"b\"\ncenter = [0, 0, -3]\nradius = 1\nmaterial = \"grey\"\n[[sphere]]\nname = \"b\"\n"
+     "center = [0, 1, -3]\nradius = 1\nmaterial = \"grey\"\n"
+     "[[key]]\ntarget = \"sphere.b.radius\"\nframes = [1]\nvalues = [1]\n",
+     "", 65,
+     "key[0].target: 2 spheres have the name in \"sphere.b.radius\"; name one by its number, such as sphere[1].radius "
+     "or "
+     "sphere[2].radius"},
+    {"AValueBetweenItsKeys",
+     "[[key]]\ntarget = \"sphere[0].radius\"\ninterpolation = \"cubic\"\nframes = [-9, 0, 2, 3]\n"
+     "values = [1e18, 1e18, 1e18, 1]\n",
+     "", 65, "at frame 1; allowed"},
+    {"MissingPoints", "[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 66,
+     ":15:8: error: points[0].file: cannot open none.ply: No such file"},
+    {"PointsThatAreADevice", "[[points]]\nfile = \"/dev/zero\"\nmaterial = \"grey\"\n", "", 66,
+     "cannot open /dev/zero: it is not a regular file"},
+    {"PointsThatAreAPipe", "[[points]]\nfile = \"pipe\"\nmaterial = \"grey\"\n", "", 66,
+     "cannot open pipe: it is not a regular file"},
+    {"PointsThatAreAFolder", "[[points]]\nfile = \".\"\nmaterial = \"grey\"\n", "", 66,
+     "cannot open .: it is a directory"},
+    {"PointsOfAnotherVersion", "[[points]]\nfile = \"two.ply\"\nmaterial = \"grey\"\n", "", 65,
+     "two.ply:2: error: version `2.0` of the format is not known"},
+    {"PointsInBrokenLines", "[[points]]\nfile = \"lines.ply\"\nmaterial = \"grey\"\n", "", 65,
+     "lines.ply:9: error: vertex 0 of 2, `radius`: the line ends"},
+    {"MorePointsThanPromised", "[[points]]\nfile = \"more.ply\"\nmaterial = \"grey\"\n", "", 65,
+     "more.ply:11: error: 9 bytes"},
+    {"MissingPointsAndMore", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,
+     ": 2 errors"},
+    {"NoToml", "[[[", "", 65, ":14:3: error: "},
+};
+
+class CliValidation : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    const std::string rows =
+        "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float radius\nend_header\n";
+    write("two.ply", "ply\nformat ascii 2.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n");
+    write("lines.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3\n1\n0 2 -3 1\n");
+    write("more.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n0 4 -3 1\n");
+  }
+  void write_bad(const std::string& text) { write("bad.toml", kGoodScene + text); }
+
+  /// What a command leaves behind; the render's errors must be all that check prints.
+  void expect_same(const std::string& scene, const std::string& options, int status, const std::string& told) {
+    const Outcome check = run("check " + scene + " " + options);
+    EXPECT_EQ(check.status, status) << check.err;
+    EXPECT_TRUE(contains(check.err, told)) << check.err;
+    const Outcome render = run("render " + scene + " -q -o a.exr " + options);
+    EXPECT_EQ(render.status, status);
+    EXPECT_EQ(render.err, check.err);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+  }
+};
+
+/// Scenes that the same options and the same status belong to, in one call of each command: a process costs more than
+/// reading a scene.
+TEST_F(CliValidation, WhatCheckRefusesRenderRefusesAlike) {
+  std::map<std::pair<std::string, int>, std::vector<const Broken*>> groups;
+  for (const Broken& broken : kBroken) {
+    write(std::string(broken.name) + ".toml", std::string(kGoodScene) + broken.text);
+    groups[{broken.options, broken.status}].push_back(&broken);
+  }
+  for (const auto& [group, members] : groups) {
+    const auto& [options, status] = group;
+    std::string scenes;
+    for (const Broken* broken : members) scenes += std::string(broken->name) + ".toml ";
+    const Outcome check = run("check " + scenes + options);
+    EXPECT_EQ(check.status, status) << check.err;
+    EXPECT_EQ(check.out, "") << "none of them is right";
+    for (const Broken* broken : members) {
+      const std::string file = std::string(broken->name) + ".toml", told = broken->told;
+      EXPECT_TRUE(contains(check.err, told[0] == ':' ? file + told : told)) << told << "\n" << check.err;
+      EXPECT_TRUE(contains(check.err, "orrery: " + file + ": "));
+    }
+    const Outcome render = run("render " + scenes + "-q -o out.{scene}.exr " + options);
+    EXPECT_EQ(render.status, status);
+    EXPECT_EQ(render.err.substr(0, check.err.size()), check.err);
+    const std::string count = std::to_string(members.size());
+    EXPECT_EQ(contains(render.err, "0 of " + count + " rendered, 0 were there, " + count + " failed\n"),
+              members.size() > 1);
+  }
+}
+
+TEST_F(CliValidation, EveryCommandLoadsAScenesTheSameWay) {
+  for (const char* text : {"[color]\nview = \"Filmik\"\n", "[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n"}) {
+    write_bad(text);
+    const Outcome check = run("check bad.toml");
+    EXPECT_NE(check.status, 0);
+    for (const char* command : {"render bad.toml -q -o a.png", "info bad.toml", "bench bad.toml -q",
+                                "study bad.toml -q", "submit bad.toml -o a.png --parallel 1"}) {
+      const Outcome r = run(command);
+      EXPECT_EQ(r.status, check.status) << command;
+      EXPECT_EQ(r.err, check.err) << command;
+    }
+  }
+}
+
+TEST_F(CliValidation, AScenesFileMustBeARegularFile) {
+  expect_same("pipe", "", 66, "orrery: cannot open pipe: it is not a regular file\n");
+  expect_same("/dev/zero", "", 66, "orrery: cannot open /dev/zero: it is not a regular file\n");
+  expect_same(".", "", 66, "orrery: cannot open .: it is a directory\n");
+}
+
+TEST_F(CliValidation, OptionsAreNamedAndAreUsage) {
+  const std::string render = "render good.toml -q -o a.png ";
+  EXPECT_EQ(run(render + "--view Filmik").err.rfind("orrery: --view: the OCIO config (built-in) has no view", 0), 0u);
+  EXPECT_EQ(run(render + "--view Filmik").status, 2);
+  EXPECT_EQ(run(render + "--display sGRB").status, 2);
+  const Outcome missing = run(render + "--ocio none.ocio");
+  EXPECT_EQ(missing.status, 66);
+  EXPECT_EQ(missing.err, "orrery: --ocio: cannot open none.ocio: No such file or directory\n");
+}
+
+TEST_F(CliValidation, TheEnvironmentsConfigCountsWhereADisplayIsAskedFor) {
+  const std::string before = "OCIO=none.ocio";
+  const Outcome check = run("check good.toml", before);
+  EXPECT_EQ(check.status, 66);
+  EXPECT_EQ(check.err, "orrery: $OCIO: cannot open none.ocio: No such file or directory\n");
+  const Outcome shown = run("render good.toml -q -o a.png", before);
+  EXPECT_EQ(shown.status, 66);
+  EXPECT_EQ(shown.err, check.err);
+  EXPECT_EQ(run("render good.toml -q -o a.exr", before).status, 0) << "an EXR leaves before any display";
+}
+
+TEST_F(CliValidation, CheckLooksAtEveryFrame) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float radius\nend_header\n";
+  for (const char* frame : {"1", "2", "4"}) write("c." + std::string(frame) + ".ply", header + "0 0 -3 1\n");
+  write("c.5.ply", header + "0 0 -3\n");
+  write("c.toml", std::string(kGoodScene) + "[[points]]\nfile = \"c.%d.ply\"\nmaterial = \"grey\"\n");
+  EXPECT_EQ(run("check c.toml").out, "c.toml: ok\n");
+  EXPECT_EQ(run("check c.toml --frames 1-2").out, "c.toml: ok, 2 frames\n");
+  const Outcome r = run("check c.toml --frames 1-7");
+  EXPECT_EQ(r.status, 66) << "as a render: the first failure's";
+  EXPECT_TRUE(contains(r.err, "cannot open c.3.ply")) << r.err;
+  EXPECT_TRUE(contains(r.err, "c.5.ply:9: error: ")) << r.err;
+  EXPECT_TRUE(contains(r.err, "orrery: c.toml: 4 of 7 frames have errors: 3,5-7\n")) << r.err;
+  EXPECT_EQ(run("render c.toml -q -o a.##.png --frames 1-7").status, 66);
+}
+
+TEST_F(CliValidation, WhatIsWrongWithEveryFrameIsSaidOnce) {
+  write_bad("[camera]\nvfov = 200\n");
+  const Outcome r = run("check bad.toml --frames 1-20");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_EQ(r.err.find("camera.vfov is 200"), r.err.rfind("camera.vfov is 200")) << r.err;
+  EXPECT_TRUE(contains(r.err, "20 of 20 frames have errors: 1-20")) << r.err;
+}
+
+TEST_F(CliValidation, OneFrameIsShownAndMeasured) {
+  write("shot.toml",
+        std::string(kGoodScene) + "[[key]]\ntarget = \"camera.vfov\"\nframes = [1, 11]\nvalues = [20, 40]\n");
+  EXPECT_TRUE(contains(run("info shot.toml --settings").out, "camera.vfov                20 "));
+  EXPECT_TRUE(contains(run("info shot.toml --settings --frame 6").out, "camera.vfov                30 "));
+  EXPECT_TRUE(contains(run("info shot.toml --settings --frames 6").out, "camera.vfov                30 "));
+  EXPECT_TRUE(contains(run("info shot.toml --frame 6").out, "\nframe       6\n"));
+  const Outcome many = run("info shot.toml --frames 1-6");
+  EXPECT_EQ(many.status, 2);
+  EXPECT_EQ(many.err, "orrery: --frame 1-6 is 6 frames; this command takes one, and orrery check takes many\n");
+  const std::string bench = "bench shot.toml -q --rounds 1 --seconds 0.001 --frame ";
+  EXPECT_NE(run(bench + "1").out.substr(0, 40), run(bench + "6").out.substr(0, 40)) << "the scene's hash";
+}
+
+TEST_F(CliValidation, AMillionErrorsAreAHundredLines) {
+  std::string text;
+  for (int i = 0; i < 2000; ++i) text += "[[sphere]]\nradius = \"big\"\nmaterial = \"gray\"\n";
+  write_bad(text);
+  const Outcome r = run("check bad.toml");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_TRUE(contains(r.err, "bad.toml: error: and 5900 more (6000 in all)\norrery: bad.toml: 6000 errors\n"));
+  EXPECT_LT(r.err.size(), 30000u);
+}
+
+TEST_F(CliValidation, AReportIsAPage) {
+  for (const char* name : {"x.pdf", "x", "x.json"}) {
+    const Outcome r = run(std::string("study good.toml -o ") + name);
+    EXPECT_EQ(r.status, 2);
+    EXPECT_EQ(r.err,
+              "orrery: " + std::string(name) +
+                  " is not the name of an HTML page; a report is one, so name it .html, or print the figures with "
+                  "--json\n");
+  }
+}
+
+TEST_F(CliValidation, AllLayersAreThoseOfInfo) {
+  const Outcome info = run("info good.toml --layers all");
+  EXPECT_TRUE(contains(info.out, "layers      Z, depth, N, ")) << info.out;
+  ASSERT_EQ(run("render good.toml -q -o a.exr --layers all").status, 0);
+  const std::string header = text_of(folder_ / "a.exr").substr(0, 20000);
+  for (const char* channel : {"transmission_indirect.B", "CryptoObject02.A", "denoise.normal.X", "material_id.X"})
+    EXPECT_TRUE(contains(header, channel)) << channel;
+  EXPECT_FALSE(contains(header, "CryptoGroup")) << "no sphere has a group";
+  EXPECT_EQ(run("render good.toml -q -o b.exr --set 'output.layers=[Z,N]'").status, 0);
+  EXPECT_EQ(run("render good.toml -q -o c.exr --layers all --set render.shading=flat").status, 0);
+}
+
+TEST_F(CliValidation, UnusedColoursAreTold) {
+  write("c.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n0 0 -3 255 0 0\n");
+  write("c.toml", std::string(kGoodScene) + "[[points]]\nfile = \"c.ply\"\nradius = 1\nmaterial = \"grey\"\n");
+  EXPECT_TRUE(contains(run("info c.toml").out,
+                       "points      c.ply: 1 sphere; unused: red, green, blue; colours of points are not used, "
+                       "those of materials are\n"));
+  EXPECT_TRUE(contains(run("info c.toml --json").out, "\"unused_colors\": true"));
+}
+
+}  // namespace
+}  // namespace orrery::test
