@@ -55,11 +55,11 @@ std::optional<std::uint64_t> granted_by(const std::filesystem::path& group) {
 }  // namespace
 
 MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
-  // The picture; a count and a goal; with layers all that is known of the pixel's paths so far; in rounds a second sum,
-  // two floats and a count for judging a pixel, twice while averages are made.
+  // The picture; a sample count and a goal; with layers the sums of the pixel's paths; with adaptive sampling a second
+  // sum and seven numbers for the noise estimate.
   const std::uint64_t a_pixel = kFilmBytesPerPixel + needs.layer_planes * kBytesPerLayerPlane +
                                 2 * sizeof(std::uint32_t) + (needs.layers ? sizeof(film::LayerPixel) : 0) +
-                                (needs.in_rounds ? sizeof(kernel::PixelSum) + 5 * sizeof(float) : 0);
+                                (needs.in_rounds ? sizeof(kernel::PixelSum) + 7 * sizeof(float) : 0);
   MemoryEstimate m;
   m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * a_pixel;
   m.spheres = needs.spheres * kBytesPerSphere;

@@ -42,6 +42,8 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"samples_fewest", r.fewest_samples},
               {"samples_most", r.most_samples},
               {"noise", nullptr},
+              {"noise_expected", nullptr},
+              {"unjudged_pixels", r.unjudged_pixels},
               {"ended_by", r.ended_by},
               {"target_missed", report.target_missed},
               {"missing", report.missing},
@@ -70,6 +72,7 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
               {"accelerator", r.accelerator},
               {"versions", versions}};
   if (r.noise) out["noise"] = *r.noise;
+  if (r.expected_noise) out["noise_expected"] = *r.expected_noise;
   for (const auto& [layer, bad] : report.bad_layers) out["bad_pixels"]["layers"][layer] = bad_values_json(bad);
   if (!outcome.error.empty()) out["error"] = outcome.error;
   return json_text(out);

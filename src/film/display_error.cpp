@@ -3,16 +3,16 @@
 
 namespace orrery::film {
 
-double display_error_squared(const kernel::PixelSum& a, const kernel::PixelSum& b) noexcept {
-  if (a.weight <= 0 || b.weight <= 0) return 0;
-  double squares = 0, light = 0;
+HalvesEstimate compare_halves(const kernel::PixelSum& a, const kernel::PixelSum& b) noexcept {
+  HalvesEstimate out;
+  if (a.weight <= 0 || b.weight <= 0) return out;
   for (int c = 0; c < 3; ++c) {
     const double x = kernel::from_fixed_point(a.rgb[c]) / static_cast<double>(a.weight);
     const double y = kernel::from_fixed_point(b.rgb[c]) / static_cast<double>(b.weight);
-    squares += (x - y) * (x - y) / 4;  // their mean is off by half as much as they differ
-    light += (x + y) / 2;
+    out.variance += (x - y) * (x - y) / 4 / 3;  // their mean is off by half as much as they differ
+    out.light += (x + y) / 2 / 3;
   }
-  return display_error_squared(squares, light);
+  return out;
 }
 
 }  // namespace orrery::film

@@ -20,10 +20,12 @@ inline double display_error_squared(double squares, double light) noexcept {
   return squares / 3 / (4 * mean * mean);
 }
 
-/// What two independent halves of a pixel's samples say of the error of their mean: the expected value of
-/// display_error_squared.
-///
-/// Result     0 where a half has no samples
-double display_error_squared(const kernel::PixelSum& a, const kernel::PixelSum& b) noexcept;
+/// What two independent halves of a pixel's samples tell of their mean; means of the three channels.
+struct HalvesEstimate {
+  double light = 0;
+  double variance = 0;  ///< its expected squared error; 0 where a half has no samples
+};
+
+HalvesEstimate compare_halves(const kernel::PixelSum& a, const kernel::PixelSum& b) noexcept;
 
 }  // namespace orrery::film

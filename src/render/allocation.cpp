@@ -10,32 +10,8 @@
 namespace orrery::render {
 namespace {
 
-constexpr int kReach = 2;  ///< px, of the square in which errors are averaged, to each side
-
-/// Squared errors of one sample, each the mean over the square around its pixel.
-std::vector<float> averaged(const PixelErrors& e) {
-  const auto at = [&](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(e.width) + static_cast<std::size_t>(x);
-  };
-  std::vector<float> along(e.squared.size()), out(e.squared.size());
-  for (int y = 0; y < e.height; ++y) {
-    for (int x = 0; x < e.width; ++x) {
-      float sum = 0;
-      for (int k = std::max(x - kReach, 0); k <= std::min(x + kReach, e.width - 1); ++k)
-        sum += e.squared[at(k, y)] * static_cast<float>(e.samples[at(k, y)]);
-      along[at(x, y)] = sum / static_cast<float>(std::min(x + kReach, e.width - 1) - std::max(x - kReach, 0) + 1);
-    }
-  }
-  for (int y = 0; y < e.height; ++y) {
-    const int first = std::max(y - kReach, 0), last = std::min(y + kReach, e.height - 1);
-    for (int x = 0; x < e.width; ++x) {
-      float sum = 0;
-      for (int k = first; k <= last; ++k) sum += along[at(x, k)];
-      out[at(x, y)] = sum / static_cast<float>(last - first + 1);
-    }
-  }
-  return out;
-}
+/// A round brings at least this part of the samples that there are: choosing the pixels takes time, too.
+constexpr double kLeastRound = 1.0 / 64;
 
 /// Pixels by what their next sample takes away of the picture's squared error, in sixteen even steps to an octave. Of
 /// a number's own exponent and fraction, since a library's logarithm may differ in its last bit, and with it pictures.
@@ -67,27 +43,44 @@ class Ranking {
   std::array<Bin, kBins> bins{};
 };
 
-}  // namespace
-
-double PixelErrors::sum() const {
-  double sum = 0;
-  for (const float e : squared) sum += static_cast<double>(e);
-  return sum;
+/// Adds the pixels that lack evidence where all of them can be paid for.
+void add_due(const std::vector<std::uint32_t>& samples, const std::vector<std::uint8_t>& lacks_evidence, const RoundGoal& goal,
+             Round& round) {
+  const auto price_of = [&](std::size_t i) {
+    return std::uint64_t{std::min(samples[i], goal.most_per_pixel - samples[i])};
+  };
+  std::uint64_t chosen = 0, due = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (round.chosen[i]) {
+      chosen += price_of(i);
+    } else if (lacks_evidence[i] != 0) {
+      due += price_of(i);
+    }
+  }
+  if (due == 0 || due > goal.affordable - std::min(chosen, goal.affordable)) return;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (lacks_evidence[i] != 0 && price_of(i) > 0) round.chosen[i] = true;
+  round.any = true;
+  round.samples_to_goal = std::max(round.samples_to_goal, static_cast<double>(chosen + due));
 }
 
-Round choose_pixels(const PixelErrors& errors, const RoundGoal& goal) {
-  const std::vector<float> of_one_sample = averaged(errors);
+}  // namespace
+
+Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector<float>& error_of_one_sample,
+                    const std::vector<std::uint8_t>& lacks_evidence, const RoundGoal& goal) {
   Round round;
   auto ranking = std::make_unique<Ranking>();
-  std::vector<std::int16_t> bin_of(of_one_sample.size(), -1);
-  double told = 0;  // by the averages; its pixels' own errors add up to nearly the same
+  std::vector<std::int16_t> bin_of(samples.size(), -1);
+  double error = 0;  // squared, of all pixels
+  double all = 0;    // samples
   for (std::size_t i = 0; i < bin_of.size(); ++i) {
-    const auto n = static_cast<double>(errors.samples[i]);
-    const auto s = static_cast<double>(of_one_sample[i]);
-    told += s / n;
+    const auto n = static_cast<double>(samples[i]);
+    const auto s = static_cast<double>(error_of_one_sample[i]);
+    error += s / n;
+    all += n;
     const int bin = Ranking::bin_of(s / (n * n));
     if (bin < 0) continue;
-    if (errors.samples[i] >= goal.most_per_pixel) {
+    if (samples[i] >= goal.most_per_pixel) {
       round.limited_by_pixels = true;
       continue;
     }
@@ -96,26 +89,24 @@ Round choose_pixels(const PixelErrors& errors, const RoundGoal& goal) {
     b.error += s / n;
     b.root += std::sqrt(s);
     b.samples += n;
-    b.price += std::min(errors.samples[i], goal.most_per_pixel - errors.samples[i]);
+    b.price += std::min(samples[i], goal.most_per_pixel - samples[i]);
   }
-  // The averages are scaled to what the pixels themselves say, for that is what the goal is about.
-  const double sum = errors.sum();
-  const double wanted = sum > 0 ? goal.squared_sum * told / sum : 0;
+  const double wanted = error * goal.error_ratio;
 
   // Down from the pixels with the largest gain: where the level lies at which the goal is reached if all above it go
   // on until they are down at it, and how far doubling leads.
-  double left = told, roots = 0, had = 0, after_doubling = told;
+  double left = error, roots = 0, had = 0, after_doubling = error;
   std::uint64_t price = 0;
   int level = 0, doubling = Ranking::kBins, affordable = Ranking::kBins;
   bool level_found = false;
   for (int k = Ranking::kBins - 1; k >= 0; --k) {
     const Ranking::Bin& b = ranking->bins[static_cast<std::size_t>(k)];
-    if (price + b.price <= goal.affordable) affordable = k;
-    price += b.price;
-    if (after_doubling > wanted) {
+    if (after_doubling > wanted || (doubling < Ranking::kBins && static_cast<double>(price) < all * kLeastRound)) {
       doubling = k;
       after_doubling -= b.error / 2;
     }
+    price += b.price;
+    if (price <= goal.affordable) affordable = k;
     left -= b.error;
     roots += b.root;
     had += b.samples;
@@ -125,7 +116,7 @@ Round choose_pixels(const PixelErrors& errors, const RoundGoal& goal) {
       level_found = true;
       round.samples_to_goal = std::max(0.0, roots / root_of_level - had);
     }
-    if (level_found && after_doubling <= wanted) break;
+    if (level_found && after_doubling <= wanted && static_cast<double>(price) >= all * kLeastRound) break;
   }
   // Pixels that need less than 1.4 times their samples wait, unless there are no others.
   const int worth_doubling = std::min(level + Ranking::kStepsPerOctave, Ranking::kBins - 1);
@@ -136,6 +127,7 @@ Round choose_pixels(const PixelErrors& errors, const RoundGoal& goal) {
   };
   choose_from(std::max({worth_doubling, doubling, affordable}));
   if (!round.any) choose_from(std::max(doubling, affordable));
+  add_due(samples, lacks_evidence, goal, round);
   return round;
 }
 

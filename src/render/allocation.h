@@ -6,18 +6,9 @@
 
 namespace orrery::render {
 
-/// What is known of the pixels of a picture between two rounds of sampling; both row by row.
-struct PixelErrors {
-  int width = 0, height = 0;
-  std::vector<std::uint32_t> samples;  ///< that each has had
-  std::vector<float> squared;          ///< its squared error, estimated from its own samples alone
-
-  double sum() const;
-};
-
 /// What the next round is for.
 struct RoundGoal {
-  double squared_sum = 0;            ///< what the pixels' squared errors shall add up to
+  double error_ratio = 0;            ///< wanted squared error of the picture by the present one
   std::uint64_t affordable = 0;      ///< samples that may be spent
   std::uint32_t most_per_pixel = 0;  ///< that no pixel shall exceed
 };
@@ -30,16 +21,17 @@ struct Round {
   bool limited_by_pixels = false;  ///< some pixel that should go on has had most_per_pixel
 };
 
-/// Chooses the pixels whose next samples take away most of the picture's error.
+/// Chooses the pixels whose next samples reduce the picture's error most.
 ///
-/// The error of a sum of pixels is smallest for a given number of samples where every pixel's last sample takes away
-/// the same (Neyman's allocation): pixels go on whose squared error by their samples lies above a level, and the level
-/// is where the goal will be reached. A pixel's error is too uncertain to be judged alone, so it is judged by the mean
-/// over the five by five pixels around it: that keeps the choice, and with it the picture, from favouring samples that
-/// happen to agree.
+/// The error of a sum of pixels is smallest for a given number of samples where every pixel's last sample reduces it
+/// by the same amount (Neyman's allocation): pixels go on whose squared error by their samples lies above a level, and
+/// the level is where the goal will be reached. Pixels that lack evidence go on besides, where that can be afforded.
 ///
-/// Source     neyman1934
-/// Domain     errors.samples > 0
-Round choose_pixels(const PixelErrors& errors, const RoundGoal& goal);
+/// `samples`              that each pixel has had, above 0
+/// `error_of_one_sample`  squared, of each pixel
+/// `lacks_evidence`               1: the pixel lacks evidence
+/// Source                 neyman1934
+Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector<float>& error_of_one_sample,
+                    const std::vector<std::uint8_t>& lacks_evidence, const RoundGoal& goal);
 
 }  // namespace orrery::render

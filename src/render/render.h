@@ -71,7 +71,10 @@ struct Statistics {
   std::string traversal;    ///< "packet, bounced single": of camera rays, and of bounced ones where it differs
   int threads = 0;
   std::uint64_t fewest_samples = 0, most_samples = 0;  ///< of a pixel
-  std::optional<double> noise;  ///< that was reached, by estimate; where noise or seconds were given
+  /// Where noise or seconds were given: the noise that the picture is expected to have, and what it rarely exceeds,
+  /// which is what ends the render.
+  std::optional<double> expected_noise, noise;
+  std::uint64_t unjudged_pixels = 0;  ///< around which too few paths found light for these estimates
   std::string ended_by;         ///< "samples", "noise" or "time", whichever came first
 };
 

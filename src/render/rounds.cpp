@@ -9,6 +9,7 @@
 
 #include "film/display_error.h"
 #include "render/allocation.h"
+#include "render/noise_estimate.h"
 #include "render/passes.h"
 
 namespace orrery::render {
@@ -40,15 +41,16 @@ class Rounds {
          ProgressReporter& progress, film::Partial& state)
       : settings_(settings),
         passes_(settings, render_tile, pool, progress, state),
+        pool_(pool),
         progress_(progress),
         state_(state),
-        most_(settings.unlimited ? kMostSamples : std::max(1u, static_cast<std::uint32_t>(world.samples) / 2)) {
-    errors_.width = world.width;
-    errors_.height = world.height;
-    errors_.samples = state.counts;
-    errors_.squared.resize(state.pixel_count());
+        most_(settings.unlimited ? kMostSamples : std::max(1u, static_cast<std::uint32_t>(world.samples) / 2)),
+        pixels_(world.width, world.height),
+        round_begin_(progress.seconds()),
+        round_begin_samples_(progress.done()) {
+    if (settings.layers.coverage) pixels_.known_black.resize(pixels_.samples.size());
     for (int y = 0; y < world.height; ++y)
-      for (int x = 0; x < world.width; ++x) judge(x, y);
+      for (int x = 0; x < world.width; ++x) update(x, y);
   }
 
   bool run() {
@@ -62,38 +64,42 @@ class Rounds {
       state_.goals.assign(state_.pixel_count(), n);
       if (!run_round()) return false;
     }
+    const double wanted = settings_.noise * settings_.noise;
     for (;;) {
-      const double wanted = settings_.noise * settings_.noise * pixels();
-      const double sum = errors_.sum();
-      if (settings_.noise > 0 && sum <= wanted) return ended("noise");
+      noise_ = estimate_noise(pixels_, pool_);
+      const double upper = noise_.upper();
+      const MissingEvidence evidence = find_missing_evidence(pixels_, pool_);
+      unjudged_ = evidence.count;
+      if (settings_.noise > 0 && upper <= wanted && unjudged_ == 0) return ended("noise");
       RoundGoal goal;
-      goal.squared_sum = settings_.noise > 0 ? wanted : sum / 2;
+      goal.error_ratio = settings_.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
       goal.most_per_pixel = most_;
       goal.affordable = affordable(kShareOfTime);
-      Round round = choose_pixels(errors_, goal);
+      const std::vector<float> errors = errors_of_one_sample(pixels_, noise_, pool_);
+      Round round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
       if (!round.any && settings_.seconds > 0) {
         goal.affordable = affordable(1);
-        round = choose_pixels(errors_, goal);
+        round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
         if (!round.any)
-          return ended(round.limited_by_pixels && static_cast<double>(goal.affordable) > pixels() ? "samples" : "time");
+          return ended(round.limited_by_pixels && goal.affordable > pixels_.samples.size() ? "samples" : "time");
       }
-      if (!round.any) return ended(round.limited_by_pixels ? "samples" : "noise");
-      if (settings_.noise > 0) expect(round, std::sqrt(sum / pixels()));
+      if (!round.any) return ended(round.limited_by_pixels || unjudged_ > 0 ? "samples" : "noise");
+      if (settings_.noise > 0) expect(round, std::sqrt(upper));
       state_.goals = state_.counts;
       for (std::size_t i = 0; i < state_.goals.size(); ++i)
-        if (round.chosen[i]) state_.goals[i] = std::min(2 * state_.goals[i], most_);
+        if (round.chosen[i]) state_.goals[i] = state_.goals[i] < most_ / 2 ? 2 * state_.goals[i] : most_;
       if (!run_round()) return false;
     }
   }
 
-  void tell(Statistics& statistics) const {
-    statistics.noise = std::sqrt(errors_.sum() / pixels());
+  void report(Statistics& statistics) const {
+    statistics.expected_noise = std::sqrt(noise_.mean_square);
+    statistics.noise = std::sqrt(noise_.upper());
+    statistics.unjudged_pixels = unjudged_;
     statistics.ended_by = ended_by_;
   }
 
  private:
-  double pixels() const { return static_cast<double>(errors_.samples.size()); }
-
   bool ended(const char* by) {
     ended_by_ = by;
     return true;
@@ -102,7 +108,7 @@ class Rounds {
   /// Of a half; how many the next of the first rounds brings every pixel to. 0: those rounds are over.
   std::uint32_t next_of_all(std::uint32_t n) const {
     const std::uint32_t next = std::min({2 * n, kFirstSamples, most_});
-    return next > n && affordable(kShareOfTime) >= static_cast<std::uint64_t>(pixels()) * (next - n) ? next : 0;
+    return next > n && affordable(kShareOfTime) >= std::uint64_t{next - n} * pixels_.samples.size() ? next : 0;
   }
 
   /// Samples of a half that a share of the remaining time allows; both are rendered.
@@ -114,7 +120,7 @@ class Rounds {
   }
 
   void expect(const Round& round, double noise) {
-    const double limit = 2.0 * pixels() * most_;
+    const double limit = 2.0 * static_cast<double>(pixels_.samples.size()) * most_;
     const double total = static_cast<double>(progress_.done()) + 2 * round.samples_to_goal;
     if (total < limit) {
       progress_.expect(static_cast<std::uint64_t>(total), noise_text(noise, settings_.noise));
@@ -125,36 +131,42 @@ class Rounds {
 
   /// Brings all pixels to their goals.
   bool run_round() {
-    const double begin = progress_.seconds();
-    const std::uint64_t done = progress_.done();
-    if (!passes_.run(kSide, [this](int x, int y) { judge(x, y); })) return false;
+    if (!passes_.run(kSide, [this](int x, int y) { update(x, y); })) return false;
     state_.goals.clear();
-    // What the last round has shown counts most: pixels that go on are not like the others.
-    const double seconds = progress_.seconds() - begin;
+    // What the last round has shown counts most: pixels that go on are not like the others. The time that choosing them
+    // took is part of the round.
+    const double seconds = progress_.seconds() - round_begin_;
     if (seconds > 0) {
-      const double speed = static_cast<double>(progress_.done() - done) / seconds;
+      const double speed = static_cast<double>(progress_.done() - round_begin_samples_) / seconds;
       samples_per_second_ = samples_per_second_ > 0 ? (samples_per_second_ + 3 * speed) / 4 : speed;
     }
+    round_begin_ = progress_.seconds();
+    round_begin_samples_ = progress_.done();
     return true;
   }
 
-  void judge(int x, int y) {
-    errors_.samples[at(x, y)] = state_.counts[at(x, y)];
-    errors_.squared[at(x, y)] =
-        static_cast<float>(film::display_error_squared(*state_.film.at(x, y), *state_.second.at(x, y)));
-  }
-
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(errors_.width) + static_cast<std::size_t>(x);
+  void update(int x, int y) {
+    const std::size_t i = pixels_.at(x, y);
+    const film::HalvesEstimate halves = film::compare_halves(*state_.film.at(x, y), *state_.second.at(x, y));
+    pixels_.samples[i] = state_.counts[i];
+    pixels_.light[i] = static_cast<float>(std::max(halves.light, 0.0));
+    pixels_.variance[i] = static_cast<float>(halves.variance);
+    // Where the background is transparent, what meets no sphere is black.
+    if (settings_.layers.coverage) pixels_.known_black[i] = state_.layers[i].covered == 0 ? 1 : 0;
   }
 
   const Settings& settings_;
   Passes passes_;
+  TilePool& pool_;
   ProgressReporter& progress_;
   film::Partial& state_;
   std::uint32_t most_;  ///< samples of a half
-  PixelErrors errors_;  ///< samples are those of a half
+  PixelStatistics pixels_;
+  NoiseEstimate noise_;
+  std::uint64_t unjudged_ = 0;  ///< pixels
   double samples_per_second_ = 0;
+  double round_begin_;  ///< seconds
+  std::uint64_t round_begin_samples_;
   const char* ended_by_ = "samples";
 };
 
@@ -166,7 +178,7 @@ bool render_in_rounds(const compile::World& world, const Settings& settings, con
   progress.expect(settings.unlimited ? std::uint64_t{1} << 62 : std::uint64_t(world.samples) * state.pixel_count(),
                   settings.noise > 0 ? "noise" : "time");
   if (!rounds.run()) return false;
-  rounds.tell(statistics);
+  rounds.report(statistics);
   return true;
 }
 

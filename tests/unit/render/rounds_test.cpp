@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
+#include <utility>
 
 #include "compile/compile.h"
+#include "film/display_error.h"
 #include "render/render.h"
 #include "support/everything.h"
+#include "support/room.h"
 
 namespace orrery::render {
 namespace {
@@ -113,6 +117,136 @@ TEST(RenderRounds, AnEmptyViewIsDoneAtOnce) {
   EXPECT_EQ(r.statistics.ended_by, "noise");
   EXPECT_EQ(r.statistics.most_samples, 16u);
   EXPECT_EQ(r.picture.planes[0].values[0], 1.0f);
+}
+
+/// The display error of a picture against the truth.
+double error_of(const film::Picture& picture, const film::Picture& truth) {
+  double sum = 0;
+  const std::size_t pixels = truth.planes[0].values.size();
+  for (std::size_t i = 0; i < pixels; ++i) {
+    double squares = 0, light = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto a = static_cast<double>(picture.planes[c].values[i]), b = static_cast<double>(truth.planes[c].values[i]);
+      squares += (a - b) * (a - b);
+      light += b;
+    }
+    sum += film::display_error_squared(squares, light);
+  }
+  return std::sqrt(sum / static_cast<double>(pixels));
+}
+
+TEST(RenderRounds, RareLightIsNotTakenForNone) {
+  // Four samples in a hundred find light: after sixteen samples a pixel looks black, or as if it were known.
+  scene::Scene s = test::room(3.7, 5, 32, 18);
+  s.render.samples = 4096;
+  s.render.seed = 1000;
+  const film::Picture truth = render(compile::compile(s), {}).picture;
+  for (const scene::Sampler sampler : {scene::Sampler::kIndependent, scene::Sampler::kSobol}) {
+    s.render.sampler = sampler;
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      s.render.seed = seed;
+      const Result r = render(compile::compile(s), noise(0.3));
+      EXPECT_EQ(r.statistics.ended_by, "noise");
+      EXPECT_LE(*r.statistics.noise, 0.3);
+      EXPECT_LT(*r.statistics.expected_noise, *r.statistics.noise);
+      const double error = error_of(r.picture, truth);
+      EXPECT_LT(error, 1.1 * 0.3) << seed;
+      EXPECT_GT(error, 0.7 * 0.3) << seed;
+    }
+  }
+}
+
+TEST(RenderRounds, BlackIsBelievedAfterAThousandSamples) {
+  const Result r = render(compile::compile(test::room(3.95, 5, 12, 8)), noise(0.3));
+  EXPECT_EQ(r.statistics.ended_by, "noise");
+  EXPECT_EQ(r.statistics.fewest_samples, 1024u);
+  EXPECT_EQ(r.statistics.most_samples, 1024u);
+  EXPECT_EQ(r.statistics.unjudged_pixels, 0u);
+}
+
+TEST(RenderRounds, WhatTooFewSamplesCannotJudgeIsCounted) {
+  scene::Scene s = test::room(3.95, 5, 12, 8);
+  s.render.samples = 64;
+  Settings settings = noise(0.3);
+  settings.unlimited = false;
+  const Result r = render(compile::compile(s), settings);
+  EXPECT_TRUE(r.completed);
+  EXPECT_EQ(r.statistics.ended_by, "samples");
+  EXPECT_EQ(r.statistics.most_samples, 64u);
+  EXPECT_EQ(r.statistics.unjudged_pixels, 96u);
+}
+
+TEST(RenderRounds, ATransparentBackgroundIsKnownToBeBlack) {
+  scene::Scene s;
+  s.image = {30, 20};
+  s.camera.look_from = {0, 0, 9};
+  s.materials = {{"m", scene::Lambertian{{0.5, 0.5, 0.5}}}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}};
+  Settings settings = noise(0.2);
+  settings.layers.coverage = true;
+  const Result r = render(compile::compile(s), settings);
+  EXPECT_EQ(r.statistics.ended_by, "noise");
+  EXPECT_EQ(r.statistics.fewest_samples, 16u);
+  EXPECT_LT(r.statistics.paths, 30u * 600u);  // a thousand for each pixel if black had to be proven
+}
+
+TEST(RenderRounds, PicturesOfFewPixelsEnd) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 3}, {5, 1}}) {
+    scene::Scene s = test::room(3.6, 10, width, height);
+    const Result r = render(compile::compile(s), noise(0.1));
+    EXPECT_EQ(r.statistics.ended_by, "noise");
+    EXPECT_LE(*r.statistics.noise, 0.1);
+    EXPECT_GT(r.statistics.fewest_samples, 16u);
+  }
+}
+
+TEST(RenderRounds, ALonePixelThatDiffersFromAllOthersIsReached) {
+  // A small sphere before an even sky: no other pixel knows anything of the one that it is in.
+  scene::Scene s;
+  s.image = {24, 16};
+  s.camera.look_from = {0, 0, 10};
+  s.camera.look_at = {0.2, 0.2, 0};
+  s.camera.vfov = 20;
+  s.background.type = scene::BackgroundType::kConstant;
+  s.materials = {{"soot", scene::Lambertian{{0, 0, 0}}}};
+  s.spheres = {{{0, 0, 0}, 0.07, 0, ""}};
+  s.render.sampler = scene::Sampler::kIndependent;
+  int gone_on = 0;
+  for (s.render.seed = 1; s.render.seed <= 8; ++s.render.seed) {
+    const Result r = render(compile::compile(s), noise(0.0005));
+    EXPECT_EQ(r.statistics.ended_by, "noise");
+    EXPECT_LT(r.statistics.most_samples, 1u << 20);
+    gone_on += r.statistics.most_samples > 16 ? 1 : 0;
+  }
+  EXPECT_GE(gone_on, 4);
+}
+
+TEST(RenderRounds, AStoppedOneGoesOnToTheSameBits) {
+  const compile::World world = compile::compile(test::room(3.7, 5, 33, 18));
+  Settings settings = noise(0.3);
+  settings.threads = 2;
+  const Result whole = render(world, settings);
+  std::optional<film::Partial> from;
+  int stops = 0;
+  for (;; ++stops) {
+    std::atomic<bool> cancel{false};
+    int looks = 0;
+    settings.cancel = &cancel;
+    settings.snapshot_is_due = [&] {
+      static std::mutex mutex;
+      const std::lock_guard lock(mutex);
+      if (++looks > 5) cancel = true;  // in the middle of a round
+      return false;
+    };
+    Result r = render(world, settings, std::move(from));
+    if (r.completed) {
+      expect_same(r.picture, whole.picture);
+      EXPECT_EQ(r.statistics.paths, whole.statistics.paths);
+      break;
+    }
+    from = std::move(r.partial);
+  }
+  EXPECT_GT(stops, 4);
 }
 
 TEST(RenderRounds, ProgressGoesForwardAndSaysWhatEndsIt) {

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/noise_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+
+#include "film/display_error.h"
+
+namespace orrery::render {
+namespace {
+
+/// Windows reach so many pixels to each side: those in which errors are averaged, the second where the errors of fewer
+/// than kFewest pixels make up the mean of the first, and those in which evidence is looked for.
+constexpr int kReach = 2, kWideReach = 4, kEvidenceReach = 3;
+constexpr double kFewest = 3;
+
+/// Errors are sparse where less than one pixel in so many makes up the mean.
+constexpr double kSparse = 64;
+
+/// Pixels along the side of a cell. Sums over cells make up the windows beyond kWideReach: three by three cells around
+/// the pixel's own, and nine by nine.
+constexpr int kCell = 16;
+
+/// A pixel's error is taken to be at least this part of the whole picture's: one that differs from all around it must
+/// not be left behind for ever.
+constexpr float kLeastError = 1.0f / 64;
+
+/// Paths in a window that must have found light before its error is believed.
+constexpr double kHits = 4;
+/// Keeps squares of errors within float: no error of interest is near.
+constexpr float kLargestError = 0x1p50f;
+
+void run(TilePool& pool, std::size_t count, const std::function<void(std::size_t)>& work) {
+  pool.run(count, [&](std::size_t i, TileWorker&) { work(i); }, [] { return false; });
+}
+
+float relative(float variance, float light) {
+  const float floor = static_cast<float>(film::kDarkestLight);
+  const float shown = 2 * std::max(light, floor);
+  return std::min(variance / (shown * shown), kLargestError);
+}
+
+/// Errors of single samples of all pixels but one class's, and their sums.
+class ErrorsOfOthers {
+ public:
+  struct Sums {
+    double sum = 0, squares = 0;
+    int count = 0;
+
+    bool is_enough() const { return sum > 0 && sum * sum >= kFewest * squares; }
+    bool is_sparse() const { return sum * sum * kSparse < squares * count; }
+    float mean() const { return count > 0 ? static_cast<float>(sum / count) : 0.0f; }
+  };
+
+  explicit ErrorsOfOthers(const PixelStatistics& s)
+      : s_(s),
+        across_((s.width + kCell - 1) / kCell),
+        down_((s.height + kCell - 1) / kCell),
+        values_(s.samples.size()),
+        cells_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {}
+
+  /// Computes those of a block, whose sides are whole cells but at the picture's border.
+  void fill(const PixelBlock& b, const std::vector<float>& guide, int excluded_class) {
+    for (int y = b.y; y < b.y + b.height; y += kCell)
+      for (int x = b.x; x < b.x + b.width; x += kCell) cell(x / kCell, y / kCell) = {};
+    std::size_t i = 0;
+    for (int y = b.y; y < b.y + b.height; ++y) {
+      for (int x = b.x; x < b.x + b.width; ++x, ++i) {
+        const std::size_t at = s_.at(x, y);
+        const bool is_excluded = class_of(x, y) == excluded_class;
+        values_[at] = is_excluded ? 0 : relative(s_.variance[at] * static_cast<float>(s_.samples[at]), guide[i]);
+        if (is_excluded) continue;
+        const auto v = static_cast<double>(values_[at]);
+        Sums& c = cell(x / kCell, y / kCell);
+        c.sum += v;
+        c.squares += v * v;
+        ++c.count;
+      }
+    }
+  }
+
+  /// The mean around a pixel of the excluded class: that of the smallest window in which enough pixels count. Where
+  /// only few in a wide window have nearly all of its error, any pixel may be another of them: the wide mean is the
+  /// least that is assumed.
+  float around(int x, int y) const {
+    Sums wide = of_cells(x, y, 1);
+    if (!wide.is_enough()) wide = of_cells(x, y, 4);
+    Sums narrow = within(x, y, kReach);
+    if (!narrow.is_enough()) narrow = within(x, y, kWideReach);
+    if (narrow.sum > 0 && !narrow.is_enough()) return wide.mean();
+    return wide.is_sparse() ? std::max(narrow.mean(), wide.mean()) : narrow.mean();
+  }
+
+ private:
+  Sums& cell(int x, int y) { return cells_[static_cast<std::size_t>(y * across_ + x)]; }
+
+  Sums within(int x, int y, int reach) const {
+    float sum = 0, squares = 0;
+    const int x0 = std::max(x - reach, 0), x1 = std::min(x + reach, s_.width - 1);
+    for (int v = std::max(y - reach, 0); v <= std::min(y + reach, s_.height - 1); ++v) {
+      const float* const row = values_.data() + s_.at(0, v);
+      for (int u = x0; u <= x1; ++u) {
+        sum += row[u];
+        squares += row[u] * row[u];
+      }
+    }
+    const int count = count_within(x, reach, s_.width) * count_within(y, reach, s_.height) -
+                      count_within(x, reach, s_.width, x % 3) * count_within(y, reach, s_.height, y % 3);
+    return {static_cast<double>(sum), static_cast<double>(squares), count};
+  }
+
+  Sums of_cells(int x, int y, int reach) const {
+    Sums out;
+    for (int v = std::max(y / kCell - reach, 0); v <= std::min(y / kCell + reach, down_ - 1); ++v) {
+      for (int u = std::max(x / kCell - reach, 0); u <= std::min(x / kCell + reach, across_ - 1); ++u) {
+        const Sums& c = cells_[static_cast<std::size_t>(v * across_ + u)];
+        out.sum += c.sum;
+        out.squares += c.squares;
+        out.count += c.count;
+      }
+    }
+    return out;
+  }
+
+  const PixelStatistics& s_;
+  int across_, down_;  ///< cells
+  std::vector<float> values_;
+  std::vector<Sums> cells_;
+};
+
+/// Whether the others around a pixel have found enough light, or black that is to be believed.
+bool has_evidence(const PixelStatistics& s, int x, int y) {
+  const double n = s.samples[s.at(x, y)];
+  if (n >= kSamplesForEvidence) return true;
+  double light = 0, variance = 0, samples = 0;
+  int count = 0, dark = 0;
+  for (int v = std::max(y - kEvidenceReach, 0); v <= std::min(y + kEvidenceReach, s.height - 1); ++v) {
+    for (int u = std::max(x - kEvidenceReach, 0); u <= std::min(x + kEvidenceReach, s.width - 1); ++u) {
+      if ((u - x) % 3 == 0 && (v - y) % 3 == 0) continue;  // the pixel's own class
+      const std::size_t at = s.at(u, v);
+      light += static_cast<double>(s.light[at]);
+      variance += static_cast<double>(s.variance[at]);
+      samples += s.samples[at];
+      dark += s.light[at] > 0 || s.is_known_black(at) ? 0 : 1;
+      ++count;
+    }
+  }
+  if (count == 0 || n * count > 2 * samples) return true;  // its own samples are no evidence: it is the others' turn
+  if (2 * dark >= count) return false;                     // light beside a dark area proves nothing there
+  return light * light >= kHits * variance;                // where all hits are equally bright: their number
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
+  struct Sums {
+    double sum = 0, squares = 0;
+  };
+  const std::vector<PixelBlock> blocks = blocks_of(s.width, s.height);
+  NoiseEstimate out;
+  out.of_pixel.resize(s.samples.size());
+  std::vector<Sums> sums(blocks.size());
+  const LightGuide guide(s, kNoClass);
+  run(pool, blocks.size(), [&](std::size_t i) {
+    const PixelBlock& b = blocks[i];
+    const std::vector<float> light = guide.of(b);
+    std::size_t k = 0;
+    for (int y = b.y; y < b.y + b.height; ++y) {
+      for (int x = b.x; x < b.x + b.width; ++x, ++k) {
+        // The guide may take a dark pixel at an edge for a bright one, the pixel's own light not more than it has.
+        const std::size_t at = s.at(x, y);
+        out.of_pixel[at] = relative(s.variance[at], std::min(light[k], s.light[at]));
+        const auto e = static_cast<double>(out.of_pixel[at]);
+        sums[i].sum += e;
+        sums[i].squares += e * e;
+      }
+    }
+  });
+  Sums all;
+  for (const Sums& block : sums) {
+    all.sum += block.sum;
+    all.squares += block.squares;
+  }
+  const auto pixels = static_cast<double>(s.samples.size());
+  out.mean_square = all.sum / pixels;
+  out.standard_error = std::sqrt(all.squares) / pixels;
+  return out;
+}
+
+MissingEvidence find_missing_evidence(const PixelStatistics& s, TilePool& pool) {
+  MissingEvidence out;
+  out.of_pixel.resize(s.samples.size());
+  const std::vector<PixelBlock> blocks = blocks_of(s.width, s.height);
+  run(pool, blocks.size(), [&](std::size_t i) {
+    const PixelBlock& b = blocks[i];
+    for (int y = b.y; y < b.y + b.height; ++y)
+      for (int x = b.x; x < b.x + b.width; ++x) out.of_pixel[s.at(x, y)] = has_evidence(s, x, y) ? 0 : 1;
+  });
+  for (const std::uint8_t is_missing : out.of_pixel) out.count += is_missing;
+  return out;
+}
+
+std::vector<float> errors_of_one_sample(const PixelStatistics& s, const NoiseEstimate& noise, TilePool& pool) {
+  double sum = 0;
+  for (std::size_t i = 0; i < s.samples.size(); ++i) sum += static_cast<double>(noise.of_pixel[i]) * s.samples[i];
+  const float least = kLeastError * static_cast<float>(sum / static_cast<double>(s.samples.size()));
+
+  std::vector<float> out(s.samples.size());
+  const std::vector<PixelBlock> blocks = blocks_of(s.width, s.height);
+  ErrorsOfOthers errors(s);
+  for (int own = 0; own < kClasses; ++own) {
+    const LightGuide guide(s, own);
+    run(pool, blocks.size(), [&](std::size_t i) { errors.fill(blocks[i], guide.of(blocks[i]), own); });
+    run(pool, blocks.size(), [&](std::size_t i) {
+      const PixelBlock& b = blocks[i];
+      for (int y = b.y; y < b.y + b.height; ++y)
+        for (int x = b.x; x < b.x + b.width; ++x)
+          if (class_of(x, y) == own) out[s.at(x, y)] = errors.around(x, y) + least;
+    });
+  }
+  return out;
+}
+
+}  // namespace orrery::render
