@@ -46,7 +46,7 @@ class Metal final : public Material {
   Metal(Vec3d albedo, double fuzz) : albedo_(albedo), fuzz_(fuzz) {}
 
   bool scatter(const Ray& ray, const HitRecord& hit, Random& random, Scattered& out) const override {
-    const Vec3d w = math::normalized(reflect(ray.direction, hit.normal)) + fuzz_ * random.in_ball();
+    const Vec3d w = math::normalized(reflect(ray.direction, hit.normal)) + fuzz_ * random.on_sphere();
     if (math::dot(w, hit.normal) <= 0) return false;
     out = {{hit.point, w}, albedo_};
     return true;

@@ -26,12 +26,6 @@ class Random {
   }
   double between(double low, double high) { return low + (high - low) * unit(); }
 
-  math::Vec3d in_ball() {
-    for (;;) {
-      const math::Vec3d p{between(-1, 1), between(-1, 1), between(-1, 1)};
-      if (math::dot(p, p) < 1) return p;
-    }
-  }
   math::Vec3d on_sphere() {
     for (;;) {
       const math::Vec3d p{between(-1, 1), between(-1, 1), between(-1, 1)};

@@ -40,12 +40,6 @@ HWY_INLINE DiscPoint<D, V> sample_unit_disc(D d, V u, V v) {
   return {radius * turn.cos, radius * turn.sin};
 }
 
-/// The factor that turns a point of the unit sphere into a point of the unit ball, uniform by volume.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V sample_ball_radius(D d, V u) {
-  return cube_root(d, u);
-}
-
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

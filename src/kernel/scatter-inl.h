@@ -79,11 +79,16 @@ HWY_INLINE Vec3<hn::Vec<D>> mirrored(D d, const Surface<D>& at) {
   return select(at.same_side(d, w), w, at.normal);
 }
 
-/// A mirror whose reflected direction is moved within a ball; what would go into the surface is absorbed.
+/// Fuzzy reflection: the tip of the unit mirror direction is moved to the surface of a sphere around it, of radius
+/// `fuzz`. Directions below the surface are absorbed.
+///
+/// Where fuzz is 1 the sum may vanish; the result is then no number, which is on no side, so the path is absorbed.
+///
+/// Reference  shirley2024, "Fuzzy Reflection"
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Scattered<D> scatter_metal(D d, const Surface<D>& at, const Vec3<V>& on_sphere, V u) {
+HWY_INLINE Scattered<D> scatter_metal(D d, const Surface<D>& at, const Vec3<V>& on_sphere) {
   const auto mirror = mirrored(d, at);
-  const auto w = normalized(d, mul_add(on_sphere, at.fuzz * sample_ball_radius(d, u), mirror));
+  const auto w = normalized(d, mul_add(on_sphere, at.fuzz, mirror));
   const auto sharp = at.fuzz == hn::Zero(d);
   return {select(sharp, mirror, w), hn::Or(sharp, at.same_side(d, w))};
 }
@@ -104,7 +109,7 @@ HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leavin
                         hn::IfThenElseZero(is_kind(d, at.fresnel, FresnelKind::kSchlick), schlick));
 }
 
-/// Reflects or refracts, by the throw of u.
+/// Reflects where u is below the reflectance, refracts elsewhere.
 ///
 /// Reference  Snell's law in the form with cos^2 that loses nothing near an index ratio of one
 template <class D, class V = hn::Vec<D>>
@@ -121,13 +126,7 @@ HWY_INLINE Vec3<V> scatter_dielectric(D d, const Surface<D>& at, V u) {
   return select(reflects, mirrored(d, at), refracted);
 }
 
-/// Lanes that need no more than two numbers to be sent on.
-template <class D>
-HWY_INLINE hn::Mask<D> is_diffuse(D d, const Surface<D>& at) {
-  return hn::Or(is_kind(d, at.kind, MaterialKind::kLambertian), is_kind(d, at.kind, MaterialKind::kHemisphere));
-}
-
-/// Sends every ray on by its material.
+/// Scatters every ray by its material, with the first two of the vertex's random numbers.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Scattered<D> scatter(D d, const Features& features, const Surface<D>& at, const Four<V>& random) {
   Scattered<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
@@ -138,12 +137,12 @@ HWY_INLINE Scattered<D> scatter(D d, const Features& features, const Surface<D>&
     out.direction = select(among(MaterialKind::kHemisphere), scatter_hemisphere(d, at, on_sphere), out.direction);
   const auto metal = among(MaterialKind::kMetal);
   if (!hn::AllFalse(d, metal)) {
-    const auto scattered = scatter_metal(d, at, on_sphere, random.v[2]);
+    const auto scattered = scatter_metal(d, at, on_sphere);
     out.direction = select(metal, scattered.direction, out.direction);
     out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, scattered.alive));
   }
   const auto glass = among(MaterialKind::kDielectric);
-  if (!hn::AllFalse(d, glass)) out.direction = select(glass, scatter_dielectric(d, at, random.v[2]), out.direction);
+  if (!hn::AllFalse(d, glass)) out.direction = select(glass, scatter_dielectric(d, at, random.v[0]), out.direction);
   return out;
 }
 

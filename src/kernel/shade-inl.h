@@ -279,12 +279,11 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       continue;
     }
     const bool plays_roulette = depth + 1 >= scene.roulette_depth;
-    const bool chooses = plays_roulette || !hn::AllTrue(d, hn::Or(is_diffuse(d, at.surface), hn::Not(hit)));
-    const auto random = random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, chooses);
+    const auto random = random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, plays_roulette);
     const auto scattered = scatter(d, scene.features, at.surface, random);
     throughput = tinted;
     auto goes_on = hn::And(hit, scattered.alive);
-    if (plays_roulette) goes_on = hn::And(goes_on, survives_roulette(d, random.v[3], throughput));
+    if (plays_roulette) goes_on = hn::And(goes_on, survives_roulette(d, random.v[2], throughput));
     const Compactor<D> compactor(d, goes_on);
     compactor.store3(d, at.sphere.center, stream.base, alive);
     compactor.store3(d, at.surface.offset, stream.offset, alive);

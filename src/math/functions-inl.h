@@ -64,34 +64,6 @@ HWY_INLINE hn::Vec<D> to_real(D d, U bits) {
   }
 }
 
-/// Cube root.
-///
-/// Domain     positive normal numbers up to 1
-/// Precision  double: 4.5e-16 relative, float: 2.5e-7; test MathFunctions.CubeRoot
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V cube_root(D d, V a) {
-  using T = hn::TFromD<D>;
-  const hn::RebindToUnsigned<D> du;
-  V y;
-  // A third of the exponent, and of the mantissa behind it, is a guess within 4 %; Halley's step cubes the error.
-  if constexpr (sizeof(T) == 8) {
-    const V third = hn::MulAdd(to_real(d, hn::ShiftRight<32>(hn::BitCast(du, a))), hn::Set(d, 1.0 / 3.0),
-                               hn::Set(d, 715094163.0 + 0x1p52));
-    y = hn::BitCast(d, hn::ShiftLeft<32>(hn::BitCast(du, third)));
-  } else {
-    const hn::RebindToSigned<D> di;
-    const V third = hn::MulAdd(to_real(d, hn::BitCast(du, a)), hn::Set(d, T(1) / T(3)), hn::Set(d, T(709921077)));
-    y = hn::BitCast(d, hn::ConvertTo(di, third));
-  }
-  constexpr int kSteps = sizeof(T) == 8 ? 3 : 2;
-  HWY_UNROLL(3)
-  for (int i = 0; i < kSteps; ++i) {
-    const V y3 = y * y * y;
-    y = y * (y3 + (a + a)) / ((y3 + y3) + a);
-  }
-  return y;
-}
-
 }  // namespace orrery::math::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

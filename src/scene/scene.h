@@ -85,7 +85,7 @@ struct Hemisphere {
 };
 struct Metal {
   Vec3d albedo{0.5, 0.5, 0.5};
-  double fuzz = 0;  ///< 0..1, radius of the ball around the tip of the reflected direction
+  double fuzz = 0;  ///< 0..1, radius of the sphere around the tip of the unit mirror direction
 };
 enum class Fresnel { kSchlick, kExact, kNone };
 struct Dielectric {

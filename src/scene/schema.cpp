@@ -168,7 +168,9 @@ std::vector<MaterialType> make_material_types() {
        Metal{},
        {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Metal>(m).albedo; })),
         number<M>("fuzz", kUnit,
-                  {"", "radius of the ball around the tip of the reflected direction; 0 is a sharp mirror"},
+                  {"",
+                   "radius of the sphere around the tip of the unit mirror direction; reflections end on its surface, "
+                   "and those that point into the metal are absorbed; 0 is a sharp mirror"},
                   [](M& m) -> double& { return std::get<Metal>(m).fuzz; })}},
       {"dielectric",
        "clear glass, water, air in water",

@@ -45,9 +45,12 @@ Uniforms uniforms_of(Shape shape, double x, double y, double z) {
       return {a.u * a.u, a.v};  // P(cos < c) = c^2
     }
     case Shape::kHemisphere: return around_normal(x, y, z);  // P(cos < c) = c
-    case Shape::kBall: {
-      const double r2 = x * x + y * y + z * z;
-      return {r2 * std::sqrt(r2), (z / std::sqrt(r2) + 1) / 2};  // P(radius < r) = r^3, heights uniform
+    case Shape::kFuzzyMetal: {
+      // The tip n + f s, with s uniform over the unit sphere, is seen under the cosine c from two heights h of s:
+      // f h = c^2 - 1 +- c sqrt(c^2 + f^2 - 1). Heights are uniform, so what lies between the two is P(cos < c).
+      const Uniforms a = around_normal(x, y, z);
+      const double root = std::sqrt(std::max(0.0, a.u * a.u + kFuzz * kFuzz - 1));
+      return {a.u * root / kFuzz, a.v};
     }
     case Shape::kDisc: return {x * x + y * y, turn_of(x, y)};  // P(radius < r) = r^2
     case Shape::kPixel: break;
@@ -74,7 +77,7 @@ ChiSquare test(Shape shape, Bend bend, std::uint32_t count) {
   return chi_square_of_equal_bins(counts);
 }
 
-constexpr Shape kShapes[] = {Shape::kLambertian, Shape::kHemisphere, Shape::kBall, Shape::kDisc, Shape::kPixel};
+constexpr Shape kShapes[] = {Shape::kLambertian, Shape::kHemisphere, Shape::kFuzzyMetal, Shape::kDisc, Shape::kPixel};
 
 TEST(StatisticalSamplers, HaveTheirDistributions) {
   for (const Shape shape : kShapes) {

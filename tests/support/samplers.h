@@ -10,12 +10,14 @@ namespace orrery::test {
 enum class Shape {
   kLambertian,  ///< directions around a tilted normal, cosine-weighted
   kHemisphere,  ///< directions around a tilted normal, uniform
-  kBall,        ///< points of the unit ball
+  kFuzzyMetal,  ///< directions around the same normal, reflected at normal incidence with the fuzz kFuzz
   kDisc,        ///< points of the unit disc; z = 0
   kPixel,       ///< places in a pixel; z = 0
 };
 
-/// The normal that kLambertian and kHemisphere are sampled around, and two axes across it; all unit.
+inline constexpr double kFuzz = 0.5;
+
+/// The normal that directions are sampled around, and two axes across it; all unit.
 inline constexpr double kNormal[3] = {0.48, 0.6, -0.64};
 inline constexpr double kTangent[3] = {0.78086880944303039, -0.62469504755442429, 0};
 inline constexpr double kBitangent[3] = {-0.39980483043483156, -0.49975603804353943, -0.76837490849194190};

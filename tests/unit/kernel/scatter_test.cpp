@@ -50,7 +50,7 @@ void scatter_case(ScatterCase& c) {
     to[2] = hn::GetLane(v.z);
   };
   store(scatter_dielectric(d, at, hn::Set(d, c.u)), c.glass);
-  const auto metal = scatter_metal(d, at, set3(d, c.on_sphere), hn::Set(d, c.u));
+  const auto metal = scatter_metal(d, at, set3(d, c.on_sphere));
   store(metal.direction, c.metal);
   c.metal_alive = !hn::AllFalse(d, metal.alive);
   const double sin_leaving = c.eta * arriving[0];
@@ -102,17 +102,21 @@ TEST(KernelScatter, ReflectanceIsSchlicksOrFresnels) {
   }
 }
 
-TEST(KernelScatter, FuzzMovesTheMirrorsDirectionWithinABall) {
-  const ScatterCase c = scattered({.cos_arriving = 0.6, .fuzz = 0.5, .u = 0.125, .on_sphere = {0, 0, 1}});
-  const double length = std::sqrt(1 + 0.25 * 0.25);  // fuzz times the cube root of u
+TEST(KernelScatter, FuzzMovesTheUnitMirrorDirectionToTheSurfaceOfASphere) {
+  const ScatterCase c = scattered({.cos_arriving = 0.6, .fuzz = 0.5, .on_sphere = {0, 0, 1}});
+  const double length = std::sqrt(1 + 0.5 * 0.5);
   EXPECT_NEAR(c.metal[0], 0.8 / length, 1e-14);
   EXPECT_NEAR(c.metal[1], 0.6 / length, 1e-14);
-  EXPECT_NEAR(c.metal[2], 0.25 / length, 1e-14);
+  EXPECT_NEAR(c.metal[2], 0.5 / length, 1e-14);
   EXPECT_TRUE(c.metal_alive);
 }
 
 TEST(KernelScatter, FuzzThatLeadsIntoTheSurfaceAbsorbs) {
-  EXPECT_FALSE(scattered({.cos_arriving = 0.1, .fuzz = 1, .u = 0.9, .on_sphere = {0, -1, 0}}).metal_alive);
+  EXPECT_FALSE(scattered({.cos_arriving = 0.1, .fuzz = 1, .on_sphere = {0, -1, 0}}).metal_alive);
+}
+
+TEST(KernelScatter, FuzzThatCancelsTheMirrorDirectionAbsorbs) {
+  EXPECT_FALSE(scattered({.cos_arriving = 1, .fuzz = 1, .on_sphere = {0, -1, 0}}).metal_alive);
 }
 
 }  // namespace

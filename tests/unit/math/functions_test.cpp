@@ -27,15 +27,8 @@ void sin_cos_all(const T* u, T* sine, T* cosine, std::size_t count) {
     hn::StoreU(turn.cos, d, cosine + i);
   }
 }
-template <class T>
-void cube_root_all(const T* a, T* root, std::size_t count) {
-  const hn::ScalableTag<T> d;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) hn::StoreU(cube_root(d, hn::LoadU(d, a + i)), d, root + i);
-}
 void sin_cos_double(const double* u, double* s, double* c, std::size_t n) { sin_cos_all(u, s, c, n); }
 void sin_cos_float(const float* u, float* s, float* c, std::size_t n) { sin_cos_all(u, s, c, n); }
-void cube_root_double(const double* a, double* r, std::size_t n) { cube_root_all(a, r, n); }
-void cube_root_float(const float* a, float* r, std::size_t n) { cube_root_all(a, r, n); }
 
 }  // namespace orrery::math::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -46,8 +39,6 @@ namespace {
 
 HWY_EXPORT(sin_cos_double);
 HWY_EXPORT(sin_cos_float);
-HWY_EXPORT(cube_root_double);
-HWY_EXPORT(cube_root_float);
 
 constexpr std::size_t kCount = 1 << 16;
 constexpr long double kTwoPi = 6.283185307179586476925286766559005768L;
@@ -88,27 +79,6 @@ TEST(MathFunctions, QuarterTurnsAreExact) {
     EXPECT_EQ(c[i], cosine[i]) << u[i];
   }
   EXPECT_EQ(s[5], c[5]);
-}
-
-template <class T, class Function>
-double worst_cube_root_error(Function function, int lowest_exponent) {
-  std::vector<T> a(kCount), root(kCount);
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const double spread = static_cast<double>(i) / kCount;
-    a[i] = static_cast<T>(std::exp2(lowest_exponent * (1 - spread)));
-  }
-  function(a.data(), root.data(), kCount);
-  long double worst = 0;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const long double truth = std::cbrt(static_cast<long double>(a[i]));
-    worst = std::max(worst, std::abs(static_cast<long double>(root[i]) / truth - 1));
-  }
-  return static_cast<double>(worst);
-}
-
-TEST(MathFunctions, CubeRoot) {
-  EXPECT_LE(worst_cube_root_error<double>(ORRERY_BEST(cube_root_double), -40), 4.5e-16);
-  EXPECT_LE(worst_cube_root_error<float>(ORRERY_BEST(cube_root_float), -40), 2.5e-7);
 }
 
 }  // namespace
