@@ -92,6 +92,7 @@ Ray Program::camera_ray(int x, int y, Random& random) const {
 }
 
 Vec3d Program::ray_color(const Ray& ray, int depth, Random& random) {
+  if (depth <= 0) return {0, 0, 0};
   ++rays_;
   HitRecord hit;
   if (!world_->hit(ray, {kShortestDistance, std::numeric_limits<double>::infinity()}, hit)) {
@@ -99,7 +100,7 @@ Vec3d Program::ray_color(const Ray& ray, int depth, Random& random) {
     return (1 - up) * background_.bottom + up * background_.top;
   }
   Scattered next;
-  if (depth <= 0 || !hit.material->scatter(ray, hit, random, next)) return {0, 0, 0};
+  if (!hit.material->scatter(ray, hit, random, next)) return {0, 0, 0};
   return next.attenuation * ray_color(next.ray, depth - 1, random);
 }
 

@@ -132,7 +132,7 @@ def main(path, size, samples, threads, out):
     cycles.device, cycles.samples = "CPU", int(samples)
     cycles.use_adaptive_sampling = cycles.use_denoising = False
     cycles.pixel_filter_type = "BOX"
-    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = scene.max_depth
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = scene.max_depth - 1
     cycles.sample_clamp_indirect = cycles.blur_glossy = 0
     start = time.monotonic()
     bpy.ops.render.render(write_still=True)

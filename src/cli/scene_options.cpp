@@ -24,7 +24,7 @@ void SceneOptions::add_to(Command& command, bool allows_range) {
   add("--width", "image.width", "N", "Width of the picture in pixels");
   add("--height", "image.height", "N", "Height of the picture in pixels");
   add("--seed", "render.seed", "N", "Seed of the random numbers");
-  add("--max-depth", "render.max_depth", "N", "Most scattering events of a path");
+  add("--max-depth", "render.max_depth", "N", "Most rays of a path, the camera ray included");
   add("--precision", "render.precision", "NAME", "exact, fast or book");
   add("--accelerator", "render.accelerator", "NAME", "embree or list");
   add("--layers", "output.layers", "NAMES",

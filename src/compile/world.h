@@ -47,7 +47,7 @@ struct World {
   int frame_height = 0;                                ///< px
   double pixel_aspect = 1;                             ///< a pixel's width by its height
   int samples = 0;                                     ///< per pixel
-  std::uint32_t max_depth = 0;                         ///< scattering events
+  std::uint32_t max_depth = 0;                         ///< rays of a path, the camera ray included
   std::uint32_t roulette_depth = kernel::kNoRoulette;  ///< scattering events before Russian roulette begins
   kernel::Sampler sampler;
 

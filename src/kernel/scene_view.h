@@ -52,7 +52,7 @@ struct SceneView {
   Background background;
   Features features;
   Shading shading = Shading::kPath;
-  std::uint32_t max_depth = 50;  ///< scattering events; a path that has not left the scene after them brings no light
+  std::uint32_t max_depth = 50;  ///< rays of a path, the camera ray included; where the last hits there is no light
   /// Scattering events after which Russian roulette ends paths that have little to bring, and strengthens the others.
   std::uint32_t roulette_depth = kNoRoulette;
   Sampler sampler;

@@ -257,7 +257,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     }
     if (hn::AllFalse(d, hit)) continue;
 
-    const bool ends = scene.shading == Shading::kPath && depth >= scene.max_depth;
+    const bool ends = scene.shading == Shading::kPath && depth + 1 >= scene.max_depth;
     if (ends && !(kRecords && depth == 0)) continue;
     const auto at =
         reach_surface<D, kPrecision, kMoves>(d, scene, ray, hits, hn::Load(d, packet.distance + v), packet.time + v);

@@ -33,7 +33,7 @@ inline constexpr double kMostStops = 100;
 /// A wider filter is a blur, px.
 inline constexpr double kWidestFilter = 32;
 
-/// A path of more scattering events would only be a program that does not end.
+/// A path of more rays would only be a program that does not end.
 inline constexpr int kDeepestPath = 10000;
 
 }  // namespace orrery::scene

@@ -65,7 +65,7 @@ enum class Filter { kBox, kGaussian, kBlackmanHarris, kMitchell };
 
 struct Render {
   int samples = 100;   ///< per pixel
-  int max_depth = 50;  ///< scattering events
+  int max_depth = 50;  ///< rays of a path, the camera ray included
   std::uint32_t seed = 1;
   Precision precision = Precision::kExact;
   Shading shading = Shading::kPath;

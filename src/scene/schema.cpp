@@ -97,8 +97,10 @@ Table render_table() {
       {integer<S>("samples", {1, std::numeric_limits<std::int32_t>::max()},
                   {"per pixel", "paths for each pixel", "time in proportion; four times as many halve the noise"},
                   [](S& s) -> int& { return s.render.samples; }),
-       integer<S>("max_depth", {0, kDeepestPath},
-                  {"scattering events", "a path that has been scattered more often than this brings no light",
+       integer<S>("max_depth", {1, kDeepestPath},
+                  {"rays",
+                   "most rays of a path, counted as in the book: the camera ray is the first; a path whose last "
+                   "ray hits a sphere is black",
                    "a bound only: most paths leave the scene earlier"},
                   [](S& s) -> int& { return s.render.max_depth; }),
        integer<S>("roulette_depth", {0, kDeepestPath},

@@ -104,7 +104,7 @@ class Planner {
       out_.left_out.push_back("no spheres: no depth axis");
       return;
     }
-    for (const std::uint32_t depth : {1u, 2u, 4u, 8u, 16u}) {
+    for (const std::uint32_t depth : {2u, 4u, 8u, 16u}) {
       if (depth >= world_.max_depth) continue;
       Choice& c = add("depth", "at most " + std::to_string(depth),
                       flag(kCompared) + " --max-depth " + std::to_string(depth), kCompared);

@@ -41,7 +41,7 @@ TEST(FormatReadKeys, RangesAreClosedOrOpenAsTheySay) {
   EXPECT_EQ(text_of("camera.vfov = 180"), "camera.vfov is 180; allowed is above 0, below 180");
   EXPECT_EQ(text_of("camera.defocus_angle = 180"), "camera.defocus_angle is 180; allowed is from 0, below 180");
   EXPECT_EQ(text_of("camera.defocus_angle = 0"), "");
-  EXPECT_EQ(text_of("render.max_depth = 10001"), "render.max_depth is 10001; allowed is 0..10000");
+  EXPECT_EQ(text_of("render.max_depth = 10001"), "render.max_depth is 10001; allowed is 1..10000");
   EXPECT_EQ(text_of("render.max_depth = 10000"), "");
   EXPECT_EQ(text_of("render.seed = -1"), "render.seed is -1; allowed is 0..4294967295");
   EXPECT_EQ(text_of("image.width = 9223372036854775807"), "image.width is 9223372036854775807; allowed is 1..65536");

@@ -133,11 +133,11 @@ TEST(RenderRender, AShellOfNegativeRadiusIsASphereOfTheInverseIndex) {
   }
 }
 
-TEST(RenderRender, NoScatteringEventsMeansBlackSpheres) {
+TEST(RenderRender, SpheresAreBlackToTheCameraRayAlone) {
   scene::Scene s = everything();
   s.camera.vfov = 0.01;
   s.camera.defocus_angle = 0;
-  s.render.max_depth = 0;
+  s.render.max_depth = 1;
   for (std::size_t i = 0; const float value : pixels(s)) ASSERT_EQ(value, i++ < 3u * 61 * 37 ? 0.0f : 1.0f);
 }
 

@@ -104,7 +104,8 @@ TEST(SceneSchema, RangesOfTheIssue) {
   EXPECT_TRUE(key_of("image", "height").range.contains(65536));
   EXPECT_FALSE(key_of("image", "height").range.contains(65537));
   EXPECT_FALSE(key_of("render", "samples").range.contains(0));
-  EXPECT_TRUE(key_of("render", "max_depth").range.contains(0));
+  EXPECT_FALSE(key_of("render", "max_depth").range.contains(0));
+  EXPECT_TRUE(key_of("render", "max_depth").range.contains(1));
   EXPECT_FALSE(key_of("render", "max_depth").range.contains(10001));
   EXPECT_TRUE(key_of("render", "seed").range.contains(4294967295.0));
   EXPECT_FALSE(key_of("render", "seed").range.contains(4294967296.0));
