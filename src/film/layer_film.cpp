@@ -39,13 +39,28 @@ struct Lights {
   }
 };
 
+/// A spread below this part of the light squared is rounding: the beauty's floats do not hold it either.
+constexpr double kLeastSpread = 0x1p-48;
+
+/// Of one path: the variance of the light of `n` of them, by their sums of light and of its squares.
+double variance_of_one(Int128 sum, Int128 squares, double n) {
+  const double light = kernel::from_fixed_point(sum), of_squares = static_cast<double>(squares) * kSquareUnit;
+  const double spread = of_squares - light * light / n;
+  return spread > kLeastSpread * of_squares ? spread / (n - 1) : 0;
+}
+
 /// Of the mean of the light: the squared standard error of the pixel.
+///
+/// How many paths have a negative weight is no matter of chance (kernel/pixel_filter.h), so the two signs are two
+/// samples, each with a variance of its own. One path alone tells none; it counts as those of the other sign.
 float variance(const LayerPixel& p, int c, Int128 sum) {
-  if (p.paths < 2) return 0;
-  const auto n = static_cast<double>(p.paths);
-  const double of_squares = static_cast<double>(p.squares[c]) * kSquareUnit / n;
-  const double average = kernel::from_fixed_point(sum) / n;
-  return static_cast<float>(std::max(0.0, of_squares - average * average) / (n - 1));
+  const std::int64_t negative = (p.paths - p.lit) / 2, positive = p.paths - negative;
+  if (positive < 2 || p.lit <= 0) return 0;
+  const auto n = static_cast<double>(positive), m = static_cast<double>(negative), w = static_cast<double>(p.lit);
+  const double of_positive = variance_of_one(sum + p.negative_light[c], p.squares[c] - p.negative_squares[c], n);
+  const double of_negative =
+      negative < 2 ? of_positive : variance_of_one(p.negative_light[c], p.negative_squares[c], m);
+  return static_cast<float>((n * of_positive + m * of_negative) / (w * w));
 }
 
 /// A thing and its share of a pixel.

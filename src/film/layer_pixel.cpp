@@ -86,8 +86,14 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
     lit += path_weight;
     ++paths;
     if (request.lights() || request.variance) add3(light[static_cast<int>(path.group)], path.light, path_weight);
-    if (request.variance)
-      for (int k = 0; k < 3; ++k) squares[k] += square(path.light[k]);
+    if (request.variance) {
+      for (int k = 0; k < 3; ++k) {
+        const kernel::Int128 squared = square(path.light[k]);
+        squares[k] += squared;
+        if (path_weight < 0) negative_squares[k] += squared;
+      }
+      if (path_weight < 0) add3(negative_light, path.light, -path_weight);
+    }
   }
   if (request.guide_albedo) add3(guide_albedo, path.guide_albedo, path_weight);
   if (request.guide_normal) add3(guide_normal, path.guide_normal, path_weight);
@@ -128,6 +134,8 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
 
 void LayerPixel::add(const LayerPixel& other) {
   const auto add_all = [](Int128(&to)[3], const Int128(&from)[3]) {
+  add_all(negative_light, other.negative_light);
+  add_all(negative_squares, other.negative_squares);
     for (int k = 0; k < 3; ++k) to[k] += from[k];
   };
   for (int g = 0; g < kernel::kLightGroups; ++g) add_all(light[g], other.light[g]);

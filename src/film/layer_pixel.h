@@ -34,6 +34,8 @@ struct LayerPixel {
   using Int128 = kernel::Int128;
   Int128 light[kernel::kLightGroups][3] = {};
   Int128 squares[3] = {};  ///< of the light, in units of kSquareUnit
+  /// Light, without its sign, and squares of the paths whose weight is negative; for the variance only.
+  Int128 negative_light[3] = {}, negative_squares[3] = {};
   Int128 normal[3] = {}, albedo[3] = {}, guide_albedo[3] = {}, guide_normal[3] = {};
   std::int64_t weight = 0;   ///< of all paths; 1 each unless the pixel filter has negative lobes
   std::int64_t lit = 0;      ///< of those whose light is a number

@@ -13,7 +13,7 @@ namespace {
 
 using kernel::Int128;
 
-constexpr std::uint32_t kFormat = 1;
+constexpr std::uint32_t kFormat = 2;
 
 enum Flag : std::uint32_t { kHasHalves = 1, kHasGoals = 2, kHasLayers = 4, kAllFlags = 7 };
 
@@ -154,6 +154,10 @@ void each_layer_number(Io& io, Layers& layers) {
           layers, [=](auto& p) -> auto& { return p.light[g][k]; });
     io.numbers(
         layers, [k](auto& p) -> auto& { return p.squares[k]; });
+    io.numbers(
+        layers, [k](auto& p) -> auto& { return p.negative_light[k]; });
+    io.numbers(
+        layers, [k](auto& p) -> auto& { return p.negative_squares[k]; });
     io.numbers(
         layers, [k](auto& p) -> auto& { return p.normal[k]; });
     io.numbers(

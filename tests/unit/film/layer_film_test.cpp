@@ -167,6 +167,42 @@ TEST_F(FilmLayerFilm, VarianceIsThatOfTheMean) {
 
 TEST_F(FilmLayerFilm, VarianceSurvivesTheLargestLight) {
   request_.variance = true;
+/// Positive paths of 1, 2, 3, 6 (variance 14/3), negative ones of 1, 3 (variance 2); weights come to 2. All together
+/// in two parts, as shards have them.
+TEST_F(FilmLayerFilm, VarianceTakesEachSignOfWeightsForItself) {
+  request_.variance = true;
+  for (const double light : {1.0, 2.0, 3.0}) add(path_to(0, light));
+  add(path_to(0, 1), -1);
+  const LayerPixel part = pixel_;
+  pixel_ = {};
+  add(path_to(0, 6));
+  add(path_to(0, 3), -1);
+  pixel_.add(part);
+  EXPECT_FLOAT_EQ(value(picture(), "variance.R"), (4 * 14.0F / 3 + 2 * 2) / 4);
+  pixel_ = part;  // one negative path: its variance is taken for that of the others, which is 1
+  EXPECT_FLOAT_EQ(value(picture(), "variance.R"), 4.0F / 4);
+}
+
+TEST_F(FilmLayerFilm, WhatIsFlatHasNoVariance) {
+  request_.variance = true;
+  for (const double light : {0.3, 1.0 / 3, 7.7, 1e-3, 123456.7}) {
+    pixel_ = {};
+    for (int i = 0; i < 100; ++i) add(path_to(0, light), i % 16 == 15 ? -1 : 1);
+    EXPECT_EQ(value(picture(), "variance.R"), 0) << light;
+  }
+}
+
+/// A lens larger than a sphere: some rays start inside of it, whatever its centre does.
+TEST_F(FilmLayerFilm, NormalsPointAgainstTheRay) {
+  request_.normal = true;
+  kernel::PathRecord path = path_to(0);
+  path.direction[0] = 0.6, path.direction[2] = 0.8;  // leaves through the side that looks at the camera
+  add(path);
+  EXPECT_FLOAT_EQ(value(picture(), "N.Z"), -1);
+  add(path_to(0));
+  EXPECT_FLOAT_EQ(value(picture(), "N.Z"), 0);
+}
+
   for (const double light : {0.0, 0x1p34}) add(path_to(0, light));
   // Squares are cut at 2^48 there; what matters is that it is finite and not negative.
   EXPECT_GE(value(picture(), "variance.R"), 0);

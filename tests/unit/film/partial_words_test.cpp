@@ -30,7 +30,8 @@ Partial full_partial(bool halves, bool goals, bool layers) {
   for (LayerPixel& l : p.layers) {
     for (auto& group : l.light)
       for (auto& v : group) v = large();
-    for (auto* vector : {&l.squares, &l.normal, &l.albedo, &l.guide_albedo, &l.guide_normal})
+    for (auto* vector :
+         {&l.squares, &l.negative_light, &l.negative_squares, &l.normal, &l.albedo, &l.guide_albedo, &l.guide_normal})
       for (auto& v : *vector) v = large();
     for (auto* v : {&l.weight, &l.lit, &l.paths, &l.covered}) *v = number();
     l.depth = static_cast<double>(number());
@@ -60,6 +61,8 @@ TEST(FilmPartialWords, ComeBackAsTheyWere) {
     if (p.layers.empty()) continue;
     EXPECT_EQ(q.layers[3].shares.size(), p.layers[3].shares.size());
     EXPECT_TRUE(q.layers[14].guide_normal[2] == p.layers[14].guide_normal[2]);
+    EXPECT_TRUE(q.layers[2].negative_light[1] == p.layers[2].negative_light[1]);
+    EXPECT_TRUE(q.layers[2].negative_squares[1] == p.layers[2].negative_squares[1]);
     EXPECT_EQ(q.layers[9].position[1], p.layers[9].position[1]);
   }
 }
