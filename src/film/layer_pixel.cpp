@@ -114,14 +114,10 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
   const double center[3] = {s.x, s.y, s.z};
   if (request.normal) {
-    double origin[3], forward[3];
-    camera_at(scene, path.time, origin, forward);
-    double to_center = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double away = center[k] - origin[k];
-      to_center += away * away;
-    }
-    const double outward = to_center < s.radius * s.radius ? -1 / s.radius : 1 / s.radius;
+    // Whether a ray comes from inside is its own affair: a lens may be on both sides of a surface.
+    double along = 0;
+    for (int k = 0; k < 3; ++k) along += path.direction[k] * path.offset[k];
+    const double outward = along > 0 ? -1 / s.radius : 1 / s.radius;
     const double n[3] = {path.offset[0] * outward, path.offset[1] * outward, path.offset[2] * outward};
     add3(normal, n, path_weight);
   }
@@ -134,12 +130,12 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
 
 void LayerPixel::add(const LayerPixel& other) {
   const auto add_all = [](Int128(&to)[3], const Int128(&from)[3]) {
-  add_all(negative_light, other.negative_light);
-  add_all(negative_squares, other.negative_squares);
     for (int k = 0; k < 3; ++k) to[k] += from[k];
   };
   for (int g = 0; g < kernel::kLightGroups; ++g) add_all(light[g], other.light[g]);
   add_all(squares, other.squares);
+  add_all(negative_light, other.negative_light);
+  add_all(negative_squares, other.negative_squares);
   add_all(normal, other.normal);
   add_all(albedo, other.albedo);
   add_all(guide_albedo, other.guide_albedo);
