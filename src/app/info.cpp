@@ -142,8 +142,8 @@ std::string info_text(const SceneInfo& info) {
   std::string out;
   append(out, "scene       %s\n", info.scene_hash.c_str());
   append(out, "frame       %d\n", info.frame);
-  append(out, "picture     %d x %d, %d samples per pixel, at most %d scattering events\n", info.width, info.height,
-         info.samples, info.max_depth);
+  append(out, "picture     %d x %d, %d samples per pixel, max depth %d\n", info.width, info.height, info.samples,
+         info.max_depth);
   append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
   if (info.spheres > 0)
     append(out, ", radius %g .. %g, from (%g, %g, %g) to (%g, %g, %g)", info.smallest_radius, info.largest_radius,

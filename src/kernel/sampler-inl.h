@@ -33,13 +33,15 @@ HWY_INLINE V spread_bits(DU du, V v) {
 
 /// Sobol's points for a pixel's samples at one vertex of their paths.
 ///
+/// `order`    place in kSobolOrders
+///
 /// With blue noise one sequence goes through neighbouring pixels along a curve that keeps neighbours together, so that
 /// their errors cancel rather than add.
 ///
 /// Reference  burley2020, ahmed2020 (pixels in hierarchical order)
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE Four<V> sobol_at_vertex(DU du, const Sampler& sampler, V pixel, V sample, std::uint32_t vertex,
-                                   bool last_two) {
+                                   std::uint32_t order, bool last_two) {
   using Id = hn::TFromD<DU>;
   const hn::Repartition<std::uint32_t, DU> d32;
   constexpr Id kMask = (Id{1} << kSobolBits) - 1;
@@ -63,7 +65,7 @@ HWY_INLINE Four<V> sobol_at_vertex(DU du, const Sampler& sampler, V pixel, V sam
   };
   const std::uint32_t key = (sampler.seed * 0x2c1b3c6du) ^ ((vertex + 1) * 0x297a2d39u);
   const V name = hn::Xor(times(place, 0x85157af5u), hn::Xor(times(beyond, 0x9e3779b1u), hn::Set(du, Id{key})));
-  return sobol(du, index, name, last_two);
+  return sobol(du, index, name, order, last_two);
 }
 
 /// The four numbers in 0..1 that one path takes at one of its vertices.
@@ -74,9 +76,10 @@ HWY_INLINE Four<hn::Vec<D>> random_at_vertex(D d, const Sampler& sampler, hn::Ve
                                              hn::Vec<hn::RebindToUnsigned<D>> sample, std::uint32_t vertex,
                                              bool last_two) {
   const hn::RebindToUnsigned<D> du;
-  const auto bits = sampler.kind == SamplerKind::kIndependent
+  // Far down a path so much has been decided already that even points bring nothing.
+  const auto bits = sampler.kind == SamplerKind::kIndependent || vertex >= kSobolVertices
                         ? independent_at_vertex(du, sampler.seed, pixel, sample, vertex)
-                        : sobol_at_vertex(du, sampler, pixel, sample, vertex, last_two);
+                        : sobol_at_vertex(du, sampler, pixel, sample, vertex, vertex, last_two);
   return {{to_unit(d, bits.v[0]), to_unit(d, bits.v[1]), to_unit(d, bits.v[2]), to_unit(d, bits.v[3])}};
 }
 
@@ -88,7 +91,11 @@ HWY_INLINE hn::Vec<D> time_of_path(D d, const Sampler& sampler, hn::Vec<hn::Rebi
                                    hn::Vec<hn::RebindToUnsigned<D>> sample) {
   using T = hn::TFromD<D>;
   constexpr std::uint32_t kVertex = 0xfffffffe;  // that no path has
-  const auto u = random_at_vertex(d, sampler, pixel, sample, kVertex, false).v[0];
+  const hn::RebindToUnsigned<D> du;
+  const auto bits = sampler.kind == SamplerKind::kIndependent
+                        ? independent_at_vertex(du, sampler.seed, pixel, sample, kVertex)
+                        : sobol_at_vertex(du, sampler, pixel, sample, kVertex, kSobolTimeOrder, false);
+  const auto u = to_unit(d, bits.v[0]);
   return hn::Floor(u * hn::Set(d, T(0x1p24))) * hn::Set(d, T(0x1p-24));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sobol's sequence in four dimensions, scrambled as Owen does it, by hashing. Compiled once per instruction set.
+// Sobol's sequence with Owen scrambling by hashing, four dimensions a vertex. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_SOBOL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SOBOL_INL_H_
 #undef ORRERY_KERNEL_SOBOL_INL_H_
@@ -66,18 +66,38 @@ HWY_INLINE V stirred(D32 d32, V v) {
   return hn::Xor(v, hn::ShiftRight<16>(v));
 }
 
-/// Point `index` of the sequence that `name` names: four coordinates as 32-bit fractions.
+/// The product of a 16 x 16 matrix over two elements and the low bits of each lane.
 ///
-/// Sequences of different names are independent. Points 2^k n .. 2^k (n + 1) are a net in base 2 in the first two
-/// coordinates, and nearly one in all four, for every n and k: the picture may stop at any count.
+/// Domain     v < 2^kSobolBits
+template <class D32, class V = hn::Vec<D32>>
+HWY_INLINE V ordered(D32 d32, const SobolOrder& order, V v) {
+  const hn::RebindToSigned<D32> ds;
+  V out = hn::Zero(d32);
+  V bits = hn::ShiftLeft<32 - kSobolBits>(v);
+  HWY_UNROLL(kSobolBits)
+  for (int j = kSobolBits - 1; j >= 0; --j) {
+    const V is_set = hn::BitCast(d32, hn::BroadcastSignBit(hn::BitCast(ds, bits)));
+    out = hn::Xor(out, hn::And(is_set, hn::Set(d32, order[static_cast<std::size_t>(j)])));
+    bits = bits + bits;
+  }
+  return out;
+}
+
+/// Point `index`, in the order of a vertex, of the sequence that `name` names: four coordinates as 32-bit fractions.
 ///
-/// `last_two` false: these are 0, and the time for them is saved.
+/// `name` chooses the scrambling; points of different names are independent. In the camera's order points
+/// 2^k n .. 2^k (n + 1) are a net in base 2 in the first two coordinates, and nearly one in all four, for every n and
+/// k; in the others' from k = kSobolFreeBits on. Where a name is that of a sample's pixel and vertex, coordinates of
+/// different vertices are a net together, too.
+///
+/// `order`    place in kSobolOrders
+/// `last_two` false: these are 0, and the time for them is saved
 ///
 /// Domain     index < 2^kSobolBits; in 64-bit lanes both in the low halves, the high ones 0
 /// Result     in 64-bit lanes in the low halves, the high ones 0
-/// Reference  joe2008 (directions), burley2020 (shuffled indices, scrambling by a hash)
+/// Reference  joe2008 (directions), burley2020 (scrambling by a hash)
 template <class DU, class V = hn::Vec<DU>>
-HWY_INLINE Four<V> sobol(DU du, V index, V name, bool last_two) {
+HWY_INLINE Four<V> sobol(DU du, V index, V name, std::uint32_t order, bool last_two) {
   const hn::Repartition<std::uint32_t, DU> d32;
   using V32 = hn::Vec<decltype(d32)>;
   // 64-bit lanes hold two coordinates at a time, one in each half.
@@ -95,9 +115,7 @@ HWY_INLINE Four<V> sobol(DU du, V index, V name, bool last_two) {
       return hn::Set(d32, low);
   };
   const V32 seed = stirred(d32, both(name));
-  // The order of the points by chance, too: so the coordinates of two vertices of a path do not go together.
-  const V32 order = flipped_by_lower_bits(d32, reversed_bits(d32, both(index)), seed);
-  const V32 at = reversed_bits(d32, hn::And(order, hn::Set(d32, ~0u << (32 - kSobolBits))));
+  const V32 at = order == 0 ? both(index) : ordered(d32, kSobolOrders[order], both(index));
 
   // Coordinates with their bits in opposite order. The first is the index itself; in the second bit j of it stands for
   // the polynomial (1 + t)^j over two elements, and since (1 + t)^(2^b) is 1 + t^(2^b), a step for each bit of j does
@@ -111,11 +129,12 @@ HWY_INLINE Four<V> sobol(DU du, V index, V name, bool last_two) {
   expand(std::integral_constant<int, 4>(), 0xf0f0f0f0u);
   expand(std::integral_constant<int, 8>(), 0xff00ff00u);
   static_assert(kSobolBits <= 16, "one more step");
-  // Any four odd numbers far from each other.
+  // Any four numbers far from each other.
   constexpr std::uint32_t kSeeds[4] = {0x9e3779b1u, 0x7feb352du, 0xb5297a4du, 0x68e31da5u};
   const auto scrambled = [&](V32 v, int low, int high) {
-    const V32 own = hn::Xor(seed, hn::ShiftRight<15>(seed)) * pair(kSeeds[low], kSeeds[high]);
-    return reversed_bits(d32, flipped_by_lower_bits(d32, v, hn::Xor(own, hn::ShiftRight<16>(own))));
+    // Stirred twice: the first points would show what is left in common.
+    const V32 own = stirred(d32, seed + pair(kSeeds[low], kSeeds[high]));
+    return reversed_bits(d32, flipped_by_lower_bits(d32, v, own));
   };
   Four<V> out;
   [[maybe_unused]] const V low_half = hn::Set(du, hn::TFromD<DU>{0xffffffffu});

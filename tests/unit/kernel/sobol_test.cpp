@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -21,19 +23,23 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 /// Points of the sequence with a name, four coordinates each, by lanes of one width.
 template <class U>
-void points(std::uint32_t name, std::uint32_t first, std::size_t count, std::uint32_t* out) {
+void points(std::uint32_t name, std::uint32_t order, std::uint32_t first, std::size_t count, std::uint32_t* out) {
   const hn::ScalableTag<U> du;
   HWY_ALIGN U lanes[4][hn::MaxLanes(du)];
   for (std::size_t i = 0; i < count; i += hn::Lanes(du)) {
     const auto index = hn::Iota(du, static_cast<U>(first + i));
-    const auto p = sobol(du, index, hn::Set(du, static_cast<U>(name)), true);
+    const auto p = sobol(du, index, hn::Set(du, static_cast<U>(name)), order, true);
     for (int k = 0; k < 4; ++k) hn::Store(p.v[k], du, lanes[k]);
     for (std::size_t l = 0; l < hn::Lanes(du) && i + l < count; ++l)
       for (std::size_t k = 0; k < 4; ++k) out[(i + l) * 4 + k] = static_cast<std::uint32_t>(lanes[k][l]);
   }
 }
-void points_64(std::uint32_t n, std::uint32_t f, std::size_t c, std::uint32_t* o) { points<std::uint64_t>(n, f, c, o); }
-void points_32(std::uint32_t n, std::uint32_t f, std::size_t c, std::uint32_t* o) { points<std::uint32_t>(n, f, c, o); }
+void points_64(std::uint32_t name, std::uint32_t order, std::uint32_t first, std::size_t count, std::uint32_t* out) {
+  points<std::uint64_t>(name, order, first, count, out);
+}
+void points_32(std::uint32_t name, std::uint32_t order, std::uint32_t first, std::size_t count, std::uint32_t* out) {
+  points<std::uint32_t>(name, order, first, count, out);
+}
 
 /// Numbers of one lane: four for each sample of a pixel at a vertex.
 void numbers(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, std::uint32_t first, std::size_t count,
@@ -61,9 +67,9 @@ struct Point {
   std::uint32_t v[4];
 };
 
-std::vector<Point> points_of(std::uint32_t name, std::uint32_t first, std::size_t count) {
+std::vector<Point> points_of(std::uint32_t name, std::uint32_t first, std::size_t count, std::uint32_t order = 0) {
   std::vector<Point> out(count);
-  ORRERY_BEST(points_32)(name, first, count, out[0].v);
+  ORRERY_BEST(points_32)(name, order, first, count, out[0].v);
   return out;
 }
 
@@ -94,36 +100,46 @@ TEST(KernelSobol, ColumnsAreThoseOfTheFirstPublishedPoints) {
 TEST(KernelSobol, BothWidthsOfLanesGiveTheSamePoints) {
   std::vector<std::uint32_t> wide(4 * 1000), narrow(4 * 1000);
   for (const std::uint32_t name : {0u, 1u, 0xdeadbeefu}) {
-    ORRERY_BEST(points_64)(name, 37, 1000, wide.data());
-    ORRERY_BEST(points_32)(name, 37, 1000, narrow.data());
-    EXPECT_EQ(wide, narrow);
+    for (std::uint32_t order = 0; order < kSobolOrders.size(); ++order) {
+      ORRERY_BEST(points_64)(name, order, 37, 1000, wide.data());
+      ORRERY_BEST(points_32)(name, order, 37, 1000, narrow.data());
+      EXPECT_EQ(wide, narrow);
+    }
   }
 }
 
+/// Orders of vertices behind the camera mix blocks of 2^kSobolFreeBits points; the camera's and the time's do not.
+int smallest_block_bits(std::uint32_t order) {
+  return order == 0 || order == kSobolTimeOrder ? 0 : static_cast<int>(kSobolFreeBits);
+}
+
 TEST(KernelSobol, EveryBlockIsANetInTheFirstTwoDimensions) {
-  for (std::uint32_t name = 1; name < 40; ++name) {
-    for (const int bits : {1, 2, 3, 5, 8}) {
-      const std::size_t count = std::size_t{1} << bits;
-      const auto p = points_of(name, static_cast<std::uint32_t>(3 * count), count);
-      for (int across = 0; across <= bits; ++across) {  // 2^across columns of 2^(bits - across) rows: one point in each
-        std::set<std::pair<std::uint32_t, std::uint32_t>> cells;
-        for (const Point& point : p)
-          cells.insert({across == 0 ? 0 : point.v[0] >> (32 - across),
-                        across == bits ? 0 : point.v[1] >> (32 - (bits - across))});
-        ASSERT_EQ(cells.size(), count) << name << " " << bits << " " << across;
+  for (std::uint32_t order = 0; order < kSobolOrders.size(); ++order) {
+    for (std::uint32_t name = 1; name < 20; ++name) {
+      for (int bits = smallest_block_bits(order); bits <= 8; ++bits) {
+        const std::size_t count = std::size_t{1} << bits;
+        const auto p = points_of(name, static_cast<std::uint32_t>(3 * count), count, order);
+        for (int across = 0; across <= bits; ++across) {  // 2^across columns of 2^(bits - across) rows: one point each
+          std::set<std::pair<std::uint32_t, std::uint32_t>> cells;
+          for (const Point& point : p)
+            cells.insert({across == 0 ? 0 : point.v[0] >> (32 - across),
+                          across == bits ? 0 : point.v[1] >> (32 - (bits - across))});
+          ASSERT_EQ(cells.size(), count) << order << " " << name << " " << bits << " " << across;
+        }
       }
     }
   }
 }
 
 TEST(KernelSobol, EachDimensionIsStratifiedAtEveryPowerOfTwo) {
-  for (std::uint32_t name = 1; name < 40; ++name)
-    for (const int bits : {1, 4, 9})
-      for (std::size_t k = 0; k < 4; ++k) {
-        std::set<std::uint32_t> strata;
-        for (const Point& p : points_of(name, 0, std::size_t{1} << bits)) strata.insert(p.v[k] >> (32 - bits));
-        ASSERT_EQ(strata.size(), std::size_t{1} << bits);
-      }
+  for (std::uint32_t order = 0; order < kSobolOrders.size(); ++order)
+    for (std::uint32_t name = 1; name < 20; ++name)
+      for (const int bits : {smallest_block_bits(order) + 1, 9})
+        for (std::size_t k = 0; k < 4; ++k) {
+          std::set<std::uint32_t> strata;
+          for (const Point& p : points_of(name, 0, std::size_t{1} << bits, order)) strata.insert(p.v[k] >> (32 - bits));
+          ASSERT_EQ(strata.size(), std::size_t{1} << bits);
+        }
 }
 
 /// Of cells that are equally likely: (sum (n - e)^2 / e - f) / sqrt(2 f), nearly normal for many cells.
@@ -138,8 +154,8 @@ double z_of(const std::vector<int>& cells) {
 
 TEST(KernelSobol, APointIsUniformOverNamesInEveryPairOfDimensions) {
   constexpr int kSide = 32, kNames = 200000;
-  for (const std::uint32_t index : {0u, 1u, 5u, 1000u}) {
-    for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 3}, std::pair{2, 3}}) {
+  for (const std::uint32_t index : {0u, 1u, 2u, 3u, 5u, 16u, 1000u}) {
+    for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}) {
       std::vector<int> cells(kSide * kSide);
       for (std::uint32_t name = 0; name < kNames; ++name) {
         const Point p = points_of(name * 0x9e3779b1u, index, 1)[0];
@@ -150,19 +166,57 @@ TEST(KernelSobol, APointIsUniformOverNamesInEveryPairOfDimensions) {
   }
 }
 
-TEST(KernelSobol, TheOrderOfAFewPointsIsByChanceToo) {
-  // In which quarter each of the first four points lies. The points of a pair lie in different halves, and share these
-  // with one of the other pair each: 2 * 2 halves, 2 * 2 quarters, all of the 16 orders equally likely.
-  std::map<std::vector<std::uint32_t>, int> orders;
-  for (std::uint32_t name = 0; name < 80000; ++name) {
-    std::vector<std::uint32_t> order;
-    for (const Point& p : points_of(name * 0x85ebca6bu, 0, 4)) order.push_back(p.v[0] >> 30);
-    ++orders[order];
+/// How much more the mean of products of two numbers at different vertices varies than with independent numbers.
+struct Excess {
+  double mean = 0;     ///< over all pairs of vertices and of numbers
+  double largest = 0;  ///< of the vertices pair by pair
+};
+Excess product_variance(SamplerKind kind, std::size_t samples, std::uint32_t vertices, std::uint32_t first_sample = 0) {
+  constexpr std::size_t kNumbers = 2;  // that direct a ray
+  const std::uint32_t pixels = static_cast<std::uint32_t>(std::max<std::size_t>(200, 20000 / samples));
+  Sampler sampler;
+  sampler.kind = kind;
+  sampler.blue_noise_bits = static_cast<int>(std::bit_width(samples - 1));
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> sums;
+  for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    std::vector<std::vector<double>> u;
+    for (std::uint32_t v = 0; v < vertices; ++v)
+      u.push_back(numbers_of(sampler, (pixel / 97) << 16 | pixel % 97, v, first_sample, samples));
+    for (std::uint32_t a = 0; a < vertices; ++a) {
+      for (std::uint32_t b = a + 1; b < vertices; ++b) {
+        for (std::size_t i = 0; i < kNumbers * kNumbers; ++i) {
+          double sum = 0;
+          for (std::size_t s = 0; s < samples; ++s)
+            sum += (u[a][4 * s + i / kNumbers] - 0.5) * (u[b][4 * s + i % kNumbers] - 0.5);
+          // Each factor's variance is 1/12.
+          sums[{a, b}] += sum * sum * 144 / static_cast<double>(samples) / (pixels * kNumbers * kNumbers);
+        }
+      }
+    }
   }
-  EXPECT_EQ(orders.size(), 16u);
-  std::vector<int> counts;
-  for (const auto& [order, count] : orders) counts.push_back(count);
-  EXPECT_LT(std::abs(z_of(counts)), 5);
+  Excess out;
+  for (const auto& [pair, variance] : sums) {
+    out.mean += variance / static_cast<double>(sums.size());
+    out.largest = std::max(out.largest, variance);
+  }
+  return out;
+}
+
+/// A nested shuffle for each vertex would leave samples 2k and 2k + 1 in opposite halves everywhere, and this at 1.58.
+TEST(KernelSampler, ProductsAcrossVerticesVaryNoMoreThanIndependentNumbers) {
+  for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kBlueNoise}) {
+    for (std::size_t samples = 4; samples <= 1024; samples *= 2) {
+      const Excess at = product_variance(kind, samples, kSobolVertices);
+      std::printf("%4zu samples: %.3f, of a pair of vertices at most %.3f\n", samples, at.mean, at.largest);
+      EXPECT_LE(at.mean, 1.05) << samples;
+      EXPECT_LE(at.largest, samples < 64 ? 3 : 1.25) << samples;
+    }
+  }
+  for (std::size_t samples = 16; samples <= 1024; samples *= 4)
+    EXPECT_LE(product_variance(SamplerKind::kSobol, samples, 3).mean, 0.7) << "close to the camera, " << samples;
+  EXPECT_LE(product_variance(SamplerKind::kSobol, 64, kSobolVertices, Sampler::kSecondHalf + 192).mean, 1.05);
+  EXPECT_LE(product_variance(SamplerKind::kSobol, 16, kSobolVertices + 3).mean, 1.05) << "with later vertices";
+  EXPECT_NEAR(product_variance(SamplerKind::kIndependent, 16, 4).mean, 1, 0.05) << "the judge is right";
 }
 
 TEST(KernelSampler, NumbersOfDifferentVerticesHalvesAndPixelsDoNotGoTogether) {
