@@ -50,7 +50,9 @@ void add_bench(Command& program, Action& action) {
   command.add_option("-t,--threads", options->request.threads, "Threads; default 1")
       ->transform(whole_number(1, kMostThreads))
       ->type_name("N");
-  command.add_option("--isa", options->request.isa, "Use no better instruction set: sse4, avx2 or avx512")
+  command
+      .add_option("--isa", options->request.isa,
+                  "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
   command.add_option("--rounds", options->request.rounds, "Measurements of each case; default 7")
       ->transform(whole_number(1, kMostRounds))

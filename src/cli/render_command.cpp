@@ -200,7 +200,9 @@ void add_render(Command& program, Action& action) {
                   "How rays go through the hierarchy: auto, the default, measures what is quicker; packet or single")
       ->check(one_of({"auto", "packet", "single"}))
       ->type_name("WAY");
-  command.add_option("--isa", options->batch.job.isa, "Use no better instruction set: sse4, avx2 or avx512")
+  command
+      .add_option("--isa", options->batch.job.isa,
+                  "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
   command
       .add_option("--memory-limit", options->batch.job.memory_limit,

@@ -73,7 +73,9 @@ void add_study(Command& program, Action& action) {
   command.add_option("-t,--threads", options->request.threads, "Threads; default: as many as this process may use")
       ->transform(whole_number(1, kMostThreads))
       ->type_name("N");
-  command.add_option("--isa", options->request.isa, "Use no better instruction set: sse4, avx2 or avx512")
+  command
+      .add_option("--isa", options->request.isa,
+                  "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
   command.add_flag("--json", options->json, "As JSON");
   command.add_flag("-q,--quiet", options->quiet, "Show no progress");
