@@ -75,13 +75,19 @@ class StudyRun : public ::testing::Test {
 support::ScratchFolder* StudyRun::folder = nullptr;
 Study* StudyRun::study = nullptr;
 
+app::SceneInfo info_of(const std::filesystem::path& scene) {
+  app::SceneRequest request;
+  request.file = scene;
+  return app::scene_info(request);
+}
+
 TEST_F(StudyRun, KeepsToItsBudget) {
   EXPECT_LT(study->seconds, study->budget_s);
   EXPECT_GT(study->seconds, 0.5 * study->budget_s);
 }
 
 TEST_F(StudyRun, EstimatesMemoryAsInfoDoes) {
-  const app::SceneInfo info = app::scene_info(*folder / "scene.toml", {});
+  const app::SceneInfo info = info_of(*folder / "scene.toml");
   EXPECT_EQ(point("precision", "exact").memory, info.memory.total());
   EXPECT_EQ(study->scene_hash, info.scene_hash);
 }
@@ -143,7 +149,7 @@ TEST_F(StudyRun, JsonAndPageHoldIt) {
   EXPECT_NE(study_text(*study).find("* nothing measured is both quicker and better"), std::string::npos);
 }
 
-Study small_study(const std::filesystem::path& scene, double budget_s, std::vector<std::string> overrides = {}) {
+Study small_study(const std::filesystem::path& scene, double budget_s, std::vector<format::Override> overrides = {}) {
   Request request;
   request.scene = scene;
   request.overrides = std::move(overrides);
@@ -187,7 +193,7 @@ TEST_F(StudyRun, MotionBlurIsMeasured) {
          "sphere = [{ center = [0, 0, 0], radius = 1, material = \"grey\", name = \"ball\" }]\n"
          "key = [{ target = \"sphere.ball.center\", frames = [1, 2], values = [[0, 0, 0], [2, 0, 0]] }]\n";
   const Study moving = small_study(file, 1), resting = small_study(file, 1, {"camera.shutter_close=0"});
-  EXPECT_EQ(moving.scene_hash, app::scene_info(file, {}).scene_hash);
+  EXPECT_EQ(moving.scene_hash, info_of(file).scene_hash);
   EXPECT_NE(moving.scene_hash, resting.scene_hash);
   EXPECT_NE(moving.reference.planes[0].values, resting.reference.planes[0].values);
 }
