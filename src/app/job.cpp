@@ -143,7 +143,8 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
     append(out, "noise %.3g instead of %.3g: %s", *statistics.noise, job.noise,
            statistics.ended_by == "time" ? "time was over" : "every pixel that needs more has had all its samples");
   if (job.noise > 0 && statistics.unjudged_pixels > 0)
-    append(out, "%sthe noise of %llu pixels cannot be judged: too few paths have found light around them; allow more %s",
+    append(out,
+           "%sthe noise of %llu pixels cannot be judged: too few paths have found light around them; allow more %s",
            out.empty() ? "" : "; ", static_cast<unsigned long long>(statistics.unjudged_pixels),
            statistics.ended_by == "time" ? "time" : "samples");
   return out;

@@ -44,8 +44,8 @@ class Ranking {
 };
 
 /// Adds the pixels that lack evidence where all of them can be paid for.
-void add_due(const std::vector<std::uint32_t>& samples, const std::vector<std::uint8_t>& lacks_evidence, const RoundGoal& goal,
-             Round& round) {
+void add_due(const std::vector<std::uint32_t>& samples, const std::vector<std::uint8_t>& lacks_evidence,
+             const RoundGoal& goal, Round& round) {
   const auto price_of = [&](std::size_t i) {
     return std::uint64_t{std::min(samples[i], goal.most_per_pixel - samples[i])};
   };

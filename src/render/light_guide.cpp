@@ -145,8 +145,7 @@ std::vector<float> LightGuide::of(const PixelBlock& b) const {
   const auto count_across = [&](int radius) {
     for (int x = 0; x < b.width; ++x) {
       across[static_cast<std::size_t>(x)] = static_cast<float>(count_within(b.x + x, radius, s.width));
-      own_across[static_cast<std::size_t>(x)] =
-          static_cast<float>(count_within(b.x + x, radius, s.width, excluded_x));
+      own_across[static_cast<std::size_t>(x)] = static_cast<float>(count_within(b.x + x, radius, s.width, excluded_x));
     }
   };
   for (int k = kRadii; k-- > 0;) {

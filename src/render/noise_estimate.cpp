@@ -33,7 +33,8 @@ constexpr double kHits = 4;
 constexpr float kLargestError = 0x1p50f;
 
 void run(TilePool& pool, std::size_t count, const std::function<void(std::size_t)>& work) {
-  pool.run(count, [&](std::size_t i, TileWorker&) { work(i); }, [] { return false; });
+  pool.run(
+      count, [&](std::size_t i, TileWorker&) { work(i); }, [] { return false; });
 }
 
 float relative(float variance, float light) {

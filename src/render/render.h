@@ -75,7 +75,7 @@ struct Statistics {
   /// which is what ends the render.
   std::optional<double> expected_noise, noise;
   std::uint64_t unjudged_pixels = 0;  ///< around which too few paths found light for these estimates
-  std::string ended_by;         ///< "samples", "noise" or "time", whichever came first
+  std::string ended_by;               ///< "samples", "noise" or "time", whichever came first
 };
 
 struct Result {

@@ -64,18 +64,19 @@ TEST_F(CliOutputs, AConfigIsAnInput) {
   expect_refused("render good.toml -o a.png --ocio my.ocio --stats my.ocio", "my.ocio (OCIO config)");
   expect_refused("render good.toml -o a.png --stats my.ocio", "my.ocio (OCIO config)", "OCIO=my.ocio");
   expect_refused("bake --ocio my.cube -o my.cube", "my.cube (OCIO config)");
+  // A scene's config is read before its outputs are known; statistics of that failure must not replace it either.
   write("config.toml", std::string("[color]\nconfig = \"my.ocio\"\n") + kGoodScene);
-  expect_refused("render config.toml -o a.exr --stats my.ocio", "my.ocio (OCIO config)");
+  EXPECT_EQ(run("render config.toml -o a.exr --stats my.ocio").status, 65);
+  EXPECT_EQ(text_of(folder_ / "my.ocio"), "no config, but somebody's file");
 }
 
 TEST_F(CliOutputs, ATableOfAConfigIsAnInput) {
   write("film.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
   write("my.ocio",
-        "ocio_profile_version: 2\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
-        "file_rules:\n  - !<Rule> {name: Default, colorspace: default}\n"
-        "displays:\n  d:\n    - !<View> {name: film, colorspace: film}\n"
+        "ocio_profile_version: 1\nsearch_path: .\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+        "displays:\n  d:\n    - !<View> {name: film, colorspace: film}\nactive_displays: []\nactive_views: []\n"
         "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
-        "  - !<ColorSpace> {name: film, from_reference: !<FileTransform> {src: film.cube}}\n");
+        "  - !<ColorSpace> {name: film, from_reference: !<FileTransform> {src: film.cube, interpolation: linear}}\n");
   ASSERT_EQ(run("render good.toml -o a.png -q --ocio my.ocio").status, 0) << text_of(folder_ / ".err");
   expect_refused("bake --ocio my.ocio -o film.cube", "film.cube (table of the OCIO config)");
   expect_refused("render good.toml -o a.png --ocio my.ocio --stats film.cube", "table of the OCIO config");

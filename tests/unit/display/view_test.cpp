@@ -224,8 +224,7 @@ TEST_F(DisplayView, TheAcesProjectsConfigsLoad) {
 
 /// The table of displays in docs/output.md: each with its views.
 std::vector<std::pair<std::string, std::vector<std::string>>> documented_displays() {
-  const auto source = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path().parent_path();
-  std::istringstream in(support::file_bytes(source / "docs" / "output.md"));
+  std::istringstream in(support::file_bytes(std::filesystem::path(ORRERY_ROOT) / "docs" / "output.md"));
   const auto quoted = [](const std::string& text) {
     std::vector<std::string> names;
     for (std::size_t at = text.find('`'); at != std::string::npos; at = text.find('`', at + 1)) {

@@ -71,8 +71,8 @@ double expected(const PixelStatistics& s, int excluded, int x, int y) {
 
 TEST(RenderLightGuide, IsWhatItsDefinitionSays) {
   for (const auto& [width, height] : {std::pair{150, 40}, {20, 140}}) {
-    const PixelStatistics s =
-        test::statistics_of(width, height, 8, 3, [](int x, int, double u) { return u < 0.3 ? 0.1f * static_cast<float>(x) : 0.2f; });
+    const PixelStatistics s = test::statistics_of(
+        width, height, 8, 3, [](int x, int, double u) { return u < 0.3 ? 0.1f * static_cast<float>(x) : 0.2f; });
     for (const int excluded : {kNoClass, 0, 5, 7}) {
       const std::vector<float> guide = whole(s, excluded);
       for (int y = 0; y < height; ++y) {

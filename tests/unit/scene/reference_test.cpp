@@ -14,9 +14,7 @@ namespace {
 constexpr const char* kBegin = "<!-- made out of the schema: begin -->\n";
 constexpr const char* kEnd = "<!-- made out of the schema: end -->\n";
 
-std::filesystem::path document() {
-  return std::filesystem::path(ORRERY_ROOT) / "docs" / "scene-format.md";
-}
+std::filesystem::path document() { return std::filesystem::path(ORRERY_ROOT) / "docs" / "scene-format.md"; }
 
 // With ORRERY_UPDATE_DOCS in the environment the document is brought up to date instead.
 TEST(SceneReference, DocumentSaysWhatTheSchemaSays) {
