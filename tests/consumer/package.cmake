@@ -29,7 +29,8 @@ run(fields dpkg-deb --field ${program})
 must_match("the program's package" "${fields}" "Package: orrery\n" "Depends: [^\n]*libembree" "Depends: [^\n]*libopenimageio"
            "Depends: [^\n]*libopencolorio")
 run(files dpkg-deb --contents ${program})
-must_match("the program's package" "${files}" "/usr/bin/orrery\n" "/usr/share/doc/orrery/copyright\n")
+must_match("the program's package" "${files}" "/usr/bin/orrery\n"
+           "/usr/libexec/orrery/orrery-program\n" "/usr/share/doc/orrery/copyright\n")
 if(files MATCHES "\\.(a|h|cmake)\n")
   message(FATAL_ERROR "the program's package holds what is for developers:\n${files}")
 endif()
