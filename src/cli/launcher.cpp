@@ -3,29 +3,47 @@
 // program's libraries takes some tenths of a second, in which USR1, sent by a supervisor, would end a process that is
 // about to handle it. Blocked, the signal waits; prepare_signals lets it through.
 //
-// It uses the C library alone, so that it is there within a millisecond.
+// It uses the C library alone, so that it runs within a millisecond.
+#include <climits>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
-#include <climits>
 #include <unistd.h>
 
-int main(int, char** argv) {
+namespace orrery::cli {
+namespace {
+
+/// The program's path from the folder of the launcher.
+constexpr char kProgram[] = ORRERY_PROGRAM_FROM_LAUNCHER;
+
+void block_snapshots() {
   sigset_t snapshot;
   sigemptyset(&snapshot);
   sigaddset(&snapshot, SIGUSR1);
   sigprocmask(SIG_BLOCK, &snapshot, nullptr);
+}
 
-  char path[PATH_MAX];
+/// Result     false where the launcher's own path is unknown or too long
+bool find_program(char (&path)[PATH_MAX]) {
   const ssize_t size = readlink("/proc/self/exe", path, sizeof(path) - 1);
-  constexpr char kProgram[] = ORRERY_PROGRAM_FROM_LAUNCHER;
-  char* const folder_end = size > 0 ? (path[size] = '\0', std::strrchr(path, '/')) : nullptr;
-  if (folder_end != nullptr && static_cast<std::size_t>(folder_end + 1 - path) + sizeof(kProgram) <= sizeof(path)) {
-    std::memcpy(folder_end + 1, kProgram, sizeof(kProgram));
-    execv(path, argv);
-  }
+  if (size < 0) return false;
+  path[size] = '\0';
+  char* const folder_end = std::strrchr(path, '/');
+  if (folder_end == nullptr || static_cast<std::size_t>(folder_end + 1 - path) + sizeof(kProgram) > sizeof(path))
+    return false;
+  std::memcpy(folder_end + 1, kProgram, sizeof(kProgram));
+  return true;
+}
+
+}  // namespace
+}  // namespace orrery::cli
+
+int main(int, char** argv) {
+  orrery::cli::block_snapshots();
+  char path[PATH_MAX];
+  if (orrery::cli::find_program(path)) execv(path, argv);
   std::perror("orrery: cannot start its program, which is installed with it as " ORRERY_PROGRAM_FROM_LAUNCHER);
   return EXIT_FAILURE;
 }

@@ -114,7 +114,8 @@ TEST_F(BatchFrames, SeveralScenesAreNamedByTheirFiles) {
   write("other/good.toml", animated());
   const Outcome same = run("render good.toml other/good.toml -o {scene}.png");
   EXPECT_EQ(same.status, 2);
-  EXPECT_NE(same.err.find("good.png (-o of other/good.toml) and good.png (-o of good.toml) are the same file"), std::string::npos)
+  EXPECT_NE(same.err.find("good.png (-o of other/good.toml) and good.png (-o of good.toml) are the same file"),
+            std::string::npos)
       << same.err;
 }
 
