@@ -185,13 +185,13 @@ void add_render(Command& program, Action& action) {
       ->type_name("TIME");
   command
       .add_option("--noise", options->batch.job.noise,
-                  "Sample until the picture is off by this much, relative to what a display shows, as 0.01")
+                  "Target noise: error of the picture relative to what a display shows, e.g. 0.01")
       ->transform(real_number(1e-6, 1))
       ->type_name("X");
   command.add_option("--time", options->batch.job.seconds, "Sample for so long, where it helps most: 90s, 5m, 1.5h")
       ->transform(duration())
       ->type_name("TIME");
-  command.add_flag("--strict", options->strict, "Exit with 75 where --noise was not reached");
+  command.add_flag("--strict", options->strict, "Exit with 75 if --noise was not reached or could not be judged");
   command.add_option("-t,--threads", options->batch.job.threads, "Threads; default: as many as this process may use")
       ->transform(whole_number(1, kMostThreads))
       ->type_name("N");

@@ -36,6 +36,33 @@ TEST_F(CliTrade, ATargetThatSamplesDoNotReachIsTold) {
   EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0 -q").status, 0);
 }
 
+TEST_F(CliTrade, NoiseThatCannotBeJudgedIsReported) {
+  // Light of a thousandth of the paths: with 64 samples nearly all pixels look black.
+  write(
+      "dark.toml",
+      "[image]\nwidth = 24\nheight = 14\n"
+      "[camera]\nlook_from = [0, 0, 0]\nlook_at = [0.3, 0.2, -1]\nvfov = 60\n"
+      "[background]\ntype = \"constant\"\ncolor = [5, 5, 5]\n"
+      "[material.wall]\ntype = \"lambertian\"\nalbedo = [0.5, 0.5, 0.5]\n" +
+          [] {
+            std::string spheres;
+            for (const char* center : {"4.8, 0, 0", "-4.8, 0, 0", "0, 4.8, 0", "0, -4.8, 0", "0, 0, 4.8", "0, 0, -4.8"})
+              spheres += std::string("[[sphere]]\nradius = 3.9\nmaterial = \"wall\"\ncenter = [") + center + "]\n";
+            return spheres;
+          }());
+  const Outcome r = run("render dark.toml -o a.exr --noise 0.3 --samples 64 --stats s.json --progress none");
+  EXPECT_EQ(r.status, 0);
+  EXPECT_NE(r.err.find("warning: "), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find(" pixels cannot be judged: too few paths have found light around them; allow more samples\n"),
+            std::string::npos)
+      << r.err;
+  const auto s = stats();
+  EXPECT_GT(s["unjudged_pixels"], 200);
+  EXPECT_EQ(s["ended_by"], "samples");
+  EXPECT_LE(s["noise_expected"], s["noise"]);
+  EXPECT_EQ(run("render dark.toml -o b.exr --noise 0.3 --samples 64 --strict -q").status, 75);
+}
+
 TEST_F(CliTrade, TimeEndsARenderThatCannotReachItsNoise) {
   // How well the time is kept is a test of render/rounds, whose clock counts samples.
   const Outcome r = run("render good.toml -o a.exr --noise 1e-6 --time 0.5s --stats s.json --progress none");
