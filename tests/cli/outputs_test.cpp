@@ -111,8 +111,10 @@ TEST_F(CliOutputs, AFailedRenderKeepsThePointsFile) {
 }
 
 TEST_F(CliOutputs, OtherCommandsOverwriteNothingEither) {
-  expect_refused("study good.toml -o good.toml", "good.toml (-o) would overwrite good.toml (scene)");
-  expect_refused("study points.toml -o use.ply", "points file");
+  std::filesystem::create_symlink("good.toml", folder_ / "scene.html");
+  std::filesystem::create_symlink("use.ply", folder_ / "points.html");
+  expect_refused("study good.toml -o scene.html", "(scene)");
+  expect_refused("study points.toml -o points.html", "points file");
   expect_refused("submit points.toml -o a.png --stats use.ply --slurm", "points file");
   expect_refused("submit frames.toml -o p.##.png --frames 1-2 --slurm", "points file");
   ASSERT_EQ(run("render good.toml -o a.exr -o b.exr -q").status, 0);

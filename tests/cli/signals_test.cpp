@@ -64,6 +64,16 @@ TEST_F(CliSignals, GeneratingEndsAtTheFirstOneAndLeavesNothing) {
   // The points file appears under a temporary name first, and would take seconds to complete.
   PacedProgram generate(folder_, {"generate", "cloud", "-o", "cloud.toml", "--count", "5000000"});
   ASSERT_TRUE(generate.run_changes(1)) << generate.text();
+  // The first changes may be those of the check that files can be created here; wait for the data.
+  const auto has_data = [&] {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      std::error_code gone;
+      const auto size = entry.file_size(gone);
+      if (!gone && size > 1'000'000) return true;
+    }
+    return false;
+  };
+  while (!has_data() && generate.is_running()) generate.run_changes(1);
   generate.send(SIGINT);
   EXPECT_EQ(generate.wait(), 128 + SIGINT);
   EXPECT_EQ(file_count(), 0);
