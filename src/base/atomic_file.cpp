@@ -11,7 +11,9 @@
 #include <cerrno>
 #include <climits>
 #include <cstring>
+#include <random>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/file_name.h"
@@ -71,8 +73,25 @@ std::filesystem::path renamed_onto(const std::filesystem::path& path) {
   return target.empty() ? path : target;
 }
 
-/// An open, empty file beside `target`; `path` is what the user calls it.
-int create_beside(const std::filesystem::path& path, const std::filesystem::path& target, std::string& name) {
+/// A new, empty file, and its entry among the names that a signal handler unlinks.
+struct NewFile {
+  std::string name;
+  int slot = -1;
+};
+
+std::string random_letters(std::size_t count) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz0123456789";
+  std::random_device random;
+  std::uniform_int_distribution<std::size_t> letter(0, kLetters.size() - 1);
+  std::string out;
+  while (out.size() < count) out += kLetters[letter(random)];
+  return out;
+}
+
+/// Creates a file beside `target`; `path` is what the user calls it.
+NewFile create_beside(const std::filesystem::path& path, const std::filesystem::path& target) {
+  constexpr std::size_t kLetters = 8;
+  constexpr int kTries = 16;
   std::error_code ignored;
   const std::filesystem::path directory = directory_of(target);
   if (!std::filesystem::is_directory(directory, ignored))
@@ -80,26 +99,31 @@ int create_beside(const std::filesystem::path& path, const std::filesystem::path
   // Where a name fits into the directory its temporary name must fit, too.
   const long limit = ::pathconf(directory.c_str(), _PC_NAME_MAX);
   const std::size_t longest = limit > 0 ? static_cast<std::size_t>(limit) : kLongestFileName;
-  const std::string stem = target.filename().string(), pattern = ".XXXXXX";
-  const std::size_t room = longest - std::min(longest, 1 + pattern.size());
-  name = (directory / ("." + std::string(utf8_prefix(stem, room)) + pattern)).string();
-  const int file = ::mkstemp(name.data());
-  if (file < 0) cannot_create(path, std::strerror(errno));
-  return file;
+  const std::size_t room = longest - std::min(longest, 2 + kLetters);
+  const std::string stem(utf8_prefix(target.filename().string(), room));
+  for (int i = 0; i < kTries; ++i) {
+    NewFile file;
+    file.name = (directory / ("." + stem + "." + random_letters(kLetters))).string();
+    // The slot first: a signal that comes right after the file is created must find its name.
+    file.slot = take_slot(file.name);
+    const int descriptor = ::open(file.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+      ::close(descriptor);
+      return file;
+    }
+    const int error = errno;
+    free_slot(file.slot);
+    if (error != EEXIST) cannot_create(path, std::strerror(error));
+  }
+  cannot_create(path, std::strerror(EEXIST));
 }
 
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), target_(renamed_onto(path_)) {
-  std::string name;
-  const int file = create_beside(path_, target_, name);
-  // mkstemp makes private files; a picture is as readable as any other file of its user.
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  ::fchmod(file, 0666 & ~mask);
-  ::close(file);
-  temporary_ = name;
-  slot_ = take_slot(name);
+  const NewFile file = create_beside(path_, target_);
+  temporary_ = file.name;
+  slot_ = file.slot;
 }
 
 AtomicFile::~AtomicFile() {
@@ -147,9 +171,9 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
 }
 
 void check_creatable(const std::filesystem::path& path) {
-  std::string name;
-  ::close(create_beside(path, renamed_onto(path), name));
-  ::unlink(name.c_str());
+  const NewFile file = create_beside(path, renamed_onto(path));
+  ::unlink(file.name.c_str());
+  free_slot(file.slot);
 }
 
 }  // namespace orrery::base
