@@ -5,7 +5,9 @@ include(CMakePackageConfigHelpers)
 
 if(TARGET orrery)
   install(TARGETS orrery RUNTIME COMPONENT runtime)
-  install(TARGETS orrery_program RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
+  install(TARGETS orrery_program orrery_image_module
+          RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/orrery COMPONENT runtime)
 endif()
 if(EXISTS ${PROJECT_SOURCE_DIR}/docs/orrery.1)
   install(FILES docs/orrery.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)

@@ -12,6 +12,7 @@
 #include "film/deep_picture.h"
 #include "film/encoded_picture.h"
 #include "film/picture.h"
+#include "image/exr_options.h"
 #include "image/library.h"
 
 namespace orrery::image {
@@ -43,29 +44,11 @@ struct Header {
   std::string stamp = {};  ///< names what the picture is made of; see kStampName
 };
 
-struct ExrOptions {
-  bool as_float = false;             ///< half otherwise
-  std::string compression = "zips";  ///< as check_compression takes it
-  bool multipart = false;            ///< a part for each layer, instead of one with all channels
-};
-
 /// What had to be changed to fit into the file.
 struct WriteReport {
   std::uint64_t clamped = 0;     ///< finite values that the file's numbers cannot hold, now the nearest that they can
   std::uint64_t not_finite = 0;  ///< NaN and infinities, now 0
 };
-
-/// Finds out whether a name is a compression of EXR, before there is anything to write.
-///
-/// Domain     none, rle, zip, zips, piz, dwaa or dwab, the last two with ":LEVEL" if wanted, as in dwaa:45
-/// Errors     base::Error(kUsage) listing the known ones
-void check_compression(const std::string& name);
-
-/// Refuses to store mattes and other data by a compression that keeps only what eyes see. With a part for each layer
-/// there is no need to: those of data are then compressed without loss.
-///
-/// Errors     base::Error(kUsage) with the remedy
-void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& options);
 
 /// Writes scene-linear planes as EXR, scanlines. Data are float whatever the options say; colours and vectors are half
 /// unless asked for as float.

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/exr_options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "base/error.h"
+#include "base/suggestion.h"
+
+namespace orrery::image {
+namespace {
+
+bool is_level(std::string_view text) {
+  float level = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), level);
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(level) && level >= 0;
+}
+
+}  // namespace
+
+bool is_lossy(const std::string& compression) { return compression.rfind("dwa", 0) == 0; }
+
+void check_compression(const std::string& name) {
+  static const std::vector<std::string> plain = {"none", "rle", "zip", "zips", "piz", "dwaa", "dwab"};
+  if (std::find(plain.begin(), plain.end(), name) != plain.end()) return;
+  const std::size_t colon = name.find(':');
+  const std::string word = name.substr(0, colon);
+  if ((word == "dwaa" || word == "dwab") && is_level(std::string_view(name).substr(colon + 1))) return;
+  const std::string near = base::did_you_mean(word, plain);
+  throw base::Error(base::ErrorKind::kUsage, "unknown EXR compression " + name + "; " +
+                                                 (near.empty() ? "" : near + " ") + "known are " + base::joined(plain) +
+                                                 ", the last two also with a level, as in dwaa:45");
+}
+
+void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& options) {
+  if (options.multipart || !is_lossy(options.compression)) return;
+  for (const film::Plane& plane : planes) {
+    // These are the channels that the compression takes for colours, by the last part of their names.
+    const char last = plane.name.back();
+    if (plane.kind == film::PlaneKind::kData && (last == 'R' || last == 'G' || last == 'B'))
+      throw base::Error(base::ErrorKind::kUsage,
+                        "compression " + options.compression + " would damage layer " + plane.layer() +
+                            "; take zip, zips or piz, or --multipart, where data have parts without loss");
+  }
+}
+
+}  // namespace orrery::image

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The module's side: compiled into it beside the room.
+#include "image/module/functions.h"
+
+namespace orrery::image {
+
+extern "C" const Functions* orrery_image_functions() {
+  static constexpr Functions functions{
+      set_threads,   oiio_version,    read,         write_exr,      write_deep, write_hdr, write_encoded,
+      write_partial, read_provenance, read_partial, verified_stamp,
+  };
+  return &functions;
+}
+
+}  // namespace orrery::image

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program's side: the room's functions, which load the module and call its own. Loading OpenImageIO's 260 libraries
+// takes longer than most commands; those that read or write no picture do without.
+#include <dlfcn.h>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+
+#include "base/error.h"
+#include "image/module/functions.h"
+
+namespace orrery::image {
+namespace {
+
+std::atomic<int> threads{0};  ///< 0: as the room begins
+
+/// From the folder of the program's file, in the build folder as where it is installed.
+const Functions& load() {
+  const std::filesystem::path file =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / ORRERY_IMAGE_MODULE;
+  void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const get = module != nullptr ? dlsym(module, kFunctionsName) : nullptr;
+  if (get == nullptr) throw base::Error(base::ErrorKind::kInternal, std::string("cannot load ") + dlerror());
+  const Functions& functions = *reinterpret_cast<GetFunctions>(get)();
+  if (threads > 0) functions.set_threads(threads);
+  return functions;
+}
+
+const Functions& module() {
+  static const Functions& functions = load();
+  return functions;
+}
+
+}  // namespace
+
+void set_threads(int count) {
+  threads = count;
+  // A job calls this before it renders, and will write a picture: the module is loaded meanwhile. An error is reported
+  // by the first call that needs the module, since that tries again.
+  static const std::future<void> loading = std::async(std::launch::async, [] { module(); });
+  if (loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready) module().set_threads(count);
+}
+
+std::string oiio_version() { return module().oiio_version(); }
+
+film::Picture read(const std::filesystem::path& file) { return module().read(file); }
+
+WriteReport write_exr(const std::filesystem::path& file, const film::Picture& picture, const Header& header,
+                      const ExrOptions& options) {
+  return module().write_exr(file, picture, header, options);
+}
+
+void write_deep(const std::filesystem::path& file, const film::DeepPicture& deep, const film::Picture& flat,
+                const Header& header) {
+  module().write_deep(file, deep, flat, header);
+}
+
+WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& picture) {
+  return module().write_hdr(file, picture);
+}
+
+void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
+                   const std::string& stamp) {
+  module().write_encoded(file, picture, software, stamp);
+}
+
+void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
+                   const Provenance& provenance, const film::Partial& partial) {
+  module().write_partial(file, preview, header, provenance, partial);
+}
+
+Provenance read_provenance(const std::filesystem::path& file) { return module().read_provenance(file); }
+
+PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px) {
+  return module().read_partial(file, width_px, height_px);
+}
+
+std::string verified_stamp(const std::filesystem::path& file) { return module().verified_stamp(file); }
+
+}  // namespace orrery::image
