@@ -30,13 +30,19 @@ Checkpoint::Checkpoint(const Job& job, image::Provenance provenance, Write write
 
 std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
   if (!job_.resume || !std::filesystem::exists(file_)) return {};
-  const image::Provenance found = image::read_provenance(file_);
-  if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())
-    throw base::Error(base::ErrorKind::kBadData,
-                      file_.string() + " is of " + wrong + "; delete it, or render without --resume to begin anew");
-  image::PartialFile file = image::read_partial(file_, width_px, height_px);
-  is_ours_ = true;
-  return std::move(file.partial);
+  try {
+    const image::Provenance found = image::read_provenance(file_);
+    if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())
+      throw base::Error(base::ErrorKind::kBadData,
+                        file_.string() + " is of " + wrong + "; delete it, or render without --resume to begin anew");
+    image::PartialFile file = image::read_partial(file_, width_px, height_px);
+    is_ours_ = true;
+    return std::move(file.partial);
+  } catch (const base::Error&) {
+    // Another process that renders the same picture removes the checkpoint when it finishes.
+    if (!std::filesystem::exists(file_)) return {};
+    throw;
+  }
 }
 
 bool Checkpoint::is_due() const {

@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <charconv>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "format/ply_cursor.h"
 #include "format/ply_header.h"
 #include "format/source_text.h"
 #include "scene/validate.h"
@@ -24,137 +21,6 @@ namespace {
 
 /// A hundred million spheres in doubles with a radius.
 constexpr std::uint64_t kLargestFile = std::uint64_t{8} << 30;
-
-template <class T>
-double as_double(const char* bytes, bool swap) {
-  char copy[sizeof(T)];
-  std::memcpy(copy, bytes, sizeof(T));
-  if (swap)
-    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(copy[i], copy[sizeof(T) - 1 - i]);
-  T value;
-  std::memcpy(&value, copy, sizeof(T));
-  return static_cast<double>(value);
-}
-
-double binary_value(const char* at, PlyType type, bool swap) {
-  switch (type) {
-    case PlyType::kInt8: return as_double<std::int8_t>(at, swap);
-    case PlyType::kUint8: return as_double<std::uint8_t>(at, swap);
-    case PlyType::kInt16: return as_double<std::int16_t>(at, swap);
-    case PlyType::kUint16: return as_double<std::uint16_t>(at, swap);
-    case PlyType::kInt32: return as_double<std::int32_t>(at, swap);
-    case PlyType::kUint32: return as_double<std::uint32_t>(at, swap);
-    case PlyType::kFloat32: return as_double<float>(at, swap);
-    case PlyType::kFloat64: return as_double<double>(at, swap);
-  }
-  return 0;
-}
-
-/// Takes values one after the other out of the data behind the header. In an ascii file each row is one line.
-class PlyCursor {
- public:
-  /// `line` is that of the first byte of the data.
-  PlyCursor(std::string_view data, PlyEncoding encoding, int line)
-      : at_(data.data()),
-        end_(data.data() + data.size()),
-        row_end_(end_),
-        line_(line),
-        ascii_(encoding == PlyEncoding::kAscii),
-        swap_((encoding == PlyEncoding::kBigEndian) != (std::endian::native == std::endian::big)) {
-    if (ascii_) row_end_ = at_;
-  }
-
-  /// Goes to the next row; lines that are blank are none.
-  void begin_row() {
-    if (!ascii_) return;
-    while (at_ < end_) {
-      const void* const found = std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_));
-      row_end_ = found != nullptr ? static_cast<const char*>(found) : end_;
-      row_line_ = line_;
-      skip_blanks();
-      if (at_ < row_end_) return;
-      step_over_line_end();
-    }
-  }
-  /// False where something is left of the row.
-  bool end_row() {
-    if (!ascii_) return true;
-    skip_blanks();
-    if (at_ < row_end_) return false;
-    step_over_line_end();
-    return true;
-  }
-  /// Of the row; 0 in a binary file.
-  int line() const { return row_line_; }
-
-  /// False where the row or the data end, or where an ascii value is no number.
-  bool take(PlyType type, double& value) {
-    if (ascii_) return take_word(value);
-    const std::size_t size = ply_size(type);
-    if (bytes_left() < size) return false;
-    value = binary_value(at_, type, swap_);
-    at_ += size;
-    return true;
-  }
-  bool skip(const PlyProperty& property) {
-    double value = 0;
-    if (!property.is_list) return take(property.type, value);
-    if (!take(property.count_type, value)) return false;
-    is_bad_length_ = !(value >= 0) || value != std::floor(value);
-    if (is_bad_length_) return false;
-    for (double i = 0; i < value; ++i) {
-      double ignored = 0;
-      if (!take(property.type, ignored)) return false;  // ends with the data, whatever the count says
-    }
-    return true;
-  }
-  /// Domain     a binary file that has as many
-  void skip_bytes(std::uint64_t bytes) { at_ += bytes; }
-
-  std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
-  /// Why the last take or skip was false.
-  std::string fault() const {
-    if (is_bad_length_) return "the length of a list is not a whole number";
-    if (ascii_ && at_ < row_end_) return "`" + word() + "` is not a number";
-    return ascii_ && row_end_ < end_ ? "the line ends; a row is one line" : "the file ends";
-  }
-  /// The word that comes next in the row.
-  std::string word() const {
-    constexpr std::ptrdiff_t kLongestShown = 40;
-    const char* const end =
-        std::find_if(at_, std::min(row_end_, at_ + std::min(kLongestShown, row_end_ - at_)), is_blank);
-    return {at_, end};
-  }
-
- private:
-  static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-  void skip_blanks() {
-    while (at_ < row_end_ && is_blank(*at_)) ++at_;
-  }
-  void step_over_line_end() {
-    if (row_end_ == end_) {
-      at_ = end_;
-    } else {
-      at_ = row_end_ + 1;
-      ++line_;
-    }
-  }
-  bool take_word(double& value) {
-    skip_blanks();
-    const char* const begin = at_ < row_end_ && *at_ == '+' ? at_ + 1 : at_;
-    const auto [end, error] = std::from_chars(begin, row_end_, value);
-    if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
-    if (end == begin || error == std::errc::invalid_argument || (end < row_end_ && !is_blank(*end))) return false;
-    at_ = end;
-    return true;
-  }
-
-  const char* at_;
-  const char* end_;
-  const char* row_end_;
-  int line_, row_line_ = 0;
-  bool ascii_, swap_, is_bad_length_ = false;
-};
 
 /// Collects findings of one file.
 class PlyFaults {

@@ -18,14 +18,14 @@ constexpr Extension kExtensions[] = {{"exr", Format::kExr},   {"hdr", Format::kH
                                      {"tif", Format::kTiff},  {"tiff", Format::kTiff}, {"jpg", Format::kJpeg},
                                      {"jpeg", Format::kJpeg}, {"ppm", Format::kPpm}};
 
-/// The longest side that the libraries behind OpenImageIO encode, px. Radiance and PPM have no limit of their own; a
-/// TIFF of more than 4 GB becomes a BigTIFF.
+/// The longest side that an encoder accepts, px. OpenImageIO 2.5 limits PNG, Radiance and PPM to 65535; earlier
+/// releases accept more. A TIFF of more than 4 GB becomes a BigTIFF.
 int largest_side(Format format) {
   switch (format) {
     case Format::kJpeg: return 65500;  // libjpeg's JPEG_MAX_DIMENSION
     case Format::kPng:
     case Format::kHdr:
-    case Format::kPpm: return 1000000;  // libpng's PNG_USER_WIDTH_MAX; OpenImageIO's 2^20 for Radiance
+    case Format::kPpm: return 65535;
     case Format::kTiff: return 1 << 20;
     case Format::kExr: return (1 << 30) - 1;  // so that no window's edge leaves 32 bits
   }
@@ -61,7 +61,7 @@ void check_size(const std::filesystem::path& file, int width_px, int height_px) 
   throw base::Error(base::ErrorKind::kUsage, file.string() + " cannot hold " + std::to_string(width_px) + " x " +
                                                  std::to_string(height_px) +
                                                  " pixels: a side of its format has up to " + std::to_string(largest) +
-                                                 "; PNG, TIFF and EXR hold larger ones");
+                                                 "; TIFF and EXR hold larger ones");
 }
 
 int most_bits(Format format) { return format == Format::kPng || format == Format::kTiff ? 16 : 8; }

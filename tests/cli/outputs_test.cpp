@@ -130,14 +130,15 @@ TEST_F(CliOutputs, OtherCommandsOverwriteNothingEither) {
   expect_refused("merge part.exr ./part.exr -o m.exr --allow-missing", "given twice");
 }
 
-TEST_F(CliOutputs, AJpegThatWouldBeTooWideIsRefusedBeforeTheRender) {
+TEST_F(CliOutputs, ASizeThatAFormatCannotHoldIsRefusedBeforeTheRender) {
   // A render of that many samples would take hours.
   expect_refused("render good.toml -o a.jpg --width 65501 --samples 1000000000", "65500");
   expect_refused("render good.toml -o a.exr -o a.jpg --height 65536 --samples 1000000000", "65500");
   EXPECT_EQ(run("render good.toml -o a.jpg --width 65500 --height 1 --samples 1 -q").status, 0);
-  EXPECT_EQ(run("render good.toml -o a.exr -o a.png -o a.tif -o a.hdr -o a.ppm --width 65536 --height 1 --samples 1 -q")
-                .status,
-            0);
+  for (const char* name : {"a.png", "a.hdr", "a.ppm"})
+    expect_refused("render good.toml --width 65536 --samples 1000000000 -o " + std::string(name), "65535");
+  EXPECT_EQ(run("render good.toml -o a.png -o a.hdr -o a.ppm --width 65535 --height 1 --samples 1 -q").status, 0);
+  EXPECT_EQ(run("render good.toml -o a.exr -o a.tif --width 65536 --height 1 --samples 1 -q").status, 0);
   expect_refused("develop a.exr -o b.jpg", "65500");
   expect_refused("compare a.exr a.exr --difference b.jpg", "65500");
 }

@@ -101,6 +101,24 @@ TEST_F(CliStartup, Usr1EndsNoCommand) {
   EXPECT_EQ(run_prepared({"generate", "final", "-o", "f.toml"}, raise_blocked), 0);
 }
 
+TEST_F(CliStartup, OnlyCommandsWithPicturesLoadOpenImageIO) {
+  const auto loads_it = [this](const std::string& words) {
+    EXPECT_EQ(run(words, "LD_DEBUG=files LD_DEBUG_OUTPUT=loader").status, 0) << words;
+    std::string loaded;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      if (entry.path().stem() != "loader") continue;
+      loaded += text_of(entry.path());
+      std::filesystem::remove(entry.path());
+    }
+    EXPECT_NE(loaded.find("libOpenColorIO"), std::string::npos) << "the loader reports nothing";
+    return loaded.find("libOpenImageIO") != std::string::npos;
+  };
+  for (const char* words : {"--help", "info good.toml", "check good.toml", "generate final -o final.toml",
+                            "submit good.toml -o a.####.exr --frames 1-2 --slurm"})
+    EXPECT_FALSE(loads_it(words)) << words;
+  EXPECT_TRUE(loads_it("render good.toml -o a.exr -q"));
+}
+
 TEST_F(CliStartup, AReaderOfMessagesThatLeavesStopsNoRender) {
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "a.png", "-v"}, [] { break_pipe(2); }), 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));

@@ -204,6 +204,11 @@ TEST_F(FormatReadPly, AnAsciiRowIsOneLine) {
             "11: row 0 of `face`, `v`: the line ends; a row is one line\n");
 }
 
+TEST_F(FormatReadPly, AnAsciiRowThatIsMissingIsTheEndOfTheFile) {
+  const std::string elements = "element face 3\nproperty list uchar int v\nelement vertex 0\n";
+  EXPECT_EQ(faults(header("ascii", elements + kXyzr) + "1 7\n1 7\n"), "13: row 2 of `face`, `v`: the file ends\n");
+}
+
 TEST_F(FormatReadPly, MoreThanTheHeaderPromisesIsRefused) {
   EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n5 6 7 8\n"),
             "11: 8 bytes follow the last row that the header promises; its counts are wrong, or the file is damaged\n");
