@@ -153,7 +153,7 @@ class Subject {
     return render::render(world_, *accel_, settings);
   }
 
-  compile::World world_;
+  compile::CompiledScene world_;
   std::unique_ptr<accel::Accel> accel_;
 };
 

@@ -16,17 +16,17 @@ namespace {
 enum class Geometry { kUser, kNativePoints };
 
 void build(benchmark::State& state, std::uint64_t spheres, Geometry geometry) {
-  static std::map<std::uint64_t, compile::World> known;
-  compile::World& world = known[spheres];
-  if (world.spheres.empty()) world = compile_for(cloud_scene(spheres, 16, 16, 1), kernel::Precision::kExact);
+  static std::map<std::uint64_t, compile::CompiledScene> known;
+  compile::CompiledScene& compiled = known[spheres];
+  if (compiled.spheres.empty()) compiled = compile_for(cloud_scene(spheres, 16, 16, 1), kernel::Precision::kExact);
   std::size_t bytes = 0;
   for (auto _ : state) {
-    const auto accel = geometry == Geometry::kUser ? accel::make_embree(world.view(), world.precision)
-                                                   : accel::make_native_points(world.view());
+    const auto accel = geometry == Geometry::kUser ? accel::make_embree(compiled.view(), compiled.precision)
+                                                   : accel::make_native_points(compiled.view());
     bytes = accel->bytes();
   }
-  const auto count = static_cast<double>(world.spheres.size());
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(world.spheres.size()));
+  const auto count = static_cast<double>(compiled.spheres.size());
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(compiled.spheres.size()));
   state.counters["bytes_per_sphere"] = static_cast<double>(bytes) / count;
 }
 

@@ -35,7 +35,7 @@ void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, 
   std::size_t next = 0;
   for (auto _ : state) {
     Packet& packet = packets[next];
-    kernel::forget_hits(packet);
+    kernel::reset_hits(packet);
     kernel::trace(tracer, packet);
     rays += packet.count;
     next = next + 1 == packets.size() ? 0 : next + 1;
@@ -62,7 +62,7 @@ void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which, 
   std::size_t next = 0;
   for (auto _ : state) {
     baseline::HitRecord record;
-    bool hit = program.world().hit(rays[next], {0.001, std::numeric_limits<double>::infinity()}, record);
+    bool hit = program.compiled().hit(rays[next], {0.001, std::numeric_limits<double>::infinity()}, record);
     benchmark::DoNotOptimize(hit);
     benchmark::DoNotOptimize(record);
     next = next + 1 == rays.size() ? 0 : next + 1;

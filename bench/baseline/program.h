@@ -31,7 +31,7 @@ class Program {
   /// Number of rays traced by render() so far.
   std::uint64_t rays() const { return rays_; }
 
-  const Hittable& world() const { return *world_; }
+  const Hittable& compiled() const { return *world_; }
 
  private:
   Ray camera_ray(int x, int y, Random& random) const;

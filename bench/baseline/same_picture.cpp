@@ -5,7 +5,7 @@
 #include <exception>
 #include <utility>
 
-#include "app/generate.h"
+#include "generate/generate.h"
 #include "baseline/program.h"
 #include "compile/compile.h"
 #include "render/render.h"
@@ -42,7 +42,7 @@ bool holds(const std::vector<math::Vec3d>& baseline, const film::Picture& pictur
 }
 
 int run() {
-  scene::Scene scene = app::make_final_scene({});
+  scene::Scene scene = generate::make_final_scene({});
   scene.image = {kWidth, kHeight};
   scene.render.samples = kSamples;
   const render::Result result = render::render(compile::compile(scene), {});

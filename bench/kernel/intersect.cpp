@@ -42,11 +42,11 @@ std::vector<Packet> full_packets(const Workload<Packet>& work) {
 
 /// The sphere that each ray has hit; an arbitrary sphere for rays that missed.
 template <class Packet, class T = ScalarOf<Packet>>
-SphereLanes<T> spheres_of(const compile::World& world, const Packet& packet) {
+SphereLanes<T> spheres_of(const compile::CompiledScene& compiled, const Packet& packet) {
   SphereLanes<T> out;
   for (int i = 0; i < kernel::kPacketSize; ++i) {
     const bool none = packet.hit[i] == kernel::kNoSphere;
-    const kernel::Sphere& s = world.spheres[none ? 0 : static_cast<std::size_t>(packet.hit[i])];
+    const kernel::Sphere& s = compiled.spheres[none ? 0 : static_cast<std::size_t>(packet.hit[i])];
     out.center[0][i] = static_cast<T>(s.x);
     out.center[1][i] = static_cast<T>(s.y);
     out.center[2][i] = static_cast<T>(s.z);
@@ -61,8 +61,8 @@ void nearest(benchmark::State& state, Precision precision, Lanes lanes) {
   const auto functions = functions_for(static_cast<const Packet*>(nullptr), precision, lanes);
   Packet packet = full_packets(work).front();
   for (auto _ : state) {
-    kernel::forget_hits(packet);
-    functions.nearest(packet, work.world.spheres.data(), kSpheres);
+    kernel::reset_hits(packet);
+    functions.nearest(packet, work.compiled.spheres.data(), kSpheres);
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSpheres) * kernel::kPacketSize);
@@ -74,7 +74,7 @@ void hit_point(benchmark::State& state, Precision precision, Lanes lanes) {
   const auto functions = functions_for(static_cast<const Packet*>(nullptr), precision, lanes);
   const std::vector<Packet> packets = full_packets(work);
   std::vector<SphereLanes<ScalarOf<Packet>>> spheres;
-  for (const Packet& packet : packets) spheres.push_back(spheres_of(work.world, packet));
+  for (const Packet& packet : packets) spheres.push_back(spheres_of(work.compiled, packet));
   PointLanes<ScalarOf<Packet>> out;
   for (auto _ : state) {
     for (std::size_t i = 0; i < packets.size(); ++i) {

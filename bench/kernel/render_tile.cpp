@@ -21,7 +21,7 @@ void run(benchmark::State& state, Precision precision, Render render) {
   std::vector<kernel::PixelSum> sums(std::size_t{kRecordedWidth} * kRecordedHeight);
   const auto stream = std::make_unique<Stream>();
   const kernel::Tracer tracer = work.embree->tracer();
-  const kernel::SceneView view = work.world.view();
+  const kernel::SceneView view = work.compiled.view();
   std::uint64_t rays = 0;
   for (auto _ : state) {
     rays += render(view, tracer,

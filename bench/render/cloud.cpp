@@ -24,12 +24,12 @@ constexpr std::int64_t kPaths = std::int64_t{kWidth} * kHeight * kSamples;
 
 /// A cloud with its accelerator, built on first use and cached, because building takes longer than rendering.
 struct Cloud {
-  compile::World world;
+  compile::CompiledScene compiled;
   std::unique_ptr<accel::Accel> embree;
 
   Cloud(std::uint64_t spheres, Precision precision)
-      : world(compile_for(cloud_scene(spheres, kWidth, kHeight, kSamples), precision)),
-        embree(render::build(world, render::available_threads())) {}
+      : compiled(compile_for(cloud_scene(spheres, kWidth, kHeight, kSamples), precision)),
+        embree(render::build(compiled, render::available_threads())) {}
 };
 
 void render(benchmark::State& state, std::uint64_t spheres, Precision precision) {
@@ -40,7 +40,7 @@ void render(benchmark::State& state, std::uint64_t spheres, Precision precision)
   settings.threads = 1;
   double rays = 0;
   for (auto _ : state) {
-    const render::Result result = render::render(cloud->world, *cloud->embree, settings);
+    const render::Result result = render::render(cloud->compiled, *cloud->embree, settings);
     benchmark::DoNotOptimize(result.picture.planes.data());
     rays += static_cast<double>(result.statistics.rays);
   }

@@ -25,13 +25,13 @@ constexpr Size kLarge{480, 270, 4};
 constexpr Size kSmall{96, 54, 8};
 
 void render(benchmark::State& state, Size size, compile::Accelerator accelerator, Precision precision, int threads) {
-  compile::World world = compile_for(final_scene(size.width, size.height, size.samples), precision);
-  world.accelerator = accelerator;
+  compile::CompiledScene compiled = compile_for(final_scene(size.width, size.height, size.samples), precision);
+  compiled.accelerator = accelerator;
   render::Settings settings;
   settings.threads = threads;
   double rays = 0;
   for (auto _ : state) {
-    const render::Result result = render::render(world, settings);
+    const render::Result result = render::render(compiled, settings);
     benchmark::DoNotOptimize(result.picture.planes.data());
     rays += static_cast<double>(result.statistics.rays);
   }

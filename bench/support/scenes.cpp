@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/scenes.h"
 
-#include "app/generate.h"
+#include "generate/generate.h"
 #include "compile/compile.h"
 
 namespace orrery::bench {
@@ -25,16 +25,16 @@ scene::Scene sized(scene::Scene scene, int width_px, int height_px, int samples)
 }  // namespace
 
 scene::Scene final_scene(int width_px, int height_px, int samples) {
-  return sized(app::make_final_scene({}), width_px, height_px, samples);
+  return sized(generate::make_final_scene({}), width_px, height_px, samples);
 }
 
 scene::Scene cloud_scene(std::uint64_t count, int width_px, int height_px, int samples) {
-  app::Cloud cloud;
+  generate::Cloud cloud;
   cloud.count = count;
-  return sized(app::make_cloud(cloud), width_px, height_px, samples);
+  return sized(generate::make_cloud(cloud), width_px, height_px, samples);
 }
 
-compile::World compile_for(scene::Scene scene, kernel::Precision precision) {
+compile::CompiledScene compile_for(scene::Scene scene, kernel::Precision precision) {
   scene.render.precision = authored(precision);
   return compile::compile(scene);
 }

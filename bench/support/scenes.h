@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "compile/world.h"
+#include "compile/compiled_scene.h"
 #include "scene/scene.h"
 
 namespace orrery::bench {
@@ -17,7 +17,7 @@ scene::Scene final_scene(int width_px, int height_px, int samples);
 scene::Scene cloud_scene(std::uint64_t count, int width_px, int height_px, int samples);
 
 /// Compiles the scene for one precision.
-compile::World compile_for(scene::Scene scene, kernel::Precision precision);
+compile::CompiledScene compile_for(scene::Scene scene, kernel::Precision precision);
 
 /// The precision's name in benchmark names, as in scene files.
 std::string name_of(kernel::Precision precision);

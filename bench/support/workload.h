@@ -22,24 +22,24 @@ inline constexpr int kRecordedSamples = kernel::kPacketSize;     // per pixel
 template <class Packet>
 struct Workload {
   scene::Scene scene;
-  compile::World world;
+  compile::CompiledScene compiled;
   std::unique_ptr<accel::Accel> embree, list;
   render::RecordedRays<Packet> rays;
 
   Workload(scene::Scene authored, kernel::Precision precision)
       : scene(std::move(authored)),
-        world(compile_for(scene, precision)),
-        embree(accel::make_embree(world.view(), precision)),
-        list(accel::make_list(world.view(), precision)) {
-    embree->use(render::choose_traversals(world, *embree, render::Traversal::kAuto));
+        compiled(compile_for(scene, precision)),
+        embree(accel::make_embree(compiled.view(), precision)),
+        list(accel::make_list(compiled.view(), precision)) {
+    embree->use(render::choose_traversals(compiled, *embree, render::Traversal::kAuto));
     kernel::Tile whole;
     whole.width = kRecordedWidth;
     whole.height = kRecordedHeight;
     whole.sample_end = kRecordedSamples;
     if constexpr (std::is_same_v<Packet, kernel::RayPacketFast>) {
-      rays = render::record_rays_fast(world.view(), *embree, {whole});
+      rays = render::record_rays_fast(compiled.view(), *embree, {whole});
     } else {
-      rays = render::record_rays(world.view(), *embree, precision, {whole});
+      rays = render::record_rays(compiled.view(), *embree, precision, {whole});
     }
   }
 };

@@ -40,8 +40,8 @@ std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, st
 }
 
 /// Ids, ascending, of spheres that dwarf the box around the rest; duplicates are neither.
-std::vector<std::uint32_t> find_apart(const kernel::Sphere* spheres, std::size_t count,
-                                      const std::vector<std::uint32_t>& duplicates) {
+std::vector<std::uint32_t> find_outliers(const kernel::Sphere* spheres, std::size_t count,
+                                         const std::vector<std::uint32_t>& duplicates) {
   std::vector<std::uint32_t> largest = all_but(duplicates, count);
   const std::size_t candidates = std::min(largest.size(), kMostApart);
   std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(candidates), largest.end(),
@@ -56,15 +56,15 @@ std::vector<std::uint32_t> find_apart(const kernel::Sphere* spheres, std::size_t
     const BoxFrame frame(spheres, rest);
     if (spheres[largest[n - 1]].radius * frame.scale > kApartRatio * frame.reach) take = n;
   }
-  std::vector<std::uint32_t> apart(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(take));
-  std::sort(apart.begin(), apart.end());
-  return apart;
+  std::vector<std::uint32_t> outliers(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(take));
+  std::sort(outliers.begin(), outliers.end());
+  return outliers;
 }
 
 /// Ids of the spheres that have boxes.
 std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
   std::vector<std::uint32_t> without;
-  std::set_union(scene.apart.begin(), scene.apart.end(), scene.duplicates.begin(), scene.duplicates.end(),
+  std::set_union(scene.outliers.begin(), scene.outliers.end(), scene.duplicates.begin(), scene.duplicates.end(),
                  std::back_inserter(without));
   return all_but(without, count);
 }
@@ -110,7 +110,7 @@ class Embree final : public Accel {
  public:
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor)
       : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view, precision)) {
-    const std::size_t primitives = view.sphere_count - scene_.apart.size();
+    const std::size_t primitives = view.sphere_count - scene_.outliers.size();
     if (primitives > 0) build(primitives, monitor);
   }
 
@@ -126,11 +126,11 @@ class Embree final : public Accel {
     scene.motion = view.motion;
     scene.moving_count = view.moving_count;
     scene.duplicates = duplicates(view, precision);
-    scene.apart = find_apart(view.spheres, view.sphere_count, scene.duplicates);
+    scene.outliers = find_outliers(view.spheres, view.sphere_count, scene.duplicates);
     scene.frame = BoxFrame(view.spheres, boxed(scene, view.sphere_count), view.motion, view.moving_count);
-    const auto moving_apart = std::lower_bound(scene.apart.begin(), scene.apart.end(), view.moving_count);
-    scene.moving_primitives =
-        static_cast<std::uint32_t>(view.moving_count) - static_cast<std::uint32_t>(moving_apart - scene.apart.begin());
+    const auto moving_outliers = std::lower_bound(scene.outliers.begin(), scene.outliers.end(), view.moving_count);
+    scene.moving_primitives = static_cast<std::uint32_t>(view.moving_count) -
+                              static_cast<std::uint32_t>(moving_outliers - scene.outliers.begin());
     return scene;
   }
 
@@ -178,12 +178,12 @@ class SimdList final : public Accel {
     scene_.spheres = view.spheres;
     scene_.motion = view.motion;
     scene_.moving_count = view.moving_count;
-    scene_.apart = all_but(duplicates(view, precision), view.sphere_count);
+    scene_.outliers = all_but(duplicates(view, precision), view.sphere_count);
   }
 
   kernel::Tracer tracer() const noexcept override { return functions_.tracer(scene_); }
   std::string name() const override { return "SIMD list"; }
-  std::size_t bytes() const noexcept override { return scene_.apart.size() * sizeof(scene_.apart[0]); }
+  std::size_t bytes() const noexcept override { return scene_.outliers.size() * sizeof(scene_.outliers[0]); }
 
  private:
   EmbreeFunctions functions_;

@@ -25,14 +25,14 @@ struct EmbreeScene {
   BoxFrame frame;
   /// Spheres so much larger than the rest that a box around them would hold everything (a ground): ascending ids,
   /// tested by every ray before the hierarchy is entered, which they shorten.
-  std::vector<std::uint32_t> apart;
+  std::vector<std::uint32_t> outliers;
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that no ray meets: their boxes are empty
   Traversals traversals;
 
   /// The sphere behind a primitive: ids count all spheres, primitives those that do not stand apart.
   std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
     primitive += geometry * moving_primitives;
-    for (const std::uint32_t id : apart) primitive += primitive >= id ? 1u : 0u;
+    for (const std::uint32_t id : outliers) primitive += primitive >= id ? 1u : 0u;
     return primitive;
   }
 };

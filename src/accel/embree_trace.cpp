@@ -29,13 +29,13 @@ using DistanceOf = std::remove_cvref_t<decltype(Packet::distance[0])>;
 
 /// The nearest hits so far.
 template <class D>
-struct Nearest {
+struct ClosestHit {
   hn::Vec<D> distance;
   hn::Vec<k::IdTag<D>> ids;
   hn::Mask<D> is_new;  ///< lanes that were found since it was loaded
 
   template <class Packet>
-  static HWY_INLINE Nearest load(D d, const Packet& packet, int first) {
+  static HWY_INLINE ClosestHit load(D d, const Packet& packet, int first) {
     return {hn::Load(d, packet.distance + first), hn::Load(k::IdTag<D>(), packet.hit + first), hn::FirstN(d, 0)};
   }
   template <class Packet>
@@ -56,7 +56,7 @@ struct Nearest {
 /// Some rays, one a lane, against one sphere.
 template <class D, kernel::Precision kPrecision>
 HWY_INLINE void meet(D d, const k::Rays<D>& ray, const k::Spheres<D>& sphere, std::uint32_t id, hn::Mask<D> lanes,
-                     Nearest<D>& nearest) {
+                     ClosestHit<D>& nearest) {
   const auto ids = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(id));
   const auto is_self = hn::RebindMask(d, ray.self == ids);
   nearest.take(d, k::nearest<D, kPrecision>(d, ray, sphere, is_self), ids, lanes);
@@ -101,7 +101,7 @@ void intersect_single(const RTCIntersectFunctionNArguments* arguments, const Emb
   const EmbreeScene& scene = *query.scene;
   Packet& packet = *query.packet;
   const std::uint32_t id = scene.sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
-  auto nearest = Nearest<D>::load(d, packet, query.first);
+  auto nearest = ClosestHit<D>::load(d, packet, query.first);
   meet<D, kPrecision>(d, k::load_rays(d, packet, query.first), k::sphere_at<kMoves>(d, scene, id, packet, query.first),
                       id, hn::FirstN(d, 1), nearest);
   if (hn::AllFalse(d, nearest.is_new)) {
@@ -138,7 +138,7 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
     }
     const int first = query.first + v;
     const auto ray = k::load_rays(d, packet, first);
-    auto nearest = Nearest<D>::load(d, packet, first);
+    auto nearest = ClosestHit<D>::load(d, packet, first);
     meet<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first), id, valid, nearest);
     if (hn::AllFalse(d, nearest.is_new)) {
       hn::StoreU(hn::Zero(di), di, arguments->valid + v);
@@ -193,11 +193,11 @@ void trace(const void* self, Packet& packet) {
   const D d;
   const int step = static_cast<int>(hn::Lanes(d));
   const auto& scene = *static_cast<const EmbreeScene*>(self);
-  for (int v = 0; !scene.apart.empty() && v < packet.count; v += step) {
+  for (int v = 0; !scene.outliers.empty() && v < packet.count; v += step) {
     const auto ray = k::load_rays(d, packet, v);
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
-    auto nearest = Nearest<D>::load(d, packet, v);
-    for (const std::uint32_t id : scene.apart)
+    auto nearest = ClosestHit<D>::load(d, packet, v);
+    for (const std::uint32_t id : scene.outliers)
       meet<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v), id, lanes, nearest);
     nearest.store(d, packet, v);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bake_file.h"
 
-#include "app/job_files.h"
+#include "job/job_files.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 
@@ -13,7 +13,7 @@ void bake_file(const display::Settings& display, int cube_size, const std::files
     throw base::Error(base::ErrorKind::kUsage,
                       file.string() + " has no extension of a display transform; known are .cube and .clf");
   base::FileSet files;
-  add_ocio_configs(display.config, files);
+  job::add_ocio_configs(display.config, files);
   files.add_output(file, "-o");
   for (const std::string& table : display::choose(display).files) files.add_input(table, "table of the OCIO config");
   base::check_creatable(file);

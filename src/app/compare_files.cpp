@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/compared_channels.h"
-#include "app/text.h"
-#include "app/threads.h"
-#include "app/version.h"
+#include "job/text.h"
+#include "job/threads.h"
+#include "job/version.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
@@ -103,14 +103,14 @@ film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
 /// Calls work from this many threads of the task scheduler.
 metrics::ForEach on_threads(int threads) {
   return [threads](std::size_t count, const std::function<void(std::size_t)>& work) {
-    render::TilePool(threads > 0 ? threads : default_threads())
+    render::TilePool(threads > 0 ? threads : job::default_threads())
         .run(
             count, [&](std::size_t i, render::TileWorker&) { work(i); }, [] { return false; });
   };
 }
 
 void write_codes(const std::filesystem::path& file, const film::Picture& codes) {
-  image::write_encoded(file, metrics::encoded(codes), program_version());
+  image::write_encoded(file, metrics::encoded(codes), job::program_version());
 }
 
 void write_numbers(const std::filesystem::path& file, const film::Picture& numbers) {
@@ -230,42 +230,42 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
 std::string comparison_text(const Comparison& c) {
   std::string out;
   const metrics::PixelErrors& e = c.errors;
-  append(out, "pictures    %d x %d, channels %s\n", c.width, c.height, base::joined(c.channels).c_str());
+  base::append(out, "pictures    %d x %d, channels %s\n", c.width, c.height, base::joined(c.channels).c_str());
   if (c.is_matte)
-    append(out, "matte       %.6g of the coverage belongs to other things; errors are of that share\n", e.mae);
-  append(out, "rmse        %.6g\n", e.rmse);
-  append(out, "relmse      %.6g\n", e.relative_mse);
-  append(out, "mae         %.6g\n", e.mae);
-  append(out, "max         %.6g", e.max);
+    base::append(out, "matte       %.6g of the coverage belongs to other things; errors are of that share\n", e.mae);
+  base::append(out, "rmse        %.6g\n", e.rmse);
+  base::append(out, "relmse      %.6g\n", e.relative_mse);
+  base::append(out, "mae         %.6g\n", e.mae);
+  base::append(out, "max         %.6g", e.max);
   if (e.max_channel >= 0)
-    append(out, " in %s at %d, %d",
-           c.channels[std::min(static_cast<std::size_t>(e.max_channel), c.channels.size() - 1)].c_str(), e.max_x,
-           e.max_y);
+    base::append(out, " in %s at %d, %d",
+                 c.channels[std::min(static_cast<std::size_t>(e.max_channel), c.channels.size() - 1)].c_str(), e.max_x,
+                 e.max_y);
   if (std::isfinite(e.psnr_db())) {
-    append(out, "\npsnr        %.2f dB\n", e.psnr_db());
+    base::append(out, "\npsnr        %.2f dB\n", e.psnr_db());
   } else {
     out += "\npsnr        infinite\n";
   }
-  append(out, "display     %.6g relative, as --noise means it\n", e.display);
-  append(out, "bias        %+.3g of the mean\n", e.bias);
-  if (c.ssim) append(out, "ssim        %.6g\n", *c.ssim);
-  if (c.flip) append(out, "flip        %.6g\n", *c.flip);
+  base::append(out, "display     %.6g relative, as --noise means it\n", e.display);
+  base::append(out, "bias        %+.3g of the mean\n", e.bias);
+  if (c.ssim) base::append(out, "ssim        %.6g\n", *c.ssim);
+  if (c.flip) base::append(out, "flip        %.6g\n", *c.flip);
   if (c.z_test) {
     const metrics::ZTest& z = *c.z_test;
-    append(out, "noise       rmse %.6g explained by the variances; %.6g beyond it\n", z.noise, z.bias);
-    append(out, "mean        %+.3g of it, standard error %.2g\n", z.mean_bias, z.mean_bias_error);
-    append(out, "z-test      %s: %d of %d squares of %d px beyond |z| = %.2f; largest %+.2f in %s at %d, %d\n",
-           z.differ() ? "the pictures differ by more than noise" : "no difference but noise", z.rejected, z.tests,
-           metrics::kTestedSide, z.critical_z, z.largest_z, c.channels[static_cast<std::size_t>(z.channel)].c_str(),
-           z.x, z.y);
+    base::append(out, "noise       rmse %.6g explained by the variances; %.6g beyond it\n", z.noise, z.bias);
+    base::append(out, "mean        %+.3g of it, standard error %.2g\n", z.mean_bias, z.mean_bias_error);
+    base::append(out, "z-test      %s: %d of %d squares of %d px beyond |z| = %.2f; largest %+.2f in %s at %d, %d\n",
+                 z.differ() ? "the pictures differ by more than noise" : "no difference but noise", z.rejected, z.tests,
+                 metrics::kTestedSide, z.critical_z, z.largest_z,
+                 c.channels[static_cast<std::size_t>(z.channel)].c_str(), z.x, z.y);
   }
-  append(out, "differing   %llu of %llu values\n", static_cast<unsigned long long>(c.differing),
-         static_cast<unsigned long long>(c.values));
+  base::append(out, "differing   %llu of %llu values\n", static_cast<unsigned long long>(c.differing),
+               static_cast<unsigned long long>(c.values));
   if (c.no_hit > 0)
-    append(out, "left out    %llu pixels without a hit, %llu of them in one of the pictures only\n",
-           static_cast<unsigned long long>(c.no_hit), static_cast<unsigned long long>(c.no_hit_in_one));
+    base::append(out, "left out    %llu pixels without a hit, %llu of them in one of the pictures only\n",
+                 static_cast<unsigned long long>(c.no_hit), static_cast<unsigned long long>(c.no_hit_in_one));
   if (e.not_finite > 0)
-    append(out, "left out    %llu values that are not finite\n", static_cast<unsigned long long>(e.not_finite));
+    base::append(out, "left out    %llu values that are not finite\n", static_cast<unsigned long long>(e.not_finite));
   return out;
 }
 
@@ -314,7 +314,7 @@ std::string comparison_json(const Comparison& c) {
                      {"mean_bias", z.mean_bias},
                      {"mean_bias_error", z.mean_bias_error}};
   }
-  return json_text(out);
+  return job::json_text(out);
 }
 
 }  // namespace orrery::app

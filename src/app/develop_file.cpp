@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/develop_file.h"
 
-#include "app/display_writer.h"
-#include "app/job_files.h"
-#include "app/output_files.h"
-#include "app/version.h"
+#include "job/display_writer.h"
+#include "job/job_files.h"
+#include "job/output_files.h"
+#include "job/version.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/format.h"
@@ -28,10 +28,10 @@ void check_kinds(const Development& development) {
 
 DevelopReport develop_file(const Development& development) {
   check_kinds(development);
-  check_formats(development.outputs, development.bits);
+  job::check_formats(development.outputs, development.bits);
   base::FileSet files;
   files.add_input(development.input, "picture");
-  add_ocio_configs(development.display.config, files);
+  job::add_ocio_configs(development.display.config, files);
   for (const auto& output : development.outputs) {
     files.add_output(output, "-o");
     base::check_creatable(output);
@@ -46,8 +46,9 @@ DevelopReport develop_file(const Development& development) {
   for (const std::string& table : report.display.files) files.add_input(table, "table of the OCIO config");
   for (const char* name : {"R", "G", "B"})  // no other plane is developed
     if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
-  DisplayWriter developed(picture, display, development.bits != 0 ? development.bits : report.display.default_bits());
-  for (const auto& output : development.outputs) developed.write(output, "orrery " + program_version());
+  job::DisplayWriter developed(picture, display,
+                               development.bits != 0 ? development.bits : report.display.default_bits());
+  for (const auto& output : development.outputs) developed.write(output, "orrery " + job::program_version());
   return report;
 }
 

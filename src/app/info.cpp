@@ -6,11 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/bench_scene.h"
+#include "measure/bench_scene.h"
 #include "app/precision_advice.h"
-#include "app/layers.h"
-#include "app/scene_hash.h"
-#include "app/text.h"
+#include "job/layers.h"
+#include "job/scene_hash.h"
+#include "job/text.h"
 #include "base/suggestion.h"
 #include "compile/compile.h"
 #include "film/layer_film.h"
@@ -22,8 +22,10 @@
 namespace orrery::app {
 namespace {
 
-std::vector<Feature> features_of(const compile::World& world, bool has_layers) {
-  const auto some = [&](auto holds) { return std::any_of(world.materials.begin(), world.materials.end(), holds); };
+std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool has_layers) {
+  const auto some = [&](auto holds) {
+    return std::any_of(compiled.materials.begin(), compiled.materials.end(), holds);
+  };
   const auto of = [&](kernel::MaterialKind kind) {
     return some([kind](const kernel::Material& m) { return m.kind == kind; });
   };
@@ -31,17 +33,17 @@ std::vector<Feature> features_of(const compile::World& world, bool has_layers) {
     return Feature{name, required, required ? why : why_not};
   };
   return {
-      feature("thin lens", world.features.lens, "pinhole: no lens is sampled", "camera.defocus_angle is above 0"),
+      feature("thin lens", compiled.features.lens, "pinhole: no lens is sampled", "camera.defocus_angle is above 0"),
       feature("lambertian", of(kernel::MaterialKind::kLambertian), "no such sphere"),
       feature("hemisphere", of(kernel::MaterialKind::kHemisphere), "no such sphere"),
       feature("metal", of(kernel::MaterialKind::kMetal), "no such sphere"),
       feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "mirrors are sharp"),
       feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
-      feature("gradient sky", world.features.sky, "one colour: no direction is looked at"),
-      feature("motion blur", world.features.motion, "nothing moves while the shutter is open",
+      feature("gradient sky", compiled.features.sky, "one colour: no direction is looked at"),
+      feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
               "camera or spheres move while the shutter is open"),
       feature("layers", has_layers, "[output] asks for none: no path is written down"),
-      feature("light paths", world.shading == kernel::Shading::kPath, "render.shading asks for the first hit only")};
+      feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading asks for the first hit only")};
 }
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
@@ -60,19 +62,19 @@ bool has_colors(const std::vector<std::string>& properties) {
 std::string points_text(const std::vector<PointsInfo>& points) {
   std::string out;
   for (const PointsInfo& p : points) {
-    append(out, "%s %s: %llu %s", out.empty() ? "points     " : "           ", p.file.c_str(),
-           static_cast<unsigned long long>(p.spheres), p.spheres == 1 ? "sphere" : "spheres");
-    if (!p.unused.empty()) append(out, "; unused: %s", base::joined(p.unused).c_str());
+    base::append(out, "%s %s: %llu %s", out.empty() ? "points     " : "           ", p.file.c_str(),
+                 static_cast<unsigned long long>(p.spheres), p.spheres == 1 ? "sphere" : "spheres");
+    if (!p.unused.empty()) base::append(out, "; unused: %s", base::joined(p.unused).c_str());
     if (has_colors(p.unused)) out += "; colours of points are not used, those of materials are";
     out += '\n';
   }
   return out;
 }
 
-std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::World& world) {
+std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::CompiledScene& compiled) {
   static constexpr const char* kNames[] = {"lambertian", "hemisphere", "metal", "dielectric"};
   std::array<std::uint64_t, 4> counts{};
-  for (const kernel::Material& m : world.materials) ++counts[static_cast<std::size_t>(m.kind)];
+  for (const kernel::Material& m : compiled.materials) ++counts[static_cast<std::size_t>(m.kind)];
   std::vector<std::pair<std::string, std::uint64_t>> out;
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] > 0) out.emplace_back(kNames[i], counts[i]);
@@ -81,45 +83,45 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 
 }  // namespace
 
-SceneInfo scene_info(const SceneRequest& request) {
-  LoadedScene loaded = load_scene(request);
+SceneInfo scene_info(const job::SceneRequest& request) {
+  job::LoadedScene loaded = job::load_scene(request);
   const format::ReadResult& read = loaded.read;
-  const compile::World world = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
-  const film::LayerRequest layers = choose_layers(read.scene, world).request;
+  const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
+  const film::LayerRequest layers = job::choose_layers(read.scene, compiled).request;
   SceneInfo info;
-  info.scene_hash = scene_hash(world);
+  info.scene_hash = job::scene_hash(compiled);
   info.frame = request.frame;
-  info.width = world.width;
-  info.height = world.height;
-  info.samples = world.samples;
-  info.max_depth = static_cast<int>(world.max_depth);
-  info.spheres = world.spheres.size();
-  const math::Vec3d low = world.bounds.lower, high = world.bounds.upper;
+  info.width = compiled.width;
+  info.height = compiled.height;
+  info.samples = compiled.samples;
+  info.max_depth = static_cast<int>(compiled.max_depth);
+  info.spheres = compiled.spheres.size();
+  const math::Vec3d low = compiled.bounds.lower, high = compiled.bounds.upper;
   std::copy_n(std::array{low.x, low.y, low.z}.begin(), 3, info.lower);
   std::copy_n(std::array{high.x, high.y, high.z}.begin(), 3, info.upper);
-  if (!world.spheres.empty()) {
+  if (!compiled.spheres.empty()) {
     const auto [smallest, largest] =
-        std::minmax_element(world.spheres.begin(), world.spheres.end(),
+        std::minmax_element(compiled.spheres.begin(), compiled.spheres.end(),
                             [](const kernel::Sphere& a, const kernel::Sphere& b) { return a.radius < b.radius; });
     info.smallest_radius = smallest->radius;
     info.largest_radius = largest->radius;
   }
-  info.materials = count_materials(world);
+  info.materials = count_materials(compiled);
   for (const scene::Points& p : read.scene.points) info.points.push_back({p.file.string(), p.centers.size(), p.unused});
   info.layers = scene::requested_layers(read.scene);
   info.available_layers = scene::available_layers(read.scene);
-  info.features = features_of(world, layers.any());
+  info.features = features_of(compiled, layers.any());
   for (const format::Setting& s : read.settings) {
     info.settings.push_back({s.key, s.value, s.origin});
     if (s.key == "render.precision") info.precision = scene::unquoted(s.value);
     if (s.key == "render.accelerator") info.accelerator = scene::unquoted(s.value);
   }
   info.isa = kernel::isa_name();
-  info.traversal = render::planned_traversal(world);
-  info.memory = estimate_memory(memory_needs(world, layers));
+  info.traversal = render::planned_traversal(compiled);
+  info.memory = job::estimate_memory(job::memory_needs(compiled, layers));
   info.warnings = std::move(loaded.warnings);
-  for (const std::string& advice : precision_advice(world)) {
-    base::Finding warning;
+  for (const std::string& advice : precision_advice(compiled)) {
+    base::Diagnostic warning;
     warning.severity = base::Severity::kWarning;
     warning.file = request.file.string();
     warning.text = advice;
@@ -128,47 +130,47 @@ SceneInfo scene_info(const SceneRequest& request) {
   return info;
 }
 
-void measure_savings(const SceneRequest& request, SceneInfo& info) {
-  BenchRequest bench;
+void measure_savings(const job::SceneRequest& request, SceneInfo& info) {
+  measure::BenchRequest bench;
   bench.scene = request.file;
   bench.overrides = request.overrides;
   bench.frame = request.frame;
-  for (const FeatureCost& cost : bench_features(bench))
+  for (const measure::FeatureCost& cost : measure::bench_features(bench))
     for (Feature& feature : info.features)
       if (feature.name == cost.name && !cost.required) feature.saves = cost.saves;
 }
 
 std::string info_text(const SceneInfo& info) {
   std::string out;
-  append(out, "scene       %s\n", info.scene_hash.c_str());
-  append(out, "frame       %d\n", info.frame);
-  append(out, "picture     %d x %d, %d samples per pixel, max depth %d\n", info.width, info.height, info.samples,
-         info.max_depth);
-  append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
+  base::append(out, "scene       %s\n", info.scene_hash.c_str());
+  base::append(out, "frame       %d\n", info.frame);
+  base::append(out, "picture     %d x %d, %d samples per pixel, max depth %d\n", info.width, info.height, info.samples,
+               info.max_depth);
+  base::append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
   if (info.spheres > 0)
-    append(out, ", radius %g .. %g, from (%g, %g, %g) to (%g, %g, %g)", info.smallest_radius, info.largest_radius,
-           info.lower[0], info.lower[1], info.lower[2], info.upper[0], info.upper[1], info.upper[2]);
+    base::append(out, ", radius %g .. %g, from (%g, %g, %g) to (%g, %g, %g)", info.smallest_radius, info.largest_radius,
+                 info.lower[0], info.lower[1], info.lower[2], info.upper[0], info.upper[1], info.upper[2]);
   out += info.materials.empty() ? "\nmaterials   none" : "\nmaterials  ";
   for (std::size_t i = 0; i < info.materials.size(); ++i)
-    append(out, "%s %llu %s", i == 0 ? "" : ",", static_cast<unsigned long long>(info.materials[i].second),
-           info.materials[i].first.c_str());
+    base::append(out, "%s %llu %s", i == 0 ? "" : ",", static_cast<unsigned long long>(info.materials[i].second),
+                 info.materials[i].first.c_str());
   out += '\n' + points_text(info.points);
-  append(out, "layers      %s; available: %s\n", info.layers.empty() ? "none" : base::joined(info.layers).c_str(),
-         base::joined(info.available_layers).c_str());
-  append(out, "kernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
-         info.accelerator.c_str());
-  append(out, "traversal   %s\n", info.traversal.c_str());
-  append(out, "memory      about %s: film %s, spheres %s, accelerator %s\n", bytes_text(info.memory.total()).c_str(),
-         bytes_text(info.memory.film).c_str(), bytes_text(info.memory.spheres).c_str(),
-         bytes_text(info.memory.accelerator).c_str());
+  base::append(out, "layers      %s; available: %s\n", info.layers.empty() ? "none" : base::joined(info.layers).c_str(),
+               base::joined(info.available_layers).c_str());
+  base::append(out, "kernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
+               info.accelerator.c_str());
+  base::append(out, "traversal   %s\n", info.traversal.c_str());
+  base::append(out, "memory      about %s: film %s, spheres %s, accelerator %s\n",
+               base::bytes_text(info.memory.total()).c_str(), base::bytes_text(info.memory.film).c_str(),
+               base::bytes_text(info.memory.spheres).c_str(), base::bytes_text(info.memory.accelerator).c_str());
   for (const bool required : {true, false}) {
     out += required ? "requires   " : "left out   ";
     bool first = true;
     for (const Feature& f : info.features) {
       if (f.required != required) continue;
-      append(out, "%s %s", first ? "" : (required ? "," : ";"), f.name.c_str());
-      if (!required && !f.note.empty()) append(out, " (%s", f.note.c_str());
-      if (f.saves) append(out, "; saves %.1f %% of the time", *f.saves * 100);
+      base::append(out, "%s %s", first ? "" : (required ? "," : ";"), f.name.c_str());
+      if (!required && !f.note.empty()) base::append(out, " (%s", f.note.c_str());
+      if (f.saves) base::append(out, "; saves %.1f %% of the time", *f.saves * 100);
       if (!required && !f.note.empty()) out += ')';
       first = false;
     }
@@ -179,7 +181,8 @@ std::string info_text(const SceneInfo& info) {
 
 std::string settings_text(const SceneInfo& info) {
   std::string out;
-  for (const auto& s : info.settings) append(out, "%-26s %-24s %s\n", s.key.c_str(), s.value.c_str(), s.origin.c_str());
+  for (const auto& s : info.settings)
+    base::append(out, "%-26s %-24s %s\n", s.key.c_str(), s.value.c_str(), s.origin.c_str());
   return out;
 }
 
@@ -197,7 +200,7 @@ std::string info_json(const SceneInfo& info) {
                         {"saves", f.saves ? json(*f.saves) : json(nullptr)}});
   for (const auto& s : info.settings) settings.push_back({{"key", s.key}, {"value", s.value}, {"origin", s.origin}});
   for (const auto& [name, count] : info.materials) materials[name] = count;
-  for (const base::Finding& w : info.warnings)
+  for (const base::Diagnostic& w : info.warnings)
     warnings.push_back({{"file", w.file}, {"line", w.line}, {"column", w.column}, {"text", w.text}});
   json out = {
       {"schema", "orrery.info/1"},
@@ -226,7 +229,7 @@ std::string info_json(const SceneInfo& info) {
     out["bounds"] = {{"lower", info.lower}, {"upper", info.upper}};
     out["radius"] = {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}};
   }
-  return json_text(out);
+  return job::json_text(out);
 }
 
 }  // namespace orrery::app

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/load_scene.h"
-#include "app/memory.h"
-#include "base/finding.h"
+#include "job/load_scene.h"
+#include "job/memory.h"
+#include "base/diagnostic.h"
 
 namespace orrery::app {
 
@@ -42,23 +42,23 @@ struct SceneInfo {
   std::vector<Feature> features;
   std::string precision, accelerator, isa;
   std::string traversal;  ///< how rays will go through the hierarchy, as far as that is known before a render
-  MemoryEstimate memory;
+  job::MemoryEstimate memory;
   struct Setting {
     std::string key, value, origin;
   };
   std::vector<Setting> settings;
-  std::vector<base::Finding> warnings;
+  std::vector<base::Diagnostic> warnings;
 };
 
 /// Loads a scene and finds out what it requires; renders nothing.
 ///
 /// Errors     as load_scene
-SceneInfo scene_info(const SceneRequest& request);
+SceneInfo scene_info(const job::SceneRequest& request);
 
 /// Measures what is saved by leaving out what this scene does not ask for, as far as the kernel has it as a feature.
 ///
 /// Errors     as bench_features
-void measure_savings(const SceneRequest& request, SceneInfo& info);
+void measure_savings(const job::SceneRequest& request, SceneInfo& info);
 
 /// The same as text for people.
 std::string info_text(const SceneInfo& info);

@@ -20,12 +20,12 @@ struct Proportions {
   double coordinate = 0;  ///< largest absolute coordinate of a centre or the camera, in radii of the smallest sphere
 };
 
-Proportions proportions_of(const compile::World& world) {
+Proportions proportions_of(const compile::CompiledScene& compiled) {
   Proportions p;
   double largest = 0;
-  const double* o = world.camera.origin;
+  const double* o = compiled.camera.origin;
   for (const double x : {o[0], o[1], o[2]}) largest = std::max(largest, std::abs(x));
-  for (const kernel::Sphere& s : world.spheres) {
+  for (const kernel::Sphere& s : compiled.spheres) {
     p.smallest = std::min(p.smallest, s.radius);
     for (const double x : {s.x, s.y, s.z}) largest = std::max(largest, std::abs(x));
     const double dx = s.x - o[0], dy = s.y - o[1], dz = s.z - o[2];
@@ -44,11 +44,11 @@ std::string text(const char* format, Arguments... arguments) {
 
 }  // namespace
 
-std::vector<std::string> precision_advice(const compile::World& world) {
-  if (world.precision == compile::Precision::kExact || world.spheres.empty()) return {};
-  const Proportions p = proportions_of(world);
+std::vector<std::string> precision_advice(const compile::CompiledScene& compiled) {
+  if (compiled.precision == compile::Precision::kExact || compiled.spheres.empty()) return {};
+  const Proportions p = proportions_of(compiled);
   std::vector<std::string> advice;
-  if (world.precision == compile::Precision::kFast) {
+  if (compiled.precision == compile::Precision::kFast) {
     // Origins and centres are rounded to floats before they are subtracted.
     const double error = 0x1p-23 * p.coordinate;
     if (error > kVisible)

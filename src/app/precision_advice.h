@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compile/world.h"
+#include "compile/compiled_scene.h"
 
 namespace orrery::app {
 
@@ -12,6 +12,6 @@ namespace orrery::app {
 ///
 /// Result     a sentence each; empty for precision exact
 /// Precision  orders of magnitude, from the error terms of docs/numerics.md
-std::vector<std::string> precision_advice(const compile::World& world);
+std::vector<std::string> precision_advice(const compile::CompiledScene& compiled);
 
 }  // namespace orrery::app

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/finding.h"
+#include "base/diagnostic.h"
 
 namespace orrery::base {
 
@@ -28,15 +28,15 @@ enum class ErrorKind {
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
-  Error(ErrorKind kind, const std::string& message, std::vector<Finding> findings)
-      : std::runtime_error(message), kind_(kind), findings_(std::move(findings)) {}
+  Error(ErrorKind kind, const std::string& message, std::vector<Diagnostic> diagnostics)
+      : std::runtime_error(message), kind_(kind), diagnostics_(std::move(diagnostics)) {}
 
   ErrorKind kind() const noexcept { return kind_; }
-  const std::vector<Finding>& findings() const noexcept { return findings_; }
+  const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
 
  private:
   ErrorKind kind_;
-  std::vector<Finding> findings_;
+  std::vector<Diagnostic> diagnostics_;
 };
 
 }  // namespace orrery::base

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/bench_scene.h"
+#include "measure/bench_scene.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
@@ -19,13 +19,13 @@ constexpr std::uint64_t kMostRounds = 1000;
 constexpr double kLongest = 3600;  // seconds of one measurement
 
 struct BenchOptions {
-  app::BenchRequest request;
+  measure::BenchRequest request;
   SceneOptions scene;
   bool json = false, quiet = false;
 };
 
 int bench(BenchOptions& options) {
-  app::BenchRequest& request = options.request;
+  measure::BenchRequest& request = options.request;
   request.overrides = options.scene.overrides();
   request.frame = options.scene.frame();
   request.cancel = &stop_on_signals();
@@ -34,8 +34,8 @@ int bench(BenchOptions& options) {
     request.on_progress = [](int done, int total) {
       std::fprintf(stderr, done < total ? "\rmeasurement %d of %d" : "\r\x1b[K", done, total);
     };
-  const app::Benchmark found = app::bench_scene(request);
-  print_result(options.json ? app::benchmark_json(found) : app::benchmark_text(found));
+  const measure::Benchmark found = measure::bench_scene(request);
+  print_result(options.json ? measure::benchmark_json(found) : measure::benchmark_text(found));
   return 0;
 }
 
@@ -48,7 +48,7 @@ void add_bench(Command& program, Action& action) {
   options->scene.add_to(command);
   options->scene.add_frame_to(command);
   command.add_option("-t,--threads", options->request.threads, "Threads; default 1")
-      ->transform(whole_number(1, kMostThreads))
+      ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command
       .add_option("--isa", options->request.isa,

@@ -109,7 +109,7 @@ void add_compare(Command& program, Action& action) {
   command.add_option("--heat", options->pictures.heat, "Write the display error as a heat map")->type_name("FILE");
   command.add_option("--flip", options->pictures.flip, "Write where eyes notice a difference")->type_name("FILE");
   command.add_option("-t,--threads", options->threads, "Threads; default: as many as this process may use")
-      ->transform(whole_number(1, kMostThreads))
+      ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command.add_flag("--json", options->json, "As JSON");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing but errors and what is above its limit");

@@ -6,7 +6,7 @@
 namespace orrery::cli {
 
 /// More stops than any scene has: 2^100 would only be infinity by another name.
-inline constexpr double kMostStops = 100;
+inline constexpr double kMaxStops = 100;
 
 /// Flags that choose how light is shown. Settings is display::Settings, which this room gets through app.
 template <class Settings>
@@ -17,7 +17,7 @@ void add_view_options(Command& command, Settings& settings) {
   command.add_option("--view", settings.view, "View of that display, such as \"Un-tone-mapped\"")->type_name("NAME");
   command.add_option("--look", settings.look, "Look of the OCIO config to apply before the view")->type_name("NAME");
   command.add_option("--exposure", settings.exposure, "Stops to brighten by")
-      ->check(real_number(-kMostStops, kMostStops))
+      ->check(real_number(-kMaxStops, kMaxStops))
       ->type_name("STOPS");
 }
 

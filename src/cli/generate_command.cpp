@@ -2,7 +2,7 @@
 #include <limits>
 #include <memory>
 
-#include "app/generate_files.h"
+#include "generate/generate_files.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/signals.h"
@@ -11,8 +11,8 @@ namespace orrery::cli {
 namespace {
 
 struct GenerateOptions {
-  app::FinalScene final_scene;
-  app::Cloud cloud;
+  generate::FinalScene final_scene;
+  generate::Cloud cloud;
   std::filesystem::path output;
 };
 
@@ -30,13 +30,13 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
   Command& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
   add_common(command, options->output, options->final_scene.seed);
   command.add_option("--grid", options->final_scene.grid, "Cells from the middle to the edge; default 11, the book's")
-      ->transform(whole_number(0, app::kLargestFinalGrid))
+      ->transform(whole_number(0, generate::kLargestFinalGrid))
       ->type_name("N");
   command.footer("Example:\n  orrery generate final -o final.toml --seed 7");
   command.callback([options, &action] {
     action = [options] {
       end_on_signals();
-      app::generate_final(options->final_scene, options->output);
+      generate::generate_final(options->final_scene, options->output);
       return 0;
     };
   });
@@ -46,16 +46,16 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
   Command& command = *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY beside it");
   add_common(command, options->output, options->cloud.seed);
   command.add_option("--count", options->cloud.count, "Spheres; default 1000")
-      ->transform(whole_number(1, app::kLargestCloud))
+      ->transform(whole_number(1, generate::kLargestCloud))
       ->type_name("N");
   command.add_option("--radius", options->cloud.radius, "Of every sphere; default: by the count, and varied")
-      ->check(real_number(0, app::kLargestCloudRadius))
+      ->check(real_number(0, generate::kLargestCloudRadius))
       ->type_name("R");
   command.footer("Example:\n  orrery generate cloud -o cloud.toml --count 1000000");
   command.callback([options, &action] {
     action = [options] {
       end_on_signals();
-      app::generate_cloud(options->cloud, options->output);
+      generate::generate_cloud(options->cloud, options->output);
       return 0;
     };
   });

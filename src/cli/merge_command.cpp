@@ -3,8 +3,8 @@
 #include <sstream>
 #include <vector>
 
-#include "app/join_parts.h"
-#include "app/job.h"
+#include "job/merge_shards.h"
+#include "job/job.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/option_checks.h"
@@ -16,22 +16,22 @@ namespace orrery::cli {
 namespace {
 
 struct MergeOptions {
-  app::Job job;
+  job::Job job;
   PictureOptions picture;
   std::vector<std::filesystem::path> parts;
   bool quiet = false, verbose = false;
 };
 
 int merge(MergeOptions& options) {
-  app::Job& job = options.job;
+  job::Job& job = options.job;
   options.picture.finish(job);
-  job.on_warning = [&](const base::Finding& warning) {
+  job.on_warning = [&](const base::Diagnostic& warning) {
     if (!options.quiet) tell(base::formatted(warning));
   };
-  job.parts = app::read_parts(options.parts, job.allow_missing ? job.on_warning : nullptr);
-  app::take_scene(job.parts.front(), job);
+  job.parts = job::read_shards(options.parts, job.allow_missing ? job.on_warning : nullptr);
+  job::take_scene(job.parts.front(), job);
   job.cancel = &stop_on_signals();
-  const app::JobReport report = app::run_job(job);
+  const job::JobReport report = job::run_job(job);
   if (!options.quiet) tell(report_text(job, report, options.verbose));
   return 0;
 }

@@ -10,7 +10,7 @@
 namespace orrery::cli {
 
 /// More threads than any machine has; a number of another kind was meant.
-inline constexpr std::uint64_t kMostThreads = 4096;
+inline constexpr std::uint64_t kMaxThreads = 4096;
 
 // Checks of what is given to an option, in our own words: those of the library differ between its versions.
 

@@ -19,7 +19,7 @@ void print_result(const std::string& text) {
 
 std::string error_text(const base::Error& error) {
   std::string out;
-  for (const base::Finding& finding : error.findings()) out += base::formatted(finding);
+  for (const base::Diagnostic& diagnostic : error.diagnostics()) out += base::formatted(diagnostic);
   return out + "orrery: " + error.what() + "\n";
 }
 

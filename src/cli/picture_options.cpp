@@ -6,7 +6,7 @@
 
 namespace orrery::cli {
 
-void PictureOptions::add_to(Command& command, app::Job& job) {
+void PictureOptions::add_to(Command& command, job::Job& job) {
   command
       .add_option("-o,--output", job.outputs,
                   "File to write; its extension chooses EXR, HDR, PNG, TIFF, JPEG or PPM; can be repeated")

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/job.h"
+#include "job/job.h"
 #include "cli/arguments.h"
 
 namespace orrery::cli {
@@ -12,10 +12,10 @@ namespace orrery::cli {
 class PictureOptions {
  public:
   /// Domain     called once; neither this nor `job` moves until the command line is read
-  void add_to(Command& command, app::Job& job);
+  void add_to(Command& command, job::Job& job);
 
   /// What flags say that are no members of a job as they are.
-  void finish(app::Job& job) const { job.exr.as_float = type_ == "float"; }
+  void finish(job::Job& job) const { job.exr.as_float = type_ == "float"; }
 
  private:
   std::string type_ = "half";

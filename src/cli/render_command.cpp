@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "app/batch.h"
+#include "farm/batch.h"
 #include "base/error.h"
 #include "base/exit_status.h"
 #include "base/frames.h"
@@ -26,10 +26,10 @@ namespace orrery::cli {
 namespace {
 
 /// A part of fewer pixels than this many parts leave is not worth a process.
-constexpr int kMostParts = 65536;
+constexpr int kMaxShards = 65536;
 
 struct RenderOptions {
-  app::Batch batch;
+  farm::Batch batch;
   SceneOptions scene;
   PictureOptions picture;
   std::string progress = "auto", tiles, frames;
@@ -59,7 +59,7 @@ std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char b
   return out;
 }
 
-void read_part(const RenderOptions& options, app::Job& job) {
+void read_shard(const RenderOptions& options, job::Job& job) {
   if (const auto text = options.scene.sample_range()) {
     const auto range = pair_of<std::uint32_t>(*text, ':');
     if (!range || range->first >= range->second || range->second > std::numeric_limits<std::int32_t>::max())
@@ -70,10 +70,10 @@ void read_part(const RenderOptions& options, app::Job& job) {
   }
   if (options.tiles.empty()) return;
   const auto tiles = pair_of<int>(options.tiles, '/');
-  if (!tiles || tiles->first < 1 || tiles->first > tiles->second || tiles->second > kMostParts)
+  if (!tiles || tiles->first < 1 || tiles->first > tiles->second || tiles->second > kMaxShards)
     refuse("--tiles: `" + options.tiles + "` is no part; 1/4, 2/4, 3/4 and 4/4 are the four quarters of a picture");
-  job.share = {tiles->first - 1, tiles->second};
-  job.as_part = true;
+  job.shard = {tiles->first - 1, tiles->second};
+  job.as_shard = true;
 }
 
 /// A batch is one render to whoever watches it: all jobs' samples in a row, as many each.
@@ -100,25 +100,25 @@ class BatchProgress {
 };
 
 /// What came of many jobs, and the exit status that stands for it: that of the first failure.
-int print_summary(const app::BatchReport& report, bool quiet) {
+int print_summary(const farm::BatchReport& report, bool quiet) {
   std::string text = std::to_string(report.rendered) + " of " + std::to_string(report.jobs) + " rendered, " +
                      std::to_string(report.skipped) + " were there, " + std::to_string(report.failures.size()) +
                      " failed\n";
-  for (const app::BatchReport::Failure& failure : report.failures)
+  for (const farm::BatchReport::Failure& failure : report.failures)
     text += "failed: " + failure.name + ": " + failure.error.what() + "\n";
   if (!quiet || !report.failures.empty()) tell(text);
   return report.failures.empty() ? 0 : base::exit_status(report.failures.front().error.kind());
 }
 
 int render(RenderOptions& options) {
-  app::Batch& batch = options.batch;
-  app::Job& job = batch.job;
+  farm::Batch& batch = options.batch;
+  job::Job& job = batch.job;
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
     if (batch.scenes[i].extension() != ".toml")
       refuse("`" + batch.scenes[i].string() + "` is one argument too many; files to write are named by -o");
   job.overrides = options.scene.overrides();
   options.picture.finish(job);
-  read_part(options, job);
+  read_shard(options, job);
   if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
   const bool is_many = batch.scenes.size() * std::max<std::size_t>(batch.frames.size(), 1) > 1;
   batch.keep_going = is_many && !options.fail_fast;
@@ -132,15 +132,15 @@ int render(RenderOptions& options) {
   const auto note = [&](const std::string& text) {  // the log has what nobody wants to see
     options.quiet ? tell_log(text) : printer.note(text);
   };
-  job.on_warning = [&](const base::Finding& warning) { note(base::formatted(warning)); };
+  job.on_warning = [&](const base::Diagnostic& warning) { note(base::formatted(warning)); };
   job.on_note = [&](const std::string& text) { printer.note(text + "\n"); };
-  batch.on_begin = [&](const app::Job& one, std::size_t index, std::size_t count) {
+  batch.on_begin = [&](const job::Job& one, std::size_t index, std::size_t count) {
     progress.begin(index, count);
-    tell_log("begins: " + app::job_name(batch, one) + "\n");
+    tell_log("begins: " + farm::job_name(batch, one) + "\n");
   };
-  batch.on_end = [&](const app::Job& one, const app::JobReport& report) {
+  batch.on_end = [&](const job::Job& one, const job::JobReport& report) {
     if (!is_many) printer.finish();
-    const std::string text = report.was_skipped ? "skipped " + app::job_name(batch, one) + ": its files are there\n"
+    const std::string text = report.was_skipped ? "skipped " + farm::job_name(batch, one) + ": its files are there\n"
                                                 : report_text(one, report, options.verbose);
     note(text);
     if (report.target_missed.empty()) return;
@@ -148,10 +148,10 @@ int render(RenderOptions& options) {
       printer.note((options.strict ? "orrery: " : "warning: ") + report.target_missed + "\n");
     if (options.strict) status = base::exit_status(base::ErrorKind::kStopped);
   };
-  batch.on_failure = [&](const app::Job&, const base::Error& error) { printer.note(error_text(error)); };
-  const std::vector<app::Job> jobs = app::jobs_of(batch);
+  batch.on_failure = [&](const job::Job&, const base::Error& error) { printer.note(error_text(error)); };
+  const std::vector<job::Job> jobs = farm::jobs_of(batch);
   if (!batch.log.empty()) open_log(batch.log);  // not before it is known to be no input
-  const app::BatchReport report = app::run_batch(batch, jobs);
+  const farm::BatchReport report = farm::run_batch(batch, jobs);
   printer.finish();
   if (!is_many) return status;
   const int failed = print_summary(report, options.quiet);
@@ -193,7 +193,7 @@ void add_render(Command& program, Action& action) {
       ->type_name("TIME");
   command.add_flag("--strict", options->strict, "Exit with 75 if --noise was not reached or could not be judged");
   command.add_option("-t,--threads", options->batch.job.threads, "Threads; default: as many as this process may use")
-      ->transform(whole_number(1, kMostThreads))
+      ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command
       .add_option("--traversal", options->batch.job.traversal,

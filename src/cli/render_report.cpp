@@ -8,7 +8,7 @@ namespace {
 
 using base::append;
 
-void add_bad_values(std::string& out, const app::JobReport& report) {
+void add_bad_values(std::string& out, const job::JobReport& report) {
   const auto tell = [&out](std::uint64_t count, const char* what) {
     if (count > 0) append(out, "warning: %llu %s\n", static_cast<unsigned long long>(count), what);
   };
@@ -27,7 +27,7 @@ void add_bad_values(std::string& out, const app::JobReport& report) {
   tell(report.written.clamped, "values do not fit into their file and were clamped; EXR with --type float keeps them");
 }
 
-void add_summary(std::string& out, const app::Job& job, const app::JobReport& report, bool verbose) {
+void add_summary(std::string& out, const job::Job& job, const job::JobReport& report, bool verbose) {
   std::string files;
   for (const auto& output : job.outputs) files += (files.empty() ? "" : ", ") + output.string();
   const double seconds = report.render.render_s;
@@ -45,7 +45,7 @@ void add_summary(std::string& out, const app::Job& job, const app::JobReport& re
   append(out, "%zu spheres, %s, %s, traversal %s, %d threads, %llu rays; scene %s\n", report.spheres,
          report.render.accelerator.c_str(), report.render.isa.c_str(), report.render.traversal.c_str(),
          report.render.threads, static_cast<unsigned long long>(report.render.rays), report.scene_hash.c_str());
-  const app::Phases& phases = report.phases;
+  const job::Phases& phases = report.phases;
   append(out, "read %.3f s, compile %.3f s, build %.3f s, render %.3f s, finish %.3f s, write %.3f s\n", phases.read_s,
          phases.compile_s, phases.build_s, phases.render_s, phases.finish_s, phases.write_s);
   const display::Choice& display = report.display;
@@ -56,7 +56,7 @@ void add_summary(std::string& out, const app::Job& job, const app::JobReport& re
 
 }  // namespace
 
-std::string report_text(const app::Job& job, const app::JobReport& report, bool verbose) {
+std::string report_text(const job::Job& job, const job::JobReport& report, bool verbose) {
   std::string out;
   add_bad_values(out, report);
   add_summary(out, job, report, verbose);

@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "app/job.h"
+#include "job/job.h"
 
 namespace orrery::cli {
 
 /// What somebody should know before trusting the picture, and what was done; whole lines.
-std::string report_text(const app::Job& job, const app::JobReport& report, bool verbose);
+std::string report_text(const job::Job& job, const job::JobReport& report, bool verbose);
 
 }  // namespace orrery::cli

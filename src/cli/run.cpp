@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/version.h"
+#include "job/version.h"
 #include "base/error.h"
 #include "base/exit_status.h"
 #include "cli/commands.h"
@@ -20,8 +20,8 @@ namespace orrery::cli {
 namespace {
 
 std::string versions_text() {
-  std::string out = "orrery " + app::program_version() + "\n";
-  for (const auto& [name, version] : app::library_versions()) out += "  " + name + " " + version + "\n";
+  std::string out = "orrery " + job::program_version() + "\n";
+  for (const auto& [name, version] : job::library_versions()) out += "  " + name + " " + version + "\n";
   return out + "  CLI11 " CLI11_VERSION;
 }
 

@@ -32,12 +32,12 @@ struct CheckOptions {
 
 std::string warnings_text(const app::SceneInfo& info) {
   std::string out;
-  for (const base::Finding& warning : info.warnings) out += base::formatted(warning);
+  for (const base::Diagnostic& warning : info.warnings) out += base::formatted(warning);
   return out;
 }
 
 int info(const InfoOptions& options) {
-  app::SceneRequest request;
+  job::SceneRequest request;
   request.file = options.scene;
   request.overrides = options.overrides.overrides();
   request.frame = options.overrides.frame();
@@ -53,7 +53,7 @@ int info(const InfoOptions& options) {
 /// That this machine is too small is no fault of the scene's.
 std::string memory_warning(const app::SceneInfo& info) {
   try {
-    app::require_memory(info.memory, 0);
+    job::require_memory(info.memory, 0);
     return {};
   } catch (const base::Error& error) {
     return std::string("warning: ") + error.what() + "\n";
@@ -63,7 +63,7 @@ std::string memory_warning(const app::SceneInfo& info) {
 /// Checks the frames of one scene. What is wrong with several frames in the same words is printed once.
 class FrameChecks {
  public:
-  explicit FrameChecks(app::SceneRequest request) : request_(std::move(request)) {}
+  explicit FrameChecks(job::SceneRequest request) : request_(std::move(request)) {}
 
   /// The exit status.
   int run(const std::vector<int>& frames) {
@@ -75,7 +75,7 @@ class FrameChecks {
       } catch (const base::Error& error) {
         if (status_ == 0) status_ = base::exit_status(error.kind());
         print_once(error_text(error));
-        if (error.findings().empty()) return status_;  // not of the scene: the other frames would say the same
+        if (error.diagnostics().empty()) return status_;  // not of the scene: the other frames would say the same
         bad_.push_back(frame);
       }
     }
@@ -93,7 +93,7 @@ class FrameChecks {
   /// Of a thousand frames without their files it is enough to see some.
   static constexpr std::size_t kMostTexts = 100;
 
-  app::SceneRequest request_;
+  job::SceneRequest request_;
   std::set<std::string> printed_;
   std::vector<int> bad_;
   int status_ = 0;
@@ -105,7 +105,7 @@ int check(const CheckOptions& options) {
       options.frames.empty() ? std::vector<int>{format::kFirstFrame} : base::parse_frames(options.frames);
   int status = 0;
   for (const auto& scene : options.scenes) {
-    app::SceneRequest request;
+    job::SceneRequest request;
     request.file = scene;
     request.overrides = options.overrides.overrides();
     request.develops = true;  // what a render to a display format would refuse, too

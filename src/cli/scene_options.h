@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/load_scene.h"
+#include "job/load_scene.h"
 #include "cli/arguments.h"
 
 namespace orrery::cli {

@@ -12,13 +12,13 @@
 #include "cli/output.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
-#include "study/study.h"
+#include "measure/study.h"
 
 namespace orrery::cli {
 namespace {
 
 struct StudyOptions {
-  study::Request request;
+  measure::Request request;
   SceneOptions scene;
   bool json = false, quiet = false;
 };
@@ -31,7 +31,7 @@ void check_report_name(const std::filesystem::path& file) {
 }
 
 int run(StudyOptions& options) {
-  study::Request& request = options.request;
+  measure::Request& request = options.request;
   request.overrides = options.scene.overrides();
   request.frame = options.scene.frame();
   request.cancel = &stop_on_signals();
@@ -48,9 +48,9 @@ int run(StudyOptions& options) {
       last = percent;
     };
   if (!request.report.empty()) check_report_name(request.report);
-  const study::Study found = study::run_study(request);
-  if (!request.report.empty()) base::write_text_file(request.report, study::study_html(found));
-  print_result(options.json ? study::study_json(found) : study::study_text(found));
+  const measure::Study found = measure::run_study(request);
+  if (!request.report.empty()) base::write_text_file(request.report, measure::study_html(found));
+  print_result(options.json ? measure::study_json(found) : measure::study_text(found));
   return 0;
 }
 
@@ -71,7 +71,7 @@ void add_study(Command& program, Action& action) {
       ->transform(real_number(1e-4, 1))
       ->type_name("X");
   command.add_option("-t,--threads", options->request.threads, "Threads; default: as many as this process may use")
-      ->transform(whole_number(1, kMostThreads))
+      ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command
       .add_option("--isa", options->request.isa,

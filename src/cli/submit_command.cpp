@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
-#include "app/submit.h"
+#include "farm/submit.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
@@ -14,7 +14,7 @@ namespace orrery::cli {
 namespace {
 
 struct SubmitOptions {
-  app::Submission submission;
+  farm::Submission submission;
   SceneOptions scene;
   PictureOptions picture;
   std::filesystem::path scene_file;
@@ -23,8 +23,8 @@ struct SubmitOptions {
 };
 
 int submit(SubmitOptions& options) {
-  app::Submission& s = options.submission;
-  app::Batch& batch = s.batch;
+  farm::Submission& s = options.submission;
+  farm::Batch& batch = s.batch;
   batch.scenes = {options.scene_file};
   batch.job.overrides = options.scene.overrides();
   options.picture.finish(batch.job);
@@ -32,11 +32,11 @@ int submit(SubmitOptions& options) {
   if (options.slurm + options.openjd + options.opencue + static_cast<int>(options.parallel->count()) != 1)
     throw base::Error(base::ErrorKind::kUsage,
                       "say who shall run it, by one of --slurm, --openjd, --opencue and --parallel N");
-  s.engine = options.slurm     ? app::Engine::kSlurm
-             : options.openjd  ? app::Engine::kOpenJd
-             : options.opencue ? app::Engine::kOpenCue
-                               : app::Engine::kParallel;
-  print_result(app::submission_text(s));
+  s.engine = options.slurm     ? farm::Engine::kSlurm
+             : options.openjd  ? farm::Engine::kOpenJd
+             : options.opencue ? farm::Engine::kOpenCue
+                               : farm::Engine::kParallel;
+  print_result(farm::submission_text(s));
   return 0;
 }
 
@@ -44,7 +44,7 @@ int submit(SubmitOptions& options) {
 
 void add_submit(Command& program, Action& action) {
   const auto options = std::make_shared<SubmitOptions>();
-  app::Submission& s = options->submission;
+  farm::Submission& s = options->submission;
   Command& command = *program.add_subcommand("submit", "Print a job for Slurm, OpenJD, OpenCue or GNU parallel");
   command.add_option("SCENE", options->scene_file, "Scene file")->required()->type_name("FILE");
   command.add_flag("--slurm", options->slurm, "A shell script that calls sbatch");
@@ -52,7 +52,7 @@ void add_submit(Command& program, Action& action) {
   command.add_flag("--opencue", options->opencue, "A job of OpenCue's specification language, cjsl-1.12");
   options->parallel =
       command.add_option("--parallel", s.jobs_at_a_time, "A shell script that calls GNU parallel, N tasks at a time")
-          ->transform(whole_number(1, kMostThreads))
+          ->transform(whole_number(1, kMaxThreads))
           ->type_name("N");
   options->picture.add_to(command, s.batch.job);
   options->scene.add_to(command);

@@ -73,8 +73,8 @@ kernel::Material turned_inside_out(kernel::Material m) {
 /// Hands out compiled materials, only those that some sphere uses.
 class MaterialTable {
  public:
-  MaterialTable(const scene::Scene& scene, World& world)
-      : scene_(scene), world_(world), compiled_(scene.materials.size(), {kNone, kNone}) {}
+  MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
+      : scene_(scene), world_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}
 
   std::uint32_t index(std::uint32_t authored, bool inside_out) {
     std::uint32_t& at = compiled_[authored][inside_out ? 1 : 0];
@@ -94,25 +94,25 @@ class MaterialTable {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   const scene::Scene& scene_;
-  World& world_;
+  CompiledScene& world_;
   std::vector<std::array<std::uint32_t, 2>> compiled_;
 };
 
-void add_sphere(World& world, MaterialTable& table, Vec3d center, double radius, std::uint32_t material) {
-  world.spheres.push_back({center.x, center.y, center.z, std::abs(radius)});
-  world.sphere_materials.push_back(table.index(material, radius < 0));
+void add_sphere(CompiledScene& compiled, MaterialTable& table, Vec3d center, double radius, std::uint32_t material) {
+  compiled.spheres.push_back({center.x, center.y, center.z, std::abs(radius)});
+  compiled.sphere_materials.push_back(table.index(material, radius < 0));
 }
 
-void add_spheres(const scene::Scene& scene, World& world) {
+void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
   const std::size_t count = scene.sphere_count();
-  world.spheres.reserve(count);
-  world.sphere_materials.reserve(count);
-  MaterialTable table(scene, world);
-  for (const scene::Sphere& s : scene.spheres) add_sphere(world, table, s.center, s.radius, s.material);
+  compiled.spheres.reserve(count);
+  compiled.sphere_materials.reserve(count);
+  MaterialTable table(scene, compiled);
+  for (const scene::Sphere& s : scene.spheres) add_sphere(compiled, table, s.center, s.radius, s.material);
   for (const scene::Points& points : scene.points) {
     for (std::size_t i = 0; i < points.centers.size(); ++i) {
       const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
-      add_sphere(world, table, points.centers[i], points.radii[i], material);
+      add_sphere(compiled, table, points.centers[i], points.radii[i], material);
     }
   }
 }
@@ -131,17 +131,17 @@ Bounds bounds_of(const std::vector<kernel::Sphere>& spheres) {
 }
 
 /// What camera and spheres of tables do until the shutter closes.
-void add_motion(const scene::Scene& opening, const scene::Scene& closing, World& world) {
+void add_motion(const scene::Scene& opening, const scene::Scene& closing, CompiledScene& compiled) {
   for (std::size_t i = opening.spheres.size(); i-- > 0;) {
     const scene::Sphere &from = opening.spheres[i], &to = closing.spheres[i];
     const Vec3d way = to.center - from.center;
     const kernel::Sphere change{way.x, way.y, way.z, std::abs(to.radius) - std::abs(from.radius)};
     const bool rests = change.x == 0 && change.y == 0 && change.z == 0 && change.radius == 0;
-    if (world.motion.empty() && !rests) world.motion.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
-    if (!rests) world.motion[i] = change;
+    if (compiled.motion.empty() && !rests) compiled.motion.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
+    if (!rests) compiled.motion[i] = change;
   }
   const kernel::Camera last = compile_camera(closing.camera, closing.image);
-  kernel::Camera& change = world.camera_motion;
+  kernel::Camera& change = compiled.camera_motion;
   bool camera_moves = false;
   const auto subtract = [&](const double(&to)[3], const double(&from)[3], double(&out)[3]) {
     for (int k = 0; k < 3; ++k) {
@@ -149,20 +149,20 @@ void add_motion(const scene::Scene& opening, const scene::Scene& closing, World&
       camera_moves = camera_moves || out[k] != 0;
     }
   };
-  subtract(last.origin, world.camera.origin, change.origin);
-  subtract(last.forward, world.camera.forward, change.forward);
-  subtract(last.right, world.camera.right, change.right);
-  subtract(last.down, world.camera.down, change.down);
-  subtract(last.lens_u, world.camera.lens_u, change.lens_u);
-  subtract(last.lens_v, world.camera.lens_v, change.lens_v);
-  world.features.motion = camera_moves || !world.motion.empty();
+  subtract(last.origin, compiled.camera.origin, change.origin);
+  subtract(last.forward, compiled.camera.forward, change.forward);
+  subtract(last.right, compiled.camera.right, change.right);
+  subtract(last.down, compiled.camera.down, change.down);
+  subtract(last.lens_u, compiled.camera.lens_u, change.lens_u);
+  subtract(last.lens_v, compiled.camera.lens_v, change.lens_v);
+  compiled.features.motion = camera_moves || !compiled.motion.empty();
 }
 
-void set_background(const scene::Background& from, World& world) {
+void set_background(const scene::Background& from, CompiledScene& compiled) {
   const bool gradient = from.type == scene::BackgroundType::kGradient;
-  set(world.background.bottom, gradient ? from.bottom : from.color);
-  set(world.background.top, gradient ? from.top : from.color);
-  world.features.sky = gradient && !(from.bottom == from.top);
+  set(compiled.background.bottom, gradient ? from.bottom : from.color);
+  set(compiled.background.top, gradient ? from.top : from.color);
+  compiled.features.sky = gradient && !(from.bottom == from.top);
 }
 
 /// With blue noise a pixel takes as many points of a sequence as it has samples, up to the next power of two, and
@@ -181,7 +181,7 @@ kernel::Sampler compile_sampler(const scene::Render& render) {
 
 }  // namespace
 
-kernel::SceneView World::view() const noexcept {
+kernel::SceneView CompiledScene::view() const noexcept {
   kernel::SceneView v;
   v.spheres = spheres.data();
   v.sphere_materials = sphere_materials.data();
@@ -207,42 +207,43 @@ int blue_noise_bits(int samples) noexcept {
   return std::min(static_cast<int>(std::bit_width(static_cast<unsigned>(samples) - 1)), kernel::kSobolBits);
 }
 
-World compile(const scene::Scene& scene, const scene::Scene* closing) {
-  World world;
+CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
+  CompiledScene compiled;
   const scene::Window window = scene.image.data_window();
-  world.window_x = window.x;
-  world.window_y = window.y;
-  world.frame_width = scene.image.width;
-  world.frame_height = scene.image.height;
-  world.pixel_aspect = scene.image.pixel_aspect;
-  world.width = window.width;
-  world.height = window.height;
-  world.samples = scene.render.samples;
-  world.max_depth = static_cast<std::uint32_t>(scene.render.max_depth);
-  if (scene.render.roulette_depth > 0) world.roulette_depth = static_cast<std::uint32_t>(scene.render.roulette_depth);
-  world.sampler = compile_sampler(scene.render);
+  compiled.window_x = window.x;
+  compiled.window_y = window.y;
+  compiled.frame_width = scene.image.width;
+  compiled.frame_height = scene.image.height;
+  compiled.pixel_aspect = scene.image.pixel_aspect;
+  compiled.width = window.width;
+  compiled.height = window.height;
+  compiled.samples = scene.render.samples;
+  compiled.max_depth = static_cast<std::uint32_t>(scene.render.max_depth);
+  if (scene.render.roulette_depth > 0)
+    compiled.roulette_depth = static_cast<std::uint32_t>(scene.render.roulette_depth);
+  compiled.sampler = compile_sampler(scene.render);
   switch (scene.render.precision) {
-    case scene::Precision::kExact: world.precision = Precision::kExact; break;
-    case scene::Precision::kFast: world.precision = Precision::kFast; break;
-    case scene::Precision::kBook: world.precision = Precision::kBook; break;
+    case scene::Precision::kExact: compiled.precision = Precision::kExact; break;
+    case scene::Precision::kFast: compiled.precision = Precision::kFast; break;
+    case scene::Precision::kBook: compiled.precision = Precision::kBook; break;
   }
   switch (scene.render.shading) {
-    case scene::Shading::kPath: world.shading = kernel::Shading::kPath; break;
-    case scene::Shading::kNormal: world.shading = kernel::Shading::kNormal; break;
-    case scene::Shading::kFlat: world.shading = kernel::Shading::kFlat; break;
+    case scene::Shading::kPath: compiled.shading = kernel::Shading::kPath; break;
+    case scene::Shading::kNormal: compiled.shading = kernel::Shading::kNormal; break;
+    case scene::Shading::kFlat: compiled.shading = kernel::Shading::kFlat; break;
   }
   switch (scene.render.accelerator) {
-    case scene::Accelerator::kEmbree: world.accelerator = Accelerator::kEmbree; break;
-    case scene::Accelerator::kList: world.accelerator = Accelerator::kList; break;
+    case scene::Accelerator::kEmbree: compiled.accelerator = Accelerator::kEmbree; break;
+    case scene::Accelerator::kList: compiled.accelerator = Accelerator::kList; break;
   }
-  world.camera = compile_camera(scene.camera, scene.image);
-  world.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
-  set_background(scene.background, world);
-  world.filter = compile_filter(scene.render);
-  add_spheres(scene, world);
-  if (closing != nullptr) add_motion(scene, *closing, world);
-  world.bounds = bounds_of(world.spheres);
-  return world;
+  compiled.camera = compile_camera(scene.camera, scene.image);
+  compiled.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
+  set_background(scene.background, compiled);
+  compiled.filter = compile_filter(scene.render);
+  add_spheres(scene, compiled);
+  if (closing != nullptr) add_motion(scene, *closing, compiled);
+  compiled.bounds = bounds_of(compiled.spheres);
+  return compiled;
 }
 
 }  // namespace orrery::compile

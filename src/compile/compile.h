@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "compile/world.h"
+#include "compile/compiled_scene.h"
 #include "scene/scene.h"
 
 namespace orrery::compile {
@@ -14,7 +14,7 @@ namespace orrery::compile {
 /// `closing`  what the shutter closes on, without points; null: it is never open. What then turns out not to move costs
 ///            nothing.
 /// Domain     scenes that scene::validate finds no error in
-World compile(const scene::Scene& scene, const scene::Scene* closing = nullptr);
+CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = nullptr);
 
 /// Bits that count a pixel's samples where blue noise shares a sequence among neighbours.
 int blue_noise_bits(int samples) noexcept;

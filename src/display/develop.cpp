@@ -17,7 +17,7 @@ namespace ocio = OCIO_NAMESPACE;
 constexpr std::size_t kPixelsAtATime = std::size_t{1} << 14;
 
 /// More stops than this show every half as black or white; the factor stays a number that a float holds.
-constexpr double kMostStops = 120;
+constexpr double kMaxStops = 120;
 
 const std::vector<float>& plane(const film::Picture& picture, const char* name) {
   const film::Plane* found = picture.find(name);
@@ -70,7 +70,7 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
   const auto channels = static_cast<std::size_t>(out.channels);
   out.values.resize(pixels * channels);
   const double largest = bits == 8 ? 255 : 65535;
-  const float gain = static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMostStops, kMostStops)));
+  const float gain = static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMaxStops, kMaxStops)));
   std::vector<float> rgb(std::min(pixels, kPixelsAtATime) * 3);
   for (std::size_t begin = 0; begin < pixels; begin += kPixelsAtATime) {
     const std::size_t count = std::min(kPixelsAtATime, pixels - begin);

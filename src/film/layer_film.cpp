@@ -64,27 +64,29 @@ float variance(const LayerPixel& p, int c, Int128 sum) {
 }
 
 /// A thing and its share of a pixel.
-struct Share {
+struct RankedCoverage {
   std::uint32_t id;
   std::int64_t weight;
 };
 
 /// The things of a matte, the largest first; of two as large that with the smaller id.
-std::vector<Share> ranked(const Matte& matte, const LayerPixel& p) {
-  std::vector<Share> shares;
-  for (const SphereShare& s : p.shares) {
+std::vector<RankedCoverage> ranked(const Matte& matte, const LayerPixel& p) {
+  std::vector<RankedCoverage> shares;
+  for (const SphereCoverage& s : p.shares) {
     if (s.sphere == kernel::kNoSphere) continue;
     const std::uint32_t id = matte.id_of_sphere(s.sphere);
     if (id == 0) continue;
-    const auto known = std::find_if(shares.begin(), shares.end(), [id](const Share& share) { return share.id == id; });
+    const auto known =
+        std::find_if(shares.begin(), shares.end(), [id](const RankedCoverage& share) { return share.id == id; });
     if (known == shares.end()) {
       shares.push_back({id, s.weight});
     } else {
       known->weight += s.weight;
     }
   }
-  std::sort(shares.begin(), shares.end(),
-            [](const Share& a, const Share& b) { return a.weight != b.weight ? a.weight > b.weight : a.id < b.id; });
+  std::sort(shares.begin(), shares.end(), [](const RankedCoverage& a, const RankedCoverage& b) {
+    return a.weight != b.weight ? a.weight > b.weight : a.id < b.id;
+  });
   while (!shares.empty() && shares.back().weight <= 0) shares.pop_back();
   return shares;
 }
@@ -141,12 +143,12 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Scen
   if (r.guide_albedo) means("denoise.albedo", "RGB", kLight, p.guide_albedo);
   if (r.guide_normal) means("denoise.normal", "XYZ", kVector, p.guide_normal);
   for (const Matte& matte : r.mattes) {
-    const std::vector<Share> shares = ranked(matte, p);
+    const std::vector<RankedCoverage> shares = ranked(matte, p);
     // Two ranks in a layer of four channels: id, share, id, share.
     for (int rank = 0; rank < r.matte_ranks + r.matte_ranks % 2; ++rank) {
       const char name[] = {static_cast<char>('0' + rank / 20), static_cast<char>('0' + rank / 2 % 10), 0};
       const bool there = rank < r.matte_ranks && static_cast<std::size_t>(rank) < shares.size() && p.weight > 0;
-      const Share share = there ? shares[static_cast<std::size_t>(rank)] : Share{0, 0};
+      const RankedCoverage share = there ? shares[static_cast<std::size_t>(rank)] : RankedCoverage{0, 0};
       f(matte.name + name, rank % 2 == 0 ? 'R' : 'B', kData, as_float(share.id));
       f(matte.name + name, rank % 2 == 0 ? 'G' : 'A', kData,
         there ? static_cast<float>(static_cast<double>(share.weight) / static_cast<double>(p.weight)) : 0.0F);
@@ -158,11 +160,11 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Scen
 std::vector<DeepSample> deep_samples(const LayerPixel& p, bool background_visible) {
   std::vector<DeepSample> out;
   if (p.weight <= 0) return out;
-  std::vector<SphereShare> shares = p.shares;
+  std::vector<SphereCoverage> shares = p.shares;
   std::stable_sort(shares.begin(), shares.end(),
-                   [](const SphereShare& a, const SphereShare& b) { return a.front < b.front; });
+                   [](const SphereCoverage& a, const SphereCoverage& b) { return a.front < b.front; });
   std::int64_t left = p.weight;  // of the paths, those that went past all samples so far
-  for (const SphereShare& share : shares) {
+  for (const SphereCoverage& share : shares) {
     if (left <= 0 || share.weight <= 0 || (share.sphere == kernel::kNoSphere && !background_visible)) continue;
     const auto seen = static_cast<double>(left);
     DeepSample sample{};

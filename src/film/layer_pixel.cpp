@@ -27,11 +27,11 @@ void add3(kernel::Int128 (&sum)[3], const T& value, std::int64_t weight) {
 }
 
 /// The share of a sphere, which is made if need be.
-SphereShare& share_of(std::vector<SphereShare>& shares, std::uint32_t sphere) {
+SphereCoverage& share_of(std::vector<SphereCoverage>& shares, std::uint32_t sphere) {
   const auto at = std::lower_bound(shares.begin(), shares.end(), sphere,
-                                   [](const SphereShare& share, std::uint32_t id) { return share.sphere < id; });
+                                   [](const SphereCoverage& share, std::uint32_t id) { return share.sphere < id; });
   if (at != shares.end() && at->sphere == sphere) return *at;
-  SphereShare fresh;
+  SphereCoverage fresh;
   fresh.sphere = sphere;
   return *shares.insert(at, fresh);
 }
@@ -101,7 +101,7 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   Hit hit{};
   if (hits && (request.nearest() || request.deep)) hit = locate(scene, path);
   if (request.deep || (hits && !request.mattes.empty())) {
-    SphereShare& share = share_of(shares, path.sphere);
+    SphereCoverage& share = share_of(shares, path.sphere);
     share.weight += path_weight;
     if (request.deep && is_good(path.light)) add3(share.light, path.light, path_weight);
     share.front = std::min(share.front, hits ? hit.z : double{kNothingHit});
@@ -144,8 +144,8 @@ void LayerPixel::add(const LayerPixel& other) {
   lit += other.lit;
   paths += other.paths;
   covered += other.covered;
-  for (const SphereShare& from : other.shares) {
-    SphereShare& to = share_of(shares, from.sphere);
+  for (const SphereCoverage& from : other.shares) {
+    SphereCoverage& to = share_of(shares, from.sphere);
     to.weight += from.weight;
     add_all(to.light, from.light);
     to.front = std::min(to.front, from.front);

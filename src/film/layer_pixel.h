@@ -13,7 +13,7 @@
 namespace orrery::film {
 
 /// Paths of a pixel that met one sphere first.
-struct SphereShare {
+struct SphereCoverage {
   std::uint32_t sphere = kernel::kNoSphere;
   std::int64_t weight = 0;
   // What follows is kept for deep pictures only.
@@ -45,7 +45,7 @@ struct LayerPixel {
   double depth = std::numeric_limits<double>::infinity(), z = 0;
   double position[3] = {0, 0, 0};
   std::uint32_t sphere = kernel::kNoSphere;
-  std::vector<SphereShare> shares;  ///< by ascending sphere, the background last; only for mattes and deep pictures
+  std::vector<SphereCoverage> shares;  ///< by ascending sphere, the background last; only for mattes and deep pictures
 };
 
 /// Squares above 2^48 are cut to it: a variance that large is told by its light.

@@ -3,7 +3,7 @@
 
 namespace orrery::film {
 
-Effort& Effort::operator+=(const Effort& other) {
+RenderWork& RenderWork::operator+=(const RenderWork& other) {
   paths += other.paths;
   rays += other.rays;
   bad_samples += other.bad_samples;

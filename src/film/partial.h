@@ -11,12 +11,12 @@
 namespace orrery::film {
 
 /// What rendering has done so far, over all runs of the program.
-struct Effort {
+struct RenderWork {
   std::uint64_t paths = 0, rays = 0;
   std::uint64_t bad_samples = 0;  ///< not finite; counted and left out of their pixel's mean
   double seconds = 0;             ///< of rendering; building and files left out
 
-  Effort& operator+=(const Effort& other);
+  RenderWork& operator+=(const RenderWork& other);
 };
 
 /// A picture whose samples are not all there: what a stopped render goes on from, and what parts of a picture are
@@ -35,7 +35,7 @@ struct Partial {
   /// What the running pass brings each pixel to, where that is not the same for all; else empty.
   std::vector<std::uint32_t> goals;
   std::vector<LayerPixel> layers;  ///< empty without layers
-  Effort effort;
+  RenderWork work;
 };
 
 }  // namespace orrery::film

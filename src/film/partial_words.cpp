@@ -201,11 +201,11 @@ void each_share_number(Io& io, Shares& shares) {
 }
 
 template <class Io, class EffortType>
-void each_effort(Io& io, EffortType& effort) {
-  io.number(effort.paths);
-  io.number(effort.rays);
-  io.number(effort.bad_samples);
-  io.number(effort.seconds);
+void each_effort(Io& io, EffortType& work) {
+  io.number(work.paths);
+  io.number(work.rays);
+  io.number(work.bad_samples);
+  io.number(work.seconds);
 }
 
 const auto itself = [](auto& v) -> auto& { return v; };
@@ -222,7 +222,7 @@ void each_pixel_number(Io& io, P& partial) {
 
 void write_shares(Writer& out, const Partial& partial) {
   std::vector<std::uint32_t> counts;
-  std::vector<SphereShare> shares;
+  std::vector<SphereCoverage> shares;
   for (const LayerPixel& p : partial.layers) {
     counts.push_back(static_cast<std::uint32_t>(p.shares.size()));
     shares.insert(shares.end(), p.shares.begin(), p.shares.end());
@@ -238,7 +238,7 @@ void read_shares(Reader& in, Partial& partial) {
   for (const std::uint32_t n : counts) total += n;
   // Spheres of a pixel differ, so that their plane is full: no memory for what a damaged count promises.
   if (total > partial.layers.size()) in.need(total);
-  std::vector<SphereShare> shares(total);
+  std::vector<SphereCoverage> shares(total);
   each_share_number(in, shares);
   auto next = shares.begin();
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -261,7 +261,7 @@ std::vector<std::uint32_t> to_words(const Partial& partial) {
   for (const std::uint32_t v : {kFormat, static_cast<std::uint32_t>(partial.film.width()),
                                 static_cast<std::uint32_t>(partial.film.height()), flags})
     out.number(v);
-  each_effort(out, partial.effort);
+  each_effort(out, partial.work);
   each_pixel_number(out, partial);
   if (!partial.layers.empty()) write_shares(out, partial);
   return words;
@@ -281,7 +281,7 @@ Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int he
   if ((flags & kHasHalves) != 0) partial.second = Film(width_px, height_px);
   if ((flags & kHasGoals) != 0) partial.goals.resize(partial.pixel_count());
   if ((flags & kHasLayers) != 0) partial.layers.resize(partial.pixel_count());
-  each_effort(in, partial.effort);
+  each_effort(in, partial.work);
   each_pixel_number(in, partial);
   if (!partial.layers.empty()) read_shares(in, partial);
   return partial;

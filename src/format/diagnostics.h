@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/finding.h"
+#include "base/diagnostic.h"
 #include "format/source_text.h"
 
 namespace orrery::format {
@@ -38,7 +38,7 @@ class Diagnostics {
   }
 
   bool has_errors() const { return errors_ > 0; }
-  std::vector<base::Finding> take_warnings() { return std::move(warnings_); }
+  std::vector<base::Diagnostic> take_warnings() { return std::move(warnings_); }
 
   /// Ends the reading of `file` where there is an error.
   ///
@@ -49,8 +49,8 @@ class Diagnostics {
  private:
   using Key = std::tuple<std::string, int, int>;
 
-  std::multimap<Key, base::Finding> shown_;
-  std::vector<base::Finding> warnings_;
+  std::multimap<Key, base::Diagnostic> shown_;
+  std::vector<base::Diagnostic> warnings_;
   std::size_t errors_ = 0, missing_ = 0;
 };
 

@@ -5,9 +5,9 @@ namespace orrery::format {
 namespace {
 
 /// Walks over a text and knows its line and column.
-class Walk {
+class Cursor {
  public:
-  explicit Walk(std::string_view text) : text_(text) {}
+  explicit Cursor(std::string_view text) : text_(text) {}
 
   bool at_end() const { return at_ >= text_.size(); }
   char now() const { return text_[at_]; }
@@ -32,30 +32,30 @@ class Walk {
   int line_ = 1, column_ = 1;
 };
 
-void skip_comment(Walk& walk) {
-  while (!walk.at_end() && walk.now() != '\n') walk.step();
+void skip_comment(Cursor& cursor) {
+  while (!cursor.at_end() && cursor.now() != '\n') cursor.step();
 }
 
 /// A string of any of the four kinds, which begins here. One that is not closed ends with its line, or with the text.
-void skip_string(Walk& walk) {
-  const char quote = walk.now();
+void skip_string(Cursor& cursor) {
+  const char quote = cursor.now();
   const bool escapes = quote == '"';
   const std::string_view triple = escapes ? "\"\"\"" : "'''";
-  const bool is_long = walk.begins(triple);
-  walk.step(is_long ? 3 : 1);
-  while (!walk.at_end()) {
-    if (escapes && walk.now() == '\\') {
-      walk.step(2);
-    } else if (is_long && walk.begins(triple)) {
-      walk.step(3);
+  const bool is_long = cursor.begins(triple);
+  cursor.step(is_long ? 3 : 1);
+  while (!cursor.at_end()) {
+    if (escapes && cursor.now() == '\\') {
+      cursor.step(2);
+    } else if (is_long && cursor.begins(triple)) {
+      cursor.step(3);
       // Up to two quotes more belong to the string.
-      for (int i = 0; i < 2 && !walk.at_end() && walk.now() == quote; ++i) walk.step();
+      for (int i = 0; i < 2 && !cursor.at_end() && cursor.now() == quote; ++i) cursor.step();
       return;
-    } else if (!is_long && (walk.now() == quote || walk.now() == '\n')) {
-      walk.step();
+    } else if (!is_long && (cursor.now() == quote || cursor.now() == '\n')) {
+      cursor.step();
       return;
     } else {
-      walk.step();
+      cursor.step();
     }
   }
 }
@@ -63,16 +63,16 @@ void skip_string(Walk& walk) {
 }  // namespace
 
 Place too_deep_key(std::string_view text) {
-  Walk walk(text);
+  Cursor cursor(text);
   // A key is what stands between two of the other signs; the dot of a number counts as well, which harms nobody.
-  for (int parts = 1; !walk.at_end();) {
-    switch (walk.now()) {
-      case '#': skip_comment(walk); break;
+  for (int parts = 1; !cursor.at_end();) {
+    switch (cursor.now()) {
+      case '#': skip_comment(cursor); break;
       case '"':
-      case '\'': skip_string(walk); break;
+      case '\'': skip_string(cursor); break;
       case '.':
-        if (++parts > kDeepestKey) return walk.place();
-        walk.step();
+        if (++parts > kDeepestKey) return cursor.place();
+        cursor.step();
         break;
       case '=':
       case ',':
@@ -82,9 +82,9 @@ Place too_deep_key(std::string_view text) {
       case '}':
       case '\n':
         parts = 1;
-        walk.step();
+        cursor.step();
         break;
-      default: walk.step();
+      default: cursor.step();
     }
   }
   return {};

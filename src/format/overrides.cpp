@@ -221,7 +221,7 @@ void apply_overrides(toml::table& root, const std::vector<Override>& overrides, 
     if (!fault) continue;
     const Place whole{kOverrideName, line, 1, static_cast<int>(override.text.size())};
     diagnostics.add(base::Severity::kError, whole, base::ErrorKind::kBadData,
-                    [&] { return source.finding(base::Severity::kError, whole, fault->text, fault->remedy); });
+                    [&] { return source.diagnostic(base::Severity::kError, whole, fault->text, fault->remedy); });
   }
 }
 

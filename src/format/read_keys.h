@@ -26,7 +26,7 @@ struct Reading {
   }
   void add(base::Severity severity, const Place& place, const std::string& text, const std::string& remedy = {},
            base::ErrorKind kind = base::ErrorKind::kBadData) {
-    diagnostics.add(severity, place, kind, [&] { return source.finding(severity, place, text, remedy); });
+    diagnostics.add(severity, place, kind, [&] { return source.diagnostic(severity, place, text, remedy); });
   }
 };
 

@@ -28,31 +28,31 @@ class PlyFaults {
   explicit PlyFaults(const std::filesystem::path& file) : file_(file.string()) {}
 
   void add(int line, const std::string& text) {
-    base::Finding finding;
-    finding.file = file_;
-    finding.line = line;
-    finding.text = text;
-    findings_.push_back(std::move(finding));
+    base::Diagnostic diagnostic;
+    diagnostic.file = file_;
+    diagnostic.line = line;
+    diagnostic.text = text;
+    diagnostics_.push_back(std::move(diagnostic));
   }
   void add_of_many(int line, const std::string& text) {
-    if (++many_ <= scene::kMostTold) add(line, text);
+    if (++many_ <= scene::kMaxReported) add(line, text);
   }
   [[noreturn]] void fail(int line, const std::string& text) {
     add(line, text);
     raise();
   }
   void raise_if_any() {
-    if (many_ > scene::kMostTold)
-      add(0, "and " + std::to_string(many_ - scene::kMostTold) + " more (" + std::to_string(many_) + " in all)");
-    if (!findings_.empty()) raise();
+    if (many_ > scene::kMaxReported)
+      add(0, "and " + std::to_string(many_ - scene::kMaxReported) + " more (" + std::to_string(many_) + " in all)");
+    if (!diagnostics_.empty()) raise();
   }
 
  private:
   [[noreturn]] void raise() {
-    throw base::Error(base::ErrorKind::kBadData, "cannot use " + file_, std::move(findings_));
+    throw base::Error(base::ErrorKind::kBadData, "cannot use " + file_, std::move(diagnostics_));
   }
   std::string file_;
-  std::vector<base::Finding> findings_;
+  std::vector<base::Diagnostic> diagnostics_;
   std::uint64_t many_ = 0;
 };
 

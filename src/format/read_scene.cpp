@@ -96,9 +96,9 @@ void read_points_file(Reading& reading, const Place& place, const std::string& f
   } catch (const base::Error& error) {
     if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
     reading.error(place, full_name + ".file: " + error.what(), {}, error.kind());
-    for (const base::Finding& finding : error.findings())
-      reading.diagnostics.add(finding.severity, {finding.file, finding.line, 0, 1}, error.kind(),
-                              [&] { return finding; });
+    for (const base::Diagnostic& diagnostic : error.diagnostics())
+      reading.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
+                              [&] { return diagnostic; });
   }
 }
 
@@ -143,23 +143,24 @@ const toml::node* node_of(const toml::table& root, const std::string& key) {
 }
 
 /// Adds a problem at the place of its key; without one at the file.
-void add_problem(Reading& reading, const toml::table& root, const std::string& file, const scene::Problem& problem,
-                 const std::string& text) {
-  const toml::node* node = node_of(root, problem.key);
-  reading.add(problem.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, problem.kind);
+void add_problem(Reading& reading, const toml::table& root, const std::string& file,
+                 const scene::SceneDiagnostic& diagnostic, const std::string& text) {
+  const toml::node* node = node_of(root, diagnostic.key);
+  reading.add(diagnostic.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, diagnostic.kind);
 }
 
 /// Adds what is wrong with the whole. A value that could not be read stands at its default: what the whole makes of
 /// that would be a finding too many, and nobody is warned of a scene that is wrong.
-void add_problems(Reading& reading, const toml::table& root, const std::vector<scene::Problem>& problems,
+void add_problems(Reading& reading, const toml::table& root, const std::vector<scene::SceneDiagnostic>& diagnostics,
                   const std::string& file) {
   const bool has_errors = reading.diagnostics.has_errors();
   const auto is_of_camera = [](const std::string& key) { return key.rfind("camera.", 0) == 0; };
   const bool camera_is_read = std::none_of(reading.unread.begin(), reading.unread.end(), is_of_camera);
-  for (const scene::Problem& problem : problems) {
-    if (has_errors && problem.severity == base::Severity::kWarning) continue;
-    if (reading.unread.count(problem.key) != 0 || (is_of_camera(problem.key) && !camera_is_read)) continue;
-    add_problem(reading, root, file, problem, problem.key.empty() ? problem.text : problem.key + ": " + problem.text);
+  for (const scene::SceneDiagnostic& diagnostic : diagnostics) {
+    if (has_errors && diagnostic.severity == base::Severity::kWarning) continue;
+    if (reading.unread.count(diagnostic.key) != 0 || (is_of_camera(diagnostic.key) && !camera_is_read)) continue;
+    add_problem(reading, root, file, diagnostic,
+                diagnostic.key.empty() ? diagnostic.text : diagnostic.key + ": " + diagnostic.text);
   }
 }
 
@@ -175,9 +176,9 @@ void pose(Reading& reading, const toml::table& root, const std::string& file, in
   }
   if (is_open) {
     result.closing = scene::posed(scene, closes);
-    for (const scene::Problem& problem : scene::validate(*result.closing)) {
-      if (problem.severity == base::Severity::kWarning) continue;
-      add_problem(reading, root, file, problem, problem.key + " when the shutter closes: " + problem.text);
+    for (const scene::SceneDiagnostic& diagnostic : scene::validate(*result.closing)) {
+      if (diagnostic.severity == base::Severity::kWarning) continue;
+      add_problem(reading, root, file, diagnostic, diagnostic.key + " when the shutter closes: " + diagnostic.text);
     }
   }
   scene = scene::posed(scene, opens);

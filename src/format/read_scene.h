@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/finding.h"
+#include "base/diagnostic.h"
 #include "format/override.h"
 #include "scene/scene.h"
 #include "scene/validate.h"
@@ -26,7 +26,7 @@ inline constexpr int kFirstFrame = 1;
 
 struct ReadResult {
   scene::Scene scene;
-  std::vector<base::Finding> warnings;
+  std::vector<base::Diagnostic> warnings;
   std::vector<Setting> settings;  ///< every key of which a scene has one, in the documentation's order
   /// The scene without points as it stands when the shutter closes; `scene` is then what it opens on. Nothing where it
   /// is never open.
@@ -34,7 +34,7 @@ struct ReadResult {
 };
 
 /// What somebody else finds wrong with a scene that is valid by itself, such as names that an OCIO config lacks.
-using SceneCheck = std::function<std::vector<scene::Problem>(const scene::Scene&)>;
+using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene::Scene&)>;
 
 /// Reads and checks a scene file, and the data files it names.
 ///

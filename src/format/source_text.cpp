@@ -71,7 +71,7 @@ std::string_view SourceText::line_of(const Text& text, int line) {
 }
 
 /// Brings a place in what was parsed back to what was typed.
-void SourceText::point_into(const ShownOverride& override, const Place& place, base::Finding& finding) {
+void SourceText::point_into(const ShownOverride& override, const Place& place, base::Diagnostic& diagnostic) {
   const auto shown_byte = [&](int column) {
     std::size_t at = byte_of_character(override.parsed, static_cast<std::size_t>(column) - 1);
     at -= static_cast<std::size_t>(std::lower_bound(override.inserted.begin(), override.inserted.end(), at) -
@@ -80,14 +80,14 @@ void SourceText::point_into(const ShownOverride& override, const Place& place, b
     return std::min(at < override.typed_begin ? begin : begin + at - override.typed_begin, override.shown.size());
   };
   const std::size_t first = shown_byte(place.column);
-  finding.column = static_cast<int>(first) + 1;
-  finding.width = std::max(1, static_cast<int>(shown_byte(place.column + place.width) - first));
-  if (override.shown.size() <= kLongestShown) finding.source_line = override.shown;
+  diagnostic.column = static_cast<int>(first) + 1;
+  diagnostic.width = std::max(1, static_cast<int>(shown_byte(place.column + place.width) - first));
+  if (override.shown.size() <= kLongestShown) diagnostic.source_line = override.shown;
 }
 
-base::Finding SourceText::finding(base::Severity severity, const Place& place, std::string text,
-                                  std::string remedy) const {
-  base::Finding out;
+base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& place, std::string text,
+                                        std::string remedy) const {
+  base::Diagnostic out;
   out.severity = severity;
   out.text = std::move(text);
   out.remedy = std::move(remedy);

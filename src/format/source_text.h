@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/finding.h"
+#include "base/diagnostic.h"
 #include "format/override.h"
 
 namespace orrery::format {
@@ -40,7 +40,8 @@ class SourceText {
   const std::string& option_at(int line) const { return overrides_[static_cast<std::size_t>(line) - 1].option; }
 
   /// A finding at a place, with its source line. Of an override it is the command line's: "--samples 0".
-  base::Finding finding(base::Severity severity, const Place& place, std::string text, std::string remedy = {}) const;
+  base::Diagnostic diagnostic(base::Severity severity, const Place& place, std::string text,
+                              std::string remedy = {}) const;
 
  private:
   struct Text {
@@ -53,7 +54,7 @@ class SourceText {
     std::size_t typed_begin = 0;  ///< in the override's text, of what the user typed behind the option
   };
   static std::string_view line_of(const Text& text, int line);
-  static void point_into(const ShownOverride& override, const Place& place, base::Finding& finding);
+  static void point_into(const ShownOverride& override, const Place& place, base::Diagnostic& diagnostic);
 
   std::map<std::string, Text> texts_;
   std::vector<ShownOverride> overrides_;

@@ -34,7 +34,7 @@ void add_parse_error(const toml::parse_error& error, const SourceText& source, D
     remedy = "remove one of them";
   }
   diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData,
-                  [&] { return source.finding(base::Severity::kError, place, text, remedy); });
+                  [&] { return source.diagnostic(base::Severity::kError, place, text, remedy); });
 }
 
 toml::table parse_tree(const std::string& file_name, const std::string& text, const std::vector<Override>& overrides,
@@ -43,8 +43,8 @@ toml::table parse_tree(const std::string& file_name, const std::string& text, co
   if (Place place = too_deep_key(text); place.line > 0) {
     place.text_name = file_name;
     diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData, [&] {
-      return source.finding(base::Severity::kError, place,
-                            "a key of more than " + std::to_string(kDeepestKey) + " parts");
+      return source.diagnostic(base::Severity::kError, place,
+                               "a key of more than " + std::to_string(kDeepestKey) + " parts");
     });
     return {};
   }

@@ -51,7 +51,7 @@ inline void trace(const Tracer& tracer, RayPacketFast& packet) { tracer.trace_fa
 
 /// Nothing is hit yet, at any distance.
 template <class T, class Id>
-inline void forget_hits(RayPacketOf<T, Id>& packet) {
+inline void reset_hits(RayPacketOf<T, Id>& packet) {
   std::fill_n(packet.distance, kPacketSize, std::numeric_limits<T>::max());
   std::fill_n(packet.hit, kPacketSize, Id{kNoSphere});
 }

@@ -17,7 +17,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 // What a path remembers of its way, in the bits of its `history`.
 inline constexpr unsigned kLobeBits = 3;      ///< what the first surface did: 0 as long as there was none, or a Lobe
-inline constexpr unsigned kOnlySharpBit = 4;  ///< nothing but sharp mirrors and glass so far
+inline constexpr unsigned kOnlyDeltaBit = 4;  ///< nothing but sharp mirrors and glass so far
 inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, otherwise than by passing through glass
 enum Lobe : unsigned { kDiffuse = 1, kSpecular = 2, kTransmission = 3 };
 
@@ -119,7 +119,7 @@ class Recorder {
 
 /// Lanes whose surface sends light on in one direction only.
 template <class D>
-HWY_INLINE hn::Mask<D> is_sharp(D d, const Surface<D>& at) {
+HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
   const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == hn::Zero(d));
   return hn::Or(mirror, is_kind(d, at.kind, MaterialKind::kDielectric));
 }
@@ -134,7 +134,7 @@ HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Sur
   const auto where = [&](hn::Mask<D> lanes, hn::Vec<IdTag<D>> then) {
     return hn::IfThenElseZero(hn::RebindMask(du, lanes), then);
   };
-  const auto sharp = where(is_sharp(d, at), hn::And(history, ids(kOnlySharpBit)));
+  const auto sharp = where(is_delta(d, at), hn::And(history, ids(kOnlyDeltaBit)));
   const auto glass = is_kind(d, at.kind, MaterialKind::kDielectric);
   const auto passes = hn::AndNot(at.same_side(d, direction), glass);
   if (depth > 0) {

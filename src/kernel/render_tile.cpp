@@ -91,7 +91,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
     hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
-    if constexpr (kRecords) hn::Store(hn::Set(du, static_cast<Id>(kOnlySharpBit)), du, carried.history + v);
+    if constexpr (kRecords) hn::Store(hn::Set(du, static_cast<Id>(kOnlyDeltaBit)), du, carried.history + v);
   }
 }
 
@@ -135,7 +135,7 @@ template <class D, Precision kPrecision, bool kRecords, bool kMoves, class Strea
 TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, Stream& stream) {
   const D d;
   using T = hn::TFromD<D>;
-  Passengers<T, IdFor<T>> carried;
+  PathPayload<T, IdFor<T>> carried;
   TileCounts counts;
   counts.target = HWY_TARGET;
   const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);
@@ -147,7 +147,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   PathCounter counter(tile, scene);
   std::uint64_t to_start = tile.path_count();
   const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
-    forget_hits(stream.packet);
+    reset_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);
     trace(tracer, stream.packet);
     return shade<D, kPrecision, kRecords, kMoves>(d, scene, tile, depth, carried, stream, alive, counts);

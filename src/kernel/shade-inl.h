@@ -25,7 +25,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 /// What a packet's rays carry beside their geometry; the packet's own lanes, in the same order.
 template <class T, class Id>
-struct alignas(64) Passengers {
+struct alignas(64) PathPayload {
   T base[3][kPacketSize];
   T throughput[3][kPacketSize];
   Id pixel[kPacketSize];
@@ -195,9 +195,9 @@ class Compactor {
 };
 
 /// Stands where nothing is recorded.
-struct Nothing {
+struct NullRecorder {
   template <class... Any>
-  HWY_INLINE explicit Nothing(const Any&...) {}
+  HWY_INLINE explicit NullRecorder(const Any&...) {}
 };
 
 /// Ends paths by chance, the darker the likelier, and makes the others brighter for it: on average nothing is lost.
@@ -236,11 +236,11 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     auto throughput = load3(d, carried.throughput[0] + v, carried.throughput[1] + v, carried.throughput[2] + v);
     [[maybe_unused]] hn::Vec<IdTag<D>> history;
     [[maybe_unused]] hn::Mask<D> guided;
-    [[maybe_unused]] std::conditional_t<kRecords, Recorder<D>, Nothing> record(d, scene, tile, pixels, samples);
+    [[maybe_unused]] std::conditional_t<kRecords, Recorder<D>, NullRecorder> record(d, scene, tile, pixels, samples);
     if constexpr (kRecords) {
       history = hn::Load(du, carried.history + v);
-      const auto only_sharp = hn::Set(du, static_cast<Id>(kOnlySharpBit));
-      guided = hn::RebindMask(d, hn::And(history, only_sharp) == only_sharp);
+      const auto only_delta = hn::Set(du, static_cast<Id>(kOnlyDeltaBit));
+      guided = hn::RebindMask(d, hn::And(history, only_delta) == only_delta);
       if (depth == 0) record.begin(d, active);
     }
     if (!hn::AllFalse(d, missed) && (depth > 0 || scene.background_visible)) {
@@ -267,7 +267,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       if (depth == 0)
         record.first_hit(d, hit, hits, at.surface.offset, ray.direction, kMoves ? packet.time + v : nullptr);
       if (tile.record_guides)
-        record.guide(d, hn::AndNot(is_sharp(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
+        record.guide(d, hn::AndNot(is_delta(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
       if (ends) continue;
     }
     if (scene.shading != Shading::kPath) {

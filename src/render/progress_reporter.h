@@ -16,7 +16,7 @@ namespace orrery::render {
 class ProgressReporter {
  public:
   /// `total` samples are to be done, as far as is known; `before` was done by earlier runs.
-  ProgressReporter(const Settings& settings, std::uint64_t total, const film::Effort& before = {})
+  ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before = {})
       : settings_(settings), seconds_before_(before.seconds), done_(before.paths), total_(total) {}
 
   /// Samples were done.

@@ -54,7 +54,7 @@ template <class Packet>
 double seconds_to_trace(const kernel::Tracer& tracer, std::vector<Packet>& packets) {
   const auto begin = std::chrono::steady_clock::now();
   for (Packet& packet : packets) {
-    kernel::forget_hits(packet);
+    kernel::reset_hits(packet);
     kernel::trace(tracer, packet);
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

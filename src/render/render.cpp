@@ -16,8 +16,8 @@
 #include "film/layer_film.h"
 #include "kernel/isa.h"
 #include "render/progress_reporter.h"
-#include "render/passes.h"
-#include "render/rounds.h"
+#include "render/progressive_sampling.h"
+#include "render/adaptive_sampling.h"
 #include "render/tile_pool.h"
 #include "render/tile_renderer.h"
 #include "render/traversals.h"
@@ -33,9 +33,9 @@ bool is_in_rounds(const Settings& settings) { return settings.noise > 0 || setti
 
 int threads_of(const Settings& settings) { return settings.threads > 0 ? settings.threads : available_threads(); }
 
-void count_samples(const compile::World& world, const Settings& settings, const film::Partial& state,
+void count_samples(const compile::CompiledScene& compiled, const Settings& settings, const film::Partial& state,
                    Statistics& statistics) {
-  const std::vector<bool> owned = pixels_of(settings.share, world.width, world.height);
+  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
   const std::uint64_t halves = state.has_halves() ? 2 : 1;
   statistics.fewest_samples = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t i = 0; i < owned.size(); ++i) {
@@ -47,9 +47,9 @@ void count_samples(const compile::World& world, const Settings& settings, const 
 }
 
 /// Where a render begins: nothing done.
-film::Partial fresh_state(const compile::World& world, const Settings& settings) {
-  film::Partial state(world.width, world.height);
-  if (is_in_rounds(settings)) state.second = film::Film(world.width, world.height);
+film::Partial fresh_state(const compile::CompiledScene& compiled, const Settings& settings) {
+  film::Partial state(compiled.width, compiled.height);
+  if (is_in_rounds(settings)) state.second = film::Film(compiled.width, compiled.height);
   if (settings.layers.any()) state.layers.resize(state.pixel_count());
   return state;
 }
@@ -58,82 +58,83 @@ film::Partial fresh_state(const compile::World& world, const Settings& settings)
 
 int available_threads() { return tbb::this_task_arena::max_concurrency(); }
 
-std::unique_ptr<accel::Accel> build(const compile::World& world, int threads, const accel::BuildMonitor& monitor) {
+std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int threads,
+                                    const accel::BuildMonitor& monitor) {
   std::unique_ptr<accel::Accel> accel;
   TilePool(threads).execute([&] {
-    accel = world.accelerator == compile::Accelerator::kList
-                ? accel::make_list(world.view(), world.precision)
-                : accel::make_embree(world.view(), world.precision, monitor);
+    accel = compiled.accelerator == compile::Accelerator::kList
+                ? accel::make_list(compiled.view(), compiled.precision)
+                : accel::make_embree(compiled.view(), compiled.precision, monitor);
   });
   return accel;
 }
 
-std::uint32_t samples_of(const compile::World& world, const Settings& settings) {
+std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings) {
   return settings.sample_end > 0 ? settings.sample_end - settings.sample_begin
-                                 : static_cast<std::uint32_t>(world.samples);
+                                 : static_cast<std::uint32_t>(compiled.samples);
 }
 
-Result finished(const compile::World& world, const film::LayerRequest& request, film::Partial partial) {
+Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, film::Partial partial) {
   Result result;
   result.completed = true;
   if (partial.has_halves()) partial.film.add(partial.second);
   result.picture = partial.film.picture();
-  result.picture.x = world.window_x;
-  result.picture.y = world.window_y;
-  result.picture.frame_width = world.frame_width;
-  result.picture.frame_height = world.frame_height;
-  result.picture.pixel_aspect = world.pixel_aspect;
+  result.picture.x = compiled.window_x;
+  result.picture.y = compiled.window_y;
+  result.picture.frame_width = compiled.frame_width;
+  result.picture.frame_height = compiled.frame_height;
+  result.picture.pixel_aspect = compiled.pixel_aspect;
   if (partial.layers.empty()) return result;
-  film::LayerFilm layers(request, world.view(), world.width, world.height);
+  film::LayerFilm layers(request, compiled.view(), compiled.width, compiled.height);
   for (std::size_t i = 0; i < partial.layers.size(); ++i) layers.set(i, partial.layers[i]);
   layers.move_to(result.picture);
   result.deep = layers.take_deep();
   return result;
 }
 
-Result render(const compile::World& world, accel::Accel& accel, const Settings& settings,
+Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings,
               std::optional<film::Partial> from) {
   Statistics statistics;
   statistics.threads = threads_of(settings);
   statistics.accelerator = accel.name();
 
-  film::Partial state = from ? std::move(*from) : fresh_state(world, settings);
-  const std::vector<bool> owned = pixels_of(settings.share, world.width, world.height);
+  film::Partial state = from ? std::move(*from) : fresh_state(compiled, settings);
+  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
   const auto pixels = static_cast<std::uint64_t>(std::count(owned.begin(), owned.end(), true));
-  ProgressReporter progress(settings, samples_of(world, settings) * pixels, state.effort);
-  const accel::Traversals traversals = choose_traversals(world, accel, settings.traversal);
+  ProgressReporter progress(settings, samples_of(compiled, settings) * pixels, state.work);
+  const accel::Traversals traversals = choose_traversals(compiled, accel, settings.traversal);
   accel.use(traversals);
   statistics.traversal = name_of(traversals);
   TilePool pool(statistics.threads);
-  const TileRenderer render_tile(world, accel, settings.layers);
+  const TileRenderer render_tile(compiled, accel, settings.layers);
   const bool completed = is_in_rounds(settings)
-                             ? render_in_rounds(world, settings, render_tile, pool, progress, state, statistics)
-                             : render_in_passes(world, settings, render_tile, pool, progress, state, statistics);
-  state.effort = effort_so_far(state.effort, pool, progress);
+                             ? render_adaptively(compiled, settings, render_tile, pool, progress, state, statistics)
+                             : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);
+  state.work = work_so_far(state.work, pool, progress);
   const std::int64_t target = pool.counts().target;
   statistics.isa = target != 0 ? kernel::isa_name(target) : kernel::isa_name();  // 0: there was nothing left to do
-  statistics.render_s = state.effort.seconds;
-  statistics.paths = state.effort.paths;
-  statistics.rays = state.effort.rays;
-  statistics.bad_samples = state.effort.bad_samples;
-  count_samples(world, settings, state, statistics);
+  statistics.render_s = state.work.seconds;
+  statistics.paths = state.work.paths;
+  statistics.rays = state.work.rays;
+  statistics.bad_samples = state.work.bad_samples;
+  count_samples(compiled, settings, state, statistics);
 
   const auto rendered = Clock::now();
   Result result;
   if (!completed) {
     result.partial = std::move(state);
   } else if (settings.keep_partial) {
-    result = finished(world, settings.layers, state);
+    result = finished(compiled, settings.layers, state);
     result.partial = std::move(state);
   } else {
-    result = finished(world, settings.layers, std::move(state));
+    result = finished(compiled, settings.layers, std::move(state));
   }
   statistics.finish_s = seconds_since(rendered);
   result.statistics = std::move(statistics);
   return result;
 }
 
-Result render(const compile::World& world, const Settings& settings, std::optional<film::Partial> from) {
+Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from) {
   const auto start = Clock::now();
   const accel::BuildMonitor monitor = [&settings](double fraction) {
     if (settings.on_build) settings.on_build(fraction);
@@ -141,13 +142,13 @@ Result render(const compile::World& world, const Settings& settings, std::option
   };
   std::unique_ptr<accel::Accel> accel;
   try {
-    accel = build(world, threads_of(settings), monitor);
+    accel = build(compiled, threads_of(settings), monitor);
   } catch (const base::Error& error) {
     if (error.kind() != base::ErrorKind::kStopped) throw;
     return {};
   }
   const double build_s = seconds_since(start);
-  Result result = render(world, *accel, settings, std::move(from));
+  Result result = render(compiled, *accel, settings, std::move(from));
   result.statistics.build_s = build_s;
   return result;
 }

@@ -9,12 +9,12 @@
 #include <string>
 
 #include "accel/accel.h"
-#include "compile/world.h"
+#include "compile/compiled_scene.h"
 #include "film/deep_picture.h"
 #include "film/layers.h"
 #include "film/partial.h"
 #include "film/picture.h"
-#include "render/share.h"
+#include "render/pixel_shard.h"
 
 namespace orrery::render {
 
@@ -51,7 +51,7 @@ struct Settings {
   const std::atomic<bool>* cancel = nullptr;  ///< looked at while building and between tiles; true stops the render
   /// Only these samples of each pixel, of the world's; the sums of all ranges are those of one render. end 0: all.
   std::uint32_t sample_begin = 0, sample_end = 0;
-  Share share;  ///< only these pixels
+  PixelShard shard;  ///< only these pixels
   /// Asked often, from any thread: true has the threads wait while `on_snapshot` gets what there is so far.
   std::function<bool()> snapshot_is_due;
   std::function<void(const film::Partial&)> on_snapshot;
@@ -94,13 +94,14 @@ int available_threads();
 ///
 /// Domain     the world's spheres outlive the result
 /// Errors     base::Error(kInternal) where it cannot be built, kStopped where the monitor said so
-std::unique_ptr<accel::Accel> build(const compile::World& world, int threads, const accel::BuildMonitor& monitor = {});
+std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int threads,
+                                    const accel::BuildMonitor& monitor = {});
 
 /// Renders a whole picture with hits of an `accel` that was built for this world's spheres and precision.
 ///
 /// `from`     a partial of this world and these settings, to go on from; none: from the beginning
 /// Result     completed == false where `cancel` stopped it; build_s is 0
-Result render(const compile::World& world, accel::Accel& accel, const Settings& settings,
+Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings,
               std::optional<film::Partial> from = {});
 
 /// Builds, and renders a whole picture.
@@ -110,12 +111,12 @@ Result render(const compile::World& world, accel::Accel& accel, const Settings& 
 ///
 /// Result     completed == false where `cancel` stopped it
 /// Errors     base::Error(kInternal) where the acceleration structure cannot be built
-Result render(const compile::World& world, const Settings& settings, std::optional<film::Partial> from = {});
+Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from = {});
 
 /// Samples of a pixel that the settings ask for.
-std::uint32_t samples_of(const compile::World& world, const Settings& settings);
+std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings);
 
 /// The picture that a partial comes to as it is, where a pixel without samples is black.
-Result finished(const compile::World& world, const film::LayerRequest& layers, film::Partial partial);
+Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, film::Partial partial);
 
 }  // namespace orrery::render

@@ -27,16 +27,17 @@ class DefaultRounding {
 
 }  // namespace
 
-TileRenderer::TileRenderer(const compile::World& world, const accel::Accel& accel, const film::LayerRequest& request)
-    : view_(world.view()), tracer_(accel.tracer()), request_(request), width_(world.width) {
+TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel,
+                           const film::LayerRequest& request)
+    : view_(compiled.view()), tracer_(accel.tracer()), request_(request), width_(compiled.width) {
   const bool layers = request.any();
   if (request.coverage) view_.background_visible = false;
-  if (world.precision == compile::Precision::kFast) {
+  if (compiled.precision == compile::Precision::kFast) {
     render_fast_ =
         layers ? kernel::record_tile_fast_function(view_.features) : kernel::render_tile_fast_function(view_.features);
   } else {
-    render_ = layers ? kernel::record_tile_function(view_.features, world.precision)
-                     : kernel::render_tile_function(view_.features, world.precision);
+    render_ = layers ? kernel::record_tile_function(view_.features, compiled.precision)
+                     : kernel::render_tile_function(view_.features, compiled.precision);
   }
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "accel/accel.h"
-#include "compile/world.h"
+#include "compile/compiled_scene.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "kernel/render_tile.h"
@@ -24,7 +24,7 @@ struct TileWorker {
 class TileRenderer {
  public:
   /// Domain     all arguments outlive this
-  TileRenderer(const compile::World& world, const accel::Accel& accel, const film::LayerRequest& request);
+  TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const film::LayerRequest& request);
 
   /// `layers`   of the picture, row by row; null where the request is empty
   void operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const;

@@ -22,19 +22,19 @@ constexpr std::size_t kManySpheres = 1000;
 
 /// Tiles all over the picture, the same ones in every run. Each is one stream of paths: fewer would leave bounced
 /// packets emptier than they are in a render. As in a render, a packet of camera rays holds as many pixels as it needs.
-std::vector<kernel::Tile> trial_tiles(const compile::World& world) {
-  const double paths = static_cast<double>(world.width) * world.height * world.samples;
+std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
+  const double paths = static_cast<double>(compiled.width) * compiled.height * compiled.samples;
   const int count = static_cast<int>(std::min(paths * kTrialShare, kMostTrialPaths) / kernel::kStreamSize);
-  const int samples = std::min(world.samples, kernel::kPacketSize);
-  const int width = std::min(kernel::kStreamSize / samples, world.width);
+  const int samples = std::min(compiled.samples, kernel::kPacketSize);
+  const int width = std::min(kernel::kStreamSize / samples, compiled.width);
   std::vector<kernel::Tile> tiles;
   if (count < kFewestTrialTiles) return tiles;
   for (int i = 0; i < count; ++i) {
     kernel::Tile tile;
     // Down the picture in even steps, across it by the golden ratio's fraction, which never comes near itself.
     const double across = 0.6180339887498949 * i;
-    tile.x = static_cast<int>((across - static_cast<int>(across)) * (world.width - width + 1));
-    tile.y = static_cast<int>((i + 0.5) / count * world.height);
+    tile.x = static_cast<int>((across - static_cast<int>(across)) * (compiled.width - width + 1));
+    tile.y = static_cast<int>((i + 0.5) / count * compiled.height);
     tile.width = width;
     tile.height = 1;
     tile.sample_end = static_cast<std::uint32_t>(samples);
@@ -60,8 +60,8 @@ accel::Traversals quicker(accel::Accel& accel, RecordedRays<Packet> rays) {
   return {quicker(accel, rays.camera), quicker(accel, rays.bounced)};
 }
 
-accel::Traversals unmeasured(const compile::World& world) {
-  const bool many = world.spheres.size() >= kManySpheres;
+accel::Traversals unmeasured(const compile::CompiledScene& compiled) {
+  const bool many = compiled.spheres.size() >= kManySpheres;
   return {accel::Traversal::kPacket, many ? accel::Traversal::kSingle : accel::Traversal::kPacket};
 }
 
@@ -69,22 +69,22 @@ const char* name_of(accel::Traversal traversal) { return traversal == accel::Tra
 
 }  // namespace
 
-accel::Traversals choose_traversals(const compile::World& world, accel::Accel& accel, Traversal wanted) {
+accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel, Traversal wanted) {
   if (wanted == Traversal::kPacket) return {accel::Traversal::kPacket, accel::Traversal::kPacket};
   if (wanted == Traversal::kSingle) return {accel::Traversal::kSingle, accel::Traversal::kSingle};
-  if (world.accelerator == compile::Accelerator::kList) return unmeasured(world);
-  const std::vector<kernel::Tile> tiles = trial_tiles(world);
-  if (tiles.empty()) return unmeasured(world);
-  accel.use(unmeasured(world));
-  return world.precision == compile::Precision::kFast
-             ? quicker(accel, record_rays_fast(world.view(), accel, tiles))
-             : quicker(accel, record_rays(world.view(), accel, world.precision, tiles));
+  if (compiled.accelerator == compile::Accelerator::kList) return unmeasured(compiled);
+  const std::vector<kernel::Tile> tiles = trial_tiles(compiled);
+  if (tiles.empty()) return unmeasured(compiled);
+  accel.use(unmeasured(compiled));
+  return compiled.precision == compile::Precision::kFast
+             ? quicker(accel, record_rays_fast(compiled.view(), accel, tiles))
+             : quicker(accel, record_rays(compiled.view(), accel, compiled.precision, tiles));
 }
 
-std::string planned_traversal(const compile::World& world) {
-  if (world.accelerator == compile::Accelerator::kList || world.spheres.empty()) return "list";
-  return trial_tiles(world).empty() ? name_of(unmeasured(world))
-                                    : "packet or single, chosen by a trial of the scene's rays";
+std::string planned_traversal(const compile::CompiledScene& compiled) {
+  if (compiled.accelerator == compile::Accelerator::kList || compiled.spheres.empty()) return "list";
+  return trial_tiles(compiled).empty() ? name_of(unmeasured(compiled))
+                                       : "packet or single, chosen by a trial of the scene's rays";
 }
 
 std::string name_of(accel::Traversals traversals) {

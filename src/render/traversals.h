@@ -4,7 +4,7 @@
 #include <string>
 
 #include "accel/accel.h"
-#include "compile/world.h"
+#include "compile/compiled_scene.h"
 #include "render/render.h"
 
 namespace orrery::render {
@@ -14,10 +14,10 @@ namespace orrery::render {
 /// With kAuto some thousandths of the picture's paths are rendered, and their rays traced both ways against the clock;
 /// where the picture has too few paths for that to pay, the number of spheres decides. Hits do not depend on the
 /// choice, so neither does the picture.
-accel::Traversals choose_traversals(const compile::World& world, accel::Accel& accel, Traversal wanted);
+accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel, Traversal wanted);
 
 /// What can be said before anything is built: "packet" and the like, "list", or that a trial will choose.
-std::string planned_traversal(const compile::World& world);
+std::string planned_traversal(const compile::CompiledScene& compiled);
 
 /// "packet", "single", "packet, bounced single".
 std::string name_of(accel::Traversals traversals);

@@ -13,7 +13,7 @@
 namespace orrery::scene {
 
 /// What people read about a key.
-struct About {
+struct KeyDoc {
   const char* unit;
   const char* doc;
   const char* cost = "";
@@ -21,7 +21,7 @@ struct About {
 
 /// A key for the member that `at` finds in its target; `at` changes nothing, it only gives a reference.
 template <class Target, class At, class Text>
-Key<Target> key_of(const char* name, ValueType type, Range range, const About& about, At at, Text text) {
+Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& about, At at, Text text) {
   return {name,
           type,
           range,
@@ -43,24 +43,24 @@ Key<Target> key_of(const char* name, ValueType type, Range range, const About& a
           [at, text](const Target& t) { return text(at(const_cast<Target&>(t))); }};
 }
 template <class Target, class At>
-Key<Target> integer(const char* name, Range range, const About& about, At at) {
+Key<Target> integer(const char* name, Range range, const KeyDoc& about, At at) {
   return key_of<Target>(name, ValueType::kInteger, range, about, at, [](auto x) { return std::to_string(x); });
 }
 template <class Target, class At>
-Key<Target> number(const char* name, Range range, const About& about, At at) {
+Key<Target> number(const char* name, Range range, const KeyDoc& about, At at) {
   return key_of<Target>(name, ValueType::kNumber, range, about, at, number_text);
 }
 template <class Target, class At>
-Key<Target> vector(const char* name, Range range, const About& about, At at) {
+Key<Target> vector(const char* name, Range range, const KeyDoc& about, At at) {
   return key_of<Target>(name, ValueType::kVector, range, about, at, vector_text);
 }
 template <class Target, class At>
-Key<Target> text(const char* name, const About& about, At at) {
+Key<Target> text(const char* name, const KeyDoc& about, At at) {
   return key_of<Target>(name, ValueType::kText, {}, about, at, string_text);
 }
 /// A number that may be left out, and then is what `otherwise` says.
 template <class Target, class At>
-Key<Target> optional_number(const char* name, Range range, const About& about, const char* otherwise, At at) {
+Key<Target> optional_number(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
   return {name,
           ValueType::kNumber,
           range,
@@ -77,7 +77,7 @@ Key<Target> optional_number(const char* name, Range range, const About& about, c
 }
 /// Choices stand in the order of the enumerators.
 template <class Target, class At>
-Key<Target> choice(const char* name, std::vector<std::string> choices, const About& about, At at) {
+Key<Target> choice(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
   return {name,
           ValueType::kChoice,
           {},
@@ -97,7 +97,7 @@ Key<Target> choice(const char* name, std::vector<std::string> choices, const Abo
 }
 /// A rectangle that may be left out, and then is what `otherwise` says.
 template <class Target, class At>
-Key<Target> optional_window(const char* name, const About& about, const char* otherwise, At at) {
+Key<Target> optional_window(const char* name, const KeyDoc& about, const char* otherwise, At at) {
   Key<Target> key;
   key.name = name;
   key.type = ValueType::kWindow;
@@ -115,7 +115,7 @@ Key<Target> optional_window(const char* name, const About& about, const char* ot
 }
 /// Some of the choices, in any order.
 template <class Target, class At>
-Key<Target> choices(const char* name, std::vector<std::string> choices, const About& about, At at) {
+Key<Target> choices(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
   Key<Target> key = key_of<Target>(name, ValueType::kChoices, {}, about, at, list_text);
   key.choices = std::move(choices);
   return key;

@@ -28,7 +28,7 @@ inline constexpr double kBrightestBackground = 1e6;
 inline constexpr int kWidestOverscan = 4096;
 
 /// More stops than any scene has: 2^100 would only be infinity by another name.
-inline constexpr double kMostStops = 100;
+inline constexpr double kMaxStops = 100;
 
 /// A wider filter is a blur, px.
 inline constexpr double kWidestFilter = 32;

@@ -155,7 +155,7 @@ Table output_table() {
 
 std::vector<MaterialType> make_material_types() {
   using M = MaterialModel;
-  const About albedo{"scene-linear", "share of the light that is scattered, by colour"};
+  const KeyDoc albedo{"scene-linear", "share of the light that is scattered, by colour"};
   return {
       {"lambertian",
        "diffuse: light leaves by the cosine law",
@@ -219,7 +219,7 @@ const std::vector<Table>& tables() {
         text<S>("view", {"", "view of that display; default: the display's"},
                 [](S& s) -> std::string& { return s.color.view; }),
         text<S>("look", {"", "look to apply before the view"}, [](S& s) -> std::string& { return s.color.look; }),
-        number<S>("exposure", {-kMostStops, kMostStops},
+        number<S>("exposure", {-kMaxStops, kMaxStops},
                   {"stops", "to brighten what a display shows; an EXR stays as it is"},
                   [](S& s) -> double& { return s.color.exposure; })}},
       output_table(),

@@ -22,10 +22,10 @@ class Problems {
   void warning(std::string key, std::string text) {
     list_.push_back({base::Severity::kWarning, std::move(key), std::move(text), base::ErrorKind::kBadData});
   }
-  std::vector<Problem> take() { return std::move(list_); }
+  std::vector<SceneDiagnostic> take() { return std::move(list_); }
 
  private:
-  std::vector<Problem> list_;
+  std::vector<SceneDiagnostic> list_;
 };
 
 std::string length_range() { return number_text(kSmallestRadius) + ".." + number_text(kLargestLength); }
@@ -36,61 +36,62 @@ bool in_domain(Vec3d c) {
 }
 bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
 
-void check_image(const Image& image, Problems& problems) {
+void check_image(const Image& image, Problems& diagnostics) {
   if (image.crop) {
     const Window& w = *image.crop;
     if (w.width < 1 || w.height < 1 || w.x < 0 || w.y < 0 || w.width > image.width - w.x ||
         w.height > image.height - w.y)
-      problems.error("image.crop", "is not a part of the frame, which is " + std::to_string(image.width) + " x " +
-                                       std::to_string(image.height) + "; it is [x, y, width, height]");
-    if (image.overscan > 0) problems.error("image.overscan", "there is a crop already; leave one of them out");
+      diagnostics.error("image.crop", "is not a part of the frame, which is " + std::to_string(image.width) + " x " +
+                                          std::to_string(image.height) + "; it is [x, y, width, height]");
+    if (image.overscan > 0) diagnostics.error("image.overscan", "there is a crop already; leave one of them out");
   }
   const Window all = image.data_window();
   if (all.width > kLargestSide || all.height > kLargestSide)
-    problems.error("image.overscan", "the frame and its overscan have more than " + std::to_string(kLargestSide) +
-                                         " pixels along a side");
+    diagnostics.error("image.overscan", "the frame and its overscan have more than " + std::to_string(kLargestSide) +
+                                            " pixels along a side");
 }
 
-void check_camera(const Camera& camera, Problems& problems) {
+void check_camera(const Camera& camera, Problems& diagnostics) {
   bool usable = true;
   for (const auto& [name, v] :
        {std::pair{"look_from", camera.look_from}, {"look_at", camera.look_at}, {"up", camera.up}}) {
     if (in_domain(v)) continue;
-    problems.error(std::string("camera.") + name,
-                   vector_text(v) + " is not finite or beyond " + number_text(kLargestLength));
+    diagnostics.error(std::string("camera.") + name,
+                      vector_text(v) + " is not finite or beyond " + number_text(kLargestLength));
     usable = false;
   }
   if (!usable) return;  // what they make together would be a finding too many
   const Vec3d view = camera.look_at - camera.look_from;
   if (!has_direction(view)) {
-    problems.error("camera.look_at", view == Vec3d{}
-                                         ? "look_at is the same point as look_from, so the camera has no direction"
-                                         : "look_at is closer to look_from than " + number_text(kSmallestRadius) +
-                                               ", so the camera has no direction");
+    diagnostics.error("camera.look_at", view == Vec3d{}
+                                            ? "look_at is the same point as look_from, so the camera has no direction"
+                                            : "look_at is closer to look_from than " + number_text(kSmallestRadius) +
+                                                  ", so the camera has no direction");
   } else if (!has_direction(camera.up)) {
-    problems.error("camera.up", camera.up == Vec3d{} ? "up is zero; any direction that is not the view's will do"
-                                                     : "up is shorter than " + number_text(kSmallestRadius) +
-                                                           "; any direction that is not the view's will do");
+    diagnostics.error("camera.up", camera.up == Vec3d{} ? "up is zero; any direction that is not the view's will do"
+                                                        : "up is shorter than " + number_text(kSmallestRadius) +
+                                                              "; any direction that is not the view's will do");
   } else if (math::length(math::cross(math::normalized(view), math::normalized(camera.up))) < kSmallestUpSine) {
-    problems.error("camera.up", "up is parallel to the view, so the picture has no upright; choose another direction");
+    diagnostics.error("camera.up",
+                      "up is parallel to the view, so the picture has no upright; choose another direction");
   }
 }
 
-void check_shutter(const Camera& camera, Problems& problems) {
+void check_shutter(const Camera& camera, Problems& diagnostics) {
   if (camera.shutter_close < camera.shutter_open)
-    problems.error("camera.shutter_close", "the shutter closes at " + number_text(camera.shutter_close) +
-                                               ", before it opens at " + number_text(camera.shutter_open));
+    diagnostics.error("camera.shutter_close", "the shutter closes at " + number_text(camera.shutter_close) +
+                                                  ", before it opens at " + number_text(camera.shutter_open));
 }
 
 /// Where the rays start is a coordinate like any other.
-void check_lens(const Camera& camera, Problems& problems) {
+void check_lens(const Camera& camera, Problems& diagnostics) {
   if (!(camera.defocus_angle > 0)) return;
   const double focus = camera.focus_distance.value_or(math::length(camera.look_at - camera.look_from));
   const double radius = std::tan(camera.defocus_angle / 360 * std::numbers::pi) * focus;
   if (radius <= kLargestLength) return;
-  problems.error("camera.defocus_angle", "the lens would have a radius of " + number_text(radius) +
-                                             "; allowed is up to " + number_text(kLargestLength) +
-                                             ": choose a smaller angle or focus_distance");
+  diagnostics.error("camera.defocus_angle", "the lens would have a radius of " + number_text(radius) +
+                                                "; allowed is up to " + number_text(kLargestLength) +
+                                                ": choose a smaller angle or focus_distance");
 }
 
 /// What is wrong with a radius by itself; empty where nothing is.
@@ -117,70 +118,72 @@ void check_sphere(Vec3d center, double radius, std::uint32_t material, const Sce
   if (const std::string fault = material_fault(material, scene); !fault.empty()) tell(".material", fault);
 }
 
-void check_spheres(const Scene& scene, Problems& problems) {
+void check_spheres(const Scene& scene, Problems& diagnostics) {
   for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
     check_sphere(s.center, s.radius, s.material, scene, [&](const char* part, std::string text) {
-      problems.error("sphere[" + std::to_string(i) + "]" + part, std::move(text));
+      diagnostics.error("sphere[" + std::to_string(i) + "]" + part, std::move(text));
     });
   }
 }
 
-void check_points(const Points& points, const std::string& key, const Scene& scene, Problems& problems) {
+void check_points(const Points& points, const std::string& key, const Scene& scene, Problems& diagnostics) {
   if (points.radii.size() != points.centers.size() ||
       (!points.materials.empty() && points.materials.size() != points.centers.size())) {
-    problems.error(key, "has " + std::to_string(points.centers.size()) + " centres, " +
-                            std::to_string(points.radii.size()) + " radii and " +
-                            std::to_string(points.materials.size()) + " materials");
+    diagnostics.error(key, "has " + std::to_string(points.centers.size()) + " centres, " +
+                               std::to_string(points.radii.size()) + " radii and " +
+                               std::to_string(points.materials.size()) + " materials");
     return;
   }
   if (points.materials.empty())
     if (const std::string fault = material_fault(points.material, scene); !fault.empty())
-      problems.error(key + ".material", fault);
+      diagnostics.error(key + ".material", fault);
   std::size_t faults = 0;
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
     const std::uint32_t material = points.materials.empty() ? 0 : points.materials[i];
     check_sphere(points.centers[i], points.radii[i], material, scene, [&](const std::string& part, std::string text) {
       if (points.materials.empty() && part == ".material") return;  // told above, once
-      if (++faults <= kMostTold) problems.error(key + "[" + std::to_string(i) + "]" + part, std::move(text));
+      if (++faults <= kMaxReported) diagnostics.error(key + "[" + std::to_string(i) + "]" + part, std::move(text));
     });
   }
-  if (faults > kMostTold)
-    problems.error(key, "and " + std::to_string(faults - kMostTold) + " more (" + std::to_string(faults) + " in all)");
+  if (faults > kMaxReported)
+    diagnostics.error(key,
+                      "and " + std::to_string(faults - kMaxReported) + " more (" + std::to_string(faults) + " in all)");
 }
 
-void check_layers(const Scene& scene, Problems& problems) {
+void check_layers(const Scene& scene, Problems& diagnostics) {
   for (std::size_t i = 0; i < scene.output.layers.size(); ++i)
     if (const std::string fault = layer_fault(scene, scene.output.layers[i]); !fault.empty())
-      problems.error("output.layers[" + std::to_string(i) + "]", fault);
+      diagnostics.error("output.layers[" + std::to_string(i) + "]", fault);
 }
 
 /// Two surfaces in exactly the same place: their order alone decides which of them is rendered.
-void check_coincident(const Scene& scene, const Scene* closing, Problems& problems) {
+void check_coincident(const Scene& scene, const Scene* closing, Problems& diagnostics) {
   for (const Points& p : scene.points)
     if (p.radii.size() != p.centers.size()) return;  // told above, and not to be walked through
-  const Coincidents found = coincident_spheres(scene, kMostTold, closing);
+  const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
   for (const Coincident& c : found.told)
-    problems.warning(c.key, "has exactly the same place and size as " + c.first + "; rays meet the first of them only");
-  if (found.count > kMostTold)
-    problems.warning("", "and " + std::to_string(found.count - kMostTold) + " more spheres in the place of another (" +
-                             std::to_string(found.count) + " in all)");
+    diagnostics.warning(c.key,
+                        "has exactly the same place and size as " + c.first + "; rays meet the first of them only");
+  if (found.count > kMaxReported)
+    diagnostics.warning("", "and " + std::to_string(found.count - kMaxReported) +
+                                " more spheres in the place of another (" + std::to_string(found.count) + " in all)");
 }
 
 }  // namespace
 
-std::vector<Problem> validate(const Scene& scene, const Scene* closing) {
-  Problems problems;
-  check_image(scene.image, problems);
-  check_camera(scene.camera, problems);
-  check_lens(scene.camera, problems);
-  check_shutter(scene.camera, problems);
-  check_spheres(scene, problems);
+std::vector<SceneDiagnostic> validate(const Scene& scene, const Scene* closing) {
+  Problems diagnostics;
+  check_image(scene.image, diagnostics);
+  check_camera(scene.camera, diagnostics);
+  check_lens(scene.camera, diagnostics);
+  check_shutter(scene.camera, diagnostics);
+  check_spheres(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p)
-    check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, problems);
-  check_layers(scene, problems);
-  check_coincident(scene, closing, problems);
-  return problems.take();
+    check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, diagnostics);
+  check_layers(scene, diagnostics);
+  check_coincident(scene, closing, diagnostics);
+  return diagnostics.take();
 }
 
 }  // namespace orrery::scene

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::test {
 
@@ -64,7 +64,7 @@ radius = 0.5
 material = "grey"
 )";
 
-  support::ScratchFolder scratch_;
+  support::TempDir scratch_;
   const std::filesystem::path folder_ = scratch_.path();
 };
 

@@ -24,11 +24,11 @@ void write(const std::filesystem::path& file, const std::string& bytes) {
 /// An error must be one that a user can act on, and be fit to be printed.
 std::string fault_with_error(const base::Error& error, bool needs_findings) {
   if (error.kind() != base::ErrorKind::kBadData) return "not bad data: " + std::string(error.what());
-  if (needs_findings && error.findings().empty()) return "bad data without a finding";
-  for (const base::Finding& finding : error.findings()) {
-    const std::string text = base::formatted(finding);
-    if (finding.file.empty()) return "a finding without a file: " + text;
-    if (finding.text.empty()) return "a finding without a text: " + text;
+  if (needs_findings && error.diagnostics().empty()) return "bad data without a finding";
+  for (const base::Diagnostic& diagnostic : error.diagnostics()) {
+    const std::string text = base::formatted(diagnostic);
+    if (diagnostic.file.empty()) return "a finding without a file: " + text;
+    if (diagnostic.text.empty()) return "a finding without a text: " + text;
     const auto is_control = [](char c) { return c >= 0 && c < ' ' && c != '\n' && c != '\t'; };
     if (std::any_of(text.begin(), text.end(), is_control)) return "a finding with control characters";
   }
@@ -36,8 +36,9 @@ std::string fault_with_error(const base::Error& error, bool needs_findings) {
 }
 
 std::string fault_with_result(const format::ReadResult& read) {
-  for (const scene::Problem& problem : scene::validate(read.scene))
-    if (problem.severity == base::Severity::kError) return "accepted in spite of " + problem.key + ": " + problem.text;
+  for (const scene::SceneDiagnostic& diagnostic : scene::validate(read.scene))
+    if (diagnostic.severity == base::Severity::kError)
+      return "accepted in spite of " + diagnostic.key + ": " + diagnostic.text;
   if (read.settings.empty()) return "no settings";
   return {};
 }
@@ -67,7 +68,7 @@ std::string fault_with(const std::filesystem::path& folder, const std::filesyste
     return fault_with_round_trip(folder, read.scene);
   } catch (const base::Error& error) {
     return "what was written is refused: " +
-           (error.findings().empty() ? std::string(error.what()) : base::formatted(error.findings()[0]));
+           (error.diagnostics().empty() ? std::string(error.what()) : base::formatted(error.diagnostics()[0]));
   }
 }
 

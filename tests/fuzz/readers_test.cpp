@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fuzz/mutator.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::fuzz {
 namespace {
@@ -94,7 +94,7 @@ std::vector<std::string> ply_words() {
 }
 
 void expect_no_fault(Fault fault, const std::string& bytes, const std::string& what) {
-  static const support::ScratchFolder folder;
+  static const support::TempDir folder;
   const std::string told = fault(folder.path(), bytes);
   EXPECT_EQ(told, "") << what << ", " << bytes.size() << " bytes:\n" << bytes.substr(0, 2000);
 }
@@ -111,7 +111,7 @@ void expect_no_fault_with_noise(Fault fault, std::uint64_t seed, int count, cons
 }
 
 TEST(FuzzReaders, SeedsAreGood) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   for (const std::string& seed : seeds_of(corpus() / "scene")) EXPECT_EQ(fault_with_scene(folder.path(), seed), "");
   for (const std::string& seed : seeds_of(corpus() / "ply")) EXPECT_EQ(fault_with_ply(folder.path(), seed), "");
   for (const std::string& seed : seeds_of(corpus() / "override"))
@@ -164,7 +164,7 @@ TEST(FuzzReaders, LettersOutsideOfStrings) {
 
 // The checks themselves must be able to fail.
 TEST(FuzzReaders, AFaultIsFound) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   EXPECT_EQ(
       fault_with_scene(folder.path() / "none", ""),
       "not bad data: cannot open " + (folder.path() / "none" / "scene.toml").string() + ": No such file or directory");

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/generate_files.h"
+#include "generate/generate_files.h"
 #include "base/error.h"
 #include "format/read_scene.h"
 
@@ -39,7 +39,7 @@ TEST(ImageBookFiles, EverySceneReadsWithoutFindings) {
       EXPECT_TRUE(format::read_scene(file).warnings.empty()) << file;
     } catch (const base::Error& error) {
       ADD_FAILURE() << error.what();
-      for (const base::Finding& finding : error.findings()) ADD_FAILURE() << base::formatted(finding);
+      for (const base::Diagnostic& diagnostic : error.diagnostics()) ADD_FAILURE() << base::formatted(diagnostic);
     }
   }
 }
@@ -67,7 +67,7 @@ TEST(ImageBookFiles, EverySceneIsShownInTheReadme) {
 TEST(ImageBookFiles, FinalIsWhatGenerateWrites) {
   const fs::path folder = fs::path(testing::TempDir()) / "orrery-book-files";
   fs::create_directories(folder);
-  app::generate_final({}, folder / "final.toml");
+  generate::generate_final({}, folder / "final.toml");
   EXPECT_TRUE(text_of(folder / "final.toml") == text_of(kScenes / "book/final.toml"))
       << "write it anew: orrery generate final -o scenes/book/final.toml";
   fs::remove_all(folder);

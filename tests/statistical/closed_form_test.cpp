@@ -34,10 +34,10 @@ scene::Scene diffuse_sphere(double albedo_factor) {
 
 /// What one channel of one pixel should be: the sky is linear in y, so its cosine-weighted mean over the hemisphere
 /// around n is the sky at height 2/3 n.y. Averaged over the pixel's area.
-double expected(const compile::World& world, int px, int py, int channel) {
+double expected(const compile::CompiledScene& compiled, int px, int py, int channel) {
   constexpr int kGrid = 4;
   double sum = 0;
-  const kernel::Camera& c = world.camera;
+  const kernel::Camera& c = compiled.camera;
   for (int i = 0; i < kGrid * kGrid; ++i) {
     const double x = px + (i % kGrid + 0.5) / kGrid - c.half_width, y = py + (i / kGrid + 0.5) / kGrid - c.half_height;
     double o[3], d[3], dd = 0, od = 0, oo = 0;
@@ -53,7 +53,7 @@ double expected(const compile::World& world, int px, int py, int channel) {
     const double t = (-od - std::sqrt(od * od - dd * (oo - 1))) / dd;
     const double normal_y = o[1] + t * d[1];
     const double a = (2.0 / 3.0 * normal_y + 1) / 2;
-    sum += kAlbedo[channel] * (world.background.bottom[channel] * (1 - a) + world.background.top[channel] * a);
+    sum += kAlbedo[channel] * (compiled.background.bottom[channel] * (1 - a) + compiled.background.top[channel] * a);
   }
   return sum / (kGrid * kGrid);
 }
@@ -63,13 +63,13 @@ std::vector<double> z_scores(double albedo_factor) {
   constexpr int kTiles = 4;
   constexpr int kSums = 2 + kTiles * kTiles;  // all, all weighted by height, each tile
   std::vector<std::vector<double>> sums(kSums, std::vector<double>(kSeeds, 0.0));
-  const compile::World world = compile::compile(diffuse_sphere(albedo_factor));
+  const compile::CompiledScene compiled = compile::compile(diffuse_sphere(albedo_factor));
   std::vector<double> truth;
   for (int c = 0; c < 3; ++c)
     for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) truth.push_back(expected(world, x, y, c));
+      for (int x = 0; x < kSide; ++x) truth.push_back(expected(compiled, x, y, c));
   for (int seed = 0; seed < kSeeds; ++seed) {
-    compile::World seeded = world;
+    compile::CompiledScene seeded = compiled;
     seeded.sampler.seed = static_cast<std::uint32_t>(seed + 1);
     const render::Result result = render::render(seeded, {});
     std::size_t i = 0;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/finding.h"
+#include "base/diagnostic.h"
 #include "format/read_scene.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::support {
 
@@ -29,11 +29,11 @@ class SceneFiles {
   }
 
   /// All findings as the user reads them, without the folder; what the reader warns of where there is no error.
-  std::string findings(const std::string& text, const std::vector<format::Override>& overrides = {}) {
+  std::string diagnostics(const std::string& text, const std::vector<format::Override>& overrides = {}) {
     add("scene.toml", text);
     try {
       std::string out;
-      for (const base::Finding& f : format::read_scene(folder_ / "scene.toml", overrides).warnings)
+      for (const base::Diagnostic& f : format::read_scene(folder_ / "scene.toml", overrides).warnings)
         out += base::formatted(f);
       return without_folder(out);
     } catch (const base::Error& error) {
@@ -42,11 +42,11 @@ class SceneFiles {
     }
   }
 
-  const ScratchFolder& folder() const { return folder_; }
+  const TempDir& folder() const { return folder_; }
 
   std::string told(const base::Error& error) const {
     std::string out;
-    for (const base::Finding& f : error.findings()) out += base::formatted(f);
+    for (const base::Diagnostic& f : error.diagnostics()) out += base::formatted(f);
     return without_folder(out.empty() ? error.what() : out);
   }
 
@@ -57,7 +57,7 @@ class SceneFiles {
     return text;
   }
 
-  ScratchFolder folder_;
+  TempDir folder_;
 };
 
 }  // namespace orrery::support

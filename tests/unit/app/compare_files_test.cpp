@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "image/read.h"
 #include "image/write.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::app {
 namespace {
@@ -155,7 +155,7 @@ TEST(AppCompareFiles, WhatCannotBeComparedIsRefused) {
 }
 
 TEST(AppCompareFiles, LightIsNotComparedToWhatADisplayShows) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   image::write_exr(folder / "a.exr", grey(4, 4, 0.5f), {}, {});
   image::write_encoded(folder / "a.png", {4, 4, 8, true, std::vector<std::uint16_t>(48, 128)}, "");
   try {
@@ -187,7 +187,7 @@ TEST(AppCompareFiles, JsonHasNoInfinity) {
 }
 
 TEST(AppCompareFiles, DifferencesAreWrittenAsPictures) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   film::Picture a = grey(2, 1, 0.5f);
   a.planes[2].values[1] = 0.25f;
   image::ExrOptions exact;

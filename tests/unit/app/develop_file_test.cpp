@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "image/read.h"
 #include "image/write.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::app {
 namespace {
@@ -34,7 +34,7 @@ class AppDevelopFile : public testing::Test {
     return base::ErrorKind::kInternal;
   }
 
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
   Development development_;
 };
 

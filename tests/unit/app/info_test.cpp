@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::app {
 namespace {
@@ -45,7 +45,7 @@ class AppInfo : public testing::Test {
  protected:
   SceneInfo info(const std::string& scene, const std::vector<format::Override>& overrides = {}) {
     support::write_bytes(folder_ / "scene.toml", scene);
-    SceneRequest request;
+    job::SceneRequest request;
     request.file = folder_ / "scene.toml";
     request.overrides = overrides;
     return scene_info(request);
@@ -57,7 +57,7 @@ class AppInfo : public testing::Test {
     return false;
   }
 
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
 };
 
 TEST_F(AppInfo, TellsWhatTheSceneIs) {

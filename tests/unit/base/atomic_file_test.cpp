@@ -11,13 +11,13 @@
 #include <stdexcept>
 
 #include "base/error.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::base {
 namespace {
 
 using support::file_bytes;
-using support::ScratchFolder;
+using support::TempDir;
 using support::write_bytes;
 
 /// The error that `act` throws; fails the test where there is none.
@@ -33,7 +33,7 @@ Error error_of(Act act) {
 }
 
 TEST(BaseAtomicFile, AppearsWholeOnCommitAndNotBefore) {
-  const ScratchFolder folder;
+  const TempDir folder;
   write_bytes(folder / "a.txt", "old");
   {
     AtomicFile file(folder / "a.txt");
@@ -48,13 +48,13 @@ TEST(BaseAtomicFile, AppearsWholeOnCommitAndNotBefore) {
 }
 
 TEST(BaseAtomicFile, LeavesNothingWithoutCommit) {
-  const ScratchFolder folder;
+  const TempDir folder;
   { AtomicFile file(folder / "a.txt"); }
   EXPECT_EQ(folder.count(), 0u);
 }
 
 TEST(BaseAtomicFile, LeavesNothingWhenAnExceptionPasses) {
-  const ScratchFolder folder;
+  const TempDir folder;
   EXPECT_THROW(
       {
         AtomicFile file(folder / "a.txt");
@@ -66,7 +66,7 @@ TEST(BaseAtomicFile, LeavesNothingWhenAnExceptionPasses) {
 }
 
 TEST(BaseAtomicFile, IsAsReadableAsTheUmaskSays) {
-  const ScratchFolder folder;
+  const TempDir folder;
   const mode_t before = ::umask(0027);
   write_text_file(folder / "a.txt", "x");
   ::umask(before);
@@ -76,7 +76,7 @@ TEST(BaseAtomicFile, IsAsReadableAsTheUmaskSays) {
 }
 
 TEST(BaseAtomicFile, FolderThatIsNotThereIsNamed) {
-  const ScratchFolder folder;
+  const TempDir folder;
   const Error error = error_of([&] { AtomicFile file(folder / "none" / "a.txt"); });
   EXPECT_EQ(error.kind(), ErrorKind::kCannotCreate);
   EXPECT_NE(std::string(error.what()).find("there is no directory " + (folder / "none").string()), std::string::npos)
@@ -84,14 +84,14 @@ TEST(BaseAtomicFile, FolderThatIsNotThereIsNamed) {
 }
 
 TEST(BaseAtomicFile, ADirectoryIsNotReplaced) {
-  const ScratchFolder folder;
+  const TempDir folder;
   std::filesystem::create_directory(folder / "a");
   EXPECT_EQ(error_of([&] { AtomicFile file(folder / "a"); }).kind(), ErrorKind::kCannotCreate);
   EXPECT_EQ(error_of([&] { AtomicFile file((folder / "a").string() + "/"); }).kind(), ErrorKind::kCannotCreate);
 }
 
 TEST(BaseAtomicFile, APipeOrDeviceIsNotReplaced) {
-  const ScratchFolder folder;
+  const TempDir folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(error_of([&] { AtomicFile file(folder / "pipe"); }).kind(), ErrorKind::kCannotCreate);
   EXPECT_EQ(error_of([&] { check_creatable(folder / "pipe"); }).kind(), ErrorKind::kCannotCreate);
@@ -99,7 +99,7 @@ TEST(BaseAtomicFile, APipeOrDeviceIsNotReplaced) {
 }
 
 TEST(BaseAtomicFile, ALinkStaysALink) {
-  const ScratchFolder folder;
+  const TempDir folder;
   write_bytes(folder / "target.txt", "old");
   std::filesystem::create_symlink("target.txt", folder / "link.txt");
   write_text_file(folder / "link.txt", "new");
@@ -108,14 +108,14 @@ TEST(BaseAtomicFile, ALinkStaysALink) {
 }
 
 TEST(BaseAtomicFile, TakesANameOfTheGreatestLength) {
-  const ScratchFolder folder;
+  const TempDir folder;
   const std::string name(255, 'n');
   write_text_file(folder / name, "x");
   EXPECT_EQ(file_bytes(folder / name), "x");
 }
 
 TEST(BaseAtomicFile, ANameThatIsTooLongIsFoundBeforeItIsWritten) {
-  const ScratchFolder folder;
+  const TempDir folder;
   for (const std::string& name :
        {std::string(256, 'n'), std::string(128, 'n') + std::string(20, '/') + std::string(300, 'm')})
     EXPECT_EQ(error_of([&] { check_creatable(folder.path() / name); }).kind(), ErrorKind::kCannotCreate);
@@ -124,7 +124,7 @@ TEST(BaseAtomicFile, ANameThatIsTooLongIsFoundBeforeItIsWritten) {
 }
 
 TEST(BaseAtomicFile, ATemporaryNameStaysUtf8) {
-  const ScratchFolder folder;
+  const TempDir folder;
   std::string name;
   while (name.size() < 254) name += "ä";
   const AtomicFile file(folder / name);
@@ -136,7 +136,7 @@ TEST(BaseAtomicFile, ATemporaryNameStaysUtf8) {
 
 TEST(BaseAtomicFile, FullDiskIsAnIoErrorThatLeavesNothing) {
   // A limit on the size of files stands in for a full disk: write fails midway in the same manner.
-  const ScratchFolder folder;
+  const TempDir folder;
   struct rlimit before {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -156,14 +156,14 @@ TEST(BaseAtomicFile, FullDiskIsAnIoErrorThatLeavesNothing) {
 }
 
 TEST(BaseAtomicFile, TemporaryThatVanishedIsAnIoError) {
-  const ScratchFolder folder;
+  const TempDir folder;
   AtomicFile file(folder / "a.txt");
   std::filesystem::remove(file.temporary());
   EXPECT_EQ(error_of([&] { file.commit(); }).kind(), ErrorKind::kIo);
 }
 
 TEST(BaseAtomicFile, CheckLeavesNoTrace) {
-  const ScratchFolder folder;
+  const TempDir folder;
   write_bytes(folder / "a.txt", "old");
   check_creatable(folder / "a.txt");
   check_creatable(folder / "b.txt");
@@ -172,7 +172,7 @@ TEST(BaseAtomicFile, CheckLeavesNoTrace) {
 }
 
 TEST(BaseAtomicFile, ASignalHandlerCanRemoveWhatIsUnfinished) {
-  const ScratchFolder folder;
+  const TempDir folder;
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -189,7 +189,7 @@ TEST(BaseAtomicFile, ASignalHandlerCanRemoveWhatIsUnfinished) {
 }
 
 TEST(BaseAtomicFile, TextIsWrittenByteForByte) {
-  const ScratchFolder folder;
+  const TempDir folder;
   const std::string text("a\0b\r\n", 5);
   write_text_file(folder / "a.txt", text);
   EXPECT_EQ(file_bytes(folder / "a.txt"), text);

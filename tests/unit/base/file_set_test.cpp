@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::base {
 namespace {
@@ -39,7 +39,7 @@ class BaseFileSet : public testing::Test {
     return found[0];
   }
 
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
 };
 
 TEST_F(BaseFileSet, AnInputIsNotWrittenUnderAnyName) {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::base {
 namespace {
@@ -26,7 +26,7 @@ std::string reason(const std::filesystem::path& file) {
 }
 
 TEST(BaseInputFile, OnlyRegularFilesAreInputs) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   support::write_bytes(folder / "file", "x");
   EXPECT_EQ(reason(folder / "file"), "");
   std::filesystem::create_symlink("file", folder / "link");

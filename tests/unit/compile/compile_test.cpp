@@ -20,16 +20,16 @@ scene::Scene one_of_each() {
 }
 
 TEST(CompileCompile, LeavesOutWhatNoSphereUses) {
-  const World world = compile(one_of_each());
-  EXPECT_FALSE(world.features.hemisphere);
-  EXPECT_EQ(world.materials.size(), 3u);  // grey, glass, glass turned inside out
+  const CompiledScene compiled = compile(one_of_each());
+  EXPECT_FALSE(compiled.features.hemisphere);
+  EXPECT_EQ(compiled.materials.size(), 3u);  // grey, glass, glass turned inside out
 }
 
 TEST(CompileCompile, ANegativeRadiusTurnsGlassInsideOut) {
-  const World world = compile(one_of_each());
-  for (const kernel::Sphere& s : world.spheres) EXPECT_GT(s.radius, 0);
-  const kernel::Material& outward = world.materials[world.sphere_materials[1]];
-  const kernel::Material& inward = world.materials[world.sphere_materials[2]];
+  const CompiledScene compiled = compile(one_of_each());
+  for (const kernel::Sphere& s : compiled.spheres) EXPECT_GT(s.radius, 0);
+  const kernel::Material& outward = compiled.materials[compiled.sphere_materials[1]];
+  const kernel::Material& inward = compiled.materials[compiled.sphere_materials[2]];
   EXPECT_EQ(outward.eta[0], 1 / 1.5);
   EXPECT_EQ(outward.eta[1], 1.5);
   EXPECT_NEAR(outward.r0[0], 0.04, 1e-15);
@@ -37,7 +37,7 @@ TEST(CompileCompile, ANegativeRadiusTurnsGlassInsideOut) {
   EXPECT_EQ(inward.eta[0], outward.eta[1]);
   EXPECT_EQ(inward.eta[1], outward.eta[0]);
   EXPECT_EQ(inward.fresnel, kernel::FresnelKind::kExact);
-  EXPECT_EQ(world.sphere_materials[0], world.sphere_materials[3]) << "a diffuse sphere has no inside";
+  EXPECT_EQ(compiled.sphere_materials[0], compiled.sphere_materials[3]) << "a diffuse sphere has no inside";
 }
 
 TEST(CompileCompile, PointsFollowSpheresInTheOrderOfTheirIds) {
@@ -48,20 +48,20 @@ TEST(CompileCompile, PointsFollowSpheresInTheOrderOfTheirIds) {
   points.radii = {1, 2};
   points.materials = {1, 0};
   s.points.push_back(points);
-  const World world = compile(s);
-  ASSERT_EQ(world.spheres.size(), 6u);
-  EXPECT_EQ(world.spheres[4].x, 9);
-  EXPECT_EQ(world.sphere_materials[4], world.sphere_materials[0]);
-  EXPECT_EQ(world.materials[world.sphere_materials[5]].kind, kernel::MaterialKind::kMetal);
+  const CompiledScene compiled = compile(s);
+  ASSERT_EQ(compiled.spheres.size(), 6u);
+  EXPECT_EQ(compiled.spheres[4].x, 9);
+  EXPECT_EQ(compiled.sphere_materials[4], compiled.sphere_materials[0]);
+  EXPECT_EQ(compiled.materials[compiled.sphere_materials[5]].kind, kernel::MaterialKind::kMetal);
 }
 
 TEST(CompileCompile, AConstantBackgroundNeedsNoDirection) {
   scene::Scene s = one_of_each();
   s.background.type = scene::BackgroundType::kConstant;
   s.background.color = {0.25, 0.5, 0.75};
-  const World world = compile(s);
-  EXPECT_FALSE(world.features.sky);
-  EXPECT_EQ(world.background.bottom[2], 0.75);
+  const CompiledScene compiled = compile(s);
+  EXPECT_FALSE(compiled.features.sky);
+  EXPECT_EQ(compiled.background.bottom[2], 0.75);
 }
 
 TEST(CompileCameraBasis, SpansThePictureOnTheFocusPlane) {

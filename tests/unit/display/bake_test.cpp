@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "display/view.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::display {
 namespace {
@@ -50,7 +50,7 @@ class DisplayBake : public testing::Test {
     return worst;
   }
 
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
 };
 
 TEST_F(DisplayBake, ACubeDoesWhatTheViewDoes) {

@@ -11,7 +11,7 @@
 #include "base/suggestion.h"
 #include "display/builtin_config.h"
 #include "display/develop.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::display {
 namespace {
@@ -51,7 +51,7 @@ class DisplayView : public testing::Test {
     }
   }
 
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
 };
 
 TEST_F(DisplayView, TheNamedConfigBeatsTheEnvironmentWhichBeatsTheBuiltIn) {

@@ -41,7 +41,7 @@ Partial full_partial(bool halves, bool goals, bool layers) {
     for (std::uint32_t s = 0; s < random() % 4; ++s)
       l.shares.push_back({3 * s, number(), {large(), large(), large()}, 0.1 * s, 1e30});
   }
-  p.effort = {1ull << 40, 1ull << 50, 3, 12.625};
+  p.work = {1ull << 40, 1ull << 50, 3, 12.625};
   return p;
 }
 
@@ -57,7 +57,7 @@ TEST(FilmPartialWords, ComeBackAsTheyWere) {
     EXPECT_EQ(q.goals, p.goals);
     EXPECT_EQ(q.has_halves(), p.has_halves());
     EXPECT_TRUE(q.film.sums()[7].rgb[1] == p.film.sums()[7].rgb[1]);
-    EXPECT_EQ(q.effort.seconds, 12.625);
+    EXPECT_EQ(q.work.seconds, 12.625);
     if (p.layers.empty()) continue;
     EXPECT_EQ(q.layers[3].shares.size(), p.layers[3].shares.size());
     EXPECT_TRUE(q.layers[14].guide_normal[2] == p.layers[14].guide_normal[2]);

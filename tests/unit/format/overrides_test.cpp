@@ -31,7 +31,7 @@ material = "gold"
 /// The first line of what an override is told.
 std::string told(const std::string& override_text) {
   SceneFiles files;
-  const std::string all = files.findings(kScene, {override_text});
+  const std::string all = files.diagnostics(kScene, {override_text});
   return all.substr(0, all.find('\n'));
 }
 
@@ -82,8 +82,8 @@ TEST(FormatOverrides, BlanksAroundTheSignsAreAllRight) {
 
 TEST(FormatOverrides, MistakesArePointedAtInTheOverride) {
   SceneFiles files;
-  EXPECT_EQ(files.findings(kScene, {"image.width=5", "camera.vfov=300", "camera.vfow=3", "sphere[1].radius=0",
-                                    "sphere[0].center=[0, 1]"}),
+  EXPECT_EQ(files.diagnostics(kScene, {"image.width=5", "camera.vfov=300", "camera.vfow=3", "sphere[1].radius=0",
+                                       "sphere[0].center=[0, 1]"}),
             "--set: error: camera.vfov is 300; allowed is above 0, below 180\n"
             "    --set camera.vfov=300\n"
             "                      ^~~\n"
@@ -101,9 +101,9 @@ TEST(FormatOverrides, MistakesArePointedAtInTheOverride) {
 
 TEST(FormatOverrides, AShortFormIsNamedByItsOption) {
   SceneFiles files;
-  EXPECT_EQ(files.findings(kScene, {{"render.samples=0", "--samples", "0"},
-                                    "camera.vfov=0",
-                                    {"output.layers=[Z,Q,N]", "--layers", "Z,Q,N"}}),
+  EXPECT_EQ(files.diagnostics(kScene, {{"render.samples=0", "--samples", "0"},
+                                       "camera.vfov=0",
+                                       {"output.layers=[Z,Q,N]", "--layers", "Z,Q,N"}}),
             "--samples: error: render.samples is 0; allowed is 1..2147483647\n"
             "    --samples 0\n"
             "              ^\n"

@@ -13,7 +13,7 @@ using support::SceneFiles;
 /// The text of the first finding, without place and source line.
 std::string text_of(const std::string& scene) {
   SceneFiles files;
-  const std::string told = files.findings(scene);
+  const std::string told = files.diagnostics(scene);
   const std::size_t begin = told.find("error: ");
   return begin == std::string::npos ? told : told.substr(begin + 7, told.find('\n') - begin - 7);
 }
@@ -56,7 +56,7 @@ TEST(FormatReadKeys, NotANumberAndInfinityAreInNoRange) {
 
 TEST(FormatReadKeys, EachWrongComponentIsAFinding) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("camera.up = [nan,\n inf, 0]"),
+  EXPECT_EQ(files.diagnostics("camera.up = [nan,\n inf, 0]"),
             "scene.toml:1:14: error: camera.up[0] is nan; allowed is -1e+18..1e+18\n"
             "    camera.up = [nan,\n"
             "                 ^~~\n"

@@ -37,8 +37,8 @@ TEST(FormatReadMaterials, OverridesDoNotMoveThoseOfTheFile) {
 TEST(FormatReadMaterials, AKeyOfAnotherTypeNamesThatType) {
   SceneFiles files;
   EXPECT_EQ(
-      files.findings("[material.a]\ntype = \"lambertian\"\nalbedo = [1, 1, 1]\nfuzz = 0.5\n[material.b]\n"
-                     "type = \"dielectric\"\nalbedo = [1, 1, 1]\n"),
+      files.diagnostics("[material.a]\ntype = \"lambertian\"\nalbedo = [1, 1, 1]\nfuzz = 0.5\n[material.b]\n"
+                        "type = \"dielectric\"\nalbedo = [1, 1, 1]\n"),
       "scene.toml:4:1: error: unknown key `fuzz` in material.a of type lambertian; `fuzz` belongs to metal\n"
       "    fuzz = 0.5\n"
       "    ^~~~\n"
@@ -50,7 +50,7 @@ TEST(FormatReadMaterials, AKeyOfAnotherTypeNamesThatType) {
 
 TEST(FormatReadMaterials, WithoutATypeItsOtherKeysAreCheckedAgainstAll) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("[material.a]\nalbedo = [1, 1, 1]\nfuz = 0.5\n"),
+  EXPECT_EQ(files.diagnostics("[material.a]\nalbedo = [1, 1, 1]\nfuz = 0.5\n"),
             "scene.toml:1:1: error: material.a needs `type`; one of lambertian, hemisphere, metal, dielectric\n"
             "    [material.a]\n"
             "    ^~~~~~~~~~~~\n"
@@ -61,7 +61,7 @@ TEST(FormatReadMaterials, WithoutATypeItsOtherKeysAreCheckedAgainstAll) {
 
 TEST(FormatReadMaterials, ValuesAreInTheirRanges) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("[material]\na = { type = \"metal\", albedo = [1, 1.5, 1], fuzz = 2 }\n"),
+  EXPECT_EQ(files.diagnostics("[material]\na = { type = \"metal\", albedo = [1, 1.5, 1], fuzz = 2 }\n"),
             "scene.toml:2:36: error: material.a.albedo[1] is 1.5; allowed is 0..1\n"
             "    a = { type = \"metal\", albedo = [1, 1.5, 1], fuzz = 2 }\n"
             "                                       ^~~\n"
@@ -72,7 +72,7 @@ TEST(FormatReadMaterials, ValuesAreInTheirRanges) {
 
 TEST(FormatReadMaterials, AMaterialThatIsNoTableIsOneFinding) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("[material]\na = 3\n[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
+  EXPECT_EQ(files.diagnostics("[material]\na = 3\n[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
             "scene.toml:2:5: error: material.a must be a table; write [material.a]\n"
             "    a = 3\n"
             "        ^\n");

@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "base/finding.h"
-#include "support/scratch_folder.h"
+#include "base/diagnostic.h"
+#include "support/temp_dir.h"
 
 namespace orrery::format {
 namespace {
@@ -45,12 +45,12 @@ class FormatReadPly : public testing::Test {
       read(bytes, 3, radius);
     } catch (const base::Error& error) {
       EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-      for (const base::Finding& f : error.findings())
+      for (const base::Diagnostic& f : error.diagnostics())
         out += (f.line > 0 ? std::to_string(f.line) + ": " : "") + f.text + "\n";
     }
     return out;
   }
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
 };
 
 TEST_F(FormatReadPly, Ascii) {

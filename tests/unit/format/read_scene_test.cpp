@@ -159,20 +159,20 @@ group = "left"
 TEST(FormatReadScene, AllFindingsInOneRunInTheOrderOfTheFile) {
   SceneFiles files;
   EXPECT_EQ(
-      files.findings("[camera]\n"
-                     "\tvfov = 200\n"
-                     "fov = 20\n"
-                     "[render]\n"
-                     "samples = 0\n"
-                     "precision = \"exakt\"\n"
-                     "[materal.x]\n"
-                     "[material.gold]\n"
-                     "type = \"metal\"\n"
-                     "albdo = [0.8, 0.6, 0.2]\n"
-                     "[[sphere]]\n"
-                     "center = [0, 0]\n"
-                     "radius = 0\n"
-                     "material = \"glod\"\n"),
+      files.diagnostics("[camera]\n"
+                        "\tvfov = 200\n"
+                        "fov = 20\n"
+                        "[render]\n"
+                        "samples = 0\n"
+                        "precision = \"exakt\"\n"
+                        "[materal.x]\n"
+                        "[material.gold]\n"
+                        "type = \"metal\"\n"
+                        "albdo = [0.8, 0.6, 0.2]\n"
+                        "[[sphere]]\n"
+                        "center = [0, 0]\n"
+                        "radius = 0\n"
+                        "material = \"glod\"\n"),
       "scene.toml:2:9: error: camera.vfov is 200; allowed is above 0, below 180\n"
       "    \tvfov = 200\n"
       "    \t       ^~~\n"
@@ -232,7 +232,7 @@ TEST(FormatReadScene, MissingFileIsMissingInput) {
 
 TEST(FormatReadScene, RequiredKeysOfASphere) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("[[sphere]]\n"),
+  EXPECT_EQ(files.diagnostics("[[sphere]]\n"),
             "scene.toml:1:1: error: sphere[0] needs `center`\n"
             "    [[sphere]]\n    ^~~~~~~~~~\n"
             "scene.toml:1:1: error: sphere[0] needs `radius`\n"
@@ -244,19 +244,19 @@ TEST(FormatReadScene, RequiredKeysOfASphere) {
 TEST(FormatReadScene, MaterialNamesOutsideTheScene) {
   SceneFiles files;
   const std::string sphere = "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"chalk\"\n";
-  EXPECT_EQ(files.findings(sphere),
+  EXPECT_EQ(files.diagnostics(sphere),
             "scene.toml:4:12: error: sphere[0].material is \"chalk\", and there is no such material; the scene has no "
             "[material.NAME] at all\n"
             "    material = \"chalk\"\n"
             "               ^~~~~~~\n");
   const std::string told =
-      files.findings("[material.ruby]\ntype=\"dielectric\"\n[material.gold]\ntype=\"dielectric\"\n" + sphere);
+      files.diagnostics("[material.ruby]\ntype=\"dielectric\"\n[material.gold]\ntype=\"dielectric\"\n" + sphere);
   EXPECT_NE(told.find("no such material; there are ruby, gold\n"), std::string::npos) << told;
 }
 
 TEST(FormatReadScene, ATableThatIsNone) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("camera = 3\nsphere = 4\npoints = [1, 2]\nmaterial = 5\n"),
+  EXPECT_EQ(files.diagnostics("camera = 3\nsphere = 4\npoints = [1, 2]\nmaterial = 5\n"),
             "scene.toml:1:10: error: `camera` must be a table; write [camera]\n"
             "    camera = 3\n"
             "             ^\n"
@@ -274,14 +274,14 @@ TEST(FormatReadScene, ATableThatIsNone) {
 TEST(FormatReadScene, ProblemsOfTheWholeStandWhereTheirKeyStands) {
   SceneFiles files;
   EXPECT_EQ(
-      files.findings("[camera]\nup = [0, 0, 2]\n"),
+      files.diagnostics("[camera]\nup = [0, 0, 2]\n"),
       "scene.toml:2:6: error: camera.up: up is parallel to the view, so the picture has no upright; choose another "
       "direction\n"
       "    up = [0, 0, 2]\n"
       "         ^~~~~~~~~\n");
   // The key that makes the view parallel may be another one: then the place is the table.
   EXPECT_EQ(
-      files.findings("[camera]\nlook_at = [0, 1, 0]\n"),
+      files.diagnostics("[camera]\nlook_at = [0, 1, 0]\n"),
       "scene.toml:1:1: error: camera.up: up is parallel to the view, so the picture has no upright; choose another "
       "direction\n"
       "    [camera]\n"
@@ -291,17 +291,17 @@ TEST(FormatReadScene, ProblemsOfTheWholeStandWhereTheirKeyStands) {
 TEST(FormatReadScene, OneMistakeIsOneFinding) {
   SceneFiles files;
   // look_at stays at its default, which here is look_from: that is no second mistake.
-  const std::string told = files.findings("[camera]\nlook_from = [0, 0, -1]\nlook_at = [0, nan, 0]\n");
+  const std::string told = files.diagnostics("[camera]\nlook_from = [0, 0, -1]\nlook_at = [0, nan, 0]\n");
   EXPECT_EQ(told,
             "scene.toml:3:15: error: camera.look_at[1] is nan; allowed is -1e+18..1e+18\n"
             "    look_at = [0, nan, 0]\n"
             "                  ^~~\n");
   // Here the default makes a view that is parallel to up, which is another key than the wrong one.
-  const std::string parallel = files.findings("[camera]\nlook_from = [0, 5, -1]\nlook_at = [0, nan, 0]\n");
+  const std::string parallel = files.diagnostics("[camera]\nlook_from = [0, 5, -1]\nlook_at = [0, nan, 0]\n");
   EXPECT_EQ(parallel.find("parallel"), std::string::npos) << parallel;
   EXPECT_EQ(
-      files.findings("[material.a]\ntype = \"metall\"\nalbedo = 3\n"
-                     "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
+      files.diagnostics("[material.a]\ntype = \"metall\"\nalbedo = 3\n"
+                        "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
       "scene.toml:2:8: error: material.a.type is \"metall\"; allowed is lambertian, hemisphere, metal, dielectric; did "
       "you mean `metal`?\n"
       "    type = \"metall\"\n"
@@ -312,12 +312,12 @@ TEST(FormatReadScene, CoincidentSpheresAreAWarning) {
   SceneFiles files;
   const std::string material = "[material.a]\ntype = \"dielectric\"\n";
   const std::string sphere = "[[sphere]]\ncenter = [1, 2, 3]\nradius = 1\nmaterial = \"a\"\n";
-  const std::string told = files.findings(material + sphere + sphere);
+  const std::string told = files.diagnostics(material + sphere + sphere);
   EXPECT_EQ(told,
             "scene.toml:7:1: warning: sphere[1]: has exactly the same place and size as sphere[0]; rays meet the "
             "first of them only\n"
             "    [[sphere]]\n    ^~~~~~~~~~\n");
-  const std::string wrong = files.findings(material + sphere + sphere + "[image]\nwidth = 0\n");
+  const std::string wrong = files.diagnostics(material + sphere + sphere + "[image]\nwidth = 0\n");
   EXPECT_EQ(wrong.find("warning"), std::string::npos) << "nobody is warned of a scene that is wrong";
 }
 
@@ -361,7 +361,7 @@ TEST(FormatReadScene, FindingsOfAPointsFileFollowThePlaceThatNamesIt) {
   const std::string scene =
       "[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"bad.ply\"\nmaterial = \"a\"\n"
       "[[points]]\nfile = \"none.ply\"\nmaterial = \"a\"\n";
-  EXPECT_EQ(files.findings(scene),
+  EXPECT_EQ(files.diagnostics(scene),
             "bad.ply:9: error: vertex 0 has a number that is not finite\n"
             "scene.toml:4:8: error: points[0].file: cannot use bad.ply\n"
             "    file = \"bad.ply\"\n"
@@ -399,10 +399,10 @@ TEST(FormatReadScene, AHundredErrorsAreShownAndTheOthersCounted) {
     read_scene(files.folder() / "scene.toml");
     FAIL() << "no error";
   } catch (const base::Error& error) {
-    ASSERT_EQ(error.findings().size(), kMostErrors + 1);
-    EXPECT_EQ(error.findings()[0].line, 1);
-    EXPECT_EQ(error.findings()[99].line, 25 * 3) << "the first by place: 25 of 50 spheres";
-    EXPECT_EQ(error.findings()[100].text, "and 100 more (200 in all)");
+    ASSERT_EQ(error.diagnostics().size(), kMostErrors + 1);
+    EXPECT_EQ(error.diagnostics()[0].line, 1);
+    EXPECT_EQ(error.diagnostics()[99].line, 25 * 3) << "the first by place: 25 of 50 spheres";
+    EXPECT_EQ(error.diagnostics()[100].text, "and 100 more (200 in all)");
     EXPECT_NE(std::string(error.what()).find("scene.toml: 200 errors"), std::string::npos) << error.what();
   }
 }
@@ -411,7 +411,7 @@ TEST(FormatReadScene, AnotherChecksProblemsAreFindings) {
   SceneFiles files;
   files.add("scene.toml", "[color]\nspace = \"foo\"\n[image]\nwidth = 0\n");
   const SceneCheck also = [](const scene::Scene& s) {
-    return std::vector<scene::Problem>{{base::Severity::kError, "color.space", "no " + s.color.space}};
+    return std::vector<scene::SceneDiagnostic>{{base::Severity::kError, "color.space", "no " + s.color.space}};
   };
   try {
     read_scene(files.folder() / "scene.toml", {}, kFirstFrame, also);
@@ -429,7 +429,7 @@ TEST(FormatReadScene, RadiiOutsideTheDomainAreFoundInPointsToo) {
             "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
             "property float radius\nend_header\n1 2 3 0.5\n4 5 6 0\n");
   const std::string told =
-      files.findings("[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"zero.ply\"\nmaterial = \"a\"\n");
+      files.diagnostics("[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"zero.ply\"\nmaterial = \"a\"\n");
   EXPECT_EQ(told,
             "scene.toml:3:1: error: points[0][1].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 "
             "for an inward normal\n"
@@ -440,7 +440,7 @@ TEST(FormatReadScene, ManyMistakesDoNotTakeForever) {
   SceneFiles files;
   std::string text;
   for (int i = 0; i < 3000; ++i) text += "[[sphere]]\ncenter = [0,0,0]\nradius = 0\nmaterial = \"x\"\n";
-  const std::string told = files.findings(text);
+  const std::string told = files.diagnostics(text);
   EXPECT_EQ(std::count(told.begin(), told.end(), '^'), 100);
   EXPECT_NE(told.find("and 5900 more (6000 in all)"), std::string::npos);
 }
@@ -454,7 +454,8 @@ TEST(FormatReadScene, EveryPictureOfTheBookReadsWithoutAFinding) {
     try {
       EXPECT_TRUE(read_scene(entry.path()).warnings.empty()) << entry.path();
     } catch (const base::Error& error) {
-      ADD_FAILURE() << error.what() << "\n" << (error.findings().empty() ? "" : base::formatted(error.findings()[0]));
+      ADD_FAILURE() << error.what() << "\n"
+                    << (error.diagnostics().empty() ? "" : base::formatted(error.diagnostics()[0]));
     }
   }
   EXPECT_GE(count, 20);

@@ -7,13 +7,13 @@
 #include <string>
 
 #include "base/error.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::format {
 namespace {
 
 std::string line_of(const SourceText& source, int line) {
-  return source.finding(base::Severity::kError, {"a", line, 1, 1}, "x").source_line;
+  return source.diagnostic(base::Severity::kError, {"a", line, 1, 1}, "x").source_line;
 }
 
 TEST(FormatSourceText, FindsEveryLine) {
@@ -33,7 +33,7 @@ TEST(FormatSourceText, AnOverrideIsShownAsItWasTyped) {
   source.add_override("camera.vfov=wide", "camera.vfov=\"wide\"", {12, 17});
   source.add_override({"output.layers=[Z,Q]", "--layers", "Z,Q"}, "output.layers=[\"Z\",\"Q\"]", {15, 17, 19, 21});
   const auto shown = [&](int line, int column, int width) {
-    return base::formatted(source.finding(base::Severity::kError, {kOverrideName, line, column, width}, "x"));
+    return base::formatted(source.diagnostic(base::Severity::kError, {kOverrideName, line, column, width}, "x"));
   };
   EXPECT_EQ(shown(1, 16, 1), "--samples: error: x\n    --samples 0\n              ^\n");
   EXPECT_EQ(shown(1, 1, 1), "--samples: error: x\n    --samples 0\n              ^\n") << "the key was not typed";
@@ -46,7 +46,7 @@ TEST(FormatSourceText, AnOverrideIsShownAsItWasTyped) {
 TEST(FormatSourceText, CharactersBecomeBytes) {
   SourceText source;
   source.add("a", "\xC3\xBC = \xE2\x82\xAC\xE2\x82\xAC\n");
-  const base::Finding f = source.finding(base::Severity::kWarning, {"a", 1, 5, 2}, "text", "remedy");
+  const base::Diagnostic f = source.diagnostic(base::Severity::kWarning, {"a", 1, 5, 2}, "text", "remedy");
   EXPECT_EQ(f.column, 6);
   EXPECT_EQ(f.width, 6);
   EXPECT_EQ(f.severity, base::Severity::kWarning);
@@ -57,7 +57,7 @@ TEST(FormatSourceText, CharactersBecomeBytes) {
 TEST(FormatSourceText, APlaceBehindTheEndOfALine) {
   SourceText source;
   source.add("a", "ab\n");
-  const base::Finding f = source.finding(base::Severity::kError, {"a", 1, 3, 1}, "text");
+  const base::Diagnostic f = source.diagnostic(base::Severity::kError, {"a", 1, 3, 1}, "text");
   EXPECT_EQ(f.column, 3);
   EXPECT_EQ(f.source_line, "ab");
 }
@@ -65,8 +65,8 @@ TEST(FormatSourceText, APlaceBehindTheEndOfALine) {
 TEST(FormatSourceText, TextsWithoutAPlaceHaveNoLine) {
   SourceText source;
   source.add("a", "one");
-  EXPECT_EQ(source.finding(base::Severity::kError, {"a", 0, 0, 1}, "x").source_line, "");
-  EXPECT_EQ(source.finding(base::Severity::kError, {"none", 1, 1, 1}, "x").source_line, "");
+  EXPECT_EQ(source.diagnostic(base::Severity::kError, {"a", 0, 0, 1}, "x").source_line, "");
+  EXPECT_EQ(source.diagnostic(base::Severity::kError, {"none", 1, 1, 1}, "x").source_line, "");
 }
 
 TEST(FormatSourceText, AVeryLongLineIsNotShown) {
@@ -77,7 +77,7 @@ TEST(FormatSourceText, AVeryLongLineIsNotShown) {
 }
 
 TEST(FormatSourceText, ReadsAFileWhole) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   const std::string bytes("a\0\r\n\xff", 5);
   support::write_bytes(folder / "a", bytes);
   EXPECT_EQ(read_file(folder / "a", 5), bytes);
@@ -86,7 +86,7 @@ TEST(FormatSourceText, ReadsAFileWhole) {
 }
 
 TEST(FormatSourceText, ALargerFileThanAllowedIsBadData) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   support::write_bytes(folder / "a", std::string((1 << 20) + 1, 'x'));
   try {
     read_file(folder / "a", 1 << 20);
@@ -98,7 +98,7 @@ TEST(FormatSourceText, ALargerFileThanAllowedIsBadData) {
 }
 
 TEST(FormatSourceText, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   const auto reason = [](const std::filesystem::path& file) -> std::string {
     try {

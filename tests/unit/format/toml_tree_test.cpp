@@ -12,7 +12,7 @@ using support::SceneFiles;
 
 TEST(FormatTomlTree, AKeyThatStandsTwice) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("[camera]\nvfov = 3\nvfov = 4\n"),
+  EXPECT_EQ(files.diagnostics("[camera]\nvfov = 3\nvfov = 4\n"),
             "scene.toml:3:8: error: this stands twice: cannot redefine existing integer 'vfov'; remove one of them\n"
             "    vfov = 4\n"
             "           ^\n");
@@ -20,7 +20,7 @@ TEST(FormatTomlTree, AKeyThatStandsTwice) {
 
 TEST(FormatTomlTree, ATableThatStandsTwice) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("[camera]\nvfov = 3\n[camera]\n"),
+  EXPECT_EQ(files.diagnostics("[camera]\nvfov = 3\n[camera]\n"),
             "scene.toml:3:1: error: this stands twice: cannot redefine existing table 'camera'; remove one of them\n"
             "    [camera]\n"
             "    ^\n");
@@ -28,13 +28,13 @@ TEST(FormatTomlTree, ATableThatStandsTwice) {
 
 TEST(FormatTomlTree, WhatIsNoTomlIsOneFindingAtItsPlace) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("[camera]\nup = [0, 1, 0\n[image]\nwidth = 0\n").rfind("scene.toml:3:", 0), 0u);
-  EXPECT_EQ(files.findings("[camera\n").rfind("scene.toml:1:8: error: ", 0), 0u);
+  EXPECT_EQ(files.diagnostics("[camera]\nup = [0, 1, 0\n[image]\nwidth = 0\n").rfind("scene.toml:3:", 0), 0u);
+  EXPECT_EQ(files.diagnostics("[camera\n").rfind("scene.toml:1:8: error: ", 0), 0u);
 }
 
 TEST(FormatTomlTree, BytesThatAreNotUtf8) {
   SceneFiles files;
-  const std::string told = files.findings("[camera]\nvfov = \"\xff\"\n");
+  const std::string told = files.diagnostics("[camera]\nvfov = \"\xff\"\n");
   EXPECT_EQ(told.substr(0, told.find('\n')), "scene.toml:2:8: error: Encountered invalid utf-8 sequence") << told;
 }
 
@@ -44,14 +44,14 @@ TEST(FormatTomlTree, DeepNestingIsRefusedAndDoesNotOverflowTheStack) {
   for (int i = 0; i < 300000; ++i) dotted += ".a";
   for (const std::string& text : {dotted + " = 1\n", "[" + dotted + "]\n", "a = " + std::string(300000, '['),
                                   "[[" + dotted + "]]\n", "a = {" + dotted + " = 1}\n"}) {
-    const std::string told = files.findings(text);
+    const std::string told = files.diagnostics(text);
     EXPECT_EQ(told.rfind("scene.toml:1:", 0), 0u) << told.substr(0, 200);
   }
 }
 
 TEST(FormatTomlTree, LineEndsOfAnySystem) {
   SceneFiles files;
-  EXPECT_EQ(files.findings("[camera]\r\nvfov = 0\r\n"),
+  EXPECT_EQ(files.diagnostics("[camera]\r\nvfov = 0\r\n"),
             "scene.toml:2:8: error: camera.vfov is 0; allowed is above 0, below 180\n"
             "    vfov = 0\n"
             "           ^\n");

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "format/read_ply.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::format {
 namespace {
@@ -31,7 +31,7 @@ scene::Points read_back(const std::filesystem::path& file) {
 }
 
 TEST(FormatWritePly, DoublesReadBackToTheSameBits) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   for (const bool with_materials : {false, true}) {
     const auto points = some_points(100, with_materials);
     write_ply(points, folder / "a.ply");
@@ -43,7 +43,7 @@ TEST(FormatWritePly, DoublesReadBackToTheSameBits) {
 }
 
 TEST(FormatWritePly, FloatsAreRoundedAndTakeHalfTheSpace) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   const auto points = some_points(100, false);
   write_ply(points, folder / "d.ply", PlyReal::kDouble);
   write_ply(points, folder / "f.ply", PlyReal::kFloat);
@@ -53,7 +53,7 @@ TEST(FormatWritePly, FloatsAreRoundedAndTakeHalfTheSpace) {
 }
 
 TEST(FormatWritePly, WhatAFloatCannotHoldIsRefused) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   auto points = some_points(3, false);
   points.centers[1].z = 1e39;
   EXPECT_NO_THROW(write_ply(points, folder / "a.ply", PlyReal::kDouble));
@@ -68,13 +68,13 @@ TEST(FormatWritePly, WhatAFloatCannotHoldIsRefused) {
 }
 
 TEST(FormatWritePly, NoPointsAreAFileToo) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   write_ply({}, folder / "a.ply");
   EXPECT_TRUE(read_back(folder / "a.ply").centers.empty());
 }
 
 TEST(FormatWritePly, FolderThatIsNotThere) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   try {
     write_ply({}, folder / "none" / "a.ply");
     FAIL() << "no error";

@@ -85,7 +85,7 @@ TEST(FormatWriteScene, CommentsTakeAnyBytesOfAFileName) {
 }
 
 TEST(FormatWriteScene, PointsGoBesideTheScene) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   scene::Scene s;
   s.materials = {{"a", scene::Dielectric{}}, {"b", scene::Dielectric{2}}};
   s.points.resize(2);
@@ -129,7 +129,7 @@ TEST(FormatWriteScene, ASceneThatNoFileCanSayIsAnInternalError) {
 }
 
 TEST(FormatWriteScene, FolderThatIsNotThere) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   try {
     write_scene({}, "", folder / "none" / "s.toml");
     FAIL() << "no error";

@@ -8,13 +8,13 @@
 #include <random>
 #include <string>
 
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::image {
 namespace {
 
 TEST(ImageCheckedFile, HoldsWhatWasWrittenInWhateverOrder) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   support::write_bytes(folder / "a", "old content");
   CheckedFile file(folder / "a");
   std::string expected;
@@ -41,7 +41,7 @@ TEST(ImageCheckedFile, HoldsWhatWasWrittenInWhateverOrder) {
 }
 
 TEST(ImageCheckedFile, SaysWhyItCouldNotBeOpened) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   CheckedFile file(folder / "none");
   EXPECT_FALSE(file.opened());
   EXPECT_EQ(file.write("x", 1), 0u);

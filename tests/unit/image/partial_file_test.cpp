@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "film/partial_words.h"
 #include "image/read.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::image {
 namespace {
@@ -23,7 +23,7 @@ film::Partial some_partial() {
   for (std::uint32_t& n : p.counts) n = 3;
   p.layers.resize(p.pixel_count());
   for (film::LayerPixel& l : p.layers) l.shares.resize(1);
-  p.effort.seconds = 1.5;
+  p.work.seconds = 1.5;
   return p;
 }
 
@@ -48,7 +48,7 @@ class ImagePartialFile : public testing::Test {
     }
   }
 
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
   const std::filesystem::path file_ = folder_ / "a.exr";
   const film::Partial partial_ = some_partial();
 };

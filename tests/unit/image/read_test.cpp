@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "image/write.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 #include "unit/image/test_pictures.h"
 
 namespace orrery::image {
@@ -40,7 +40,7 @@ OIIO::ImageSpec grey(int width, int height, OIIO::TypeDesc type = OIIO::TypeDesc
 
 class ImageRead : public testing::Test {
  protected:
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
 };
 
 TEST_F(ImageRead, AMissingFileIsAMissingInput) {
@@ -117,7 +117,7 @@ TEST_F(ImageRead, ValuesThatAreNotFiniteArriveForTheCallerToCount) {
 }
 
 /// One file of every format that is written here.
-std::vector<std::filesystem::path> write_all(const support::ScratchFolder& folder, int width, int height) {
+std::vector<std::filesystem::path> write_all(const support::TempDir& folder, int width, int height) {
   std::vector<std::filesystem::path> out;
   for (const char* compression : {"zips", "zip", "piz", "none", "dwaa"}) {
     out.push_back(folder / (std::string(compression) + ".exr"));

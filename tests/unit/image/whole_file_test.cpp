@@ -7,7 +7,7 @@
 
 #include "image/read.h"
 #include "image/write.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 #include "unit/image/test_pictures.h"
 
 namespace orrery::image {
@@ -56,7 +56,7 @@ std::vector<Writer> writers() {
 
 TEST(ImageWholeFile, AFullDiskIsAnErrorWhereverItFillsUpAndLeavesNothing) {
   for (const Writer& writer : writers()) {
-    const support::ScratchFolder folder;
+    const support::TempDir folder;
     writer.write(folder / writer.name);
     const std::uintmax_t size = std::filesystem::file_size(folder / writer.name);
     std::filesystem::remove(folder / writer.name);
@@ -74,7 +74,7 @@ TEST(ImageWholeFile, AFullDiskIsAnErrorWhereverItFillsUpAndLeavesNothing) {
 
 TEST(ImageWholeFile, AFailedWriteLeavesTheOldPicture) {
   for (const Writer& writer : writers()) {
-    const support::ScratchFolder folder;
+    const support::TempDir folder;
     support::write_bytes(folder / writer.name, "the old picture");
     {
       const FullDisk full(1000);
@@ -92,7 +92,7 @@ TEST(ImageWholeFile, AFailureIsSilentOnTheConsole) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   for (const Writer& writer : writers()) {
-    const support::ScratchFolder folder;
+    const support::TempDir folder;
     writer.write(folder / writer.name);
     const FullDisk full(1000);
     EXPECT_THROW(writer.write(folder / ("b" + writer.name)), base::Error);
@@ -102,7 +102,7 @@ TEST(ImageWholeFile, AFailureIsSilentOnTheConsole) {
 }
 
 TEST(ImageWholeFile, APlaceThatTakesNoFileIsNamedWithTheReason) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   std::filesystem::create_directory(folder / "b.exr");
   for (const Writer& writer : writers()) {
     expect_error(base::ErrorKind::kCannotCreate, {writer.name, "there is no directory"},
@@ -118,7 +118,7 @@ TEST(ImageWholeFile, APlaceThatTakesNoFileIsNamedWithTheReason) {
 }
 
 TEST(ImageWholeFile, NamesMayHoldWhatTheShellDislikes) {
-  const support::ScratchFolder folder;
+  const support::TempDir folder;
   for (const char* name : {"a b.exr", "a####.exr", "a%04d.exr", "a?b=c&d.exr", "-o.exr", "\xc3\xa4.exr"}) {
     write_exr(folder / name, test_picture(4, 4), {}, {});
     EXPECT_EQ(read(folder / name).width, 4) << name;

@@ -8,7 +8,7 @@
 #include "image/encode_jpeg.h"
 #include "image/read.h"
 #include "image/write.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 #include "unit/image/test_pictures.h"
 
 namespace orrery::image {
@@ -35,7 +35,7 @@ class ImageWriteEncoded : public testing::Test {
     return support::file_bytes(folder_ / name);
   }
 
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
 };
 
 TEST_F(ImageWriteEncoded, LosslessFormatsKeepEveryLevel) {

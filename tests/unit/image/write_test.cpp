@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "image/read.h"
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 #include "unit/image/exr_header.h"
 #include "unit/image/test_pictures.h"
 
@@ -26,7 +26,7 @@ class ImageWrite : public testing::Test {
     return exr_header(support::file_bytes(folder_ / "a.exr"));
   }
 
-  support::ScratchFolder folder_;
+  support::TempDir folder_;
 };
 
 std::string joined_names(const std::map<std::string, ExrAttribute>& header) {

@@ -27,11 +27,11 @@ film::LayerRequest all_layers() {
 }
 
 Result render_with(const scene::Scene& scene, const film::LayerRequest& request, int threads = 0) {
-  const compile::World world = compile::compile(scene);
+  const compile::CompiledScene compiled = compile::compile(scene);
   Settings settings;
   settings.threads = threads;
   settings.layers = request;
-  return render(world, settings);
+  return render(compiled, settings);
 }
 
 const std::vector<float>& plane(const Result& result, const char* name) {
@@ -383,9 +383,9 @@ TEST(RenderWindow, APixelMayBeWiderThanHigh) {
   s.image = {20, 20};
   s.camera.defocus_angle = 0;
   s.image.pixel_aspect = 2;
-  const compile::World world = compile::compile(s);
+  const compile::CompiledScene compiled = compile::compile(s);
   const auto length = [](const double(&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
-  EXPECT_NEAR(length(world.camera.right) / length(world.camera.down), 2, 1e-12);
+  EXPECT_NEAR(length(compiled.camera.right) / length(compiled.camera.down), 2, 1e-12);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ struct Moving {
     closing.camera.look_from = {3.2, 2, 3.9};
     closing.camera.vfov = 42;
   }
-  compile::World world() const { return compile::compile(opening, &closing); }
+  compile::CompiledScene compiled() const { return compile::compile(opening, &closing); }
 };
 
 Settings with_layers() {
@@ -45,14 +45,14 @@ TEST(RenderMotion, EveryAcceleratorThreadCountAndTraversalGivesTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
     Moving moving;
     moving.opening.render.precision = precision;
-    const std::vector<float> expected = values(render(moving.world(), with_layers()).picture);
+    const std::vector<float> expected = values(render(moving.compiled(), with_layers()).picture);
     for (const Traversal traversal : {Traversal::kPacket, Traversal::kSingle}) {
       Settings settings = with_layers();
       settings.threads = 3;
       settings.traversal = traversal;
-      EXPECT_EQ(values(render(moving.world(), settings).picture), expected);
+      EXPECT_EQ(values(render(moving.compiled(), settings).picture), expected);
     }
-    compile::World list = moving.world();
+    compile::CompiledScene list = moving.compiled();
     list.accelerator = compile::Accelerator::kList;
     EXPECT_EQ(values(render(list, with_layers()).picture), expected);
   }
@@ -60,20 +60,20 @@ TEST(RenderMotion, EveryAcceleratorThreadCountAndTraversalGivesTheSameBits) {
 
 TEST(RenderMotion, WhatRestsIsRenderedAsIfTheShutterWereNeverOpen) {
   const scene::Scene scene = test::everything();
-  const compile::World world = compile::compile(scene, &scene);
-  EXPECT_FALSE(world.features.motion);
-  EXPECT_TRUE(world.motion.empty());
-  EXPECT_EQ(values(render(world, {}).picture), values(render(compile::compile(scene), {}).picture));
+  const compile::CompiledScene compiled = compile::compile(scene, &scene);
+  EXPECT_FALSE(compiled.features.motion);
+  EXPECT_TRUE(compiled.motion.empty());
+  EXPECT_EQ(values(render(compiled, {}).picture), values(render(compile::compile(scene), {}).picture));
 }
 
 TEST(RenderMotion, OnlySpheresUpToTheLastThatMovesAreKept) {
   scene::Scene opening = test::everything(), closing = opening;
   closing.spheres[2].center.x += 1;
-  const compile::World world = compile::compile(opening, &closing);
-  ASSERT_EQ(world.motion.size(), 3u);
-  EXPECT_EQ(world.motion[2].x, 1);
-  EXPECT_EQ(world.motion[1].x, 0);
-  EXPECT_EQ(world.motion[1].radius, 0);
+  const compile::CompiledScene compiled = compile::compile(opening, &closing);
+  ASSERT_EQ(compiled.motion.size(), 3u);
+  EXPECT_EQ(compiled.motion[2].x, 1);
+  EXPECT_EQ(compiled.motion[1].x, 0);
+  EXPECT_EQ(compiled.motion[1].radius, 0);
 }
 
 /// The blurred picture is the mean of the pictures of all moments.

@@ -16,10 +16,10 @@ using math::Vec3d;
 using test::everything;
 
 std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
-  const compile::World world = compile::compile(scene);
+  const compile::CompiledScene compiled = compile::compile(scene);
   Settings settings;
   settings.threads = threads;
-  const Result result = render(world, settings);
+  const Result result = render(compiled, settings);
   EXPECT_TRUE(result.completed);
   EXPECT_EQ(result.statistics.bad_samples, 0u);
   std::vector<float> all;

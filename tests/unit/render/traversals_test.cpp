@@ -33,12 +33,12 @@ TEST(RenderTraversals, AllGiveTheSameBits) {
 }
 
 TEST(RenderTraversals, WhatIsAskedForIsUsed) {
-  const compile::World world = compile::compile(test::everything());
+  const compile::CompiledScene compiled = compile::compile(test::everything());
   Settings settings;
   settings.traversal = Traversal::kSingle;
-  EXPECT_EQ(render(world, settings).statistics.traversal, "single");
+  EXPECT_EQ(render(compiled, settings).statistics.traversal, "single");
   settings.traversal = Traversal::kPacket;
-  EXPECT_EQ(render(world, settings).statistics.traversal, "packet");
+  EXPECT_EQ(render(compiled, settings).statistics.traversal, "packet");
 }
 
 TEST(RenderTraversals, NamesSayWhatDiffers) {
@@ -61,9 +61,9 @@ scene::Scene balls(int count) {
 
 TEST(RenderTraversals, WithoutATrialTheNumberOfSpheresDecides) {
   for (const auto& [count, name] : {std::pair{900, "packet"}, std::pair{4000, "packet, bounced single"}}) {
-    const compile::World world = compile::compile(balls(count));
-    const std::unique_ptr<accel::Accel> accel = build(world, 1);
-    EXPECT_EQ(name_of(choose_traversals(world, *accel, Traversal::kAuto)), name);
+    const compile::CompiledScene compiled = compile::compile(balls(count));
+    const std::unique_ptr<accel::Accel> accel = build(compiled, 1);
+    EXPECT_EQ(name_of(choose_traversals(compiled, *accel, Traversal::kAuto)), name);
   }
 }
 
@@ -72,9 +72,9 @@ TEST(RenderTraversals, WithoutATrialTheNumberOfSpheresDecides) {
 TEST(RenderTraversals, ATrialChoosesBetweenBoth) {
   scene::Scene scene = balls(4000);
   scene.render.samples = 4096;
-  const compile::World world = compile::compile(scene);
-  const std::unique_ptr<accel::Accel> accel = build(world, 1);
-  const std::string name = name_of(choose_traversals(world, *accel, Traversal::kAuto));
+  const compile::CompiledScene compiled = compile::compile(scene);
+  const std::unique_ptr<accel::Accel> accel = build(compiled, 1);
+  const std::string name = name_of(choose_traversals(compiled, *accel, Traversal::kAuto));
   EXPECT_TRUE(name == "packet" || name == "single" || name == "packet, bounced single" ||
               name == "single, bounced packet")
       << name;

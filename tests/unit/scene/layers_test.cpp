@@ -18,8 +18,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 std::string problem_of(Scene scene) {
   scene.materials.resize(1);
   scene.spheres.resize(1);
-  const std::vector<Problem> problems = validate(scene);
-  return problems.empty() ? "" : problems[0].key + ": " + problems[0].text;
+  const std::vector<SceneDiagnostic> diagnostics = validate(scene);
+  return diagnostics.empty() ? "" : diagnostics[0].key + ": " + diagnostics[0].text;
 }
 
 TEST(SceneLayers, LightBySurfaceNeedsLightPaths) {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "support/scratch_folder.h"
+#include "support/temp_dir.h"
 
 namespace orrery::scene {
 namespace {

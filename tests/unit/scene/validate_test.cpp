@@ -21,7 +21,7 @@ Scene with_sphere(Vec3d center, double radius) {
 /// "key: text" of each problem, warnings in brackets.
 std::vector<std::string> told(const Scene& scene) {
   std::vector<std::string> out;
-  for (const Problem& p : validate(scene)) {
+  for (const SceneDiagnostic& p : validate(scene)) {
     const std::string line = p.key + ": " + p.text;
     out.push_back(p.severity == base::Severity::kError ? line : "(" + line + ")");
   }

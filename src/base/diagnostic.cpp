@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/diagnostic.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace orrery::base {
+namespace {
+
+/// Text out of a file goes to a terminal: bytes that would command it become question marks.
+std::string printable(std::string_view text) {
+  std::string out(text);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(out[i]);
+    if ((byte < 0x20 && out[i] != '\t') || byte == 0x7f) out[i] = '?';
+    // U+0080..U+009F in UTF-8: control characters as well.
+    if (byte >= 0x80 && byte < 0xA0 && i > 0 && out[i - 1] == '\xC2') out[i - 1] = out[i] = '?';
+  }
+  return out;
+}
+
+/// The second and later bytes of a UTF-8 character take no room of their own.
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
+
+/// A tab must stay a tab under a tab, or the caret does not stand under its column.
+std::string caret_line(const Diagnostic& diagnostic) {
+  const std::string& source = diagnostic.source_line;
+  const std::size_t begin = std::min(static_cast<std::size_t>(diagnostic.column) - 1, source.size());
+  const std::size_t end = std::min(begin + static_cast<std::size_t>(std::max(diagnostic.width, 1)), source.size());
+  std::string line;
+  for (std::size_t i = 0; i < begin; ++i)
+    if (!continues_character(source[i])) line += source[i] == '\t' ? '\t' : ' ';
+  line += '^';
+  for (std::size_t i = begin + 1; i < end; ++i)
+    if (!continues_character(source[i])) line += '~';
+  return line;
+}
+
+}  // namespace
+
+std::string formatted(const Diagnostic& diagnostic) {
+  std::string out = printable(diagnostic.file);
+  if (diagnostic.line > 0) out += ':' + std::to_string(diagnostic.line);
+  if (diagnostic.line > 0 && diagnostic.column > 0) out += ':' + std::to_string(diagnostic.column);
+  if (!out.empty()) out += ": ";
+  out += diagnostic.severity == Severity::kError ? "error: " : "warning: ";
+  out += printable(diagnostic.text);
+  if (!diagnostic.remedy.empty()) out += "; " + printable(diagnostic.remedy);
+  out += '\n';
+  if (!diagnostic.source_line.empty() && diagnostic.column > 0) {
+    out += "    " + printable(diagnostic.source_line) + "\n    " + caret_line(diagnostic) + '\n';
+  }
+  return out;
+}
+
+}  // namespace orrery::base

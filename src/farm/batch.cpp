@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "farm/batch.h"
+
+#include "job/job_files.h"
+#include "base/frames.h"
+
+namespace orrery::farm {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
+
+constexpr const char* kScenePlace = "{scene}";
+
+bool has_scene_place(const std::string& name) { return name.find(kScenePlace) != std::string::npos; }
+
+std::string with_scene(std::string name, const std::string& stem) {
+  const std::string place = kScenePlace;
+  for (std::size_t at = name.find(place); at != std::string::npos; at = name.find(place, at + stem.size()))
+    name.replace(at, place.size(), stem);
+  return name;
+}
+
+/// All files that a job writes under names of the user's.
+std::vector<fs::path*> names_of(job::Job& job) {
+  std::vector<fs::path*> names;
+  for (fs::path& output : job.outputs) names.push_back(&output);
+  if (!job.deep.empty()) names.push_back(&job.deep);
+  if (!job.statistics.empty()) names.push_back(&job.statistics);
+  return names;
+}
+
+void check_name(const Batch& batch, const std::string& name) {
+  const bool has_place = base::has_frame_pattern(name);
+  if (batch.frames.size() > 1 && !has_place)
+    refuse(name + " is one name for " + std::to_string(batch.frames.size()) +
+           " frames; give it a place for the number, as in shot.####.exr or shot.%04d.exr");
+  if (batch.frames.empty() && has_place)
+    refuse(name + " has a place for the number of a frame; say which frames by --frames, as in --frames 1-48");
+  if (batch.scenes.size() > 1 && !has_scene_place(name))
+    refuse(name + " is one name for " + std::to_string(batch.scenes.size()) +
+           " scenes; give it a place for their names, as in {scene}.png");
+}
+
+/// Adds what a scene names, where it can be parsed; its job reports what is wrong with one that cannot.
+void add_readable_files(const fs::path& scene, const std::vector<format::Override>& overrides,
+                        const std::vector<int>& frames, base::FileSet& files) {
+  try {
+    job::add_named_files(scene, overrides, frames, files);
+  } catch (const base::Error& error) {
+    if (error.kind() == base::ErrorKind::kUsage) throw;
+  }
+}
+
+}  // namespace
+
+std::vector<job::Job> jobs_of(const Batch& batch) {
+  job::Job common = batch.job;
+  for (const fs::path* name : names_of(common)) check_name(batch, name->string());
+  const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{format::kFirstFrame} : batch.frames;
+  std::vector<job::Job> jobs;
+  common.files = std::make_shared<base::FileSet>();
+  base::FileSet& files = *common.files;
+  if (!batch.log.empty()) files.add_output(batch.log, "--log");
+  for (const fs::path& scene : batch.scenes)
+    if (!files.add_input(scene, "scene")) refuse(scene.string() + " is given twice");
+  for (const fs::path& scene : batch.scenes) {
+    for (const int frame : frames) {
+      job::Job job = common;
+      job.scene = scene;
+      job.frame = frame;
+      for (fs::path* name : names_of(job)) {
+        std::string text = with_scene(name->string(), scene.stem().string());
+        *name = batch.frames.empty() ? text : base::with_frame(text, frame);
+      }
+      job::add_job_files(job, files, batch.scenes.size() > 1 ? " of " + scene.string() : "");
+      jobs.push_back(std::move(job));
+    }
+  }
+  // A job alone checks what its scene names once it is read; by then another one, or the log, may have overwritten it.
+  if (jobs.size() > 1 || !batch.log.empty())
+    for (const fs::path& scene : batch.scenes) add_readable_files(scene, common.overrides, frames, files);
+  return jobs;
+}
+
+std::string job_name(const Batch& batch, const job::Job& job) {
+  return (batch.frames.empty() ? "" : "frame " + std::to_string(job.frame) + " of ") + job.scene.string();
+}
+
+BatchReport run_batch(const Batch& batch, const std::vector<job::Job>& jobs) {
+  BatchReport report;
+  report.jobs = jobs.size();
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (batch.on_begin) batch.on_begin(jobs[i], i, jobs.size());
+    try {
+      const job::JobReport done = job::run_job(jobs[i]);
+      ++(done.was_skipped ? report.skipped : report.rendered);
+      if (batch.on_end) batch.on_end(jobs[i], done);
+    } catch (const base::Error& error) {
+      if (!batch.keep_going || error.kind() == base::ErrorKind::kStopped) throw;
+      if (batch.on_failure) batch.on_failure(jobs[i], error);
+      report.failures.push_back({job_name(batch, jobs[i]), error});
+    }
+  }
+  return report;
+}
+
+}  // namespace orrery::farm

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "generate/generate.h"
+#include "generate/generate_random.h"
+#include "base/error.h"
+#include "scene/limits.h"
+#include "scene/schema.h"
+
+namespace orrery::generate {
+namespace {
+
+using math::Vec3d;
+
+/// A ball of the cloud's shape: flat below, heaped up in the middle, trailing off to the right.
+struct Puff {
+  Vec3d center;
+  double radius;
+};
+constexpr std::array<Puff, 8> kPuffs{{{{-1.45, 0.00, 0.05}, 0.50},
+                                      {{-0.85, 0.22, -0.10}, 0.68},
+                                      {{-0.15, 0.48, 0.10}, 0.86},
+                                      {{0.25, 0.05, 0.45}, 0.60},
+                                      {{0.60, 0.28, -0.15}, 0.72},
+                                      {{1.15, 0.05, 0.10}, 0.55},
+                                      {{1.65, -0.12, -0.05}, 0.38},
+                                      {{2.00, -0.20, 0.05}, 0.24}}};
+
+/// Sum of the cross-sections of all spheres, scene units^2: the shape's own silhouette about two and a half times.
+constexpr double kCrossSection = 12;
+/// So that a cloud of three spheres is not one ball.
+constexpr double kLargestDefaultRadius = 0.3;
+/// How far out the sum of two points of the unit ball goes, against one point of it.
+constexpr double kSpread = 0.65;
+/// A sphere's size, in units of the one that makes the cross-section right.
+constexpr double kSmallestShare = 0.5, kLargestShare = 1.4;
+
+double mean_radius(std::uint64_t count) {
+  // The mean square of a share that is uniform between the two.
+  constexpr double kMeanSquare =
+      (kSmallestShare * kSmallestShare + kSmallestShare * kLargestShare + kLargestShare * kLargestShare) / 3;
+  const double r = std::sqrt(kCrossSection / (std::numbers::pi * kMeanSquare * static_cast<double>(count)));
+  return std::min(r, kLargestDefaultRadius);
+}
+
+/// Picks puffs by volume, so that the cloud is about equally dense where they do not overlap.
+class PuffChoice {
+ public:
+  PuffChoice() {
+    double sum = 0;
+    for (std::size_t i = 0; i < kPuffs.size(); ++i)
+      up_to_[i] = sum += kPuffs[i].radius * kPuffs[i].radius * kPuffs[i].radius;
+    for (double& share : up_to_) share /= sum;
+  }
+  const Puff& operator()(double u) const {
+    const auto at = std::upper_bound(up_to_.begin(), up_to_.end() - 1, u);
+    return kPuffs[static_cast<std::size_t>(at - up_to_.begin())];
+  }
+
+ private:
+  std::array<double, kPuffs.size()> up_to_{};
+};
+
+/// Mostly white, a few spheres tinted, fewer of metal. The order is that of the scene's materials.
+std::uint32_t pick_material(double u) { return u < 0.75 ? 0 : u < 0.87 ? 1 : u < 0.95 ? 2 : 3; }
+
+void check(const Cloud& options) {
+  if (options.count < 1 || options.count > kLargestCloud)
+    throw base::Error(base::ErrorKind::kUsage,
+                      "count is " + std::to_string(options.count) + "; allowed is 1.." + std::to_string(kLargestCloud));
+  // Negated so that NaN is refused too.
+  if (options.radius && !(*options.radius >= scene::kSmallestRadius && *options.radius <= kLargestCloudRadius))
+    throw base::Error(base::ErrorKind::kUsage, "radius is " + scene::number_text(*options.radius) + "; allowed is " +
+                                                   scene::number_text(scene::kSmallestRadius) + ".." +
+                                                   scene::number_text(kLargestCloudRadius));
+}
+
+}  // namespace
+
+scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& points_file) {
+  check(options);
+  scene::Scene scene;
+  scene.camera.look_from = {0.3, 0.1, 9};
+  scene.camera.look_at = {0.15, 0.3, 0};
+  scene.camera.vfov = 20;
+  // Light from above: white tops and dark undersides before a middling blue, which is what is seen of the sky.
+  scene.background.bottom = {0, 0.05, 0.2};
+  scene.background.top = {0.8, 0.95, 1.2};
+  scene.materials = {{"white", scene::Lambertian{{0.95, 0.95, 0.95}}},
+                     {"rose", scene::Lambertian{{0.9, 0.6, 0.55}}},
+                     {"blue", scene::Lambertian{{0.3, 0.45, 0.8}}},
+                     {"silver", scene::Metal{{0.9, 0.9, 0.92}, 0.1}}};
+
+  GenerateRandom random(options.seed);
+  const PuffChoice choose;
+  const double mean = mean_radius(options.count);
+  const auto count = static_cast<std::size_t>(options.count);
+  scene::Points points;
+  points.file = points_file;
+  points.centers.reserve(count);
+  points.radii.reserve(count);
+  points.materials.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Puff& puff = choose(random.unit());
+    // The sum of two points thins out towards the rim: from one alone the balls of the shape could be told apart.
+    const Vec3d a = random.in_ball(), b = random.in_ball();
+    points.centers.push_back(puff.center + kSpread * puff.radius * (a + b));
+    const double share = random.between(kSmallestShare, kLargestShare);
+    points.radii.push_back(options.radius ? *options.radius : mean * share);
+    points.materials.push_back(pick_material(random.unit()));
+  }
+  scene.points.push_back(std::move(points));
+  return scene;
+}
+
+}  // namespace orrery::generate

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/checkpoint.h"
+
+#include <utility>
+
+#include "job/provenance.h"
+#include "base/error.h"
+#include "base/file_name.h"
+
+namespace orrery::job {
+namespace {
+
+std::chrono::steady_clock::duration interval(const Job& job) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(job.checkpoint_s));
+}
+
+}  // namespace
+
+std::filesystem::path checkpoint_file(const std::filesystem::path& first_output) {
+  return first_output.parent_path() / base::companion_name(first_output.stem().string(), ".checkpoint.exr");
+}
+
+Checkpoint::Checkpoint(const Job& job, image::Provenance provenance, Write write)
+    : job_(job),
+      file_(checkpoint_file(job.outputs.front())),
+      provenance_(std::move(provenance)),
+      write_(std::move(write)),
+      next_(Clock::now() + interval(job)) {}
+
+std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
+  if (!job_.resume || !std::filesystem::exists(file_)) return {};
+  try {
+    const image::Provenance found = image::read_provenance(file_);
+    if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())
+      throw base::Error(base::ErrorKind::kBadData,
+                        file_.string() + " is of " + wrong + "; delete it, or render without --resume to begin anew");
+    image::PartialFile file = image::read_partial(file_, width_px, height_px);
+    is_ours_ = true;
+    return std::move(file.partial);
+  } catch (const base::Error&) {
+    // Another process that renders the same picture removes the checkpoint when it finishes.
+    if (!std::filesystem::exists(file_)) return {};
+    throw;
+  }
+}
+
+bool Checkpoint::is_due() const {
+  if (job_.snapshot != nullptr && job_.snapshot->load(std::memory_order_relaxed)) return true;
+  return job_.checkpoint_s > 0 && Clock::now() >= next_;
+}
+
+void Checkpoint::write_snapshot(const film::Partial& partial) {
+  const bool was_asked = job_.snapshot != nullptr && job_.snapshot->exchange(false);
+  try {
+    write(partial);
+    if (was_asked && job_.on_note) job_.on_note("wrote " + file_.string());
+  } catch (const base::Error& error) {
+    base::Diagnostic diagnostic;
+    diagnostic.severity = base::Severity::kWarning;
+    diagnostic.file = file_.string();
+    diagnostic.text = std::string("no checkpoint: ") + error.what();
+    if (job_.on_warning) job_.on_warning(diagnostic);
+  }
+  next_ = Clock::now() + interval(job_);
+}
+
+void Checkpoint::write(const film::Partial& partial) {
+  write_(file_, partial);
+  is_ours_ = true;
+}
+
+void Checkpoint::remove() {
+  std::error_code ignored;
+  if (is_ours_) std::filesystem::remove(file_, ignored);
+}
+
+}  // namespace orrery::job

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/choose_isa.h"
+
+#include "base/error.h"
+#include "base/suggestion.h"
+#include "kernel/isa.h"
+
+namespace orrery::job {
+
+void choose_isa(const std::string& name) {
+  if (kernel::limit_isa(name)) return;
+  throw base::Error(base::ErrorKind::kUsage, "no instruction set " + name + " here; this processor and program have " +
+                                                 base::joined(kernel::available_isas()));
+}
+
+}  // namespace orrery::job

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "display/develop.h"
+#include "film/encoded_picture.h"
+#include "film/picture.h"
+
+namespace orrery::job {
+
+/// Writes one picture into files for a display; it is developed once for all that need the same channels. PNG and TIFF
+/// keep the alpha of a transparent picture.
+class DisplayWriter {
+ public:
+  /// Domain     the arguments outlive this; bits 8 or 16
+  DisplayWriter(const film::Picture& picture, const display::Settings& settings, int bits)
+      : picture_(picture), settings_(settings), bits_(bits) {}
+
+  /// Errors     as display::develop and image::write_encoded
+  void write(const std::filesystem::path& file, const std::string& software, const std::string& stamp = {});
+
+ private:
+  const film::Picture& picture_;
+  const display::Settings& settings_;
+  int bits_;
+  std::optional<film::EncodedPicture> over_black_, with_alpha_;
+};
+
+}  // namespace orrery::job

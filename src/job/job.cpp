@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "job/check_job.h"
+#include "job/checkpoint.h"
+#include "job/disk_space.h"
+#include "job/display_writer.h"
+#include "job/job_files.h"
+#include "job/layers.h"
+#include "job/load_scene.h"
+#include "job/make_picture.h"
+#include "job/matte_manifest.h"
+#include "job/memory.h"
+#include "job/picture_header.h"
+#include "job/provenance.h"
+#include "job/statistics.h"
+#include "job/text.h"
+#include "job/threads.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/exit_status.h"
+#include "compile/compile.h"
+#include "film/layer_film.h"
+#include "image/format.h"
+
+namespace orrery::job {
+namespace {
+
+/// Seconds since the last call.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+bool wants_display(const Job& job) {
+  for (const auto& output : job.outputs)
+    if (image::is_display_format(image::format_of(output))) return true;
+  return false;
+}
+
+void stop_if_asked(const Job& job) {
+  if (job.cancel != nullptr && job.cancel->load(std::memory_order_relaxed)) stop_job();
+}
+
+void warn(const Job& job, const base::Diagnostic& diagnostic) {
+  if (job.on_warning) job.on_warning(diagnostic);
+}
+
+void require_bits(const display::Choice& display, const Job& job) {
+  for (const auto& output : job.outputs) {
+    const image::Format format = image::format_of(output);
+    if (display.is_hdr && image::is_display_format(format) && image::most_bits(format) < 16)
+      throw base::Error(base::ErrorKind::kUsage, output.string() + " holds 8 bits in a channel, too few for display " +
+                                                     display.display + "; PNG and TIFF hold 16");
+  }
+}
+
+/// The scene, checked for the files that the job will write.
+LoadedScene load(const Job& job, JobReport& report) {
+  SceneRequest request;
+  request.file = job.scene;
+  request.overrides = job.overrides;
+  request.frame = job.frame;
+  request.display = job.display;
+  request.develops = wants_display(job);
+  LoadedScene loaded = load_scene(request);
+  for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
+  if (request.develops) {
+    report.display = *loaded.choice;
+    require_bits(report.display, job);
+  }
+  return loaded;
+}
+
+void write_outputs(const Job& job, const display::Settings& display, const film::Picture& picture,
+                   const image::Header& header, const std::vector<MatteNames>& mattes, JobReport& report) {
+  DisplayWriter developed(picture, display, job.bits != 0 ? job.bits : report.display.default_bits());
+  const auto add = [&](const image::WriteReport& one) {
+    report.written.clamped += one.clamped;
+    report.written.not_finite += one.not_finite;
+  };
+  for (const auto& output : job.outputs) {
+    switch (image::format_of(output)) {
+      case image::Format::kExr: {
+        image::Header own = header;
+        own.matte_attributes = matte_attributes(mattes, output);
+        write_manifests(mattes, output);  // first: no picture shall name a file that is not there
+        add(image::write_exr(output, picture, own, job.exr));
+        break;
+      }
+      case image::Format::kHdr: add(image::write_hdr(output, picture)); break;
+      case image::Format::kPng:
+      case image::Format::kTiff:
+      case image::Format::kJpeg:
+      case image::Format::kPpm: developed.write(output, header.software, header.stamp); break;
+    }
+  }
+}
+
+/// The layers that some file of the job will hold; what no file holds is not computed.
+Layers layers_for(const Job& job, const scene::Scene& scene, const compile::CompiledScene& compiled) {
+  Layers layers = choose_layers(scene, compiled);
+  layers.request.deep = !job.deep.empty();
+  image::check_lossless(film::planes_of(layers.request), job.exr);
+  const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
+  if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) return layers;
+  const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
+  if (job.parts.empty() && !scene.output.layers.empty() &&
+      std::any_of(job.overrides.begin(), job.overrides.end(), is_explicit))
+    throw base::Error(base::ErrorKind::kUsage, "layers were asked for, and no output can hold them; add -o FILE.exr");
+  Layers none;
+  none.request.coverage = layers.request.coverage;
+  none.request.deep = layers.request.deep;
+  return none;
+}
+
+void count_bad_values(const film::Picture& picture, JobReport& report) {
+  for (const film::Plane& plane : picture.planes) {
+    const film::BadValues bad = film::count_bad_values(plane);
+    if (!bad.any()) continue;
+    report.bad_values += bad;
+    const std::string layer = plane.layer().empty() ? "beauty" : plane.layer();
+    if (report.bad_layers.empty() || report.bad_layers.back().first != layer) report.bad_layers.push_back({layer, {}});
+    report.bad_layers.back().second += bad;
+  }
+}
+
+std::string missed_target(const Job& job, const render::Statistics& statistics) {
+  std::string out;
+  if (job.noise > 0 && statistics.noise && *statistics.noise > job.noise)
+    base::append(
+        out, "noise %.3g instead of %.3g: %s", *statistics.noise, job.noise,
+        statistics.ended_by == "time" ? "time was over" : "every pixel that needs more has had all its samples");
+  if (job.noise > 0 && statistics.unjudged_pixels > 0)
+    base::append(
+        out, "%sthe noise of %llu pixels cannot be judged: too few paths have found light around them; allow more %s",
+        out.empty() ? "" : "; ", static_cast<unsigned long long>(statistics.unjudged_pixels),
+        statistics.ended_by == "time" ? "time" : "samples");
+  return out;
+}
+
+/// The way data takes.
+void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
+  Stopwatch watch, total;
+  LoadedScene loaded = load(job, report);
+  format::ReadResult& read = loaded.read;
+  const display::Settings& display = loaded.display;
+  add_scene_files(job.scene, read.scene, files);
+  if (loaded.choice)
+    for (const std::string& table : loaded.choice->files) files.add_input(table, "table of the OCIO config");
+  report.phases.read_s = watch.lap();
+  stop_if_asked(job);
+
+  const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
+  check_samples(job, compiled);
+  check_sizes(job, compiled);
+  const Layers layers = layers_for(job, read.scene, compiled);
+  for (const auto& manifest : manifest_files(layers.mattes, job.outputs)) {
+    files.add_output(manifest, "Cryptomatte manifest");
+    base::check_creatable(manifest);
+  }
+  const image::Provenance provenance = provenance_of(job, compiled, layers);
+  const std::string stamp = stamp_of(job, provenance, display);
+  report.scene_hash = provenance.at("sceneHash");
+  report.was_skipped = job.skip_existing && is_there(job, compiled, provenance, stamp);
+  if (report.was_skipped) return;
+  require_disk_space(job, compiled, film::planes_of(layers.request).size());
+  require_memory(estimate_memory(memory_needs(compiled, layers.request, job.noise > 0 || job.seconds > 0)),
+                 job.memory_limit);
+  read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
+  report.hosts = {provenance.at("host")};
+  report.width = compiled.width;
+  report.height = compiled.height;
+  report.spheres = compiled.spheres.size();
+  report.phases.compile_s = watch.lap();
+  stop_if_asked(job);
+
+  render::Settings settings;
+  settings.threads = job.threads > 0 ? job.threads : default_threads();
+  settings.traversal = traversal_of(job);
+  settings.layers = layers.request;
+  settings.on_progress = job.on_progress;
+  settings.on_build = job.on_build;
+  settings.cancel = job.cancel;
+  image::set_threads(settings.threads);
+  const auto write_sums = [&](const std::filesystem::path& file, const film::Partial& partial) {
+    image::write_partial(file, preview(compiled, partial), picture_header(read, compiled, report, job.reproducible),
+                         provenance, partial);
+  };
+  Checkpoint checkpoint(job, provenance, write_sums);
+  const render::Result result = job.parts.empty() ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
+                                                  : merge_job(job, compiled, layers, provenance, report);
+  report.render = result.statistics;
+  const double made_s = watch.lap();
+  if (!job.parts.empty()) report.phases.finish_s = made_s;
+
+  report.target_missed = missed_target(job, result.statistics);
+  count_bad_values(result.picture, report);
+  if (is_shard(job)) {
+    write_sums(job.outputs.front(), *result.partial);
+  } else {
+    image::Header header = picture_header(read, compiled, report, job.reproducible);
+    header.stamp = stamp;
+    write_outputs(job, display, result.picture, header, layers.mattes, report);
+    if (!job.deep.empty()) image::write_deep(job.deep, result.deep, result.picture, header);
+  }
+  checkpoint.remove();
+  report.phases.write_s = watch.lap();
+}
+
+/// Whether a failure may be written to the statistics file. It may not where the request was wrong, since that may be
+/// about this very file, nor where the scene names it, which is known only of a scene that was read.
+bool may_report(const Job& job, const JobReport& report, const base::Error& error, base::FileSet& files) {
+  if (error.kind() == base::ErrorKind::kUsage) return false;
+  if (!report.scene_hash.empty()) return true;
+  try {
+    add_named_files(job.scene, job.overrides, {job.frame}, files);
+    return true;
+  } catch (const base::Error& unreadable) {
+    std::error_code ignored;
+    return unreadable.kind() != base::ErrorKind::kUsage && !std::filesystem::exists(job.statistics, ignored);
+  }
+}
+
+/// What went wrong is written down as far as that still works; the error itself is what the caller shall hear.
+void write_failure(const Job& job, const JobReport& report, const base::Error& error) {
+  if (job.statistics.empty()) return;
+  const bool stopped = error.kind() == base::ErrorKind::kStopped;
+  try {
+    write_statistics(job.statistics, report,
+                     {stopped ? "stopped" : "failed", base::exit_status(error.kind()), error.what()});
+  } catch (const base::Error&) {
+  }
+}
+
+}  // namespace
+
+bool is_limited(const Job& job) {
+  const auto is_samples = [](const format::Override& o) { return o.sets("render.samples"); };
+  return std::any_of(job.overrides.begin(), job.overrides.end(), is_samples);
+}
+
+JobReport run_job(const Job& job) {
+  base::FileSet own;
+  base::FileSet& files = job.files ? *job.files : own;
+  if (!job.files) add_job_files(job, own);
+  check_request(job);
+  JobReport report;
+  try {
+    run_phases(job, files, report);
+  } catch (const base::Error& error) {
+    if (may_report(job, report, error, files)) write_failure(job, report, error);
+    throw;
+  }
+  if (!job.statistics.empty() && !report.was_skipped) write_statistics(job.statistics, report, {});
+  return report;
+}
+
+}  // namespace orrery::job

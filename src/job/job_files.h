@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "job/job.h"
+#include "base/file_set.h"
+#include "scene/scene.h"
+
+namespace orrery::job {
+
+/// A file that a job writes, and why.
+struct OutputFile {
+  std::filesystem::path path;
+  std::string role;  ///< "-o", "--stats", "checkpoint"
+};
+
+/// All files that a job writes, except those that depend on the scene: Cryptomatte manifests.
+std::vector<OutputFile> outputs_of(const Job& job);
+
+/// Adds what a job reads and writes as far as its command line says it.
+///
+/// `owner`    for messages about several scenes: " of shot.toml"
+/// Errors     base::Error(kUsage) for an output that is an input or another output
+void add_job_files(const Job& job, base::FileSet& files, const std::string& owner = {});
+
+/// Adds what the scene of a job names at its frame. It is not read for this, only parsed.
+///
+/// Errors     as add_job_files; those of format::named_files
+void add_named_files(const std::filesystem::path& scene_file, const std::vector<format::Override>& overrides,
+                     const std::vector<int>& frames, base::FileSet& files);
+
+/// The same of a scene that was read.
+///
+/// Errors     as add_job_files
+void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files);
+
+/// Adds the OCIO config of --ocio or of a scene, and that of $OCIO, where these are files.
+///
+/// Errors     as add_job_files
+void add_ocio_configs(const std::string& config, base::FileSet& files);
+
+}  // namespace orrery::job

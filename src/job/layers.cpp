@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/layers.h"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "film/cryptomatte.h"
+#include "scene/layers.h"
+
+namespace orrery::job {
+namespace {
+
+/// Spheres in the order of their ids, as runs that are one thing each.
+class Runs {
+ public:
+  void add(std::size_t spheres, std::uint32_t id) {
+    end_ += static_cast<std::uint32_t>(spheres);
+    if (!ids_.empty() && ids_.back() == id) {
+      ends_.back() = end_;
+    } else if (spheres > 0) {
+      ends_.push_back(end_);
+      ids_.push_back(id);
+    }
+  }
+  std::uint32_t operator()(std::uint32_t sphere) const {
+    const auto run = std::upper_bound(ends_.begin(), ends_.end(), sphere) - ends_.begin();
+    return ids_[static_cast<std::size_t>(run)];
+  }
+
+ private:
+  std::uint32_t end_ = 0;
+  std::vector<std::uint32_t> ends_, ids_;
+};
+
+/// Collects the things of one matte.
+class MatteMaker {
+ public:
+  explicit MatteMaker(std::string layer) { names_.layer = std::move(layer); }
+
+  /// The next spheres are this thing; an empty name: none.
+  void add(std::size_t spheres, const std::string& name) { runs_->add(spheres, id_of(name)); }
+
+  std::uint32_t id_of(const std::string& name) {
+    if (name.empty()) return 0;
+    const std::uint32_t id = film::matte_id(name);
+    if (known_.insert(name).second) names_.things.emplace_back(name, id);
+    return id;
+  }
+  void finish(Layers& layers) {
+    finish(layers, [runs = runs_](std::uint32_t sphere) { return (*runs)(sphere); });
+  }
+  void finish(Layers& layers, std::function<std::uint32_t(std::uint32_t)> id_of_sphere) {
+    layers.request.mattes.push_back({names_.layer, std::move(id_of_sphere)});
+    layers.mattes.push_back(std::move(names_));
+  }
+
+ private:
+  MatteNames names_;
+  std::set<std::string> known_;
+  std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // shared: a function is copied
+};
+
+void add_object_matte(const scene::Scene& scene, Layers& layers) {
+  MatteMaker maker("CryptoObject");
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
+    maker.add(1, scene.spheres[i].name.empty() ? "sphere." + std::to_string(i) : scene.spheres[i].name);
+  for (const scene::Points& p : scene.points)
+    maker.add(p.centers.size(), p.name.empty() ? p.file.stem().string() : p.name);
+  maker.finish(layers);
+}
+
+void add_group_matte(const scene::Scene& scene, Layers& layers) {
+  MatteMaker maker("CryptoGroup");
+  for (const scene::Sphere& s : scene.spheres) maker.add(1, s.group);
+  for (const scene::Points& p : scene.points) maker.add(p.centers.size(), p.group);
+  maker.finish(layers);
+}
+
+/// Calls `f(authored material, compiled material)` for every sphere: compiled ones are fewer, and glass may be two.
+template <class F>
+void each_material(const scene::Scene& scene, const compile::CompiledScene& compiled, F f) {
+  std::size_t sphere = 0;
+  for (const scene::Sphere& s : scene.spheres) f(s.material, compiled.sphere_materials[sphere++]);
+  for (const scene::Points& p : scene.points)
+    for (std::size_t i = 0; i < p.centers.size(); ++i)
+      f(p.materials.empty() ? p.material : p.materials[i], compiled.sphere_materials[sphere++]);
+}
+
+/// The authored material behind each compiled one.
+std::vector<std::uint32_t> authored_materials(const scene::Scene& scene, const compile::CompiledScene& compiled) {
+  std::vector<std::uint32_t> authored(compiled.materials.size());
+  each_material(scene, compiled, [&](std::uint32_t from, std::uint32_t to) { authored[to] = from; });
+  return authored;
+}
+
+void add_material_matte(const scene::Scene& scene, const compile::CompiledScene& compiled,
+                        const std::vector<std::uint32_t>& authored, Layers& layers) {
+  MatteMaker maker("CryptoMaterial");
+  std::vector<std::uint32_t> ids;
+  for (const std::uint32_t material : authored) ids.push_back(maker.id_of(scene.materials[material].name));
+  const std::vector<std::uint32_t>& of_sphere = compiled.sphere_materials;
+  maker.finish(layers, [ids, &of_sphere](std::uint32_t sphere) { return ids[of_sphere[sphere]]; });
+}
+
+}  // namespace
+
+Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled) {
+  Layers out;
+  film::LayerRequest& r = out.request;
+  const std::vector<std::string> names = scene::requested_layers(scene);
+  const auto asked = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  r.z = asked("Z");
+  r.depth = asked("depth");
+  r.normal = asked("N");
+  r.position = asked("P");
+  r.albedo = asked("albedo");
+  r.diffuse = asked("diffuse");
+  r.specular = asked("specular");
+  r.transmission = asked("transmission");
+  r.background = asked("background");
+  r.variance = asked("variance");
+  r.samples = asked("samples");
+  r.object_id = asked("object_id");
+  r.material_id = asked("material_id");
+  r.guide_albedo = asked("denoise.albedo");
+  r.guide_normal = asked("denoise.normal");
+  r.coverage = scene.background.alpha == 0;
+  if (asked("CryptoObject")) add_object_matte(scene, out);
+  if (r.material_id || asked("CryptoMaterial")) {
+    const std::vector<std::uint32_t> authored = authored_materials(scene, compiled);
+    for (const std::uint32_t material : authored) r.material_numbers.push_back(material + 1);
+    if (asked("CryptoMaterial")) add_material_matte(scene, compiled, authored, out);
+  }
+  if (asked("CryptoGroup")) add_group_matte(scene, out);
+  return out;
+}
+
+}  // namespace orrery::job

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/load_scene.h"
+
+#include <string>
+#include <utility>
+
+#include "job/working_space.h"
+#include "base/error.h"
+#include "display/look_up.h"
+
+namespace orrery::job {
+namespace {
+
+base::Diagnostic warning(const std::string& file, std::string text) {
+  base::Diagnostic out;
+  out.severity = base::Severity::kWarning;
+  out.file = file;
+  out.text = std::move(text);
+  return out;
+}
+
+display::Settings settings_of(const SceneRequest& request, const scene::Color& color) {
+  display::Settings out = request.display;
+  const auto otherwise = [](std::string& option, const std::string& key) {
+    if (option.empty()) option = key;
+  };
+  otherwise(out.config, config_of(request.file, color));
+  otherwise(out.display, color.display);
+  otherwise(out.view, color.view);
+  otherwise(out.look, color.look);
+  if (!out.exposure) out.exposure = color.exposure;
+  out.working_space = color.working_space();
+  return out;
+}
+
+bool names_anything(const display::Settings& settings, const scene::Color& color) {
+  const scene::Color defaults;
+  return color.space != defaults.space || settings.working_space != color.space || !settings.config.empty() ||
+         !settings.display.empty() || !settings.view.empty() || !settings.look.empty();
+}
+
+/// Who gave a name: the option, the scene's key, or neither.
+struct Giver {
+  std::string option, key;
+};
+
+Giver giver_of(display::Name name, const display::Settings& options, const scene::Color& color) {
+  const auto giver = [](const std::string& given, const char* option, bool is_in_scene, const char* key) {
+    return !given.empty() ? Giver{option, {}} : is_in_scene ? Giver{{}, key} : Giver{};
+  };
+  switch (name) {
+    case display::Name::kConfig: return giver(options.config, "--ocio", !color.config.empty(), "color.config");
+    case display::Name::kSpace: return {{}, "color.space"};
+    case display::Name::kWorkingSpace: return {{}, "color.working"};
+    case display::Name::kDisplay: return giver(options.display, "--display", !color.display.empty(), "color.display");
+    case display::Name::kView: return giver(options.view, "--view", !color.view.empty(), "color.view");
+    case display::Name::kLook: return giver(options.look, "--look", !color.look.empty(), "color.look");
+  }
+  return {};
+}
+
+/// Looks up the names of one scene's [color] and of the command line.
+class ColorCheck {
+ public:
+  explicit ColorCheck(const SceneRequest& request) : request_(request) {}
+
+  /// What is wrong with the scene's names.
+  std::vector<scene::SceneDiagnostic> operator()(const scene::Scene& scene) {
+    const display::Settings settings = settings_of(request_, scene.color);
+    std::vector<scene::SceneDiagnostic> diagnostics;
+    if (!request_.develops && !names_anything(settings, scene.color)) return diagnostics;
+    display::LookUp found = display::look_up(settings, scene.color.space);
+    for (const display::NameFault& fault : found.faults) {
+      const Giver giver = giver_of(fault.name, request_.display, scene.color);
+      if (!giver.key.empty()) {
+        const bool is_missing = fault.error.kind() == base::ErrorKind::kMissingInput;
+        diagnostics.push_back({base::Severity::kError, giver.key, fault.error.what(),
+                               is_missing ? base::ErrorKind::kMissingInput : base::ErrorKind::kBadData});
+      } else if (!other_) {
+        const std::string begin = giver.option.empty() ? "" : giver.option + ": ";
+        other_.emplace(fault.error.kind(), begin + fault.error.what());
+      }
+    }
+    choice_ = std::move(found.choice);
+    return diagnostics;
+  }
+
+  /// What was chosen.
+  ///
+  /// Errors     base::Error for what is wrong with other names than the scene's
+  std::optional<display::Choice> take() {
+    if (other_) throw base::Error(*other_);
+    return std::move(choice_);
+  }
+
+ private:
+  const SceneRequest& request_;
+  std::optional<base::Error> other_;
+  std::optional<display::Choice> choice_;
+};
+
+}  // namespace
+
+LoadedScene load_scene(const SceneRequest& request) {
+  LoadedScene out;
+  ColorCheck check(request);
+  out.read = format::read_scene(request.file, request.overrides, request.frame,
+                                [&](const scene::Scene& scene) { return check(scene); });
+  out.choice = check.take();
+  scene::Scene& scene = out.read.scene;
+  out.display = settings_of(request, scene.color);
+  out.warnings = std::move(out.read.warnings);
+  if (out.choice)
+    for (const std::string& text : out.choice->warnings) out.warnings.push_back(warning(out.choice->config, text));
+  if (const int moved = to_working_space(out.display.config, scene); moved > 0)
+    out.warnings.push_back(warning(request.file.string(), std::to_string(moved) + " colours are out of range in " +
+                                                              scene.color.working_space() +
+                                                              " and were moved to its edge"));
+  return out;
+}
+
+}  // namespace orrery::job

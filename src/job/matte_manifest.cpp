@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/matte_manifest.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "base/file_name.h"
+#include "film/cryptomatte.h"
+#include "image/format.h"
+
+namespace orrery::job {
+namespace {
+
+/// {"name":"13851a76",...}, in the order of the scene file. Written directly: an ordered object of the JSON library
+/// searches all names for each that is added.
+std::string manifest(const MatteNames& matte) {
+  std::string out = "{";
+  for (const auto& [name, id] : matte.things) {
+    if (out.size() > 1) out += ',';
+    out += nlohmann::json(name).dump() + ":\"" + film::matte_id_text(id) + '"';
+  }
+  return out + '}';
+}
+
+bool is_large(const MatteNames& matte) { return matte.things.size() > kMostNamesInHeader; }
+
+std::filesystem::path manifest_file(const MatteNames& matte, const std::filesystem::path& picture) {
+  return picture.parent_path() / base::companion_name(picture.stem().string(), "." + matte.layer + ".json");
+}
+
+}  // namespace
+
+std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& mattes,
+                                               const std::filesystem::path& picture) {
+  std::vector<image::Attribute> out;
+  for (const MatteNames& matte : mattes) {
+    const std::string key = "cryptomatte/" + film::matte_id_text(film::matte_id(matte.layer)).substr(0, 7) + "/";
+    out.push_back({key + "name", matte.layer});
+    out.push_back({key + "hash", std::string("MurmurHash3_32")});
+    out.push_back({key + "conversion", std::string("uint32_to_float32")});
+    if (is_large(matte)) {
+      out.push_back({key + "manif_file", manifest_file(matte, picture).filename().string()});
+    } else {
+      out.push_back({key + "manifest", manifest(matte)});
+    }
+  }
+  return out;
+}
+
+std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>& mattes,
+                                                  const std::vector<std::filesystem::path>& pictures) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& picture : pictures)
+    for (const MatteNames& matte : mattes)
+      if (is_large(matte) && image::format_of(picture) == image::Format::kExr)
+        files.push_back(manifest_file(matte, picture));
+  return files;
+}
+
+void write_manifests(const std::vector<MatteNames>& mattes, const std::filesystem::path& picture) {
+  for (const MatteNames& matte : mattes)
+    if (is_large(matte)) base::write_text_file(manifest_file(matte, picture), manifest(matte));
+}
+
+}  // namespace orrery::job

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/picture_header.h"
+
+#include <cmath>
+#include <ctime>
+
+#include "job/camera_matrices.h"
+#include "job/version.h"
+#include "compile/camera_basis.h"
+#include "display/color_space.h"
+#include "scene/value_text.h"
+
+namespace orrery::job {
+namespace {
+
+std::string local_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y:%m:%d %H:%M:%S", &local);
+  return text;
+}
+
+/// All settings as lines of a scene file: "camera.vfov = 20".
+std::string settings_lines(const std::vector<format::Setting>& settings, bool reproducible) {
+  std::string lines;
+  for (const format::Setting& setting : settings)
+    if (!reproducible || setting.key != "render.accelerator") lines += setting.key + " = " + setting.value + "\n";
+  return lines;
+}
+
+/// Whole rates as they are, 23.976 and its like as multiples of 1000/1001, others in thousandths.
+std::array<int, 2> rational(double rate) {
+  const double whole = std::round(rate);
+  if (std::abs(rate - whole) < 1e-9 && whole >= 1) return {static_cast<int>(whole), 1};
+  const double of_ntsc = std::round(rate * 1.001);
+  if (std::abs(rate - of_ntsc / 1.001) < 5e-4) return {static_cast<int>(of_ntsc) * 1000, 1001};
+  return {static_cast<int>(std::lround(rate * 1000)), 1000};
+}
+
+/// Per pixel; where pixels differ their mean.
+int mean_samples(const compile::CompiledScene& compiled, const JobReport& report) {
+  if (!report.render.noise) return compiled.samples;
+  return static_cast<int>(std::lround(static_cast<double>(report.render.paths) / compiled.width / compiled.height));
+}
+
+}  // namespace
+
+image::Header picture_header(const format::ReadResult& read, const compile::CompiledScene& compiled,
+                             const JobReport& report, bool reproducible) {
+  image::Header header;
+  header.software = "orrery " + program_version();
+  const CameraMatrices matrices = camera_matrices(read.scene.camera, read.scene.image);
+  header.world_to_camera = matrices.world_to_camera;
+  header.world_to_ndc = matrices.world_to_ndc;
+  if (read.scene.camera.defocus_angle > 0)
+    header.focus = static_cast<float>(compile::focus_distance(read.scene.camera));
+  if (const display::KnownSpace* space = display::known_space(read.scene.color.working_space())) {
+    header.chromaticities = space->chromaticities;
+    header.color_interop_id = space->interop_id;
+  }
+  header.frames_per_second = rational(read.scene.animation.fps);
+  header.attributes = {{"orrery/version", program_version()},
+                       {"orrery/sceneHash", report.scene_hash},
+                       {"orrery/samples", mean_samples(compiled, report)},
+                       {"orrery/maxDepth", static_cast<int>(compiled.max_depth)},
+                       {"orrery/seed", std::to_string(compiled.sampler.seed)}};
+  if (report.render.noise) header.attributes.push_back({"orrery/noise", static_cast<float>(*report.render.noise)});
+  for (const format::Setting& setting : read.settings)
+    if (setting.key == "render.precision" || setting.key == "render.shading" || setting.key == "render.sampler")
+      header.attributes.push_back({"orrery/" + setting.key.substr(7), scene::unquoted(setting.value)});
+  for (const auto& [layer, bad] : report.bad_layers)
+    header.attributes.push_back({"orrery/badValues/" + layer, std::to_string(bad.nan) + " nan, " +
+                                                                  std::to_string(bad.infinite) + " infinite, " +
+                                                                  std::to_string(bad.negative) + " negative, " +
+                                                                  std::to_string(bad.above_half) + " above half"});
+  if (!report.display.config_id.empty()) header.attributes.push_back({"orrery/ocioConfigId", report.display.config_id});
+  header.attributes.push_back({"orrery/settings", settings_lines(read.settings, reproducible)});
+  if (!report.missing.empty()) header.attributes.push_back({"orrery/missing", report.missing});
+  if (reproducible) return header;
+  header.capture_date = local_time();
+  header.attributes.push_back({"orrery/renderSeconds", static_cast<float>(report.phases.render_s)});
+  if (report.render.accelerator.empty()) return header;  // joined of parts, which may have had several
+  header.attributes.push_back({"orrery/accelerator", report.render.accelerator});
+  header.attributes.push_back({"orrery/isa", report.render.isa});
+  return header;
+}
+
+}  // namespace orrery::job

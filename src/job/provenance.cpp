@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/provenance.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "job/scene_hash.h"
+#include "job/text.h"
+#include "job/version.h"
+#include "film/layer_film.h"
+
+namespace orrery::job {
+namespace {
+
+/// Names and channels of all layers, and what they depend on beside the scene's hash.
+std::string layers_text(const Layers& layers) {
+  std::string out;
+  for (const film::Plane& plane : film::planes_of(layers.request)) out += (out.empty() ? "" : " ") + plane.name;
+  if (layers.request.coverage) out += " coverage";
+  if (layers.request.deep) out += " deep";
+  for (const MatteNames& matte : layers.mattes)
+    for (const auto& [name, id] : matte.things) base::append(out, " %08x", id);
+  // Of ten thousand things in a matte nobody reads the list; the same list is the same hash.
+  constexpr std::size_t kLongest = 200;
+  if (out.size() > kLongest) out = out.substr(0, kLongest) + "... " + text_hash(out);
+  return out;
+}
+
+}  // namespace
+
+image::Provenance provenance_of(const Job& job, const compile::CompiledScene& compiled, const Layers& layers) {
+  const std::uint32_t end = job.sample_end > 0 ? job.sample_end : static_cast<std::uint32_t>(compiled.samples);
+  image::Provenance out;
+  out["version"] = program_version();
+  out["sceneHash"] = scene_hash(compiled);
+  out["samples"] = std::to_string(job.sample_begin) + ":" + std::to_string(end);
+  out["tiles"] = std::to_string(job.shard.index + 1) + "/" + std::to_string(job.shard.count);
+  base::append(out["noise"], "%.17g", job.noise);
+  out["time"] = job.seconds > 0 ? "yes" : "no";
+  out["limit"] = is_limited(job) ? "yes" : "no";
+  out["layers"] = layers_text(layers);
+  out["scene"] = std::filesystem::absolute(job.scene).lexically_normal().string();
+  std::string& overrides = out["overrides"];
+  for (const format::Override& setting : job.overrides) overrides += setting.text + "\n";
+  out["frame"] = std::to_string(job.frame);
+  char host[256] = "";
+  gethostname(host, sizeof(host) - 1);
+  out["host"] = host;
+  return out;
+}
+
+std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display) {
+  std::string all;
+  for (const std::string& key : keys_of_checkpoints()) all += key + " " + provenance.at(key) + "\n";
+  base::append(all, "%.17g s, frame %d, %d bits, float %d, multipart %d, reproducible %d, exposure %.17g\n",
+               job.seconds, job.frame, job.bits, job.exr.as_float, job.exr.multipart, job.reproducible,
+               display.exposure.value_or(0));
+  for (const std::string& word :
+       {job.exr.compression, display.config, display.display, display.view, display.look, display.working_space})
+    all += word + "\n";
+  for (const format::Override& setting : job.overrides)
+    if (!setting.sets("render.accelerator")) all += setting.text + "\n";  // either gives the same bits
+  return text_hash(all);
+}
+
+std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys) {
+  const auto value = [](const image::Provenance& p, const std::string& key) {
+    const auto found = p.find(key);
+    return found == p.end() ? std::string() : found->second;
+  };
+  static const std::vector<std::pair<std::string, std::string>> names = {
+      {"version", "orrery "}, {"sceneHash", "scene hash "}, {"samples", "--samples "},         {"tiles", "--tiles "},
+      {"noise", "--noise "},  {"time", "a time limit: "},   {"limit", "a limit of samples: "}, {"layers", "layers "}};
+  for (const auto& [key, name] : names) {
+    if (std::find(keys.begin(), keys.end(), key) == keys.end() || value(a, key) == value(b, key)) continue;
+    return name + (value(a, key).empty() ? "none" : value(a, key)) + ", not " +
+           (value(b, key).empty() ? "none" : value(b, key));
+  }
+  return {};
+}
+
+const std::vector<std::string>& keys_of_parts() {
+  static const std::vector<std::string> keys = {"version", "sceneHash", "noise", "time", "layers"};
+  return keys;
+}
+
+const std::vector<std::string>& keys_of_checkpoints() {
+  static const std::vector<std::string> keys = {"version", "sceneHash", "samples", "tiles",
+                                                "noise",   "time",      "limit",   "layers"};
+  return keys;
+}
+
+bool is_finished(const image::PartialFile& part) {
+  const SampleRange range = sample_range(part.provenance);
+  const std::vector<bool> owned =
+      render::pixels_of(pixel_shard(part.provenance), part.partial.film.width(), part.partial.film.height());
+  for (std::size_t i = 0; i < owned.size(); ++i)
+    if (owned[i] && part.partial.counts[i] != range.end - range.begin) return false;
+  return true;
+}
+
+SampleRange sample_range(const image::Provenance& provenance) {
+  SampleRange out;
+  const auto found = provenance.find("samples");
+  if (found != provenance.end()) std::sscanf(found->second.c_str(), "%u:%u", &out.begin, &out.end);
+  return out;
+}
+
+render::PixelShard pixel_shard(const image::Provenance& provenance) {
+  render::PixelShard out;
+  const auto found = provenance.find("tiles");
+  if (found != provenance.end() && std::sscanf(found->second.c_str(), "%d/%d", &out.index, &out.count) == 2)
+    --out.index;
+  return out;
+}
+
+}  // namespace orrery::job

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/scene_hash.h"
+
+#include <cstdio>
+#include <cstring>
+
+namespace orrery::job {
+namespace {
+
+/// As FNV-1a, but over 64-bit words, whose high bits are folded down: a product carries only upwards.
+class Hash {
+ public:
+  void add(double x) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &x, sizeof(bits));
+    add_bits(bits);
+  }
+  void add_bits(std::uint64_t bits) {
+    state_ = (state_ ^ bits) * 0x100000001b3u;
+    state_ ^= state_ >> 29;
+  }
+  std::string text() const {
+    char out[17];
+    std::snprintf(out, sizeof(out), "%016llx", static_cast<unsigned long long>(state_));
+    return out;
+  }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+template <std::size_t N>
+void add_all(Hash& hash, const double (&values)[N]) {
+  for (const double v : values) hash.add(v);
+}
+
+}  // namespace
+
+std::string scene_hash(const compile::CompiledScene& compiled) {
+  Hash hash;
+  hash.add_bits(compiled.spheres.size());
+  for (const kernel::Sphere& s : compiled.spheres)
+    for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
+  for (const std::uint32_t m : compiled.sphere_materials) hash.add_bits(m);
+  hash.add_bits(compiled.materials.size());
+  for (const kernel::Material& m : compiled.materials) {
+    add_all(hash, m.albedo);
+    add_all(hash, m.eta);
+    hash.add(m.fuzz);
+    hash.add_bits(static_cast<std::uint64_t>(m.kind) << 32 | static_cast<std::uint64_t>(m.fresnel));
+  }
+  const kernel::Camera& c = compiled.camera;
+  hash.add(c.half_width);
+  hash.add(c.half_height);
+  for (const auto* v : {&c.origin, &c.forward, &c.right, &c.down, &c.lens_u, &c.lens_v}) add_all(hash, *v);
+  if (compiled.features.motion) {
+    for (const kernel::Sphere& s : compiled.motion)
+      for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
+    const kernel::Camera& m = compiled.camera_motion;
+    for (const auto* v : {&m.origin, &m.forward, &m.right, &m.down, &m.lens_u, &m.lens_v}) add_all(hash, *v);
+  }
+  add_all(hash, compiled.background.bottom);
+  add_all(hash, compiled.background.top);
+  for (const std::uint64_t v :
+       {std::uint64_t(compiled.width), std::uint64_t(compiled.height), std::uint64_t(compiled.samples),
+        std::uint64_t{compiled.max_depth}, std::uint64_t{compiled.roulette_depth}, std::uint64_t{compiled.sampler.seed},
+        std::uint64_t(compiled.sampler.kind), std::uint64_t(compiled.shading), std::uint64_t(compiled.precision)})
+    hash.add_bits(v);
+  for (const double v : compiled.filter.above) hash.add(v);
+  return hash.text();
+}
+
+std::string text_hash(std::string_view text) {
+  Hash hash;
+  for (const char c : text) hash.add_bits(static_cast<unsigned char>(c));
+  return hash.text();
+}
+
+}  // namespace orrery::job

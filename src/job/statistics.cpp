@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/statistics.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "job/text.h"
+#include "job/version.h"
+#include "base/atomic_file.h"
+
+namespace orrery::job {
+
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
+}
+
+namespace {
+
+nlohmann::json bad_values_json(const film::BadValues& bad) {
+  return {{"nan", bad.nan}, {"infinite", bad.infinite}, {"negative", bad.negative}, {"above_half", bad.above_half}};
+}
+
+}  // namespace
+
+std::string statistics_json(const JobReport& report, const Outcome& outcome) {
+  using nlohmann::json;
+  const render::Statistics& r = report.render;
+  const auto per_second = [&](std::uint64_t n) { return r.render_s > 0 ? static_cast<double>(n) / r.render_s : 0.0; };
+  const double pixels = static_cast<double>(report.width) * report.height;
+  json versions = {{"orrery", program_version()}};
+  for (const auto& [name, version] : library_versions()) versions[name] = version;
+  json out = {{"schema", "orrery.stats/1"},
+              {"exit_reason", outcome.reason},
+              {"exit_status", outcome.exit_status},
+              {"scene_hash", report.scene_hash},
+              {"width", report.width},
+              {"height", report.height},
+              {"samples", pixels > 0 ? static_cast<double>(r.paths) / pixels : 0.0},
+              {"samples_fewest", r.fewest_samples},
+              {"samples_most", r.most_samples},
+              {"noise", nullptr},
+              {"noise_expected", nullptr},
+              {"unjudged_pixels", r.unjudged_pixels},
+              {"ended_by", r.ended_by},
+              {"target_missed", report.target_missed},
+              {"missing", report.missing},
+              {"resumed", report.was_resumed},
+              {"checkpoint", report.checkpoint.string()},
+              {"hosts", report.hosts},
+              {"spheres", report.spheres},
+              {"paths", r.paths},
+              {"rays", r.rays},
+              {"paths_per_second", per_second(r.paths)},
+              {"rays_per_second", per_second(r.rays)},
+              {"seconds",
+               {{"read", report.phases.read_s},
+                {"compile", report.phases.compile_s},
+                {"build", report.phases.build_s},
+                {"render", report.phases.render_s},
+                {"finish", report.phases.finish_s},
+                {"write", report.phases.write_s}}},
+              {"peak_memory_bytes", peak_memory()},
+              {"bad_samples", r.bad_samples},
+              {"bad_pixels", bad_values_json(report.bad_values)},
+              {"written", {{"clamped", report.written.clamped}, {"not_finite", report.written.not_finite}}},
+              {"threads", r.threads},
+              {"isa", r.isa},
+              {"traversal", r.traversal},
+              {"accelerator", r.accelerator},
+              {"versions", versions}};
+  if (r.noise) out["noise"] = *r.noise;
+  if (r.expected_noise) out["noise_expected"] = *r.expected_noise;
+  for (const auto& [layer, bad] : report.bad_layers) out["bad_pixels"]["layers"][layer] = bad_values_json(bad);
+  if (!outcome.error.empty()) out["error"] = outcome.error;
+  return json_text(out);
+}
+
+void write_statistics(const std::filesystem::path& file, const JobReport& report, const Outcome& outcome) {
+  base::write_text_file(file, statistics_json(report, outcome));
+}
+
+}  // namespace orrery::job

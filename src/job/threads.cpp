@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/threads.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+
+#include "render/render.h"
+
+namespace orrery::job {
+namespace {
+
+/// What a scheduler grants; 0 where the variable is not set or holds no number above 0.
+int granted_by(const char* variable) {
+  const char* const text = std::getenv(variable);
+  if (text == nullptr) return 0;
+  int granted = 0;
+  const char* const end = text + std::strlen(text);
+  const auto [stopped, error] = std::from_chars(text, end, granted);
+  return error == std::errc() && stopped == end ? std::max(granted, 0) : 0;
+}
+
+}  // namespace
+
+int default_threads() {
+  int threads = std::max(1, render::available_threads());
+  for (const char* variable : {"SLURM_CPUS_PER_TASK", "CUE_THREADS"})
+    if (const int granted = granted_by(variable); granted > 0) threads = std::min(threads, granted);
+  return threads;
+}
+
+}  // namespace orrery::job

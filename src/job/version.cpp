@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/version.h"
+
+#include <nlohmann/json.hpp>
+
+#include "accel/accel.h"
+#include "display/develop.h"
+#include "format/version.h"
+#include "image/write.h"
+#include "kernel/version.h"
+#include "render/version.h"
+
+namespace orrery::job {
+
+std::string program_version() { return ORRERY_VERSION; }
+
+std::vector<std::pair<std::string, std::string>> library_versions() {
+  return {{"Embree", accel::embree_version()},
+          {"oneTBB", render::tbb_version()},
+          {"OpenImageIO", image::oiio_version()},
+          {"OpenColorIO", display::ocio_version()},
+          {"Highway", kernel::highway_version()},
+          {"toml++", format::toml_version()},
+          {"nlohmann-json", std::to_string(NLOHMANN_JSON_VERSION_MAJOR) + "." +
+                                std::to_string(NLOHMANN_JSON_VERSION_MINOR) + "." +
+                                std::to_string(NLOHMANN_JSON_VERSION_PATCH)}};
+}
+
+}  // namespace orrery::job

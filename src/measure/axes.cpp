@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/axes.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace orrery::measure {
+namespace {
+
+using compile::CompiledScene;
+
+/// Samples of choices that are compared with each other.
+constexpr int kCompared = 64;
+/// Of those whose pictures are the same and whose time alone is of interest.
+constexpr int kTimed = 16;
+
+/// A list of more spheres takes longer than anybody waits.
+constexpr std::size_t kLongestList = 5000;
+
+class Planner {
+ public:
+  Planner(const scene::Scene& scene, const CompiledScene& compiled, double noise)
+      : scene_(scene), world_(compiled), noise_(noise) {}
+
+  AxisPlan plan() {
+    samples();
+    for (const double times : {4, 2, 1}) noise(times * noise_);
+    precision();
+    samplers();
+    roulette();
+    depth();
+    fresnel();
+    accelerator();
+    return std::move(out_);
+  }
+
+ private:
+  Choice& add(const std::string& axis, const std::string& name, const std::string& flags, int samples) {
+    Choice& choice = out_.choices.emplace_back();
+    choice.axis = axis;
+    choice.name = name;
+    choice.flags = flags;
+    choice.samples = samples;
+    return choice;
+  }
+
+  static std::string flag(int samples) { return "--samples " + std::to_string(samples); }
+
+  void samples() {
+    for (const int n : {4, 16, 64, 256}) {
+      const std::string name = std::to_string(n) + " sobol";
+      add("samples", name, flag(n) + " --set render.sampler=sobol", n).apply = [](CompiledScene& w) {
+        w.sampler.kind = kernel::SamplerKind::kSobol;
+      };
+    }
+  }
+
+  void noise(double noise) {
+    std::string text;
+    base::append(text, "%g", noise);
+    add("noise", text, "--noise " + text, world_.samples).noise = noise;
+  }
+
+  void precision() {
+    const auto add_one = [&](const char* name, compile::Precision precision, bool is_shortcut) {
+      Choice& c = add("precision", name, flag(kCompared) + " --precision " + name, kCompared);
+      c.apply = [precision](CompiledScene& w) { w.precision = precision; };
+      c.is_shortcut = is_shortcut;
+    };
+    add_one("exact", compile::Precision::kExact, false);
+    add_one("fast", compile::Precision::kFast, true);
+    add_one("book", compile::Precision::kBook, true);
+  }
+
+  void samplers() {
+    for (const int n : {16, 64, 256})
+      add("sampler", std::to_string(n) + " independent", flag(n) + " --set render.sampler=independent", n).apply =
+          [](CompiledScene& w) { w.sampler.kind = kernel::SamplerKind::kIndependent; };
+    for (const int n : {16, 64})
+      add("sampler", std::to_string(n) + " blue-noise", flag(n) + " --set render.sampler=blue-noise", n).apply =
+          [](CompiledScene& w) { w.sampler.kind = kernel::SamplerKind::kBlueNoise; };
+  }
+
+  bool everything_is_white() const {
+    return std::all_of(world_.materials.begin(), world_.materials.end(), [](const kernel::Material& m) {
+      return m.kind == kernel::MaterialKind::kDielectric || (m.albedo[0] == 1 && m.albedo[1] == 1 && m.albedo[2] == 1);
+    });
+  }
+
+  void roulette() {
+    if (world_.spheres.empty() || everything_is_white()) {
+      out_.left_out.push_back("nothing darkens light: no roulette axis");
+      return;
+    }
+    for (const int from : {0, 1, 3}) {
+      const std::string name = from == 0 ? "off" : "from " + std::to_string(from);
+      add("roulette", name, flag(kCompared) + " --set render.roulette_depth=" + std::to_string(from), kCompared).apply =
+          [from](CompiledScene& w) {
+            w.roulette_depth = from == 0 ? kernel::kNoRoulette : static_cast<std::uint32_t>(from);
+          };
+    }
+  }
+
+  void depth() {
+    if (world_.spheres.empty()) {
+      out_.left_out.push_back("no spheres: no depth axis");
+      return;
+    }
+    for (const std::uint32_t depth : {2u, 4u, 8u, 16u}) {
+      if (depth >= world_.max_depth) continue;
+      Choice& c = add("depth", "at most " + std::to_string(depth),
+                      flag(kCompared) + " --max-depth " + std::to_string(depth), kCompared);
+      c.apply = [depth](CompiledScene& w) { w.max_depth = depth; };
+      c.is_shortcut = true;
+    }
+  }
+
+  void fresnel() {
+    std::vector<std::string> names;
+    for (const scene::Material& m : scene_.materials)
+      if (std::holds_alternative<scene::Dielectric>(m.model)) names.push_back(m.name);
+    const bool in_use = std::any_of(world_.materials.begin(), world_.materials.end(), [](const kernel::Material& m) {
+      return m.kind == kernel::MaterialKind::kDielectric;
+    });
+    if (!in_use) {
+      out_.left_out.push_back("no glass: no Fresnel axis");
+      return;
+    }
+    const auto add_one = [&](const char* name, kernel::FresnelKind kind) {
+      std::string flags = flag(kCompared);
+      for (const std::string& material : names) flags += " --set material." + material + ".fresnel=" + name;
+      Choice& c = add("fresnel", name, flags, kCompared);
+      c.apply = [kind](CompiledScene& w) {
+        for (kernel::Material& m : w.materials) m.fresnel = kind;
+      };
+      c.is_shortcut = std::any_of(world_.materials.begin(), world_.materials.end(), [kind](const kernel::Material& m) {
+        return m.kind == kernel::MaterialKind::kDielectric && m.fresnel != kind;
+      });
+    };
+    add_one("exact", kernel::FresnelKind::kExact);
+    add_one("schlick", kernel::FresnelKind::kSchlick);
+    add_one("none", kernel::FresnelKind::kNone);
+  }
+
+  void accelerator() {
+    if (world_.spheres.empty()) {
+      out_.left_out.push_back("no spheres: no accelerator axis");
+      return;
+    }
+    add("accelerator", "embree, packets", flag(kTimed) + " --traversal packet", kTimed).traversal =
+        render::Traversal::kPacket;
+    add("accelerator", "embree, single rays", flag(kTimed) + " --traversal single", kTimed).traversal =
+        render::Traversal::kSingle;
+    if (world_.spheres.size() > kLongestList) {
+      out_.left_out.push_back("more than 5000 spheres: the list would take too long");
+      return;
+    }
+    Choice& list = add("accelerator", "list", flag(kTimed) + " --accelerator list", kTimed);
+    list.apply = [](CompiledScene& w) { w.accelerator = compile::Accelerator::kList; };
+    list.slowness = 1 + static_cast<double>(world_.spheres.size()) / 12;
+    out_.left_out.push_back("Embree's build qualities: all of them were as fast, see docs/benchmarks.md");
+  }
+
+  const scene::Scene& scene_;
+  const CompiledScene& world_;
+  double noise_;
+  AxisPlan out_;
+};
+
+}  // namespace
+
+AxisPlan plan_axes(const scene::Scene& scene, const CompiledScene& compiled, double noise) {
+  return Planner(scene, compiled, noise).plan();
+}
+
+}  // namespace orrery::measure

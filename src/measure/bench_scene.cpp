@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/bench_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "measure/bench_tracing.h"
+#include "job/choose_isa.h"
+#include "job/load_scene.h"
+#include "job/reduced_picture.h"
+#include "job/scene_hash.h"
+#include "job/text.h"
+#include "base/error.h"
+#include "compile/compile.h"
+#include "render/recorded_rays.h"
+#include "render/render.h"
+
+namespace orrery::measure {
+namespace {
+
+using compile::Precision;
+
+/// Pixels of the picture that is rendered: few, so that a list can render all of them, and with many samples each,
+/// which is how pictures are rendered in earnest.
+constexpr double kPixels = 96 * 54;
+
+/// Every so many rows are recorded: some ten thousand paths, so that the record does not crowd out the caches.
+constexpr int kRecordedRows = 4;
+
+/// Lists are left out where the naive one would take longer for a sample a pixel.
+constexpr double kLongestList = 10;  // seconds
+/// Rays against spheres a second, of one lane.
+constexpr double kListTests = 1e8;
+
+constexpr double kMostSamples = 1 << 20;
+
+enum class Accelerator { kEmbree, kList, kSimdList };
+
+struct Case {
+  std::string name;
+  Accelerator accelerator = Accelerator::kEmbree;
+  Precision precision = Precision::kExact;
+  kernel::Features features;
+  render::Traversal traversal = render::Traversal::kAuto;
+  int samples = 1;
+  std::vector<double> paths_per_s, tracing;
+};
+
+const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_features() {
+  static const std::vector<std::pair<const char*, bool kernel::Features::*>> known = {
+      {"thin lens", &kernel::Features::lens},
+      {"hemisphere", &kernel::Features::hemisphere},
+      {"gradient sky", &kernel::Features::sky}};
+  return known;
+}
+
+/// The scene's picture, small.
+compile::CompiledScene small_world(const BenchRequest& request) {
+  job::SceneRequest load;
+  load.file = request.scene;
+  load.overrides = request.overrides;
+  load.frame = request.frame;
+  format::ReadResult read = std::move(job::load_scene(load).read);
+  job::reduce_picture(read, kPixels);
+  return compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
+}
+
+/// One scene, to be rendered in many ways.
+class Subject {
+ public:
+  explicit Subject(const BenchRequest& request)
+      : request_(request), world_(small_world(request)), required_(world_.features) {}
+
+  const compile::CompiledScene& compiled() const { return world_; }
+  /// The scene's own features; the world has those of the case that was rendered last.
+  const kernel::Features& required() const { return required_; }
+
+  /// Paths a second of one render.
+  render::Statistics run(const Case& c) {
+    prepare(c);
+    world_.samples = c.samples;
+    render::Settings settings;
+    settings.threads = request_.threads;
+    settings.traversal = c.traversal;
+    settings.cancel = request_.cancel;
+    const render::Result result = render::render(world_, accel(c), settings);
+    if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; nothing was measured");
+    return result.statistics;
+  }
+
+  /// Seconds a path when nothing but tracing is done.
+  double trace_alone(const Case& c) {
+    prepare(c);
+    const accel::Accel& with = accel(c);
+    if (c.precision == Precision::kFast) return seconds_a_path(with, fast_rays(with));
+    auto& rays = rays_[c.precision];
+    if (rays.paths == 0) rays = render::record_rays(world_.view(), with, c.precision, recorded_rows());
+    return seconds_a_path(with, rays);
+  }
+
+  /// The ways to find hits in `fast`, lists where they are bearable.
+  TracingBench tracing_bench(bool with_lists) {
+    Case fast;
+    fast.precision = Precision::kFast;
+    fast.features = required_;
+    prepare(fast);
+    accel::Accel& with = accel(fast);
+    return TracingBench(world_.view(), with, fast_rays(with), with_lists);
+  }
+
+ private:
+  std::vector<kernel::Tile> recorded_rows() const {
+    std::vector<kernel::Tile> rows;
+    for (int y = 0; y < world_.height; y += kRecordedRows) {
+      kernel::Tile row;
+      row.y = y;
+      row.width = world_.width;
+      row.height = 1;
+      row.sample_end = kernel::kPacketSize;
+      rows.push_back(row);
+    }
+    return rows;
+  }
+
+  render::RecordedRays<kernel::RayPacketFast>& fast_rays(const accel::Accel& with) {
+    if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(world_.view(), with, recorded_rows());
+    return fast_rays_;
+  }
+
+  void prepare(const Case& c) {
+    world_.accelerator =
+        c.accelerator == Accelerator::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
+    world_.precision = c.precision;
+    world_.features = c.features;
+  }
+
+  accel::Accel& accel(const Case& c) {
+    auto& built = accels_[{c.accelerator, c.precision}];
+    if (!built)
+      built = c.accelerator == Accelerator::kSimdList ? accel::make_simd_list(world_.view(), c.precision)
+                                                      : render::build(world_, render::available_threads());
+    return *built;
+  }
+
+  template <class Packet>
+  static double seconds_a_path(const accel::Accel& with, render::RecordedRays<Packet>& rays) {
+    const double seconds =
+        render::trace_again(with.tracer(), rays.camera) + render::trace_again(with.tracer(), rays.bounced);
+    return seconds / static_cast<double>(rays.paths);
+  }
+
+  const BenchRequest& request_;
+  compile::CompiledScene world_;
+  kernel::Features required_;
+  std::map<std::pair<Accelerator, Precision>, std::unique_ptr<accel::Accel>> accels_;
+  std::map<Precision, render::RecordedRays<kernel::RayPacket>> rays_;
+  render::RecordedRays<kernel::RayPacketFast> fast_rays_;
+};
+
+bool lists_are_bearable(const compile::CompiledScene& compiled) {
+  return 3.0 * compiled.width * compiled.height * static_cast<double>(compiled.spheres.size()) / kListTests <=
+         kLongestList;
+}
+
+std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& out) {
+  std::vector<Case> cases;
+  const std::pair<const char*, Precision> precisions[] = {
+      {"exact", Precision::kExact}, {"fast", Precision::kFast}, {"book", Precision::kBook}};
+  for (const auto& [name, precision] : precisions)
+    cases.push_back({std::string("embree ") + name,
+                     Accelerator::kEmbree,
+                     precision,
+                     compiled.features,
+                     render::Traversal::kAuto,
+                     1,
+                     {},
+                     {}});
+  for (const auto& [name, traversal] :
+       {std::pair{"exact packet", render::Traversal::kPacket}, std::pair{"exact single", render::Traversal::kSingle}})
+    cases.push_back({name, Accelerator::kEmbree, Precision::kExact, compiled.features, traversal, 1, {}, {}});
+  if (!lists_are_bearable(compiled)) {
+    out.left_out.push_back("lists: of so many spheres one would take more than " +
+                           std::to_string(static_cast<int>(kLongestList)) + " s for a sample a pixel");
+    return cases;
+  }
+  for (const auto& [name, accelerator] :
+       {std::pair{"SIMD list ", Accelerator::kSimdList}, std::pair{"list ", Accelerator::kList}})
+    for (const auto& [suffix, precision] : precisions)
+      cases.push_back(
+          {std::string(name) + suffix, accelerator, precision, compiled.features, render::Traversal::kAuto, 1, {}, {}});
+  return cases;
+}
+
+std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
+  std::vector<Case> cases;
+  if (compiled.shading != kernel::Shading::kPath) return cases;
+  for (const auto& [name, feature] : known_features()) {
+    if (compiled.features.*feature) continue;
+    cases.push_back(
+        {name, Accelerator::kEmbree, Precision::kExact, compiled.features, render::Traversal::kAuto, 1, {}, {}});
+    cases.back().features.*feature = true;
+  }
+  return cases;
+}
+
+/// Finds the number of samples with which a render takes long enough.
+void calibrate(Subject& subject, Case& c, double seconds) {
+  for (;;) {
+    const double took = std::max(subject.run(c).render_s, 1e-6);
+    if (took >= seconds / 2 || c.samples >= kMostSamples) return;
+    // Not too far in one step: the first render also warms up.
+    const double factor = std::clamp(seconds / took, 2.0, 64.0);
+    c.samples = static_cast<int>(std::min(c.samples * factor, kMostSamples));
+  }
+}
+
+/// Renders every case once, and calls `then` with it and what was done.
+template <class Then>
+void measure_all(Subject& subject, std::vector<Case>& cases, int round, Then then) {
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    // Each round begins elsewhere, so that no case always follows the same one.
+    Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
+    const render::Statistics did = subject.run(c);
+    c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);
+    then(c, did);
+  }
+}
+
+BenchCase result_of(const Case& c, const std::vector<double>& reference) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < reference.size(); ++i) ratios.push_back(c.paths_per_s[i] / reference[i]);
+  BenchCase out{c.name, quartiles(c.paths_per_s), quartiles(ratios), {}};
+  if (!c.tracing.empty()) out.tracing = quartiles(c.tracing);
+  return out;
+}
+
+}  // namespace
+
+std::vector<FeatureCost> bench_features(const BenchRequest& request) {
+  job::choose_isa(request.isa);
+  Subject subject(request);
+  const compile::CompiledScene& compiled = subject.compiled();
+  std::vector<Case> cases = {Case{}};
+  cases[0].features = compiled.features;
+  for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
+  for (Case& c : cases) calibrate(subject, c, request.seconds);
+  for (int round = 0; round < request.rounds; ++round) measure_all(subject, cases, round, [](Case&, const auto&) {});
+  std::vector<FeatureCost> out;
+  for (const auto& [name, feature] : known_features()) {
+    FeatureCost& cost = out.emplace_back(FeatureCost{name, subject.required().*feature, 0});
+    for (const Case& c : cases)
+      if (c.name == name) cost.saves = 1 - result_of(c, cases[0].paths_per_s).ratio.median;
+  }
+  return out;
+}
+
+Benchmark bench_scene(const BenchRequest& request) {
+  job::choose_isa(request.isa);
+  Subject subject(request);
+  const compile::CompiledScene& compiled = subject.compiled();
+  Benchmark out;
+  out.scene_hash = job::scene_hash(compiled);
+  out.spheres = compiled.spheres.size();
+  out.width = compiled.width;
+  out.height = compiled.height;
+  out.threads = request.threads;
+  out.rounds = request.rounds;
+
+  std::vector<Case> cases = cases_of(compiled, out);
+  const std::size_t ways = cases.size();
+  for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
+  std::optional<TracingBench> tracing;
+  if (request.threads == 1 && !compiled.spheres.empty())
+    tracing.emplace(subject.tracing_bench(lists_are_bearable(compiled)));
+  const int total = static_cast<int>(cases.size()) * (request.rounds + 1);
+  int done = 0;
+  const auto tell = [&] {
+    ++done;
+    if (request.on_progress) request.on_progress(done, total);
+  };
+  for (Case& c : cases) {
+    calibrate(subject, c, request.seconds);
+    tell();
+  }
+  for (int round = 0; round < request.rounds; ++round) {
+    measure_all(subject, cases, round, [&](Case& c, const render::Statistics& did) {
+      if (c.accelerator == Accelerator::kEmbree && request.threads == 1 && &c < &cases[ways])
+        c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
+      out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
+      if (c.accelerator == Accelerator::kEmbree) out.accelerator = did.accelerator;
+      out.isa = did.isa;
+      tell();
+    });
+    if (tracing) tracing->measure(round);
+  }
+  if (tracing) out.tracing = tracing->results();
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    (i < ways ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
+  return out;
+}
+
+}  // namespace orrery::measure

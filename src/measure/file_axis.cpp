@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/file_axis.h"
+
+#include <chrono>
+#include <filesystem>
+
+#include "image/read.h"
+#include "image/write.h"
+#include "metrics/pixel_errors.h"
+#include "measure/temp_dir.h"
+
+namespace orrery::measure {
+
+std::vector<FilePoint> measure_file_axis(const film::Picture& picture) {
+  const TempDir scratch;
+  const std::filesystem::path file = scratch.path() / "picture.exr";
+  std::vector<FilePoint> out;
+  for (const bool as_float : {false, true}) {
+    for (const char* compression : {"none", "rle", "zips", "zip", "piz", "dwaa", "dwab"}) {
+      image::ExrOptions options;
+      options.as_float = as_float;
+      options.compression = compression;
+      FilePoint point;
+      point.name = std::string(as_float ? "float " : "half ") + compression;
+      point.flags = std::string("--type ") + (as_float ? "float" : "half") + " --compression " + compression;
+      const auto begin = std::chrono::steady_clock::now();
+      image::write_exr(file, picture, {}, options);
+      point.write_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      point.bytes = std::filesystem::file_size(file);
+      const film::Picture back = image::read(file);
+      point.error = metrics::pixel_errors(metrics::color_of(back), metrics::color_of(picture)).display;
+      out.push_back(std::move(point));
+    }
+  }
+  return out;
+}
+
+}  // namespace orrery::measure

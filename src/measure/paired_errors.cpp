@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/paired_errors.h"
+
+#include <cmath>
+
+#include "film/display_error.h"
+#include "metrics/color_view.h"
+
+namespace orrery::measure {
+namespace {
+
+double value(const metrics::ColorView& picture, int channel, std::size_t pixel) {
+  return static_cast<double>(picture.channel[channel][pixel]);
+}
+
+}  // namespace
+
+film::Picture mean_of(const Pair& pair) {
+  film::Picture mean = pair.first;
+  for (std::size_t p = 0; p < mean.planes.size(); ++p)
+    for (std::size_t i = 0; i < mean.planes[p].values.size(); ++i)
+      mean.planes[p].values[i] = mean.planes[p].values[i] / 2 + pair.second.planes[p].values[i] / 2;
+  return mean;
+}
+
+double noise_of_mean(const Pair& pair) {
+  const metrics::ColorView r = metrics::color_of(pair.first), s = metrics::color_of(pair.second);
+  double sum = 0;
+  for (std::size_t i = 0; i < r.pixels(); ++i) {
+    double squares = 0, light = 0;
+    for (int c = 0; c < 3; ++c) {
+      squares += std::pow(value(r, c, i) - value(s, c, i), 2) / 4;
+      light += (value(r, c, i) + value(s, c, i)) / 2;
+    }
+    sum += film::display_error_squared(squares, light);
+  }
+  return std::sqrt(sum / static_cast<double>(r.pixels()));
+}
+
+Errors errors_of(const Pair& choice, const Pair& reference) {
+  const metrics::ColorView x = metrics::color_of(choice.first), y = metrics::color_of(choice.second);
+  const metrics::ColorView r = metrics::color_of(reference.first), s = metrics::color_of(reference.second);
+  double sum = 0, sum_of_squares = 0;
+  double noise = 0, excess = 0, all_light = 0;
+  for (std::size_t i = 0; i < r.pixels(); ++i) {
+    double products = 0, squares = 0, light = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double a = value(x, c, i), b = value(y, c, i), p = value(r, c, i), q = value(s, c, i);
+      products += ((a - p) * (b - q) + (a - q) * (b - p)) / 2;
+      squares += (a - b) * (a - b) / 2;
+      light += (p + q) / 2;
+      excess += (a + b - p - q) / 2;
+    }
+    all_light += light;
+    noise += film::display_error_squared(squares, light);
+    const double bias_squared = film::display_error_squared(products, light);
+    sum += bias_squared;
+    sum_of_squares += bias_squared * bias_squared;
+  }
+  const auto n = static_cast<double>(r.pixels());
+  Errors out;
+  out.noise = std::sqrt(noise / n);
+  out.bias_squared = sum / n;
+  if (sum > 0) out.bias_chance = std::exp(-sum * sum / sum_of_squares / 2);
+  out.energy = all_light != 0 ? excess / all_light : 0;
+  return out;
+}
+
+}  // namespace orrery::measure

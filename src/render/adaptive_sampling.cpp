@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/adaptive_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "film/display_error.h"
+#include "render/allocation.h"
+#include "render/noise_estimate.h"
+#include "render/progressive_sampling.h"
+
+namespace orrery::render {
+namespace {
+
+/// Sides of the squares that are rendered in one go, px.
+constexpr int kSide = 16;
+
+/// Samples of a half before anything is judged by them: fewer would miss what is rare in a pixel and leave it at that.
+constexpr std::uint32_t kFirstSamples = 8;
+
+/// No half has more: its numbers begin where the first's end.
+constexpr std::uint32_t kMostSamples = kernel::Sampler::kSecondHalf - 1;
+
+/// Of the time that is left, what a round may take: what is known of the speed is known from the rounds before.
+constexpr double kShareOfTime = 0.5;
+/// Of all time: with less than this left there is no other round.
+constexpr double kTimeToSpare = 0.01;
+
+std::string noise_text(double reached, double wanted) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "noise %.3g of %.3g", reached, wanted);
+  return text;
+}
+
+class AdaptiveSampling {
+ public:
+  AdaptiveSampling(const compile::CompiledScene& compiled, const Settings& settings, const TileRenderer& render_tile,
+                   TilePool& pool, ProgressReporter& progress, film::Partial& state)
+      : settings_(settings),
+        passes_(settings, render_tile, pool, progress, state),
+        pool_(pool),
+        progress_(progress),
+        state_(state),
+        most_(settings.unlimited ? kMostSamples : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
+        pixels_(compiled.width, compiled.height),
+        round_begin_(progress.seconds()),
+        round_begin_samples_(progress.done()) {
+    if (settings.layers.coverage) pixels_.known_black.resize(pixels_.samples.size());
+    for (int y = 0; y < compiled.height; ++y)
+      for (int x = 0; x < compiled.width; ++x) update(x, y);
+  }
+
+  bool run() {
+    if (!state_.goals.empty() && !run_round()) return false;  // that in which an earlier run was stopped
+    // With a time limit the first round is the smallest there is: it tells the speed.
+    std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
+    for (n = n > 0                   ? next_of_all(n)
+             : settings_.seconds > 0 ? 1
+                                     : std::min(kFirstSamples, most_);
+         n > 0; n = next_of_all(n)) {
+      state_.goals.assign(state_.pixel_count(), n);
+      if (!run_round()) return false;
+    }
+    const double wanted = settings_.noise * settings_.noise;
+    for (;;) {
+      noise_ = estimate_noise(pixels_, pool_);
+      const double upper = noise_.upper();
+      const MissingEvidence evidence = find_missing_evidence(pixels_, pool_);
+      unjudged_ = evidence.count;
+      if (settings_.noise > 0 && upper <= wanted && unjudged_ == 0) return ended("noise");
+      RoundGoal goal;
+      goal.error_ratio = settings_.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
+      goal.most_per_pixel = most_;
+      goal.affordable = affordable(kShareOfTime);
+      const std::vector<float> errors = errors_of_one_sample(pixels_, noise_, pool_);
+      Round round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
+      if (!round.any && settings_.seconds > 0) {
+        goal.affordable = affordable(1);
+        round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
+        if (!round.any)
+          return ended(round.limited_by_pixels && goal.affordable > pixels_.samples.size() ? "samples" : "time");
+      }
+      if (!round.any) return ended(round.limited_by_pixels || unjudged_ > 0 ? "samples" : "noise");
+      if (settings_.noise > 0) expect(round, std::sqrt(upper));
+      state_.goals = state_.counts;
+      for (std::size_t i = 0; i < state_.goals.size(); ++i)
+        if (round.chosen[i]) state_.goals[i] = state_.goals[i] < most_ / 2 ? 2 * state_.goals[i] : most_;
+      if (!run_round()) return false;
+    }
+  }
+
+  void report(Statistics& statistics) const {
+    statistics.expected_noise = std::sqrt(noise_.mean_square);
+    statistics.noise = std::sqrt(noise_.upper());
+    statistics.unjudged_pixels = unjudged_;
+    statistics.ended_by = ended_by_;
+  }
+
+ private:
+  bool ended(const char* by) {
+    ended_by_ = by;
+    return true;
+  }
+
+  /// Of a half; how many the next of the first rounds brings every pixel to. 0: those rounds are over.
+  std::uint32_t next_of_all(std::uint32_t n) const {
+    const std::uint32_t next = std::min({2 * n, kFirstSamples, most_});
+    return next > n && affordable(kShareOfTime) >= std::uint64_t{next - n} * pixels_.samples.size() ? next : 0;
+  }
+
+  /// Samples of a half that a share of the remaining time allows; both are rendered.
+  std::uint64_t affordable(double share) const {
+    if (settings_.seconds <= 0) return std::numeric_limits<std::uint64_t>::max();
+    const double left = settings_.seconds - progress_.seconds();
+    if (left < settings_.seconds * kTimeToSpare) return 0;
+    return static_cast<std::uint64_t>(left * share * samples_per_second_ / 2);
+  }
+
+  void expect(const Round& round, double noise) {
+    const double limit = 2.0 * static_cast<double>(pixels_.samples.size()) * most_;
+    const double total = static_cast<double>(progress_.done()) + 2 * round.samples_to_goal;
+    if (total < limit) {
+      progress_.expect(static_cast<std::uint64_t>(total), noise_text(noise, settings_.noise));
+    } else {
+      progress_.expect(static_cast<std::uint64_t>(std::min(limit, 0x1p62)), "samples");
+    }
+  }
+
+  /// Brings all pixels to their goals.
+  bool run_round() {
+    if (!passes_.run(kSide, [this](int x, int y) { update(x, y); })) return false;
+    state_.goals.clear();
+    // What the last round has shown counts most: pixels that go on are not like the others. The time that choosing them
+    // took is part of the round.
+    const double seconds = progress_.seconds() - round_begin_;
+    if (seconds > 0) {
+      const double speed = static_cast<double>(progress_.done() - round_begin_samples_) / seconds;
+      samples_per_second_ = samples_per_second_ > 0 ? (samples_per_second_ + 3 * speed) / 4 : speed;
+    }
+    round_begin_ = progress_.seconds();
+    round_begin_samples_ = progress_.done();
+    return true;
+  }
+
+  void update(int x, int y) {
+    const std::size_t i = pixels_.at(x, y);
+    const film::HalvesEstimate halves = film::compare_halves(*state_.film.at(x, y), *state_.second.at(x, y));
+    pixels_.samples[i] = state_.counts[i];
+    pixels_.light[i] = static_cast<float>(std::max(halves.light, 0.0));
+    pixels_.variance[i] = static_cast<float>(halves.variance);
+    // Where the background is transparent, what meets no sphere is black.
+    if (settings_.layers.coverage) pixels_.known_black[i] = state_.layers[i].covered == 0 ? 1 : 0;
+  }
+
+  const Settings& settings_;
+  ProgressiveSampling passes_;
+  TilePool& pool_;
+  ProgressReporter& progress_;
+  film::Partial& state_;
+  std::uint32_t most_;  ///< samples of a half
+  PixelStatistics pixels_;
+  NoiseEstimate noise_;
+  std::uint64_t unjudged_ = 0;  ///< pixels
+  double samples_per_second_ = 0;
+  double round_begin_;  ///< seconds
+  std::uint64_t round_begin_samples_;
+  const char* ended_by_ = "samples";
+};
+
+}  // namespace
+
+bool render_adaptively(const compile::CompiledScene& compiled, const Settings& settings,
+                       const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
+                       film::Partial& state, Statistics& statistics) {
+  AdaptiveSampling rounds(compiled, settings, render_tile, pool, progress, state);
+  progress.expect(settings.unlimited ? std::uint64_t{1} << 62 : std::uint64_t(compiled.samples) * state.pixel_count(),
+                  settings.noise > 0 ? "noise" : "time");
+  if (!rounds.run()) return false;
+  rounds.report(statistics);
+  return true;
+}
+
+}  // namespace orrery::render

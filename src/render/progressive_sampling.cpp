@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/progressive_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace orrery::render {
+namespace {
+
+using kernel::Sampler;
+
+/// Sides of a square: neighbouring pixels share what they look at, so up to here.
+constexpr int kLargestSide = 32;
+constexpr int kSmallestSide = 4;
+
+/// Paths in a square: some milliseconds of work.
+constexpr double kPathsPerSquare = 65536;
+
+/// Samples of a pixel in the first pass, by which they grow from pass to pass, and in the largest: a square of the
+/// smallest side shall be done before somebody who wants to stop loses patience.
+constexpr std::uint32_t kFirstPass = 16, kGrowth = 4, kLargestPass = 4096;
+
+int side_for(std::uint32_t samples) {
+  return std::clamp(static_cast<int>(std::sqrt(kPathsPerSquare / samples)), kSmallestSide, kLargestSide);
+}
+
+}  // namespace
+
+bool ProgressiveSampling::run(int side, const OnPixel& on_pixel) {
+  const auto cancelled = [&] {
+    return settings_.cancel != nullptr && settings_.cancel->load(std::memory_order_relaxed);
+  };
+  const auto shall_pause = [&] { return cancelled() || (settings_.snapshot_is_due && settings_.snapshot_is_due()); };
+  for (;;) {
+    const std::vector<kernel::PixelPlace> squares = unfinished_squares(side);
+    const auto render = [&](std::size_t i, TileWorker& worker) {
+      render_square(squares[i].x, squares[i].y, side, on_pixel, worker);
+    };
+    if (pool_.run(squares.size(), render, shall_pause)) return true;
+    if (cancelled()) return false;
+    const film::RenderWork before = state_.work;
+    state_.work = work_so_far(before, pool_, progress_);
+    settings_.on_snapshot(state_);
+    state_.work = before;
+  }
+}
+
+std::vector<kernel::PixelPlace> ProgressiveSampling::unfinished_squares(int side) const {
+  const int width = state_.film.width(), height = state_.film.height();
+  const auto lacks_samples = [&](int x, int y) {
+    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    return state_.counts[i] < state_.goals[i];
+  };
+  const auto is_unfinished = [&](int x0, int y0) {
+    for (int y = y0; y < std::min(y0 + side, height); ++y)
+      for (int x = x0; x < std::min(x0 + side, width); ++x)
+        if (lacks_samples(x, y)) return true;
+    return false;
+  };
+  std::vector<kernel::PixelPlace> out;
+  for (int y = 0; y < height; y += side)
+    for (int x = 0; x < width; x += side)
+      if (is_unfinished(x, y)) out.push_back({x, y});
+  return out;
+}
+
+/// Pixels of a square that have had as many samples, and shall have as many, go together.
+void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel& on_pixel, TileWorker& worker) {
+  struct Group {
+    std::uint32_t have, want;
+    std::vector<kernel::PixelPlace> pixels;
+  };
+  const int width = state_.film.width();
+  kernel::Tile tile;
+  tile.x = x0;
+  tile.y = y0;
+  tile.width = std::min(side, width - x0);
+  tile.height = std::min(side, state_.film.height() - y0);
+  tile.row_stride = width;
+  const auto at = [&](kernel::PixelPlace p) {
+    return static_cast<std::size_t>(y0 + p.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x0 + p.x);
+  };
+  std::vector<Group> groups;
+  for (int y = 0; y < tile.height; ++y) {
+    for (int x = 0; x < tile.width; ++x) {
+      const std::uint32_t have = state_.counts[at({x, y})], want = state_.goals[at({x, y})];
+      if (have >= want) continue;
+      auto group =
+          std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.have == have && g.want == want; });
+      if (group == groups.end()) group = groups.insert(group, {have, want, {}});
+      group->pixels.push_back({x, y});
+    }
+  }
+  for (const Group& group : groups) {
+    const int count = static_cast<int>(group.pixels.size());
+    const bool are_all = count == tile.width * tile.height;
+    tile.chosen = are_all ? nullptr : group.pixels.data();
+    tile.chosen_count = count;
+    render_group(tile, group.have, group.want, worker);
+    for (const kernel::PixelPlace p : group.pixels) {
+      state_.counts[at(p)] = group.want;
+      if (on_pixel) on_pixel(x0 + p.x, y0 + p.y);
+    }
+  }
+}
+
+void ProgressiveSampling::render_group(kernel::Tile& tile, std::uint32_t have, std::uint32_t want, TileWorker& worker) {
+  film::LayerPixel* const layers = state_.layers.empty() ? nullptr : state_.layers.data();
+  const auto render = [&](film::Film& film, std::uint32_t first) {
+    tile.sample_begin = first + have;
+    tile.sample_end = first + want;
+    tile.sums = film.at(tile.x, tile.y);
+    render_tile_(tile, worker, layers);
+    progress_.add(tile.path_count());
+  };
+  render(state_.film, state_.has_halves() ? 0 : settings_.sample_begin);
+  if (state_.has_halves()) render(state_.second, Sampler::kSecondHalf);
+}
+
+film::RenderWork work_so_far(const film::RenderWork& before, const TilePool& pool, const ProgressReporter& progress) {
+  const kernel::TileCounts counts = pool.counts();
+  film::RenderWork out = before;
+  out.paths = progress.done();
+  out.rays += counts.rays;
+  out.bad_samples += counts.bad_samples;
+  out.seconds = progress.seconds();
+  return out;
+}
+
+bool render_progressively(const compile::CompiledScene& compiled, const Settings& settings,
+                          const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
+                          film::Partial& state, Statistics& statistics) {
+  const std::uint32_t samples = samples_of(compiled, settings);
+  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
+  ProgressiveSampling passes(settings, render_tile, pool, progress, state);
+  std::uint32_t pass = kFirstPass;
+  for (std::uint32_t done = 0; done < samples;) {
+    const std::uint32_t goal = done + std::min(pass, samples - done);
+    state.goals.resize(state.pixel_count());
+    for (std::size_t i = 0; i < state.goals.size(); ++i) state.goals[i] = owned[i] ? goal : 0;
+    const bool completed = passes.run(side_for(goal - done));
+    state.goals.clear();  // nobody has to know them in order to go on
+    if (!completed) return false;
+    done = goal;
+    pass = std::min(pass * kGrowth, kLargestPass);
+  }
+  statistics.ended_by = "samples";
+  return true;
+}
+
+}  // namespace orrery::render

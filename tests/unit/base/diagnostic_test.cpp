@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/diagnostic.h"
+
+#include <gtest/gtest.h>
+
+namespace orrery::base {
+namespace {
+
+Diagnostic at(int line, int column, int width, const std::string& text, const std::string& source_line) {
+  Diagnostic diagnostic;
+  diagnostic.file = "scene.toml";
+  diagnostic.line = line;
+  diagnostic.column = column;
+  diagnostic.width = width;
+  diagnostic.text = text;
+  diagnostic.source_line = source_line;
+  return diagnostic;
+}
+
+TEST(BaseFinding, PlaceTextLineCaretAndRemedy) {
+  Diagnostic diagnostic = at(12, 8, 3, "camera.vfov is 200; allowed is above 0, below 180", "vfov = 200");
+  diagnostic.remedy = "write degrees";
+  EXPECT_EQ(formatted(diagnostic),
+            "scene.toml:12:8: error: camera.vfov is 200; allowed is above 0, below 180; write degrees\n"
+            "    vfov = 200\n"
+            "           ^~~\n");
+}
+
+TEST(BaseFinding, WithoutALineThereIsNoCaret) {
+  Diagnostic diagnostic;
+  diagnostic.file = "cloud.ply";
+  diagnostic.severity = Severity::kWarning;
+  diagnostic.text = "vertex 3 is odd";
+  EXPECT_EQ(formatted(diagnostic), "cloud.ply: warning: vertex 3 is odd\n");
+}
+
+TEST(BaseFinding, WithoutAFileItBeginsWithTheSeverity) {
+  Diagnostic diagnostic;
+  diagnostic.text = "nothing to do";
+  EXPECT_EQ(formatted(diagnostic), "error: nothing to do\n");
+}
+
+TEST(BaseFinding, TabsStayTabsUnderTheLine) {
+  EXPECT_EQ(formatted(at(1, 3, 4, "bad", "\t\tfuzz = 2")),
+            "scene.toml:1:3: error: bad\n    \t\tfuzz = 2\n    \t\t^~~~\n");
+}
+
+TEST(BaseFinding, CaretCountsCharactersWhereColumnsCountBytes) {
+  // "ü" has two bytes and takes the room of one: the caret stands under the u.
+  EXPECT_EQ(formatted(at(1, 4, 2, "bad", "\xC3\xBC u\xC3\xBC")),
+            "scene.toml:1:4: error: bad\n    \xC3\xBC u\xC3\xBC\n      ^~\n");
+  EXPECT_EQ(formatted(at(1, 4, 3, "bad", "\xC3\xBC u\xC3\xBC")),
+            "scene.toml:1:4: error: bad\n    \xC3\xBC u\xC3\xBC\n      ^~\n")
+      << "the second byte of a character has no wave of its own";
+}
+
+TEST(BaseFinding, NeverUnderlinesBeyondTheLine) {
+  EXPECT_EQ(formatted(at(1, 2, 90, "bad", "ab")), "scene.toml:1:2: error: bad\n    ab\n     ^\n");
+  EXPECT_EQ(formatted(at(1, 90, 90, "bad", "ab")), "scene.toml:1:90: error: bad\n    ab\n      ^\n");
+}
+
+TEST(BaseFinding, BytesOutOfAFileDoNotCommandTheTerminal) {
+  const std::string shown = formatted(at(1, 1, 1,
+                                         "name \"\x1b[2J\" \xC2\x9B"
+                                         "31m",
+                                         "\x1b[31mred\x7f"));
+  EXPECT_EQ(shown, "scene.toml:1:1: error: name \"?[2J\" ??31m\n    ?[31mred?\n    ^\n");
+}
+
+}  // namespace
+}  // namespace orrery::base

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "generate/generate_files.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "base/error.h"
+#include "format/read_scene.h"
+#include "format/write_scene.h"
+
+namespace orrery::generate {
+namespace {
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  EXPECT_TRUE(in) << file;
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class GenerateGenerateFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("orrery-generate-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(GenerateGenerateFiles, FinalReadsBackAsTheSameScene) {
+  const auto file = folder_ / "a.toml";
+  generate_final({5, 3}, file);
+  const auto read = format::read_scene(file);
+  EXPECT_TRUE(read.warnings.empty());
+  EXPECT_EQ(format::scene_text(read.scene, ""), format::scene_text(make_final_scene({5, 3}), ""));
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(GenerateGenerateFiles, FinalNamesTheCommandThatMakesItAgain) {
+  generate_final({5, 3}, folder_ / "a.toml");
+  EXPECT_NE(bytes_of(folder_ / "a.toml").find("orrery generate final --seed 5 --grid 3 -o a.toml\n"),
+            std::string::npos);
+}
+
+TEST_F(GenerateGenerateFiles, LargeFinalHasItsSpheresBesideIt) {
+  const auto file = folder_ / "wide.toml";
+  generate_final({1, 40}, file);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "wide.ply"));
+  const auto read = format::read_scene(file);
+  EXPECT_EQ(read.scene.points.at(0).materials, make_final_scene({1, 40}).points.at(0).materials);
+}
+
+TEST_F(GenerateGenerateFiles, CloudReadsBackAsTheSameSpheres) {
+  const auto file = folder_ / "c.toml";
+  generate_cloud({1, 500}, file);
+  const auto read = format::read_scene(file);
+  const auto made = make_cloud({1, 500});
+  ASSERT_EQ(read.scene.points.size(), 1u);
+  EXPECT_EQ(read.scene.points[0].file, "c.ply");
+  EXPECT_EQ(read.scene.points[0].centers, made.points[0].centers);
+  EXPECT_EQ(read.scene.points[0].radii, made.points[0].radii);
+  EXPECT_EQ(read.scene.points[0].materials, made.points[0].materials);
+  for (std::size_t i = 0; i < made.materials.size(); ++i)
+    EXPECT_EQ(read.scene.materials.at(i).name, made.materials[i].name) << "points count materials in this order";
+}
+
+TEST_F(GenerateGenerateFiles, CloudNamesTheCommandWithItsRadius) {
+  generate_cloud({2, 10, 0.125}, folder_ / "c.toml");
+  EXPECT_NE(bytes_of(folder_ / "c.toml").find("orrery generate cloud --seed 2 --count 10 --radius 0.125 -o c.toml\n"),
+            std::string::npos);
+}
+
+TEST_F(GenerateGenerateFiles, TwiceGivesTheSameBytes) {
+  generate_cloud({2, 100}, folder_ / "c.toml");
+  const std::string toml = bytes_of(folder_ / "c.toml"), ply = bytes_of(folder_ / "c.ply");
+  generate_cloud({2, 100}, folder_ / "c.toml");
+  EXPECT_EQ(bytes_of(folder_ / "c.toml"), toml);
+  EXPECT_EQ(bytes_of(folder_ / "c.ply"), ply);
+}
+
+TEST_F(GenerateGenerateFiles, SceneNamedLikeItsPointsIsAUsageError) {
+  try {
+    generate_cloud({1, 10}, folder_ / "cloud.ply");
+    FAIL() << "wrote a scene over its own points";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
+    EXPECT_NE(std::string(error.what()).find("cloud.toml"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(GenerateGenerateFiles, FolderThatIsNotThereIsCannotCreate) {
+  try {
+    generate_final({}, folder_ / "none" / "a.toml");
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate) << error.what();
+  }
+}
+
+TEST_F(GenerateGenerateFiles, OptionsOutsideTheirRangeLeaveNothingBehind) {
+  EXPECT_THROW(generate_final({1, -1}, folder_ / "a.toml"), base::Error);
+  EXPECT_THROW(generate_cloud({1, 0}, folder_ / "c.toml"), base::Error);
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(GenerateGenerateFiles, APointsFileOfOtherOriginStays) {
+  std::ofstream(folder_ / "c.ply") << "ply\nformat ascii 1.0\nmy own data\n";
+  const std::string mine = bytes_of(folder_ / "c.ply");
+  try {
+    generate_cloud({1, 50}, folder_ / "c.toml");
+    ADD_FAILURE() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
+    EXPECT_NE(std::string(error.what()).find("move it, or choose another -o"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(generate_final({1, 40}, folder_ / "c.toml"), base::Error);
+  EXPECT_EQ(bytes_of(folder_ / "c.ply"), mine);
+  EXPECT_EQ(files(), 1u) << "no scene either";
+  generate_final({1, 3}, folder_ / "c.toml");  // has no points file
+  EXPECT_EQ(bytes_of(folder_ / "c.ply"), mine);
+}
+
+TEST_F(GenerateGenerateFiles, APointsFileOfTheirOwnIsReplaced) {
+  generate_cloud({1, 50}, folder_ / "c.toml");
+  const std::string first = bytes_of(folder_ / "c.ply");
+  generate_cloud({2, 60}, folder_ / "c.toml");
+  EXPECT_NE(bytes_of(folder_ / "c.ply"), first);
+}
+
+TEST_F(GenerateGenerateFiles, SceneAndPointsAreTwoFiles) {
+  generate_cloud({1, 50}, folder_ / "c.toml");
+  std::filesystem::remove(folder_ / "c.toml");
+  std::filesystem::create_symlink("c.ply", folder_ / "c.toml");
+  EXPECT_THROW(generate_cloud({1, 50}, folder_ / "c.toml"), base::Error);
+}
+
+}  // namespace
+}  // namespace orrery::generate

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/disk_space.h"
+
+#include <gtest/gtest.h>
+
+#include "generate/generate_files.h"
+#include "base/error.h"
+#include "support/temp_dir.h"
+
+namespace orrery::job {
+namespace {
+
+class JobDiskSpace : public testing::Test {
+ protected:
+  AppDiskSpace() {
+    generate::generate_final({}, folder_ / "final.toml");
+    job_.scene = folder_ / "final.toml";
+    job_.overrides = {"image.width=200", "image.height=112", "render.samples=4"};
+  }
+
+  /// Estimated size of a file by its actual one.
+  double ratio(const std::string& name, std::size_t layer_planes = 0) {
+    job_.outputs = {folder_ / name};
+    run_job(job_);
+    const auto needed = estimate_disk_space(job_, 200, 112, layer_planes);
+    EXPECT_EQ(needed.size(), 1u);
+    return needed.begin()->second / static_cast<double>(std::filesystem::file_size(folder_ / name));
+  }
+
+  support::TempDir folder_;
+  Job job_;
+};
+
+TEST_F(JobDiskSpace, TheEstimateIsNearTheFiles) {
+  for (const char* name : {"a.exr", "a.hdr", "a.png", "a.tif", "a.jpg", "a.ppm"}) {
+    const double r = ratio(name);
+    EXPECT_GT(r, 0.8) << name;  // a header counts for much in so small a picture
+    EXPECT_LT(r, 1.6) << name;
+  }
+  for (const char* compression : {"none", "rle", "zip", "piz", "dwaa"}) {
+    job_.exr.compression = compression;
+    EXPECT_GT(ratio("b.exr"), 0.8) << compression;
+    EXPECT_LT(ratio("b.exr"), 1.6) << compression;
+  }
+  job_.exr.compression = "zips";
+  job_.sample_end = 2;
+  EXPECT_GT(ratio("part.exr"), 0.8);
+  EXPECT_LT(ratio("part.exr"), 1.6);
+}
+
+TEST_F(JobDiskSpace, LayersCount) {
+  job_.overrides.push_back("output.layers=[\"Z\", \"N\", \"variance\"]");
+  EXPECT_GT(ratio("a.exr", 7), 0.8);
+  EXPECT_LT(ratio("b.exr", 7), 3);  // distances compress better than noise
+}
+
+TEST_F(JobDiskSpace, ALimitCountsInPlaceOfTheRoom) {
+  job_.outputs = {folder_ / "a.exr"};
+  compile::CompiledScene compiled;
+  compiled.width = compiled.height = 65536;  // 16 GiB
+  job_.disk_limit = std::uint64_t{1} << 30;
+  try {
+    require_disk_space(job_, compiled, 0);
+    ADD_FAILURE() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
+    EXPECT_NE(std::string(error.what()).find("--disk-limit allows"), std::string::npos) << error.what();
+  }
+  job_.disk_limit = std::uint64_t{1} << 50;
+  EXPECT_NO_THROW(require_disk_space(job_, compiled, 0)) << "whoever gives a limit insists";
+}
+
+}  // namespace
+}  // namespace orrery::job

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/layers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include <nlohmann/json.hpp>
+
+#include "job/matte_manifest.h"
+#include "compile/compile.h"
+#include "film/cryptomatte.h"
+#include "film/layer_film.h"
+#include "scene/schema.h"
+#include "support/everything.h"
+#include "support/temp_dir.h"
+
+namespace orrery::job {
+namespace {
+
+Layers layers_of(const scene::Scene& scene) {
+  static std::vector<std::unique_ptr<compile::CompiledScene>> worlds;  // layers point into them
+  worlds.push_back(std::make_unique<compile::CompiledScene>(compile::compile(scene)));
+  return choose_layers(scene, *worlds.back());
+}
+
+scene::Scene with_layers(std::vector<std::string> layers) {
+  scene::Scene s = test::everything();
+  s.output.layers = std::move(layers);
+  return s;
+}
+
+TEST(JobLayers, EachNameOfTheSchemaIsALayer) {
+  for (const scene::Table& table : scene::tables())
+    for (const auto& key : table.keys)
+      for (const std::string& name : table.name == "output" ? key.choices : std::vector<std::string>{}) {
+        const Layers layers = layers_of(with_layers({name}));
+        EXPECT_TRUE(layers.request.any()) << name;
+        EXPECT_FALSE(film::planes_of(layers.request).empty()) << name;
+      }
+  EXPECT_FALSE(layers_of(with_layers({})).request.any());
+}
+
+TEST(JobLayers, AnEmptyBackgroundAsksForCoverage) {
+  scene::Scene s = with_layers({});
+  s.background.alpha = 0;
+  EXPECT_TRUE(layers_of(s).request.coverage);
+}
+
+TEST(JobLayers, ObjectsAreNamedSpheresNumberedSpheresAndFiles) {
+  scene::Scene s = with_layers({"CryptoObject"});
+  s.spheres.resize(3);
+  s.spheres[1].name = "bunny";
+  s.spheres[2].name = "bunny";  // one thing of two spheres
+  scene::Points points;
+  points.file = "cloud/dust.ply";
+  points.centers.resize(2);
+  points.radii = {1, 1};
+  s.points = {points, points};
+  s.points[1].name = "named";
+  const Layers layers = layers_of(s);
+  ASSERT_EQ(layers.mattes.size(), 1u);
+  std::string names;
+  for (const auto& [name, id] : layers.mattes[0].things) {
+    names += name + " ";
+    EXPECT_EQ(id, film::matte_id(name));
+  }
+  EXPECT_EQ(names, "sphere.0 bunny dust named ");
+  const auto& id_of = layers.request.mattes[0].id_of_sphere;
+  const char* const wanted[] = {"sphere.0", "bunny", "bunny", "dust", "dust", "named", "named"};
+  for (std::uint32_t i = 0; i < 7; ++i) EXPECT_EQ(id_of(i), film::matte_id(wanted[i])) << i;
+}
+
+TEST(JobLayers, GroupsHoldOnlyThoseThatHaveOne) {
+  scene::Scene s = with_layers({"CryptoGroup"});
+  s.spheres[1].group = "left";
+  s.spheres[3].group = "left";
+  const Layers layers = layers_of(s);
+  EXPECT_EQ(layers.mattes[0].things.size(), 1u);
+  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(0), 0u);
+  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(1), film::matte_id("left"));
+  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(2), 0u);
+  EXPECT_EQ(layers.request.mattes[0].id_of_sphere(3), film::matte_id("left"));
+}
+
+/// Glass inside out is another material to the kernel, and the same to its author.
+TEST(JobLayers, MaterialsAreTheAuthors) {
+  const Layers layers = layers_of(with_layers({"CryptoMaterial", "material_id"}));
+  const scene::Scene s = test::everything();
+  for (std::uint32_t i = 0; i < s.spheres.size(); ++i)
+    EXPECT_EQ(layers.request.mattes[0].id_of_sphere(i), film::matte_id(s.materials[s.spheres[i].material].name)) << i;
+  const compile::CompiledScene compiled = compile::compile(s);
+  for (std::size_t i = 0; i < s.spheres.size(); ++i)
+    EXPECT_EQ(layers.request.material_numbers[compiled.sphere_materials[i]], s.spheres[i].material + 1) << i;
+}
+
+TEST(JobMatteManifest, SaysHowNamesBecameNumbers) {
+  const std::vector<image::Attribute> attributes = matte_attributes(
+      {{"CryptoObject", {{"bunny", film::matte_id("bunny")}, {"a \"b\"", film::matte_id("a \"b\"")}}}}, "x/shot.exr");
+  ASSERT_EQ(attributes.size(), 4u);
+  EXPECT_EQ(attributes[0].name, "cryptomatte/3ae39a5/name");
+  EXPECT_EQ(std::get<std::string>(attributes[0].value), "CryptoObject");
+  EXPECT_EQ(attributes[1].name, "cryptomatte/3ae39a5/hash");
+  EXPECT_EQ(std::get<std::string>(attributes[1].value), "MurmurHash3_32");
+  EXPECT_EQ(std::get<std::string>(attributes[2].value), "uint32_to_float32");
+  const auto manifest = nlohmann::json::parse(std::get<std::string>(attributes[3].value));
+  EXPECT_EQ(manifest["bunny"], "13851a76");
+  EXPECT_EQ(manifest.size(), 2u);
+  EXPECT_TRUE(manifest.contains("a \"b\""));
+}
+
+/// Processor seconds that the header of so many names takes: the least of three tries.
+double seconds_of_header(std::size_t names) {
+  MatteNames matte;
+  matte.layer = "CryptoObject";
+  for (std::size_t i = 0; i < names; ++i) matte.things.emplace_back("sphere number " + std::to_string(i), i);
+  double least = 1e9;
+  const support::TempDir folder;
+  for (int i = 0; i < 3; ++i) {
+    const std::clock_t begin = std::clock();
+    write_manifests({matte}, folder / "shot.exr");
+    least = std::min(least, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  return least;
+}
+
+TEST(JobMatteManifest, TakesTimeInProportionToItsNames) {
+  // Sixteen times the names: 16 times as long, and 256 times where each name is held against all others.
+  const std::size_t few = 12'000;
+  EXPECT_LT(seconds_of_header(16 * few), 80 * seconds_of_header(few));
+}
+
+TEST(JobMatteManifest, ManifestsAreFilesOfLargeMattesInExr) {
+  MatteNames small, large;
+  small.layer = "CryptoMaterial";
+  large.layer = "CryptoObject";
+  large.things.resize(kMostNamesInHeader + 1);
+  const std::vector<std::filesystem::path> files = manifest_files({small, large}, {"a/shot.exr", "shot.png", "b.exr"});
+  EXPECT_EQ(files, (std::vector<std::filesystem::path>{"a/shot.CryptoObject.json", "b.CryptoObject.json"}));
+}
+
+TEST(JobMatteManifest, ManyNamesStandInAFileBesideThePicture) {
+  MatteNames matte;
+  matte.layer = "CryptoObject";
+  for (std::size_t i = 0; i <= kMostNamesInHeader; ++i) {
+    const std::string name = "sphere." + std::to_string(i);
+    matte.things.emplace_back(name, film::matte_id(name));
+  }
+  const support::TempDir folder;
+  const std::vector<image::Attribute> attributes = matte_attributes({matte}, folder / "shot.exr");
+  ASSERT_EQ(attributes.size(), 4u);
+  EXPECT_EQ(attributes[3].name, "cryptomatte/3ae39a5/manif_file");
+  EXPECT_EQ(std::get<std::string>(attributes[3].value), "shot.CryptoObject.json");
+  write_manifests({matte}, folder / "shot.exr");
+  const auto manifest = nlohmann::json::parse(support::file_bytes(folder / "shot.CryptoObject.json"));
+  EXPECT_EQ(manifest.size(), kMostNamesInHeader + 1);
+  EXPECT_EQ(manifest["sphere.7"], film::matte_id_text(film::matte_id("sphere.7")));
+
+  matte.things.pop_back();
+  EXPECT_EQ(matte_attributes({matte}, folder / "other.exr")[3].name, "cryptomatte/3ae39a5/manifest");
+  write_manifests({matte}, folder / "other.exr");
+  EXPECT_FALSE(std::filesystem::exists(folder / "other.CryptoObject.json"));
+}
+
+}  // namespace
+}  // namespace orrery::job

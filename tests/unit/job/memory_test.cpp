@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/memory.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/temp_dir.h"
+
+namespace orrery::job {
+namespace {
+
+constexpr std::uint64_t kMega = 1 << 20;
+
+/// A machine made of files.
+class JobMemory : public testing::Test {
+ protected:
+  void write(const std::string& file, const std::string& text) {
+    std::filesystem::create_directories((root_ / file).parent_path());
+    support::write_bytes(root_ / file, text);
+  }
+  std::optional<std::uint64_t> available() { return available_memory(root_.path()); }
+
+  support::TempDir root_;
+};
+
+TEST_F(JobMemory, NothingIsKnownWhereNothingIsTold) { EXPECT_FALSE(available().has_value()); }
+
+TEST_F(JobMemory, TheMachineTellsWhatIsFree) {
+  write("proc/meminfo", "MemTotal:       8192 kB\nMemFree:  1024 kB\nMemAvailable:   4096 kB\n");
+  EXPECT_EQ(available(), 4 * kMega);
+}
+
+TEST_F(JobMemory, TheTightestGroupCounts) {
+  write("proc/meminfo", "MemAvailable:   1048576 kB\n");
+  write("proc/self/cgroup", "0::/job/step\n");
+  write("sys/fs/cgroup/job/step/memory.max", "max\n");
+  write("sys/fs/cgroup/job/step/memory.current", "1048576\n");
+  EXPECT_EQ(available(), 1024 * kMega) << "a group without a limit";
+  write("sys/fs/cgroup/job/memory.max", "104857600\n");
+  write("sys/fs/cgroup/job/memory.current", "62914560\n");
+  EXPECT_EQ(available(), 40 * kMega);
+  write("sys/fs/cgroup/job/memory.stat", "anon 5\ninactive_file 20971520\n");
+  EXPECT_EQ(available(), 60 * kMega) << "files that were read can go";
+  write("sys/fs/cgroup/job/memory.current", "209715200\n");
+  EXPECT_EQ(available(), 0u) << "nothing, not a huge number";
+}
+
+TEST_F(JobMemory, TheGroupOfTheWholeMachineCountsToo) {
+  write("proc/self/cgroup", "0::/\n");
+  write("sys/fs/cgroup/memory.max", "10485760\n");
+  write("sys/fs/cgroup/memory.current", "0\n");
+  EXPECT_EQ(available(), 10 * kMega);
+}
+
+MemoryEstimate estimate(int width, std::uint64_t spheres, bool embree, std::uint64_t layer_planes = 0,
+                        bool in_rounds = false) {
+  MemoryNeeds needs;
+  needs.width = width;
+  needs.height = 10;
+  needs.spheres = spheres;
+  needs.embree = embree;
+  needs.layer_planes = layer_planes;
+  needs.layers = layer_planes > 0;
+  needs.in_rounds = in_rounds;
+  return estimate_memory(needs);
+}
+
+TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
+  EXPECT_EQ(estimate(10, 0, true).total(), estimate(10, 0, false).total());
+  EXPECT_EQ(estimate(20, 0, true).film, 2 * estimate(10, 0, true).film);
+  EXPECT_GT(estimate(10, 0, true, 3).film, estimate(10, 0, true).film);
+  EXPECT_GT(estimate(10, 0, true, 0, true).film, estimate(10, 0, true).film);
+  EXPECT_EQ(estimate(1, 100, false).accelerator, 0u);
+  EXPECT_EQ(estimate(1, 100, true).accelerator, 100 * estimate(1, 1, true).accelerator);
+}
+
+TEST(JobMemoryEstimate, WhatDoesNotFitIsRefusedWithTheFigure) {
+  const MemoryEstimate million = estimate(1, 1'000'000, true);
+  EXPECT_NO_THROW(require_memory(million, million.total()));
+  try {
+    require_memory(million, million.total() - 1);
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory);
+    EXPECT_NE(std::string(error.what()).find("needs about 158.3 MiB"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("--memory-limit"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace orrery::job

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/output_files.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/error.h"
+
+namespace orrery::job {
+namespace {
+
+/// What is said about such files; nothing where all is well.
+std::string verdict(const std::vector<std::filesystem::path>& pictures, int bits = 0) {
+  try {
+    check_formats(pictures, bits);
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
+    return error.what();
+  }
+  return {};
+}
+
+TEST(JobOutputFiles, UnknownExtensionsAreUsage) { EXPECT_NE(verdict({"a.png", "a.webp"}), ""); }
+
+TEST(JobOutputFiles, BitsMustFitTheFormat) {
+  EXPECT_EQ(verdict({"a.png", "a.exr"}, 16), "");
+  EXPECT_NE(verdict({"a.png", "a.jpg"}, 16).find("a.jpg holds 8 bits"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace orrery::job

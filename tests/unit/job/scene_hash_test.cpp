@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/scene_hash.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+#include "generate/generate.h"
+#include "compile/compile.h"
+
+namespace orrery::job {
+namespace {
+
+scene::Scene small_scene() { return generate::make_final_scene({1, 2}); }
+
+std::string hash_of(const scene::Scene& scene) { return scene_hash(compile::compile(scene)); }
+
+TEST(JobSceneHash, IsSixteenDigitsAndTheSameEachTime) {
+  const std::string hash = hash_of(small_scene());
+  EXPECT_EQ(hash.size(), 16u);
+  EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos);
+  EXPECT_EQ(hash, hash_of(small_scene()));
+}
+
+TEST(JobSceneHash, ChangesWithWhateverChangesThePicture) {
+  using Change = std::function<void(scene::Scene&)>;
+  const std::vector<Change> changes = {
+      [](scene::Scene&) {},
+      [](scene::Scene& s) { s.image.width += 1; },
+      [](scene::Scene& s) { s.image.height += 1; },
+      [](scene::Scene& s) { s.camera.look_from.x += 1e-12; },
+      [](scene::Scene& s) { s.camera.vfov += 1e-12; },
+      [](scene::Scene& s) { s.camera.defocus_angle += 1e-12; },
+      [](scene::Scene& s) { s.background.top.z = 0.999; },
+      [](scene::Scene& s) { s.render.samples += 1; },
+      [](scene::Scene& s) { s.render.max_depth += 1; },
+      [](scene::Scene& s) { s.render.seed += 1; },
+      [](scene::Scene& s) { s.render.precision = scene::Precision::kFast; },
+      [](scene::Scene& s) { s.render.shading = scene::Shading::kNormal; },
+      [](scene::Scene& s) { s.spheres[0].center.y = 0.25; },
+      [](scene::Scene& s) { s.spheres[s.spheres.size() - 3].radius *= -1; },  // the glass turned inside out
+      [](scene::Scene& s) { s.spheres[1].radius *= 2; },
+      [](scene::Scene& s) { std::swap(s.spheres[1], s.spheres[2]); },
+      [](scene::Scene& s) { s.spheres.pop_back(); },
+      [](scene::Scene& s) { s.spheres[1].material = s.spheres[0].material; },
+      [](scene::Scene& s) { s.materials[s.spheres[0].material].model = scene::Hemisphere{}; },
+      [](scene::Scene& s) { s.materials[s.spheres[0].material].model = scene::Metal{}; },
+      [](scene::Scene& s) {
+        s.materials[s.spheres[0].material].model = scene::Metal{{0.5, 0.5, 0.5}, 0.25};
+      },
+      [](scene::Scene& s) { s.materials[s.spheres[0].material].model = scene::Dielectric{}; },
+      [](scene::Scene& s) {
+        s.materials[s.spheres[0].material].model = scene::Dielectric{1.5, scene::Fresnel::kExact};
+      },
+  };
+  std::set<std::string> hashes;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    scene::Scene scene = small_scene();
+    changes[i](scene);
+    EXPECT_TRUE(hashes.insert(hash_of(scene)).second) << "change " << i << " is not seen";
+  }
+}
+
+TEST(JobSceneHash, StaysWhereThePictureStays) {
+  scene::Scene scene = small_scene();
+  scene.render.accelerator = scene::Accelerator::kList;
+  scene.spheres[0].name = "renamed";
+  for (scene::Material& material : scene.materials) material.name += "_";
+  EXPECT_EQ(hash_of(scene), hash_of(small_scene()));
+}
+
+TEST(JobSceneHash, SpheresDoNotCancelOut) {
+  // Each change alone touches only the topmost bits of a double.
+  std::set<std::string> hashes;
+  for (int i = 0; i < 512; ++i) {
+    scene::Scene scene = small_scene();
+    for (int bit = 0; bit < 9; ++bit)
+      if ((i >> bit & 1) != 0) scene.spheres[static_cast<std::size_t>(bit)].center.x += 1024;
+    hashes.insert(hash_of(scene));
+  }
+  EXPECT_EQ(hashes.size(), 512u);
+}
+
+}  // namespace
+}  // namespace orrery::job

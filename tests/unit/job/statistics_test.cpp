@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "job/version.h"
+
+namespace orrery::job {
+namespace {
+
+TEST(JobStatistics, RatesAreOverTheTimeOfRendering) {
+  JobReport report;
+  report.render.paths = 600;
+  report.render.rays = 1500;
+  report.render.render_s = 3;
+  report.phases.write_s = 100;
+  const auto json = nlohmann::json::parse(statistics_json(report, {}));
+  EXPECT_EQ(json["paths_per_second"], 200);
+  EXPECT_EQ(json["rays_per_second"], 500);
+  EXPECT_EQ(json["seconds"]["write"], 100);
+}
+
+TEST(JobStatistics, NothingIsDividedByNoTime) {
+  const auto json = nlohmann::json::parse(statistics_json({}, {}));
+  EXPECT_EQ(json["paths_per_second"], 0);
+  EXPECT_EQ(json["rays_per_second"], 0);
+}
+
+TEST(JobStatistics, HasEveryKeyOfTheSchema) {
+  const auto json = nlohmann::json::parse(statistics_json({}, {"failed", 74, "disk full"}));
+  EXPECT_EQ(json["schema"], "orrery.stats/1");
+  EXPECT_EQ(json["exit_reason"], "failed");
+  EXPECT_EQ(json["exit_status"], 74);
+  EXPECT_EQ(json["error"], "disk full");
+  for (const char* key : {"scene_hash", "width", "height", "samples", "spheres", "paths", "rays", "peak_memory_bytes",
+                          "bad_samples", "bad_pixels", "written", "threads", "isa", "accelerator"})
+    EXPECT_EQ(json.count(key), 1u) << key;
+  for (const char* phase : {"read", "compile", "build", "render", "write"})
+    EXPECT_EQ(json["seconds"].count(phase), 1u) << phase;
+  EXPECT_EQ(json["versions"]["orrery"], program_version());
+  for (const auto& [name, version] : library_versions()) EXPECT_EQ(json["versions"][name], version);
+}
+
+TEST(JobStatistics, PeakMemoryIsInBytes) {
+  // This program alone has more than a mebibyte, and no test machine has a pebibyte.
+  EXPECT_GT(peak_memory(), std::size_t{1} << 20);
+  EXPECT_LT(peak_memory(), std::size_t{1} << 50);
+}
+
+}  // namespace
+}  // namespace orrery::job

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/threads.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "render/render.h"
+
+namespace orrery::job {
+namespace {
+
+class JobThreads : public testing::Test {
+ protected:
+  AppThreads() { TearDown(); }
+  void TearDown() override {
+    ::unsetenv("SLURM_CPUS_PER_TASK");
+    ::unsetenv("CUE_THREADS");
+  }
+  const int all_ = render::available_threads();
+};
+
+TEST_F(JobThreads, DefaultIsWhatTheProcessMayUse) { EXPECT_EQ(default_threads(), all_); }
+
+TEST_F(JobThreads, SchedulersGrantLess) {
+  ::setenv("SLURM_CPUS_PER_TASK", "1", 1);
+  EXPECT_EQ(default_threads(), 1);
+  ::unsetenv("SLURM_CPUS_PER_TASK");
+  ::setenv("CUE_THREADS", "1", 1);
+  EXPECT_EQ(default_threads(), 1);
+}
+
+TEST_F(JobThreads, SchedulersGrantNoMoreThanThereIs) {
+  ::setenv("SLURM_CPUS_PER_TASK", "100000", 1);
+  EXPECT_EQ(default_threads(), all_);
+}
+
+TEST_F(JobThreads, WhatIsNoNumberGrantsNothing) {
+  for (const char* text : {"", "abc", "0", "-1", "1x", "99999999999999999999"}) {
+    ::setenv("SLURM_CPUS_PER_TASK", text, 1);
+    EXPECT_EQ(default_threads(), all_) << text;
+  }
+}
+
+}  // namespace
+}  // namespace orrery::job

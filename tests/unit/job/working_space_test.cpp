@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/working_space.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "base/error.h"
+#include "support/everything.h"
+
+namespace orrery::job {
+namespace {
+
+class JobWorkingSpace : public testing::Test {
+ protected:
+  void SetUp() override { ::unsetenv("OCIO"); }
+};
+
+TEST_F(JobWorkingSpace, OneSpaceChangesNothingAndLooksNothingUp) {
+  scene::Scene s = test::everything();
+  s.color.space = s.color.working = "no such space";
+  EXPECT_EQ(to_working_space("no such config", s), 0);
+  s.color.working.clear();
+  EXPECT_EQ(to_working_space("no such config", s), 0);
+}
+
+/// Grey has no colour in any of them; red gains green and blue in wider primaries, by the matrix of both.
+TEST_F(JobWorkingSpace, ColoursAreConverted) {
+  scene::Scene s = test::everything();
+  s.color.working = "ACEScg";
+  s.background.bottom = {1, 1, 1};
+  std::get<scene::Lambertian>(s.materials[0].model).albedo = {0.5, 0, 0};
+  EXPECT_EQ(to_working_space({}, s), 0);
+  EXPECT_NEAR(s.background.bottom.x, 1, 1e-4);
+  EXPECT_NEAR(s.background.bottom.z, 1, 1e-4);
+  const math::Vec3d red = std::get<scene::Lambertian>(s.materials[0].model).albedo;
+  EXPECT_NEAR(red.x, 0.5 * 0.613097, 1e-4);
+  EXPECT_NEAR(red.y, 0.5 * 0.070194, 1e-4);
+  EXPECT_NEAR(red.z, 0.5 * 0.020616, 1e-4);
+  EXPECT_EQ(std::get<scene::Dielectric>(s.materials[4].model).ior, 1.5);
+}
+
+TEST_F(JobWorkingSpace, WhatTheWorkingSpaceCannotHoldIsMovedAndCounted) {
+  scene::Scene s = test::everything();
+  s.color.space = "ACEScg";
+  s.color.working = "lin_rec709";
+  std::get<scene::Lambertian>(s.materials[0].model).albedo = {0, 1, 0};
+  EXPECT_GE(to_working_space({}, s), 1);
+  const math::Vec3d green = std::get<scene::Lambertian>(s.materials[0].model).albedo;
+  EXPECT_EQ(green.x, 0);
+  EXPECT_EQ(green.y, 1);
+}
+
+TEST_F(JobWorkingSpace, ASpaceThatHoldsNoLightIsRefused) {
+  scene::Scene s = test::everything();
+  for (const char* name : {"acescct", "raw", "srgb_texture"}) {
+    s.color.working = name;
+    try {
+      to_working_space({}, s);
+      FAIL() << name;
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
+      EXPECT_NE(std::string(error.what()).find("not scene-linear"), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orrery::job

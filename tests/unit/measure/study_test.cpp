@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "app/info.h"
+#include "base/error.h"
+#include "compile/compile.h"
+#include "measure/axes.h"
+#include "support/everything.h"
+#include "support/temp_dir.h"
+
+namespace orrery::measure {
+namespace {
+
+bool has_axis(const AxisPlan& plan, const std::string& axis) {
+  return std::any_of(plan.choices.begin(), plan.choices.end(), [&](const Choice& c) { return c.axis == axis; });
+}
+
+AxisPlan plan_of(const scene::Scene& s) { return plan_axes(s, compile::compile(s), 0.01); }
+
+TEST(MeasureAxes, OnlyWhatTheSceneCanFeelIsMeasured) {
+  const AxisPlan all = plan_of(test::everything());
+  for (const char* axis : {"samples", "noise", "precision", "sampler", "roulette", "depth", "fresnel", "accelerator"})
+    EXPECT_TRUE(has_axis(all, axis)) << axis;
+  scene::Scene plain;
+  plain.materials = {{"white", scene::Lambertian{{1, 1, 1}}}};
+  plain.spheres = {{{0, 0, -2}, 1, 0, ""}};
+  const AxisPlan few = plan_of(plain);
+  EXPECT_FALSE(has_axis(few, "fresnel"));
+  EXPECT_FALSE(has_axis(few, "roulette"));
+  EXPECT_NE(std::find(few.left_out.begin(), few.left_out.end(), "no glass: no Fresnel axis"), few.left_out.end());
+  plain.spheres = {};
+  EXPECT_FALSE(has_axis(plan_of(plain), "depth"));
+}
+
+/// Budgets are counted in work: no test depends on how fast the machine is.
+constexpr double kPathsPerSecond = 1e6;
+
+class MeasureRun : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new support::TempDir;
+    std::ofstream(*folder / "scene.toml")
+        << "[image]\nwidth = 160\nheight = 90\n[camera]\nlook_from = [0, 1, 4]\n"
+           "look_at = [0, 0.3, 0]\nvfov = 40\n[render]\nsamples = 50\n"
+           "[material]\nground = { type = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n"
+           "glass = { type = \"dielectric\" }\n"
+           "[[sphere]]\ncenter = [0, -100, 0]\nradius = 100\nmaterial = \"ground\"\n"
+           "[[sphere]]\ncenter = [0, 0.5, 0]\nradius = 0.5\nmaterial = \"glass\"\n";
+    Request request;
+    request.scene = *folder / "scene.toml";
+    request.budget_s = 14;
+    request.paths_per_s = kPathsPerSecond;
+    request.noise = 0.02;
+    study = new Study(run_study(request));
+  }
+  static void TearDownTestSuite() {
+    delete study;
+    delete folder;
+  }
+  static const Point& point(const std::string& axis, const std::string& name) {
+    for (const Point& p : study->points)
+      if (p.axis == axis && p.name == name) return p;
+    throw std::runtime_error("no point " + axis + " " + name);
+  }
+  static support::TempDir* folder;
+  static Study* study;
+};
+support::TempDir* StudyRun::folder = nullptr;
+Study* StudyRun::study = nullptr;
+
+app::SceneInfo info_of(const std::filesystem::path& scene) {
+  job::SceneRequest request;
+  request.file = scene;
+  return app::scene_info(request);
+}
+
+TEST_F(MeasureRun, KeepsToItsBudget) {
+  EXPECT_LT(study->seconds, study->budget_s);
+  EXPECT_GT(study->seconds, 0.5 * study->budget_s);
+}
+
+TEST_F(MeasureRun, EstimatesMemoryAsInfoDoes) {
+  const app::SceneInfo info = info_of(*folder / "scene.toml");
+  EXPECT_EQ(point("precision", "exact").memory, info.memory.total());
+  EXPECT_EQ(study->scene_hash, info.scene_hash);
+}
+
+TEST_F(MeasureRun, TellsBiasFromNoise) {
+  // One bounce is not enough for glass; sixteen times the samples is a quarter of the noise.
+  EXPECT_GT(point("depth", "at most 2").bias, 0.02);
+  EXPECT_LT(point("depth", "at most 2").energy, -0.005);
+  EXPECT_LT(point("precision", "fast").bias, 0.005);
+  EXPECT_NEAR(point("sampler", "16 independent").noise / point("sampler", "256 independent").noise, 4, 0.8);
+  EXPECT_LT(point("samples", "64 sobol").error, point("sampler", "64 independent").error);
+}
+
+TEST_F(MeasureRun, TheFrontIsWhatNothingBeats) {
+  for (const Point& p : study->points) {
+    if (!p.on_front) continue;
+    for (const Point& other : study->points)
+      EXPECT_FALSE(other.axis != "accelerator" && other.seconds < p.seconds && other.error < p.error)
+          << p.name << " is beaten by " << other.name;
+  }
+}
+
+TEST_F(MeasureRun, FilesAreAsLossyAsTheyAre) {
+  for (const FilePoint& f : study->files) {
+    if (f.name == "float zip") {
+      EXPECT_EQ(f.error, 0);
+    }
+    if (f.name == "half zip") {
+      EXPECT_LT(f.error, 5e-4);
+    }
+    if (f.name == "half dwaa") {
+      EXPECT_GT(f.error, 5e-4);
+    }
+    EXPECT_GT(f.bytes, 0u);
+  }
+}
+
+TEST_F(MeasureRun, RecommendsACommand) {
+  const Recommendation& r = study->recommendation;
+  EXPECT_EQ(r.command.rfind("orrery render " + (*folder / "scene.toml").string() + " -o final.exr --noise 0.02", 0), 0u)
+      << r.command;
+  EXPECT_GT(r.seconds, 0);
+  EXPECT_LE(r.noise, 0.02);
+  EXPECT_GT(r.baseline_seconds, 0);
+}
+
+TEST_F(MeasureRun, JsonAndPageHoldIt) {
+  const auto json = nlohmann::json::parse(study_json(*study));
+  EXPECT_EQ(json["schema"], "orrery.study/1");
+  EXPECT_EQ(json["points"].size(), study->points.size());
+  EXPECT_EQ(json["features"].size(), 3u);
+  const std::string page = study_html(*study);
+  EXPECT_EQ(page.find("{{DATA}}"), std::string::npos);
+  EXPECT_NE(page.find("data:image/jpeg;base64,"), std::string::npos);
+  EXPECT_EQ(page.find("https://"), std::string::npos) << "it must be readable without a network";
+  const auto begin = page.find("type=\"application/json\">") + 24;
+  const auto data = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  EXPECT_EQ(data["points"].size(), study->points.size());
+  EXPECT_NE(study_text(*study).find("* nothing measured is both quicker and better"), std::string::npos);
+}
+
+Study small_study(const std::filesystem::path& scene, double budget_s, std::vector<format::Override> overrides = {}) {
+  Request request;
+  request.scene = scene;
+  request.overrides = std::move(overrides);
+  request.budget_s = budget_s;
+  request.paths_per_s = kPathsPerSecond;
+  return run_study(request);
+}
+
+TEST_F(MeasureRun, ASmallBudgetMeasuresWhatItAllowsAndNamesTheRest) {
+  const Study small = small_study(*folder / "scene.toml", 0.6);
+  ASSERT_GE(small.points.size(), 2u);
+  EXPECT_EQ(small.points[0].name, "4 sobol");
+  EXPECT_EQ(small.points[1].name, "16 sobol");
+  const auto is_left_out = [&](const std::string& text) {
+    return std::find(small.left_out.begin(), small.left_out.end(), text) != small.left_out.end();
+  };
+  EXPECT_TRUE(is_left_out("fresnel (exact; schlick; none): the budget does not allow it"));
+  EXPECT_TRUE(is_left_out("trying the recommendation at the scene's own size: the budget does not allow it"));
+  EXPECT_GT(small.recommendation.seconds, 0);
+  EXPECT_NE(study_text(small).find("--noise 0.01"), std::string::npos);
+  EXPECT_EQ(study_html(small).find("{{DATA}}"), std::string::npos);
+}
+
+TEST_F(MeasureRun, ABudgetThatAllowsNothingIsRefusedWithWhatIsNeeded) {
+  try {
+    small_study(*folder / "scene.toml", 0.05);
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
+    EXPECT_NE(std::string(error.what()).find("a reference and two choices take 0.467 s"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(MeasureRun, MotionBlurIsMeasured) {
+  const auto file = *folder / "moving.toml";
+  std::ofstream(file)
+      << "image = { width = 64, height = 36 }\n"
+         "camera = { look_from = [0, 0, 4], look_at = [0, 0, 0], shutter_close = 1 }\n"
+         "material.grey = { type = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n"
+         "sphere = [{ center = [0, 0, 0], radius = 1, material = \"grey\", name = \"ball\" }]\n"
+         "key = [{ target = \"sphere.ball.center\", frames = [1, 2], values = [[0, 0, 0], [2, 0, 0]] }]\n";
+  const Study moving = small_study(file, 1), resting = small_study(file, 1, {"camera.shutter_close=0"});
+  EXPECT_EQ(moving.scene_hash, info_of(file).scene_hash);
+  EXPECT_NE(moving.scene_hash, resting.scene_hash);
+  EXPECT_NE(moving.reference.planes[0].values, resting.reference.planes[0].values);
+}
+
+}  // namespace
+}  // namespace orrery::measure

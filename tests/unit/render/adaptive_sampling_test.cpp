@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "compile/compile.h"
+#include "film/display_error.h"
+#include "render/render.h"
+#include "support/everything.h"
+#include "support/room.h"
+
+namespace orrery::render {
+namespace {
+
+compile::CompiledScene world_of(int samples = 100) {
+  scene::Scene s = test::everything();
+  s.image = {67, 41};
+  s.render.samples = samples;
+  return compile::compile(s);
+}
+
+Settings noise(double value) {
+  Settings settings;
+  settings.noise = value;
+  settings.unlimited = true;
+  return settings;
+}
+
+void expect_same(const film::Picture& a, const film::Picture& b) {
+  ASSERT_EQ(a.planes.size(), b.planes.size());
+  for (std::size_t p = 0; p < a.planes.size(); ++p)
+    ASSERT_EQ(a.planes[p].values, b.planes[p].values) << a.planes[p].name;
+}
+
+TEST(RenderRounds, ThreadsAndTraversalsChangeNoBit) {
+  Settings settings = noise(0.012);
+  settings.threads = 1;
+  const Result one = render(world_of(), settings);
+  EXPECT_EQ(one.statistics.ended_by, "noise");
+  EXPECT_LT(one.statistics.fewest_samples, one.statistics.most_samples);
+  settings.threads = 5;
+  settings.traversal = Traversal::kSingle;
+  const Result five = render(world_of(), settings);
+  expect_same(one.picture, five.picture);
+  EXPECT_EQ(one.statistics.paths, five.statistics.paths);
+}
+
+TEST(RenderRounds, MoreAccuracyTakesMoreSamples) {
+  const Result rough = render(world_of(), noise(0.02)), fine = render(world_of(), noise(0.005));
+  EXPECT_LE(*rough.statistics.noise, 0.02);
+  EXPECT_LE(*fine.statistics.noise, 0.005);
+  EXPECT_GT(*fine.statistics.noise, 0.0035);  // and not more than was asked for
+  EXPECT_GT(fine.statistics.paths, 4 * rough.statistics.paths);
+}
+
+TEST(RenderRounds, SamplesAreALimitWhereTheyWereAskedFor) {
+  Settings settings = noise(0.001);
+  settings.unlimited = false;
+  const Result r = render(world_of(40), settings);
+  EXPECT_TRUE(r.completed);
+  EXPECT_EQ(r.statistics.ended_by, "samples");
+  EXPECT_EQ(r.statistics.most_samples, 40u);
+  EXPECT_GT(*r.statistics.noise, 0.001);
+}
+
+TEST(RenderRounds, LayersCountThePathsThatWereTaken) {
+  Settings settings = noise(0.012);
+  settings.layers.samples = settings.layers.variance = settings.layers.normal = settings.layers.diffuse = true;
+  const Result r = render(world_of(), settings);
+  double sum = 0;
+  float fewest = 1e9f, most = 0;
+  for (const float n : r.picture.find("samples.X")->values) {
+    sum += static_cast<double>(n);
+    fewest = std::min(fewest, n);
+    most = std::max(most, n);
+  }
+  EXPECT_EQ(sum, static_cast<double>(r.statistics.paths));
+  EXPECT_EQ(static_cast<std::uint64_t>(fewest), r.statistics.fewest_samples);
+  EXPECT_EQ(static_cast<std::uint64_t>(most), r.statistics.most_samples);
+  // The beauty is the one without layers.
+  const Result bare = render(world_of(), noise(0.012));
+  for (const char* name : {"R", "G", "B"}) EXPECT_EQ(r.picture.find(name)->values, bare.picture.find(name)->values);
+}
+
+TEST(RenderRounds, NegativeLobesAndBlueNoiseWorkInRounds) {
+  scene::Scene s = test::everything();
+  s.image = {40, 24};
+  s.render.filter = scene::Filter::kMitchell;
+  s.render.sampler = scene::Sampler::kBlueNoise;
+  const Result r = render(compile::compile(s), noise(0.05));
+  EXPECT_EQ(r.statistics.ended_by, "noise");
+  for (const float v : r.picture.planes[0].values) ASSERT_TRUE(std::isfinite(v));
+}
+
+TEST(RenderRounds, TimeIsKept) {
+  // The clock counts samples, so that the result does not depend on the machine.
+  for (const double seconds : {0.3, 1.0, 20.0}) {
+    Settings settings;
+    settings.clock = [](std::uint64_t samples) { return static_cast<double>(samples) * 1e-5; };
+    settings.seconds = seconds;
+    settings.unlimited = true;
+    const Result r = render(world_of(), settings);
+    EXPECT_EQ(r.statistics.ended_by, "time");
+    EXPECT_NEAR(r.statistics.render_s, seconds, 0.05 * seconds);
+  }
+}
+
+TEST(RenderRounds, AnEmptyViewIsDoneAtOnce) {
+  scene::Scene s;
+  s.image = {20, 10};
+  s.background.type = scene::BackgroundType::kConstant;
+  const Result r = render(compile::compile(s), noise(0.001));
+  EXPECT_EQ(r.statistics.ended_by, "noise");
+  EXPECT_EQ(r.statistics.most_samples, 16u);
+  EXPECT_EQ(r.picture.planes[0].values[0], 1.0f);
+}
+
+/// The display error of a picture against the truth.
+double error_of(const film::Picture& picture, const film::Picture& truth) {
+  double sum = 0;
+  const std::size_t pixels = truth.planes[0].values.size();
+  for (std::size_t i = 0; i < pixels; ++i) {
+    double squares = 0, light = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto a = static_cast<double>(picture.planes[c].values[i]),
+                 b = static_cast<double>(truth.planes[c].values[i]);
+      squares += (a - b) * (a - b);
+      light += b;
+    }
+    sum += film::display_error_squared(squares, light);
+  }
+  return std::sqrt(sum / static_cast<double>(pixels));
+}
+
+TEST(RenderRounds, RareLightIsNotTakenForNone) {
+  // Four samples in a hundred find light: after sixteen samples a pixel looks black, or as if it were known.
+  scene::Scene s = test::room(3.7, 5, 32, 18);
+  s.render.samples = 4096;
+  s.render.seed = 1000;
+  const film::Picture truth = render(compile::compile(s), {}).picture;
+  for (const scene::Sampler sampler : {scene::Sampler::kIndependent, scene::Sampler::kSobol}) {
+    s.render.sampler = sampler;
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      s.render.seed = seed;
+      const Result r = render(compile::compile(s), noise(0.3));
+      EXPECT_EQ(r.statistics.ended_by, "noise");
+      EXPECT_LE(*r.statistics.noise, 0.3);
+      EXPECT_LT(*r.statistics.expected_noise, *r.statistics.noise);
+      const double error = error_of(r.picture, truth);
+      EXPECT_LT(error, 1.1 * 0.3) << seed;
+      EXPECT_GT(error, 0.7 * 0.3) << seed;
+    }
+  }
+}
+
+TEST(RenderRounds, BlackIsBelievedAfterAThousandSamples) {
+  const Result r = render(compile::compile(test::room(3.95, 5, 12, 8)), noise(0.3));
+  EXPECT_EQ(r.statistics.ended_by, "noise");
+  EXPECT_EQ(r.statistics.fewest_samples, 1024u);
+  EXPECT_EQ(r.statistics.most_samples, 1024u);
+  EXPECT_EQ(r.statistics.unjudged_pixels, 0u);
+}
+
+TEST(RenderRounds, WhatTooFewSamplesCannotJudgeIsCounted) {
+  scene::Scene s = test::room(3.95, 5, 12, 8);
+  s.render.samples = 64;
+  Settings settings = noise(0.3);
+  settings.unlimited = false;
+  const Result r = render(compile::compile(s), settings);
+  EXPECT_TRUE(r.completed);
+  EXPECT_EQ(r.statistics.ended_by, "samples");
+  EXPECT_EQ(r.statistics.most_samples, 64u);
+  EXPECT_EQ(r.statistics.unjudged_pixels, 96u);
+}
+
+TEST(RenderRounds, ATransparentBackgroundIsKnownToBeBlack) {
+  scene::Scene s;
+  s.image = {30, 20};
+  s.camera.look_from = {0, 0, 9};
+  s.materials = {{"m", scene::Lambertian{{0.5, 0.5, 0.5}}}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}};
+  Settings settings = noise(0.2);
+  settings.layers.coverage = true;
+  const Result r = render(compile::compile(s), settings);
+  EXPECT_EQ(r.statistics.ended_by, "noise");
+  EXPECT_EQ(r.statistics.fewest_samples, 16u);
+  EXPECT_LT(r.statistics.paths, 30u * 600u);  // a thousand for each pixel if black had to be proven
+}
+
+TEST(RenderRounds, PicturesOfFewPixelsEnd) {
+  std::uint64_t most = 0;
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 3}, {5, 1}}) {
+    scene::Scene s = test::room(3.6, 10, width, height);
+    const Result r = render(compile::compile(s), noise(0.1));
+    EXPECT_EQ(r.statistics.ended_by, "noise");
+    EXPECT_LE(*r.statistics.noise, 0.1);
+    most = std::max(most, r.statistics.most_samples);
+  }
+  EXPECT_GT(most, 16u);
+}
+
+TEST(RenderRounds, ALonePixelThatDiffersFromAllOthersIsReached) {
+  // A small sphere before an even sky: no other pixel knows anything of the one that it is in.
+  scene::Scene s;
+  s.image = {24, 16};
+  s.camera.look_from = {0, 0, 10};
+  s.camera.look_at = {0.2, 0.2, 0};
+  s.camera.vfov = 20;
+  s.background.type = scene::BackgroundType::kConstant;
+  s.materials = {{"soot", scene::Lambertian{{0, 0, 0}}}};
+  s.spheres = {{{0, 0, 0}, 0.07, 0, ""}};
+  s.render.sampler = scene::Sampler::kIndependent;
+  int gone_on = 0;
+  for (s.render.seed = 1; s.render.seed <= 4; ++s.render.seed) {
+    const Result r = render(compile::compile(s), noise(0.001));
+    EXPECT_EQ(r.statistics.ended_by, "noise");
+    EXPECT_LT(r.statistics.most_samples, 1u << 20);
+    gone_on += r.statistics.most_samples > 16 ? 1 : 0;
+  }
+  EXPECT_GE(gone_on, 2);
+}
+
+TEST(RenderRounds, AStoppedOneGoesOnToTheSameBits) {
+  const compile::CompiledScene compiled = compile::compile(test::room(3.7, 5, 33, 18));
+  Settings settings = noise(0.3);
+  settings.threads = 2;
+  const Result whole = render(compiled, settings);
+  std::optional<film::Partial> from;
+  int stops = 0;
+  for (;; ++stops) {
+    std::atomic<bool> cancel{false};
+    int looks = 0;
+    settings.cancel = &cancel;
+    settings.snapshot_is_due = [&] {
+      static std::mutex mutex;
+      const std::lock_guard lock(mutex);
+      if (++looks > 5) cancel = true;  // in the middle of a round
+      return false;
+    };
+    Result r = render(compiled, settings, std::move(from));
+    if (r.completed) {
+      expect_same(r.picture, whole.picture);
+      EXPECT_EQ(r.statistics.paths, whole.statistics.paths);
+      break;
+    }
+    from = std::move(r.partial);
+  }
+  EXPECT_GT(stops, 4);
+}
+
+TEST(RenderRounds, ProgressGoesForwardAndSaysWhatEndsIt) {
+  Settings settings = noise(0.004);
+  std::mutex mutex;
+  std::vector<double> fractions;
+  std::string goal;
+  settings.on_progress = [&](const Progress& p) {
+    const std::lock_guard lock(mutex);
+    fractions.push_back(static_cast<double>(p.samples_done) / static_cast<double>(p.samples_total));
+    goal = p.goal;
+  };
+  render(world_of(), settings);
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end(), [](double a, double b) { return a < b - 1e-3; }));
+  EXPECT_EQ(goal.rfind("noise 0.0", 0), 0u) << goal;
+}
+
+TEST(RenderRounds, ACancelledOneIsNotComplete) {
+  std::atomic<bool> cancel{false};
+  Settings settings = noise(1e-5);
+  settings.cancel = &cancel;
+  settings.on_progress = [&](const Progress&) { cancel = true; };
+  EXPECT_FALSE(render(world_of(), settings).completed);
+}
+
+}  // namespace
+}  // namespace orrery::render

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/progressive_sampling.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "accel/accel.h"
+#include "compile/compile.h"
+#include "film/partial_words.h"
+#include "render/render.h"
+#include "support/everything.h"
+
+namespace orrery::render {
+namespace {
+
+std::vector<float> values(const film::Picture& picture) {
+  std::vector<float> all;
+  for (const film::Plane& plane : picture.planes) all.insert(all.end(), plane.values.begin(), plane.values.end());
+  return all;
+}
+
+/// A picture cut into squares of `side` pixels and its samples into `shards` ranges, the last piece first.
+std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, int side, int shards,
+                                      kernel::Lanes lanes) {
+  const std::unique_ptr<accel::Accel> accel = accel::make_embree(compiled.view(), compiled.precision);
+  film::Film film(compiled.width, compiled.height);
+  std::vector<kernel::Tile> pieces;
+  for (int shard = 0; shard < shards; ++shard)
+    for (int y = 0; y < compiled.height; y += side)
+      for (int x = 0; x < compiled.width; x += side) {
+        kernel::Tile piece;
+        piece.x = x;
+        piece.y = y;
+        piece.width = std::min(side, compiled.width - x);
+        piece.height = std::min(side, compiled.height - y);
+        piece.sample_begin = static_cast<std::uint32_t>(compiled.samples * shard / shards);
+        piece.sample_end = static_cast<std::uint32_t>(compiled.samples * (shard + 1) / shards);
+        piece.sums = film.at(x, y);
+        piece.row_stride = compiled.width;
+        pieces.push_back(piece);
+      }
+  std::reverse(pieces.begin(), pieces.end());
+  const auto stream = std::make_unique<kernel::PathStream>();
+  const kernel::SceneView view = compiled.view();
+  const kernel::RenderTile render_tile = kernel::render_tile_function(view.features, compiled.precision, lanes);
+  for (const kernel::Tile& piece : pieces) render_tile(view, accel->tracer(), piece, *stream);
+  return values(film.picture());
+}
+
+compile::CompiledScene world_of_everything() {
+  scene::Scene scene = test::everything();
+  scene.render.samples = 19;  // 17 shards that are not all alike
+  return compile::compile(scene);
+}
+
+/// The layers that keep all that a partial can hold.
+Settings with_layers(Settings settings = {}) {
+  film::LayerRequest& r = settings.layers;
+  r.z = r.depth = r.normal = r.position = r.albedo = r.diffuse = r.specular = r.transmission = r.background = true;
+  r.variance = r.samples = r.object_id = r.guide_albedo = r.guide_normal = r.coverage = r.deep = true;
+  r.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return sphere + 1; }}};
+  return settings;
+}
+
+Settings in_rounds(Settings settings = {}) {
+  settings.noise = 0.02;
+  settings.unlimited = true;
+  return settings;
+}
+
+void expect_same(const Result& a, const Result& b) {
+  EXPECT_EQ(values(a.picture), values(b.picture));
+  EXPECT_EQ(a.statistics.paths, b.statistics.paths);
+  EXPECT_EQ(a.statistics.rays, b.statistics.rays);
+  EXPECT_EQ(a.statistics.fewest_samples, b.statistics.fewest_samples);
+  EXPECT_EQ(a.statistics.most_samples, b.statistics.most_samples);
+  ASSERT_EQ(a.deep.pixels.size(), b.deep.pixels.size());
+  for (std::size_t i = 0; i < a.deep.pixels.size(); ++i) {
+    ASSERT_EQ(a.deep.pixels[i].size(), b.deep.pixels[i].size()) << i;
+    for (std::size_t s = 0; s < a.deep.pixels[i].size(); ++s)
+      ASSERT_EQ(std::memcmp(&a.deep.pixels[i][s], &b.deep.pixels[i][s], sizeof(film::DeepSample)), 0) << i;
+  }
+}
+
+/// Renders by fits and starts: each start goes on from the words that the last one has left.
+Result interrupted(const compile::CompiledScene& compiled, Settings settings, int* starts) {
+  std::optional<film::Partial> from;
+  std::minstd_rand random(7);
+  for (;; ++*starts) {
+    std::atomic<bool> cancel{false};
+    std::atomic<int> tiles{static_cast<int>(random() % 3) + 2};
+    settings.cancel = &cancel;
+    settings.snapshot_is_due = [&] {  // asked before each tile
+      if (--tiles == 0) cancel = true;
+      return false;
+    };
+    settings.threads = 1 + static_cast<int>(random() % 3);
+    Result result = render(compiled, settings, std::move(from));
+    if (result.completed) return result;
+    EXPECT_TRUE(result.partial);
+    if (!result.partial) return result;
+    from = film::from_words(film::to_words(*result.partial), compiled.width, compiled.height);
+  }
+}
+
+TEST(RenderPasses, StopsAndStartsChangeNoBit) {
+  scene::Scene scene = test::everything();
+  scene.render.samples = 90;  // three passes
+  const compile::CompiledScene compiled = compile::compile(scene);
+  for (const Settings& settings : {Settings{}, with_layers(), in_rounds(), in_rounds(with_layers())}) {
+    int starts = 0;
+    expect_same(interrupted(compiled, settings, &starts), render(compiled, settings));
+    EXPECT_GT(starts, 1);
+  }
+}
+
+TEST(RenderPasses, NegativeWeightsSurviveStopsToo) {
+  scene::Scene scene = test::everything();
+  scene.render.filter = scene::Filter::kMitchell;
+  scene.render.samples = 40;
+  const compile::CompiledScene compiled = compile::compile(scene);
+  int starts = 0;
+  expect_same(interrupted(compiled, with_layers(), &starts), render(compiled, with_layers()));
+  EXPECT_GT(starts, 1);
+}
+
+TEST(RenderPasses, SnapshotsAreWholeAndChangeNoBit) {
+  const compile::CompiledScene compiled = world_of_everything();
+  for (const Settings& plain : {Settings{}, in_rounds()}) {
+    Settings settings = plain;
+    std::atomic<int> asked{0};  // before every square
+    std::uint64_t last = 0;
+    int snapshots = 0;
+    settings.snapshot_is_due = [&] { return ++asked % 4 == 0; };
+    settings.on_snapshot = [&](const film::Partial& partial) {
+      ++snapshots;
+      std::uint64_t paths = 0;
+      for (const std::uint32_t n : partial.counts) paths += n * (partial.has_halves() ? 2u : 1u);
+      EXPECT_EQ(partial.work.paths, paths);
+      EXPECT_GE(paths, last);
+      last = paths;
+    };
+    expect_same(render(compiled, settings), render(compiled, plain));
+    EXPECT_GT(snapshots, 1);
+  }
+}
+
+TEST(RenderShare, EveryPixelBelongsToOneOfTheParts) {
+  for (const int count : {1, 2, 3, 17, 1000}) {
+    std::vector<int> owners(130 * 67, 0);
+    for (int i = 0; i < count; ++i) {
+      const std::vector<bool> owned = pixels_of({i, count}, 130, 67);
+      for (std::size_t p = 0; p < owners.size(); ++p) owners[p] += owned[p] ? 1 : 0;
+    }
+    EXPECT_EQ(std::count(owners.begin(), owners.end(), 1), 130 * 67) << count;
+  }
+}
+
+TEST(RenderShare, PartsAddUpToTheWholeWithItsLayers) {
+  const compile::CompiledScene compiled = world_of_everything();
+  const Settings whole = with_layers();
+  for (const int count : {2, 5}) {
+    film::Partial sum(compiled.width, compiled.height);
+    sum.layers.resize(sum.pixel_count());
+    for (int i = 0; i < count; ++i) {
+      for (const std::uint32_t begin : {0u, 6u}) {
+        Settings settings = with_layers();
+        settings.shard = {i, count};
+        settings.sample_begin = begin;
+        settings.sample_end = begin == 0 ? 6 : 19;
+        settings.keep_partial = true;
+        const Result part = render(compiled, settings);
+        EXPECT_EQ(part.statistics.fewest_samples, settings.sample_end - begin);
+        sum.film.add(part.partial->film);
+        for (std::size_t p = 0; p < sum.layers.size(); ++p) sum.layers[p].add(part.partial->layers[p]);
+        sum.work += part.partial->work;
+      }
+    }
+    const Result expected = render(compiled, whole);
+    EXPECT_EQ(sum.work.rays, expected.statistics.rays);
+    EXPECT_EQ(values(finished(compiled, whole.layers, std::move(sum)).picture), values(expected.picture));
+  }
+}
+
+TEST(RenderPasses, AnyCuttingGivesTheSameBits) {
+  const compile::CompiledScene compiled = world_of_everything();
+  const std::vector<float> whole = values(render(compiled, {}).picture);
+  for (const int side : {1, 5, 32, 128})
+    for (const int shards : {1, 2, 3, 17})
+      EXPECT_EQ(rendered_in_pieces(compiled, side, shards, kernel::Lanes::kAll), whole)
+          << side << " pixels, " << shards << " shards";
+}
+
+TEST(RenderPasses, OneLaneGivesTheSameBitsAsAll) {
+  const compile::CompiledScene compiled = world_of_everything();
+  EXPECT_EQ(rendered_in_pieces(compiled, 32, 1, kernel::Lanes::kOne), values(render(compiled, {}).picture));
+}
+
+}  // namespace
+}  // namespace orrery::render
