@@ -37,11 +37,12 @@ struct Case {
   std::function<scene::Scene()> scene;
 };
 
-/// The room with a mirror in it, which shows the gaps: in one pixel of some hundreds there is a small bright spot.
+/// A dim room with a mirror ball between camera and wall. The ball reflects the gaps behind the camera as small bright
+/// spots, each in one pixel of some hundreds.
 scene::Scene room_with_mirror() {
   scene::Scene s = test::room(3.7, 5, 64, 36);
   s.materials.push_back({"mirror", scene::Metal{{0.9, 0.9, 0.9}, 0}});
-  s.spheres.push_back({{0.4, 0.3, -2.2}, 0.5, 1, ""});
+  s.spheres.push_back({{0.15, 0.1, -0.7}, 0.3, 1, ""});
   return s;
 }
 
@@ -140,14 +141,14 @@ class Subject {
 
   render::Result adaptive(std::uint32_t seed, double noise, int most) {
     render::Settings settings;
-    settings.noise = noise;
+    settings.sampling.noise = noise;
     return run(seed, most, settings);
   }
   render::Result uniform(std::uint32_t seed, int samples) { return run(seed, samples, {}); }
 
  private:
   render::Result run(std::uint32_t seed, int samples, render::Settings settings) {
-    settings.traversal = render::Traversal::kPacket;
+    settings.traversal = accel::Traversal::kPacket;
     world_.sampler.seed = seed;
     world_.samples = samples;
     return render::render(world_, *accel_, settings);

@@ -18,7 +18,7 @@ namespace {
 using kernel::Precision;
 
 enum class Rays { kCamera, kBounced };
-enum class Traversal { kEmbree, kList };
+enum class Method { kEmbree, kList };
 
 template <class Packet>
 std::vector<Packet>& choose(render::RecordedRays<Packet>& rays, Rays which) {
@@ -27,10 +27,10 @@ std::vector<Packet>& choose(render::RecordedRays<Packet>& rays, Rays which) {
 
 /// One packet per iteration.
 template <class Packet>
-void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, Rays which, Traversal traversal) {
+void trace(benchmark::State& state, std::uint64_t spheres, Precision precision, Rays which, Method method) {
   auto& work = workload<Packet>(spheres, precision);
   auto& packets = choose(work.rays, which);
-  const kernel::Tracer tracer = (traversal == Traversal::kEmbree ? work.embree : work.list)->tracer();
+  const kernel::Tracer tracer = (method == Method::kEmbree ? work.embree : work.list)->tracer();
   std::int64_t rays = 0;
   std::size_t next = 0;
   for (auto _ : state) {
@@ -70,10 +70,9 @@ void trace_baseline(benchmark::State& state, std::uint64_t spheres, Rays which, 
   state.SetItemsProcessed(state.iterations());
 }
 
-void register_trace(const std::string& name, std::uint64_t spheres, Precision precision, Rays which,
-                    Traversal traversal) {
+void register_trace(const std::string& name, std::uint64_t spheres, Precision precision, Rays which, Method method) {
   const auto run = precision == Precision::kFast ? trace<kernel::RayPacketFast> : trace<kernel::RayPacket>;
-  benchmark::RegisterBenchmark(name.c_str(), run, spheres, precision, which, traversal);
+  benchmark::RegisterBenchmark(name.c_str(), run, spheres, precision, which, method);
 }
 
 /// Above this size the list takes too long to measure.
@@ -87,8 +86,8 @@ constexpr std::uint64_t kLongestList = 10'000;
     };
     for (const Precision precision : {Precision::kExact, Precision::kFast, Precision::kBook}) {
       const std::string mode = name_of(precision);
-      register_trace(name("final", "embree/" + mode, ""), 0, precision, which, Traversal::kEmbree);
-      register_trace(name("final", "list/" + mode, ""), 0, precision, which, Traversal::kList);
+      register_trace(name("final", "embree/" + mode, ""), 0, precision, which, Method::kEmbree);
+      register_trace(name("final", "list/" + mode, ""), 0, precision, which, Method::kList);
     }
     benchmark::RegisterBenchmark(name("final", "baseline", "").c_str(), trace_baseline, 0u, which,
                                  baseline::Spheres::kList);
@@ -98,9 +97,8 @@ constexpr std::uint64_t kLongestList = 10'000;
       const std::string size = "/" + std::to_string(n);
       for (const Precision precision : {Precision::kExact, Precision::kFast}) {
         const std::string mode = name_of(precision);
-        register_trace(name("cloud", "embree/" + mode, size), n, precision, which, Traversal::kEmbree);
-        if (n <= kLongestList)
-          register_trace(name("cloud", "list/" + mode, size), n, precision, which, Traversal::kList);
+        register_trace(name("cloud", "embree/" + mode, size), n, precision, which, Method::kEmbree);
+        if (n <= kLongestList) register_trace(name("cloud", "list/" + mode, size), n, precision, which, Method::kList);
       }
       if (n <= kLongestList)
         benchmark::RegisterBenchmark(name("cloud", "baseline", size).c_str(), trace_baseline, n, which,

@@ -31,7 +31,7 @@ struct Workload {
         compiled(compile_for(scene, precision)),
         embree(accel::make_embree(compiled.view(), precision)),
         list(accel::make_list(compiled.view(), precision)) {
-    embree->use(render::choose_traversals(compiled, *embree, render::Traversal::kAuto));
+    embree->use(render::choose_traversals(compiled, *embree, std::nullopt));
     kernel::Tile whole;
     whole.width = kRecordedWidth;
     whole.height = kRecordedHeight;

@@ -7,20 +7,12 @@
 #include <memory>
 #include <string>
 
+#include "accel/traversal.h"
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::accel {
-
-/// How rays go through the hierarchy: those of a packet together, which pays as long as they visit the same boxes, or
-/// one after the other.
-enum class Traversal : std::uint8_t { kPacket, kSingle };
-
-/// Chosen for rays of the camera, and for those that have bounced. Hits do not depend on it.
-struct Traversals {
-  Traversal camera = Traversal::kPacket, bounced = Traversal::kPacket;
-};
 
 /// Finds the nearest hit of rays among a scene's spheres.
 ///

@@ -3,7 +3,7 @@
 
 #include "job/display_writer.h"
 #include "job/job_files.h"
-#include "job/output_files.h"
+#include "job/outputs.h"
 #include "job/version.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -28,7 +28,7 @@ void check_kinds(const Development& development) {
 
 DevelopReport develop_file(const Development& development) {
   check_kinds(development);
-  job::check_formats(development.outputs, development.bits);
+  job::check_bits(job::image_files(development.outputs), development.bits);
   base::FileSet files;
   files.add_input(development.input, "picture");
   job::add_ocio_configs(development.display.config, files);

@@ -90,7 +90,7 @@ SceneInfo scene_info(const job::SceneRequest& request) {
   const film::LayerRequest layers = job::choose_layers(read.scene, compiled).request;
   SceneInfo info;
   info.scene_hash = job::scene_hash(compiled);
-  info.frame = request.frame;
+  info.frame = request.source.frame;
   info.width = compiled.width;
   info.height = compiled.height;
   info.samples = compiled.samples;
@@ -123,7 +123,7 @@ SceneInfo scene_info(const job::SceneRequest& request) {
   for (const std::string& advice : precision_advice(compiled)) {
     base::Diagnostic warning;
     warning.severity = base::Severity::kWarning;
-    warning.file = request.file.string();
+    warning.file = request.source.file.string();
     warning.text = advice;
     info.warnings.push_back(std::move(warning));
   }
@@ -132,9 +132,7 @@ SceneInfo scene_info(const job::SceneRequest& request) {
 
 void measure_savings(const job::SceneRequest& request, SceneInfo& info) {
   measure::BenchRequest bench;
-  bench.scene = request.file;
-  bench.overrides = request.overrides;
-  bench.frame = request.frame;
+  bench.scene = request.source;
   for (const measure::FeatureCost& cost : measure::bench_features(bench))
     for (Feature& feature : info.features)
       if (feature.name == cost.name && !cost.required) feature.saves = cost.saves;

@@ -26,8 +26,8 @@ struct BenchOptions {
 
 int bench(BenchOptions& options) {
   measure::BenchRequest& request = options.request;
-  request.overrides = options.scene.overrides();
-  request.frame = options.scene.frame();
+  request.scene.overrides = options.scene.overrides();
+  request.scene.frame = options.scene.frame();
   request.cancel = &stop_on_signals();
   const bool shows_progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   if (shows_progress)
@@ -44,7 +44,7 @@ int bench(BenchOptions& options) {
 void add_bench(Command& program, Action& action) {
   const auto options = std::make_shared<BenchOptions>();
   Command& command = *program.add_subcommand("bench", "Measure how fast a scene renders, in every precision");
-  command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
+  command.add_option("SCENE", options->request.scene.file, "Scene file")->required()->type_name("FILE");
   options->scene.add_to(command);
   options->scene.add_frame_to(command);
   command.add_option("-t,--threads", options->request.threads, "Threads; default 1")

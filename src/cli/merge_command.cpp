@@ -25,12 +25,12 @@ struct MergeOptions {
 int merge(MergeOptions& options) {
   job::Job& job = options.job;
   options.picture.finish(job);
-  job.on_warning = [&](const base::Diagnostic& warning) {
+  job.hooks.on_warning = [&](const base::Diagnostic& warning) {
     if (!options.quiet) tell(base::formatted(warning));
   };
-  job.parts = job::read_shards(options.parts, job.allow_missing ? job.on_warning : nullptr);
-  job::take_scene(job.parts.front(), job);
-  job.cancel = &stop_on_signals();
+  job.merge.shards = job::read_shards(options.parts, job.merge.allow_missing ? job.hooks.on_warning : nullptr);
+  job::take_scene(job.merge.shards.front(), job);
+  job.hooks.cancel = &stop_on_signals();
   const job::JobReport report = job::run_job(job);
   if (!options.quiet) tell(report_text(job, report, options.verbose));
   return 0;
@@ -41,21 +41,22 @@ int merge(MergeOptions& options) {
 void add_merge(Command& program, Action& action) {
   const auto options = std::make_shared<MergeOptions>();
   Command& command = *program.add_subcommand("merge", "Join parts of a picture that were rendered apart");
-  command.add_option("PART", options->parts, "EXR files that --samples A:B or --tiles I/N have made, in any order")
+  command.add_option("PART", options->parts, "EXR files that --samples A:B or --shard I/N have made, in any order")
       ->required()
       ->type_name("FILE");
   options->picture.add_to(command, options->job);
   command
-      .add_option("--scene", options->job.scene,
+      .add_option("--scene", options->job.scene.file,
                   "The scene file, where it is no longer where it was when the parts were rendered")
       ->type_name("FILE");
-  command.add_flag("--allow-missing", options->job.allow_missing,
+  command.add_flag("--allow-missing", options->job.merge.allow_missing,
                    "Make a picture of what is there, and say in its header what is not");
   command
-      .add_option("--memory-limit", options->job.memory_limit, "Refuse what needs more, as 8G; default: what is free")
+      .add_option("--memory-limit", options->job.resources.memory_limit,
+                  "Refuse what needs more, as 8G; default: what is free")
       ->transform(byte_size())
       ->type_name("SIZE");
-  command.add_option("--stats", options->job.statistics, "Write what all parts together did as JSON")
+  command.add_option("--stats", options->job.outputs.statistics, "Write what all parts together did as JSON")
       ->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
   command.add_flag("-v,--verbose", options->verbose, "Say what was done and how long it took");

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "job/job.h"
 #include "cli/arguments.h"
@@ -14,10 +16,13 @@ class PictureOptions {
   /// Domain     called once; neither this nor `job` moves until the command line is read
   void add_to(Command& command, job::Job& job);
 
-  /// What flags say that are no members of a job as they are.
-  void finish(job::Job& job) const { job.exr.as_float = type_ == "float"; }
+  /// Converts the options that are no members of a job.
+  ///
+  /// Errors     base::Error(kUsage) for a file with an unknown extension
+  void finish(job::Job& job) const;
 
  private:
+  std::vector<std::filesystem::path> files_;
   std::string type_ = "half";
 };
 

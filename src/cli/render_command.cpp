@@ -32,7 +32,7 @@ struct RenderOptions {
   farm::Batch batch;
   SceneOptions scene;
   PictureOptions picture;
-  std::string progress = "auto", tiles, frames;
+  std::string progress = "auto", traversal = "auto", shard, frames;
   bool quiet = false, verbose = false, strict = false, fail_fast = false;
 };
 
@@ -65,14 +65,14 @@ void read_shard(const RenderOptions& options, job::Job& job) {
     if (!range || range->first >= range->second || range->second > std::numeric_limits<std::int32_t>::max())
       refuse("--samples: `" + *text +
              "` is no range of samples; 0:100 are the first hundred, 100:200 those after them");
-    job.sample_begin = range->first;
-    job.sample_end = range->second;
+    job.sampling.sample_begin = range->first;
+    job.sampling.sample_end = range->second;
   }
-  if (options.tiles.empty()) return;
-  const auto tiles = pair_of<int>(options.tiles, '/');
-  if (!tiles || tiles->first < 1 || tiles->first > tiles->second || tiles->second > kMaxShards)
-    refuse("--tiles: `" + options.tiles + "` is no part; 1/4, 2/4, 3/4 and 4/4 are the four quarters of a picture");
-  job.shard = {tiles->first - 1, tiles->second};
+  if (options.shard.empty()) return;
+  const auto shard = pair_of<int>(options.shard, '/');
+  if (!shard || shard->first < 1 || shard->first > shard->second || shard->second > kMaxShards)
+    refuse("--shard: `" + options.shard + "` is not a shard; write I/N, as 1/4, 2/4, 3/4 and 4/4 for four shards");
+  job.sampling.shard = {shard->first - 1, shard->second};
   job.as_shard = true;
 }
 
@@ -116,24 +116,26 @@ int render(RenderOptions& options) {
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
     if (batch.scenes[i].extension() != ".toml")
       refuse("`" + batch.scenes[i].string() + "` is one argument too many; files to write are named by -o");
-  job.overrides = options.scene.overrides();
+  job.scene.overrides = options.scene.overrides();
   options.picture.finish(job);
   read_shard(options, job);
+  if (options.traversal == "packet") job.resources.traversal = accel::Traversal::kPacket;
+  if (options.traversal == "single") job.resources.traversal = accel::Traversal::kSingle;
   if (!options.frames.empty()) batch.frames = base::parse_frames(options.frames);
   const bool is_many = batch.scenes.size() * std::max<std::size_t>(batch.frames.size(), 1) > 1;
   batch.keep_going = is_many && !options.fail_fast;
-  job.cancel = &stop_on_signals();
-  job.snapshot = &snapshot_request();
+  job.hooks.cancel = &stop_on_signals();
+  job.hooks.snapshot = &snapshot_request();
   ProgressPrinter printer(style_of(options), stderr);
   BatchProgress progress(printer);
   int status = 0;
-  job.on_progress = [&](const render::Progress& p) { progress.update(p); };
-  job.on_build = [&](double fraction) { printer.building(fraction); };
+  job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };
+  job.hooks.on_build = [&](double fraction) { printer.building(fraction); };
   const auto note = [&](const std::string& text) {  // the log has what nobody wants to see
     options.quiet ? tell_log(text) : printer.note(text);
   };
-  job.on_warning = [&](const base::Diagnostic& warning) { note(base::formatted(warning)); };
-  job.on_note = [&](const std::string& text) { printer.note(text + "\n"); };
+  job.hooks.on_warning = [&](const base::Diagnostic& warning) { note(base::formatted(warning)); };
+  job.hooks.on_note = [&](const std::string& text) { printer.note(text + "\n"); };
   batch.on_begin = [&](const job::Job& one, std::size_t index, std::size_t count) {
     progress.begin(index, count);
     tell_log("begins: " + farm::job_name(batch, one) + "\n");
@@ -168,7 +170,7 @@ void add_render(Command& program, Action& action) {
       ->type_name("FILE");
   options->picture.add_to(command, options->batch.job);
   options->scene.add_to(command, true);
-  command.add_option("--tiles", options->tiles, "Render only the I-th of N parts of the pixels, as a part")
+  command.add_option("--shard", options->shard, "Render only the I-th of N shards of the pixels, to merge later")
       ->type_name("I/N");
   command
       .add_option("--frames", options->frames,
@@ -177,42 +179,48 @@ void add_render(Command& program, Action& action) {
   command.add_flag("--skip-existing", options->batch.job.skip_existing,
                    "Leave out what is there already, whole, and made of this scene with these settings");
   command.add_flag("--fail-fast", options->fail_fast, "End at the first of several frames or scenes that fails");
-  command.add_flag("--resume", options->batch.job.resume, "Go on from the checkpoint that a stopped render has left");
+  command.add_flag("--resume", options->batch.job.checkpoint.resume,
+                   "Go on from the checkpoint that a stopped render has left");
   command
-      .add_option("--checkpoint", options->batch.job.checkpoint_s,
+      .add_option("--checkpoint", options->batch.job.checkpoint.interval_s,
                   "Write a checkpoint so often, as 5m; one is written anyway when INT or TERM stops the render")
       ->transform(duration())
       ->type_name("TIME");
   command
-      .add_option("--noise", options->batch.job.noise,
+      .add_option("--noise", options->batch.job.sampling.noise,
                   "Target noise: error of the picture relative to what a display shows, e.g. 0.01")
       ->transform(real_number(1e-6, 1))
       ->type_name("X");
-  command.add_option("--time", options->batch.job.seconds, "Sample for so long, where it helps most: 90s, 5m, 1.5h")
+  command
+      .add_option("--time", options->batch.job.sampling.seconds,
+                  "Sample for so long, where it helps most: 90s, 5m, 1.5h")
       ->transform(duration())
       ->type_name("TIME");
   command.add_flag("--strict", options->strict, "Exit with 75 if --noise was not reached or could not be judged");
-  command.add_option("-t,--threads", options->batch.job.threads, "Threads; default: as many as this process may use")
+  command
+      .add_option("-t,--threads", options->batch.job.resources.threads,
+                  "Threads; default: as many as this process may use")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command
-      .add_option("--traversal", options->batch.job.traversal,
+      .add_option("--traversal", options->traversal,
                   "How rays go through the hierarchy: auto, the default, measures what is quicker; packet or single")
       ->check(one_of({"auto", "packet", "single"}))
       ->type_name("WAY");
   command
-      .add_option("--isa", options->batch.job.isa,
+      .add_option("--isa", options->batch.job.resources.isa,
                   "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
   command
-      .add_option("--memory-limit", options->batch.job.memory_limit,
+      .add_option("--memory-limit", options->batch.job.resources.memory_limit,
                   "Refuse what needs more, as 8G; default: what is free")
       ->transform(byte_size())
       ->type_name("SIZE");
   command.add_option("--progress", options->progress, "auto, bar, alf, openjd, arnold, json or none")
       ->check(one_of(progress_style_names()))
       ->type_name("STYLE");
-  command.add_option("--stats", options->batch.job.statistics, "Write what the render did as JSON")->type_name("FILE");
+  command.add_option("--stats", options->batch.job.outputs.statistics, "Write what the render did as JSON")
+      ->type_name("FILE");
   command.add_option("--log", options->batch.log, "Append all messages to this file, too, with the time")
       ->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");

@@ -29,7 +29,7 @@ void add_bad_values(std::string& out, const job::JobReport& report) {
 
 void add_summary(std::string& out, const job::Job& job, const job::JobReport& report, bool verbose) {
   std::string files;
-  for (const auto& output : job.outputs) files += (files.empty() ? "" : ", ") + output.string();
+  for (const job::ImageFile& output : job.outputs.images) files += (files.empty() ? "" : ", ") + output.path.string();
   const double seconds = report.render.render_s;
   const double pixels = static_cast<double>(report.width) * report.height;
   append(out, "wrote %s: %d x %d, %.5g samples per pixel in %.1f s, %.2f M samples/s", files.c_str(), report.width,

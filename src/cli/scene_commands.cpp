@@ -38,9 +38,9 @@ std::string warnings_text(const app::SceneInfo& info) {
 
 int info(const InfoOptions& options) {
   job::SceneRequest request;
-  request.file = options.scene;
-  request.overrides = options.overrides.overrides();
-  request.frame = options.overrides.frame();
+  request.source.file = options.scene;
+  request.source.overrides = options.overrides.overrides();
+  request.source.frame = options.overrides.frame();
   app::SceneInfo found = app::scene_info(request);
   if (options.measure) app::measure_savings(request, found);
   std::fputs(warnings_text(found).c_str(), stderr);
@@ -68,7 +68,7 @@ class FrameChecks {
   /// The exit status.
   int run(const std::vector<int>& frames) {
     for (const int frame : frames) {
-      request_.frame = frame;
+      request_.source.frame = frame;
       try {
         const app::SceneInfo info = app::scene_info(request_);
         print_once(warnings_text(info) + memory_warning(info));
@@ -80,7 +80,7 @@ class FrameChecks {
       }
     }
     if (frames.size() > 1 && !bad_.empty())
-      std::fprintf(stderr, "orrery: %s: %zu of %zu frames have errors: %s\n", request_.file.c_str(), bad_.size(),
+      std::fprintf(stderr, "orrery: %s: %zu of %zu frames have errors: %s\n", request_.source.file.c_str(), bad_.size(),
                    frames.size(), base::frames_text(bad_).c_str());
     return status_;
   }
@@ -106,8 +106,8 @@ int check(const CheckOptions& options) {
   int status = 0;
   for (const auto& scene : options.scenes) {
     job::SceneRequest request;
-    request.file = scene;
-    request.overrides = options.overrides.overrides();
+    request.source.file = scene;
+    request.source.overrides = options.overrides.overrides();
     request.develops = true;  // what a render to a display format would refuse, too
     const int own = FrameChecks(std::move(request)).run(frames);
     status = std::max(status, own);

@@ -32,8 +32,8 @@ void check_report_name(const std::filesystem::path& file) {
 
 int run(StudyOptions& options) {
   measure::Request& request = options.request;
-  request.overrides = options.scene.overrides();
-  request.frame = options.scene.frame();
+  request.scene.overrides = options.scene.overrides();
+  request.scene.frame = options.scene.frame();
   request.cancel = &stop_on_signals();
   const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
   int last = -1;
@@ -59,7 +59,7 @@ int run(StudyOptions& options) {
 void add_study(Command& program, Action& action) {
   const auto options = std::make_shared<StudyOptions>();
   Command& command = *program.add_subcommand("study", "Measure what time buys in accuracy on a scene, and recommend");
-  command.add_option("SCENE", options->request.scene, "Scene file")->required()->type_name("FILE");
+  command.add_option("SCENE", options->request.scene.file, "Scene file")->required()->type_name("FILE");
   command.add_option("-o,--output", options->request.report, "Write a report: one HTML file with plots and pictures")
       ->type_name("FILE");
   options->scene.add_to(command);

@@ -26,7 +26,7 @@ int submit(SubmitOptions& options) {
   farm::Submission& s = options.submission;
   farm::Batch& batch = s.batch;
   batch.scenes = {options.scene_file};
-  batch.job.overrides = options.scene.overrides();
+  batch.job.scene.overrides = options.scene.overrides();
   options.picture.finish(batch.job);
   if (!s.frames_text.empty()) batch.frames = base::parse_frames(s.frames_text);
   if (options.slurm + options.openjd + options.opencue + static_cast<int>(options.parallel->count()) != 1)
@@ -57,16 +57,16 @@ void add_submit(Command& program, Action& action) {
   options->picture.add_to(command, s.batch.job);
   options->scene.add_to(command);
   command.add_option("--frames", s.frames_text, "Frames to render, as 1-48, 1-48x2 or 1,3,7-9")->type_name("RANGE");
-  command.add_option("--shards", s.shards, "Parts that each frame is split into; a merge joins them; default: 1")
+  command.add_option("--shards", s.shards, "Shards that each frame is split into and merged from; default: 1")
       ->transform(whole_number(1, 1000))
       ->type_name("N");
-  command.add_option("--noise", s.batch.job.noise, "As of orrery render; only without --shards")
+  command.add_option("--noise", s.batch.job.sampling.noise, "As of orrery render; only without --shards")
       ->transform(real_number(1e-6, 1))
       ->type_name("X");
-  command.add_option("--time", s.batch.job.seconds, "As of orrery render; only without --shards")
+  command.add_option("--time", s.batch.job.sampling.seconds, "As of orrery render; only without --shards")
       ->transform(duration())
       ->type_name("TIME");
-  command.add_option("--stats", s.batch.job.statistics, "Write what each frame did as JSON")->type_name("FILE");
+  command.add_option("--stats", s.batch.job.outputs.statistics, "Write what each frame did as JSON")->type_name("FILE");
   command.add_option("--program", s.program, "The program that the engine calls; default: orrery")->type_name("FILE");
   s.program = "orrery";
   command.footer(

@@ -232,10 +232,7 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
     case scene::Shading::kNormal: compiled.shading = kernel::Shading::kNormal; break;
     case scene::Shading::kFlat: compiled.shading = kernel::Shading::kFlat; break;
   }
-  switch (scene.render.accelerator) {
-    case scene::Accelerator::kEmbree: compiled.accelerator = Accelerator::kEmbree; break;
-    case scene::Accelerator::kList: compiled.accelerator = Accelerator::kList; break;
-  }
+  compiled.accelerator = scene.render.accelerator;
   compiled.camera = compile_camera(scene.camera, scene.image);
   compiled.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
   set_background(scene.background, compiled);

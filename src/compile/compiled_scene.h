@@ -9,11 +9,12 @@
 #include "kernel/precision.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
+#include "scene/accelerator.h"
 
 namespace orrery::compile {
 
 using kernel::Precision;
-enum class Accelerator { kEmbree, kList };
+using scene::Accelerator;
 
 /// The box around all spheres; meaningless where there is none.
 struct Bounds {

@@ -25,9 +25,9 @@ std::string with_scene(std::string name, const std::string& stem) {
 /// All files that a job writes under names of the user's.
 std::vector<fs::path*> names_of(job::Job& job) {
   std::vector<fs::path*> names;
-  for (fs::path& output : job.outputs) names.push_back(&output);
-  if (!job.deep.empty()) names.push_back(&job.deep);
-  if (!job.statistics.empty()) names.push_back(&job.statistics);
+  for (job::ImageFile& output : job.outputs.images) names.push_back(&output.path);
+  if (!job.outputs.deep.empty()) names.push_back(&job.outputs.deep);
+  if (!job.outputs.statistics.empty()) names.push_back(&job.outputs.statistics);
   return names;
 }
 
@@ -44,10 +44,9 @@ void check_name(const Batch& batch, const std::string& name) {
 }
 
 /// Adds what a scene names, where it can be parsed; its job reports what is wrong with one that cannot.
-void add_readable_files(const fs::path& scene, const std::vector<format::Override>& overrides,
-                        const std::vector<int>& frames, base::FileSet& files) {
+void add_readable_files(const job::SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
   try {
-    job::add_named_files(scene, overrides, frames, files);
+    job::add_named_files(scene, frames, files);
   } catch (const base::Error& error) {
     if (error.kind() == base::ErrorKind::kUsage) throw;
   }
@@ -58,7 +57,7 @@ void add_readable_files(const fs::path& scene, const std::vector<format::Overrid
 std::vector<job::Job> jobs_of(const Batch& batch) {
   job::Job common = batch.job;
   for (const fs::path* name : names_of(common)) check_name(batch, name->string());
-  const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{format::kFirstFrame} : batch.frames;
+  const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{job::SceneSource().frame} : batch.frames;
   std::vector<job::Job> jobs;
   common.files = std::make_shared<base::FileSet>();
   base::FileSet& files = *common.files;
@@ -68,8 +67,8 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   for (const fs::path& scene : batch.scenes) {
     for (const int frame : frames) {
       job::Job job = common;
-      job.scene = scene;
-      job.frame = frame;
+      job.scene.file = scene;
+      job.scene.frame = frame;
       for (fs::path* name : names_of(job)) {
         std::string text = with_scene(name->string(), scene.stem().string());
         *name = batch.frames.empty() ? text : base::with_frame(text, frame);
@@ -80,12 +79,12 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   }
   // A job alone checks what its scene names once it is read; by then another one, or the log, may have overwritten it.
   if (jobs.size() > 1 || !batch.log.empty())
-    for (const fs::path& scene : batch.scenes) add_readable_files(scene, common.overrides, frames, files);
+    for (const fs::path& scene : batch.scenes) add_readable_files({scene, common.scene.overrides}, frames, files);
   return jobs;
 }
 
 std::string job_name(const Batch& batch, const job::Job& job) {
-  return (batch.frames.empty() ? "" : "frame " + std::to_string(job.frame) + " of ") + job.scene.string();
+  return (batch.frames.empty() ? "" : "frame " + std::to_string(job.scene.frame) + " of ") + job.scene.file.string();
 }
 
 BatchReport run_batch(const Batch& batch, const std::vector<job::Job>& jobs) {

@@ -70,7 +70,7 @@ void require_seal(const std::filesystem::path& file) {
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);
   constexpr const char* kNoPartial =
-      " is no partial picture of orrery, or it is cut off; --resume, --samples A:B and --tiles write such files";
+      " is no partial picture of orrery, or it is cut off; --resume, --samples A:B and --shard write such files";
   if (failed || size < kSealSize) damaged(kNoPartial);
   const std::string expected = seal_of(in.get(), size - kSealSize);
   char found[kSealSize];

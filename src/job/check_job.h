@@ -21,9 +21,4 @@ void check_samples(const Job& job, const compile::CompiledScene& compiled);
 /// Errors     base::Error(kUsage)
 void check_sizes(const Job& job, const compile::CompiledScene& compiled);
 
-/// How rays shall go through the hierarchy.
-///
-/// Errors     base::Error(kUsage) for a name that is none
-render::Traversal traversal_of(const Job& job);
-
 }  // namespace orrery::job

@@ -10,9 +10,9 @@
 namespace orrery::job {
 namespace {
 
-std::chrono::steady_clock::duration interval(const Job& job) {
+std::chrono::steady_clock::duration interval(const CheckpointSettings& settings) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-      std::chrono::duration<double>(job.checkpoint_s));
+      std::chrono::duration<double>(settings.interval_s));
 }
 
 }  // namespace
@@ -21,15 +21,17 @@ std::filesystem::path checkpoint_file(const std::filesystem::path& first_output)
   return first_output.parent_path() / base::companion_name(first_output.stem().string(), ".checkpoint.exr");
 }
 
-Checkpoint::Checkpoint(const Job& job, image::Provenance provenance, Write write)
-    : job_(job),
-      file_(checkpoint_file(job.outputs.front())),
+Checkpoint::Checkpoint(std::filesystem::path file, const CheckpointSettings& settings, const Hooks& hooks,
+                       image::Provenance provenance, Write write)
+    : settings_(settings),
+      hooks_(hooks),
+      file_(std::move(file)),
       provenance_(std::move(provenance)),
       write_(std::move(write)),
-      next_(Clock::now() + interval(job)) {}
+      next_(Clock::now() + interval(settings)) {}
 
 std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
-  if (!job_.resume || !std::filesystem::exists(file_)) return {};
+  if (!settings_.resume || !std::filesystem::exists(file_)) return {};
   try {
     const image::Provenance found = image::read_provenance(file_);
     if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())
@@ -46,23 +48,23 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
 }
 
 bool Checkpoint::is_due() const {
-  if (job_.snapshot != nullptr && job_.snapshot->load(std::memory_order_relaxed)) return true;
-  return job_.checkpoint_s > 0 && Clock::now() >= next_;
+  if (hooks_.snapshot != nullptr && hooks_.snapshot->load(std::memory_order_relaxed)) return true;
+  return settings_.interval_s > 0 && Clock::now() >= next_;
 }
 
 void Checkpoint::write_snapshot(const film::Partial& partial) {
-  const bool was_asked = job_.snapshot != nullptr && job_.snapshot->exchange(false);
+  const bool was_asked = hooks_.snapshot != nullptr && hooks_.snapshot->exchange(false);
   try {
     write(partial);
-    if (was_asked && job_.on_note) job_.on_note("wrote " + file_.string());
+    if (was_asked && hooks_.on_note) hooks_.on_note("wrote " + file_.string());
   } catch (const base::Error& error) {
     base::Diagnostic diagnostic;
     diagnostic.severity = base::Severity::kWarning;
     diagnostic.file = file_.string();
     diagnostic.text = std::string("no checkpoint: ") + error.what();
-    if (job_.on_warning) job_.on_warning(diagnostic);
+    if (hooks_.on_warning) hooks_.on_warning(diagnostic);
   }
-  next_ = Clock::now() + interval(job_);
+  next_ = Clock::now() + interval(settings_);
 }
 
 void Checkpoint::write(const film::Partial& partial) {

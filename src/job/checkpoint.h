@@ -6,8 +6,9 @@
 #include <functional>
 #include <optional>
 
-#include "job/job.h"
+#include "film/partial.h"
 #include "image/partial_file.h"
+#include "job/hooks.h"
 
 namespace orrery::job {
 
@@ -15,14 +16,21 @@ namespace orrery::job {
 /// name that would be too long is shortened.
 std::filesystem::path checkpoint_file(const std::filesystem::path& first_output);
 
+/// When checkpoints are written and read.
+struct CheckpointSettings {
+  bool resume = false;    ///< continue from the checkpoint, if there is one
+  double interval_s = 0;  ///< 0: only when the job is stopped
+};
+
 /// The checkpoint of one job: when it is due, what is in it, and when it has done its work.
 class Checkpoint {
  public:
   /// Writes a partial under a name.
   using Write = std::function<void(const std::filesystem::path& file, const film::Partial& partial)>;
 
-  /// Domain     `job` outlives this
-  Checkpoint(const Job& job, image::Provenance provenance, Write write);
+  /// Domain     `settings` and `hooks` outlive this
+  Checkpoint(std::filesystem::path file, const CheckpointSettings& settings, const Hooks& hooks,
+             image::Provenance provenance, Write write);
 
   const std::filesystem::path& file() const { return file_; }
 
@@ -48,7 +56,8 @@ class Checkpoint {
  private:
   using Clock = std::chrono::steady_clock;
 
-  const Job& job_;
+  const CheckpointSettings& settings_;
+  const Hooks& hooks_;
   std::filesystem::path file_;
   image::Provenance provenance_;
   Write write_;

@@ -25,17 +25,17 @@ double kept_by(const std::string& compression, bool is_float) {
 /// Bytes of a pixel of exact sums, with a preview; what layers add to them; of samples in depth.
 constexpr double kPartBytes = 27, kPartLayerBytes = 130, kDeepBytes = 24;
 
-double bytes_per_pixel(const Job& job, const std::filesystem::path& file, std::size_t layer_planes) {
-  const bool is_deep_color = job.bits == 16;
-  switch (image::format_of(file)) {
+double bytes_per_pixel(const Outputs& outputs, bool is_shard, image::Format format, std::size_t layer_planes) {
+  const image::ExrOptions& exr = outputs.exr;
+  switch (format) {
     case image::Format::kExr:
-      if (is_shard(job)) return kPartBytes + (layer_planes > 0 ? kPartLayerBytes : 0);
-      return 4 * (job.exr.as_float ? 4 : 2) * kept_by(job.exr.compression, job.exr.as_float) +
-             4 * static_cast<double>(layer_planes) * kept_by(job.exr.compression, true);
+      if (is_shard) return kPartBytes + (layer_planes > 0 ? kPartLayerBytes : 0);
+      return 4 * (exr.as_float ? 4 : 2) * kept_by(exr.compression, exr.as_float) +
+             4 * static_cast<double>(layer_planes) * kept_by(exr.compression, true);
     case image::Format::kHdr: return 3;
     case image::Format::kJpeg: return 0.8;
     case image::Format::kPng:
-    case image::Format::kTiff: return is_deep_color ? 4.8 : 1.8;
+    case image::Format::kTiff: return outputs.bits == 16 ? 4.8 : 1.8;
     case image::Format::kPpm: return 3;
   }
   return 0;
@@ -47,28 +47,28 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::map<std::filesystem::path, double> estimate_disk_space(const Job& job, int width_px, int height_px,
-                                                            std::size_t layer_planes) {
-  const double pixels = static_cast<double>(width_px) * height_px;
+std::map<std::filesystem::path, double> estimate_disk_space(const Outputs& outputs, bool is_shard,
+                                                            const ImageSize& size) {
+  const double pixels = static_cast<double>(size.width_px) * size.height_px;
   std::map<std::filesystem::path, double> needed;
-  for (const std::filesystem::path& file : job.outputs)
-    needed[folder_of(file)] += pixels * bytes_per_pixel(job, file, layer_planes);
-  if (!job.deep.empty()) needed[folder_of(job.deep)] += pixels * kDeepBytes;
+  for (const auto& [file, format] : outputs.images)
+    needed[folder_of(file)] += pixels * bytes_per_pixel(outputs, is_shard, format, size.layer_planes);
+  if (!outputs.deep.empty()) needed[folder_of(outputs.deep)] += pixels * kDeepBytes;
   return needed;
 }
 
-void require_disk_space(const Job& job, const compile::CompiledScene& compiled, std::size_t layer_planes) {
-  for (const auto& [folder, bytes] : estimate_disk_space(job, compiled.width, compiled.height, layer_planes)) {
+void require_disk_space(const Outputs& outputs, bool is_shard, const ImageSize& size, std::uint64_t limit) {
+  for (const auto& [folder, bytes] : estimate_disk_space(outputs, is_shard, size)) {
     std::error_code failed;
     const std::filesystem::space_info space = std::filesystem::space(folder, failed);
-    const std::uint64_t allowed = job.disk_limit > 0 ? job.disk_limit : space.available;
-    if ((failed && job.disk_limit == 0) || static_cast<double>(allowed) >= bytes) continue;
+    const std::uint64_t allowed = limit > 0 ? limit : space.available;
+    if ((failed && limit == 0) || static_cast<double>(allowed) >= bytes) continue;
     const std::string need =
         "the pictures need about " + base::bytes_text(static_cast<std::uint64_t>(bytes)) + ", and ";
     throw base::Error(base::ErrorKind::kCannotCreate,
-                      job.disk_limit > 0 ? need + base::bytes_text(allowed) + " is what --disk-limit allows; allow more"
-                                         : need + folder.string() + " has room for " + base::bytes_text(allowed) +
-                                               "; make some, or say --disk-limit to try nevertheless");
+                      limit > 0 ? need + base::bytes_text(allowed) + " is what --disk-limit allows; allow more"
+                                : need + folder.string() + " has room for " + base::bytes_text(allowed) +
+                                      "; make some, or say --disk-limit to try nevertheless");
   }
 }
 

@@ -44,37 +44,26 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-bool wants_display(const Job& job) {
-  for (const auto& output : job.outputs)
-    if (image::is_display_format(image::format_of(output))) return true;
-  return false;
-}
-
 void stop_if_asked(const Job& job) {
-  if (job.cancel != nullptr && job.cancel->load(std::memory_order_relaxed)) stop_job();
+  if (job.hooks.cancel != nullptr && job.hooks.cancel->load(std::memory_order_relaxed)) stop_job();
 }
 
 void warn(const Job& job, const base::Diagnostic& diagnostic) {
-  if (job.on_warning) job.on_warning(diagnostic);
+  if (job.hooks.on_warning) job.hooks.on_warning(diagnostic);
 }
 
 void require_bits(const display::Choice& display, const Job& job) {
-  for (const auto& output : job.outputs) {
-    const image::Format format = image::format_of(output);
-    if (display.is_hdr && image::is_display_format(format) && image::most_bits(format) < 16)
-      throw base::Error(base::ErrorKind::kUsage, output.string() + " holds 8 bits in a channel, too few for display " +
+  for (const ImageFile& output : job.outputs.images) {
+    if (display.is_hdr && image::is_display_format(output.format) && image::most_bits(output.format) < 16)
+      throw base::Error(base::ErrorKind::kUsage, output.path.string() +
+                                                     " holds 8 bits in a channel, too few for display " +
                                                      display.display + "; PNG and TIFF hold 16");
   }
 }
 
 /// The scene, checked for the files that the job will write.
 LoadedScene load(const Job& job, JobReport& report) {
-  SceneRequest request;
-  request.file = job.scene;
-  request.overrides = job.overrides;
-  request.frame = job.frame;
-  request.display = job.display;
-  request.develops = wants_display(job);
+  const SceneRequest request{job.scene, job.outputs.display, job.outputs.has_display_format()};
   LoadedScene loaded = load_scene(request);
   for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
   if (request.develops) {
@@ -86,18 +75,18 @@ LoadedScene load(const Job& job, JobReport& report) {
 
 void write_outputs(const Job& job, const display::Settings& display, const film::Picture& picture,
                    const image::Header& header, const std::vector<MatteNames>& mattes, JobReport& report) {
-  DisplayWriter developed(picture, display, job.bits != 0 ? job.bits : report.display.default_bits());
+  DisplayWriter developed(picture, display, job.outputs.bits != 0 ? job.outputs.bits : report.display.default_bits());
   const auto add = [&](const image::WriteReport& one) {
     report.written.clamped += one.clamped;
     report.written.not_finite += one.not_finite;
   };
-  for (const auto& output : job.outputs) {
-    switch (image::format_of(output)) {
+  for (const auto& [output, format] : job.outputs.images) {
+    switch (format) {
       case image::Format::kExr: {
         image::Header own = header;
         own.matte_attributes = matte_attributes(mattes, output);
         write_manifests(mattes, output);  // first: no picture shall name a file that is not there
-        add(image::write_exr(output, picture, own, job.exr));
+        add(image::write_exr(output, picture, own, job.outputs.exr));
         break;
       }
       case image::Format::kHdr: add(image::write_hdr(output, picture)); break;
@@ -112,13 +101,12 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
 /// The layers that some file of the job will hold; what no file holds is not computed.
 Layers layers_for(const Job& job, const scene::Scene& scene, const compile::CompiledScene& compiled) {
   Layers layers = choose_layers(scene, compiled);
-  layers.request.deep = !job.deep.empty();
-  image::check_lossless(film::planes_of(layers.request), job.exr);
-  const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
-  if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) return layers;
+  layers.request.deep = !job.outputs.deep.empty();
+  image::check_lossless(film::planes_of(layers.request), job.outputs.exr);
+  if (job.outputs.has_exr()) return layers;
   const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
-  if (job.parts.empty() && !scene.output.layers.empty() &&
-      std::any_of(job.overrides.begin(), job.overrides.end(), is_explicit))
+  if (job.merge.shards.empty() && !scene.output.layers.empty() &&
+      std::any_of(job.scene.overrides.begin(), job.scene.overrides.end(), is_explicit))
     throw base::Error(base::ErrorKind::kUsage, "layers were asked for, and no output can hold them; add -o FILE.exr");
   Layers none;
   none.request.coverage = layers.request.coverage;
@@ -139,11 +127,11 @@ void count_bad_values(const film::Picture& picture, JobReport& report) {
 
 std::string missed_target(const Job& job, const render::Statistics& statistics) {
   std::string out;
-  if (job.noise > 0 && statistics.noise && *statistics.noise > job.noise)
+  if (job.sampling.noise > 0 && statistics.noise && *statistics.noise > job.sampling.noise)
     base::append(
-        out, "noise %.3g instead of %.3g: %s", *statistics.noise, job.noise,
+        out, "noise %.3g instead of %.3g: %s", *statistics.noise, job.sampling.noise,
         statistics.ended_by == "time" ? "time was over" : "every pixel that needs more has had all its samples");
-  if (job.noise > 0 && statistics.unjudged_pixels > 0)
+  if (job.sampling.noise > 0 && statistics.unjudged_pixels > 0)
     base::append(
         out, "%sthe noise of %llu pixels cannot be judged: too few paths have found light around them; allow more %s",
         out.empty() ? "" : "; ", static_cast<unsigned long long>(statistics.unjudged_pixels),
@@ -157,7 +145,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   LoadedScene loaded = load(job, report);
   format::ReadResult& read = loaded.read;
   const display::Settings& display = loaded.display;
-  add_scene_files(job.scene, read.scene, files);
+  add_scene_files(job.scene.file, read.scene, files);
   if (loaded.choice)
     for (const std::string& table : loaded.choice->files) files.add_input(table, "table of the OCIO config");
   report.phases.read_s = watch.lap();
@@ -176,9 +164,11 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.scene_hash = provenance.at("sceneHash");
   report.was_skipped = job.skip_existing && is_there(job, compiled, provenance, stamp);
   if (report.was_skipped) return;
-  require_disk_space(job, compiled, film::planes_of(layers.request).size());
-  require_memory(estimate_memory(memory_needs(compiled, layers.request, job.noise > 0 || job.seconds > 0)),
-                 job.memory_limit);
+  require_disk_space(job.outputs, is_shard(job),
+                     {compiled.width, compiled.height, film::planes_of(layers.request).size()},
+                     job.resources.disk_limit);
+  require_memory(estimate_memory(memory_needs(compiled, layers.request, job.sampling.is_adaptive())),
+                 job.resources.memory_limit);
   read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
   report.hosts = {provenance.at("host")};
   report.width = compiled.width;
@@ -188,33 +178,35 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   stop_if_asked(job);
 
   render::Settings settings;
-  settings.threads = job.threads > 0 ? job.threads : default_threads();
-  settings.traversal = traversal_of(job);
+  settings.threads = job.resources.threads > 0 ? job.resources.threads : default_threads();
+  settings.traversal = job.resources.traversal;
   settings.layers = layers.request;
-  settings.on_progress = job.on_progress;
-  settings.on_build = job.on_build;
-  settings.cancel = job.cancel;
+  settings.on_progress = job.hooks.on_progress;
+  settings.on_build = job.hooks.on_build;
+  settings.cancel = job.hooks.cancel;
   image::set_threads(settings.threads);
   const auto write_sums = [&](const std::filesystem::path& file, const film::Partial& partial) {
-    image::write_partial(file, preview(compiled, partial), picture_header(read, compiled, report, job.reproducible),
-                         provenance, partial);
+    image::write_partial(file, preview(compiled, partial),
+                         picture_header(read, compiled, report, job.outputs.reproducible), provenance, partial);
   };
-  Checkpoint checkpoint(job, provenance, write_sums);
-  const render::Result result = job.parts.empty() ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
-                                                  : merge_job(job, compiled, layers, provenance, report);
+  Checkpoint checkpoint(checkpoint_file(job.outputs.images.front().path), job.checkpoint, job.hooks, provenance,
+                        write_sums);
+  const render::Result result = job.merge.shards.empty()
+                                    ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
+                                    : merge_job(job, compiled, layers, provenance, report);
   report.render = result.statistics;
   const double made_s = watch.lap();
-  if (!job.parts.empty()) report.phases.finish_s = made_s;
+  if (!job.merge.shards.empty()) report.phases.finish_s = made_s;
 
   report.target_missed = missed_target(job, result.statistics);
   count_bad_values(result.picture, report);
   if (is_shard(job)) {
-    write_sums(job.outputs.front(), *result.partial);
+    write_sums(job.outputs.images.front().path, *result.partial);
   } else {
-    image::Header header = picture_header(read, compiled, report, job.reproducible);
+    image::Header header = picture_header(read, compiled, report, job.outputs.reproducible);
     header.stamp = stamp;
     write_outputs(job, display, result.picture, header, layers.mattes, report);
-    if (!job.deep.empty()) image::write_deep(job.deep, result.deep, result.picture, header);
+    if (!job.outputs.deep.empty()) image::write_deep(job.outputs.deep, result.deep, result.picture, header);
   }
   checkpoint.remove();
   report.phases.write_s = watch.lap();
@@ -226,20 +218,20 @@ bool may_report(const Job& job, const JobReport& report, const base::Error& erro
   if (error.kind() == base::ErrorKind::kUsage) return false;
   if (!report.scene_hash.empty()) return true;
   try {
-    add_named_files(job.scene, job.overrides, {job.frame}, files);
+    add_named_files(job.scene, {job.scene.frame}, files);
     return true;
   } catch (const base::Error& unreadable) {
     std::error_code ignored;
-    return unreadable.kind() != base::ErrorKind::kUsage && !std::filesystem::exists(job.statistics, ignored);
+    return unreadable.kind() != base::ErrorKind::kUsage && !std::filesystem::exists(job.outputs.statistics, ignored);
   }
 }
 
 /// What went wrong is written down as far as that still works; the error itself is what the caller shall hear.
 void write_failure(const Job& job, const JobReport& report, const base::Error& error) {
-  if (job.statistics.empty()) return;
+  if (job.outputs.statistics.empty()) return;
   const bool stopped = error.kind() == base::ErrorKind::kStopped;
   try {
-    write_statistics(job.statistics, report,
+    write_statistics(job.outputs.statistics, report,
                      {stopped ? "stopped" : "failed", base::exit_status(error.kind()), error.what()});
   } catch (const base::Error&) {
   }
@@ -249,7 +241,7 @@ void write_failure(const Job& job, const JobReport& report, const base::Error& e
 
 bool is_limited(const Job& job) {
   const auto is_samples = [](const format::Override& o) { return o.sets("render.samples"); };
-  return std::any_of(job.overrides.begin(), job.overrides.end(), is_samples);
+  return std::any_of(job.scene.overrides.begin(), job.scene.overrides.end(), is_samples);
 }
 
 JobReport run_job(const Job& job) {
@@ -264,7 +256,7 @@ JobReport run_job(const Job& job) {
     if (may_report(job, report, error, files)) write_failure(job, report, error);
     throw;
   }
-  if (!job.statistics.empty() && !report.was_skipped) write_statistics(job.statistics, report, {});
+  if (!job.outputs.statistics.empty() && !report.was_skipped) write_statistics(job.outputs.statistics, report, {});
   return report;
 }
 

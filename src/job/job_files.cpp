@@ -18,23 +18,23 @@ constexpr const char* kPointsRole = "points file";
 
 std::vector<OutputFile> outputs_of(const Job& job) {
   std::vector<OutputFile> out;
-  for (const fs::path& output : job.outputs) out.push_back({output, "-o"});
-  if (!job.deep.empty()) out.push_back({job.deep, "--deep"});
-  if (!job.statistics.empty()) out.push_back({job.statistics, "--stats"});
-  if (job.parts.empty()) out.push_back({checkpoint_file(job.outputs.front()), "checkpoint"});
+  for (const ImageFile& output : job.outputs.images) out.push_back({output.path, "-o"});
+  if (!job.outputs.deep.empty()) out.push_back({job.outputs.deep, "--deep"});
+  if (!job.outputs.statistics.empty()) out.push_back({job.outputs.statistics, "--stats"});
+  if (job.merge.shards.empty()) out.push_back({checkpoint_file(job.outputs.images.front().path), "checkpoint"});
   return out;
 }
 
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner) {
-  files.add_input(job.scene, "scene");
-  for (const ShardFile& part : job.parts) files.add_input(part.file, "part");
-  add_ocio_configs(job.display.config, files);
+  files.add_input(job.scene.file, "scene");
+  for (const ShardFile& part : job.merge.shards) files.add_input(part.file, "part");
+  add_ocio_configs(job.outputs.display.config, files);
   for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
 }
 
-void add_named_files(const fs::path& scene_file, const std::vector<format::Override>& overrides,
-                     const std::vector<int>& frames, base::FileSet& files) {
-  const format::NamedFiles named = format::named_files(scene_file, overrides);
+void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
+  const fs::path& scene_file = scene.file;
+  const format::NamedFiles named = format::named_files(scene_file, scene.overrides);
   scene::Color color;
   color.config = named.ocio_config;
   add_ocio_configs(config_of(scene_file, color), files);

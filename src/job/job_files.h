@@ -26,11 +26,10 @@ std::vector<OutputFile> outputs_of(const Job& job);
 /// Errors     base::Error(kUsage) for an output that is an input or another output
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner = {});
 
-/// Adds what the scene of a job names at its frame. It is not read for this, only parsed.
+/// Adds what a scene names at these frames. It is not read for this, only parsed.
 ///
 /// Errors     as add_job_files; those of format::named_files
-void add_named_files(const std::filesystem::path& scene_file, const std::vector<format::Override>& overrides,
-                     const std::vector<int>& frames, base::FileSet& files);
+void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files);
 
 /// The same of a scene that was read.
 ///

@@ -24,7 +24,7 @@ display::Settings settings_of(const SceneRequest& request, const scene::Color& c
   const auto otherwise = [](std::string& option, const std::string& key) {
     if (option.empty()) option = key;
   };
-  otherwise(out.config, config_of(request.file, color));
+  otherwise(out.config, config_of(request.source.file, color));
   otherwise(out.display, color.display);
   otherwise(out.view, color.view);
   otherwise(out.look, color.look);
@@ -104,7 +104,7 @@ class ColorCheck {
 LoadedScene load_scene(const SceneRequest& request) {
   LoadedScene out;
   ColorCheck check(request);
-  out.read = format::read_scene(request.file, request.overrides, request.frame,
+  out.read = format::read_scene(request.source.file, request.source.overrides, request.source.frame,
                                 [&](const scene::Scene& scene) { return check(scene); });
   out.choice = check.take();
   scene::Scene& scene = out.read.scene;
@@ -113,9 +113,9 @@ LoadedScene load_scene(const SceneRequest& request) {
   if (out.choice)
     for (const std::string& text : out.choice->warnings) out.warnings.push_back(warning(out.choice->config, text));
   if (const int moved = to_working_space(out.display.config, scene); moved > 0)
-    out.warnings.push_back(warning(request.file.string(), std::to_string(moved) + " colours are out of range in " +
-                                                              scene.color.working_space() +
-                                                              " and were moved to its edge"));
+    out.warnings.push_back(
+        warning(request.source.file.string(), std::to_string(moved) + " colours are out of range in " +
+                                                  scene.color.working_space() + " and were moved to its edge"));
   return out;
 }
 

@@ -8,14 +8,13 @@
 #include "base/diagnostic.h"
 #include "display/develop.h"
 #include "format/read_scene.h"
+#include "job/scene_source.h"
 
 namespace orrery::job {
 
 /// A scene to load, and what its pictures will be shown with.
 struct SceneRequest {
-  std::filesystem::path file;
-  std::vector<format::Override> overrides;
-  int frame = format::kFirstFrame;
+  SceneSource source;
   display::Settings display;  ///< of the command line; what is empty there the scene decides
   bool develops = false;      ///< display formats will be written
 };

@@ -16,12 +16,14 @@
 namespace orrery::job {
 namespace {
 
-/// When to stop sampling. The samples of the scene limit what is asked for otherwise only if they were asked for, too.
-void set_target(const Job& job, double seconds_so_far, render::Settings& settings) {
-  constexpr double kLeastTime = 1e-3;  // nothing left is not no limit
-  settings.noise = job.noise;
-  if (job.seconds > 0) settings.seconds = std::max(job.seconds - seconds_so_far, kLeastTime);
-  settings.unlimited = !is_limited(job);
+/// The limits of a render that begins this long after the job. The scene's sample count limits adaptive sampling only
+/// if an override sets it.
+render::SamplingLimits limits_of(const Job& job, double seconds_so_far) {
+  constexpr double kShortest = 1e-3;  // 0 would be no limit
+  render::SamplingLimits out = job.sampling;
+  if (out.seconds > 0) out.seconds = std::max(out.seconds - seconds_so_far, kShortest);
+  out.unlimited = !is_limited(job);
+  return out;
 }
 
 }  // namespace
@@ -39,20 +41,19 @@ film::Picture preview(const compile::CompiledScene& compiled, const film::Partia
 
 render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const Layers& layers,
                          const image::Provenance& provenance, JobReport& report) {
-  const ShardFile& first = job.parts.front();
+  const ShardFile& first = job.merge.shards.front();
   std::vector<std::string> keys = {"version", "sceneHash"};
-  const auto is_exr = [](const auto& file) { return image::format_of(file) == image::Format::kExr; };
-  // Other files have no use for the layers that the parts may have.
-  if (std::any_of(job.outputs.begin(), job.outputs.end(), is_exr)) keys.push_back("layers");
+  // Other formats do not hold the layers that the shards may have.
+  if (job.outputs.has_exr()) keys.push_back("layers");
   if (const std::string wrong = difference(first.provenance, provenance, keys); !wrong.empty())
     throw base::Error(base::ErrorKind::kBadData, first.file.string() + " is of " + wrong + ", which " +
-                                                     job.scene.string() +
+                                                     job.scene.file.string() +
                                                      " comes to now; the scene has changed, or --scene names another");
   MergedShards joined =
-      merge_shards(job.parts, compiled.width, compiled.height, static_cast<std::uint32_t>(compiled.samples),
-                   compiled.spheres.size(), job.allow_missing);
+      merge_shards(job.merge.shards, compiled.width, compiled.height, static_cast<std::uint32_t>(compiled.samples),
+                   compiled.spheres.size(), job.merge.allow_missing);
   for (const base::Diagnostic& diagnostic : joined.left_out)
-    if (job.on_warning) job.on_warning(diagnostic);
+    if (job.hooks.on_warning) job.hooks.on_warning(diagnostic);
   report.missing = joined.missing;
   report.hosts = joined.hosts;
   const film::RenderWork work = joined.partial.work;
@@ -77,22 +78,22 @@ bool is_there(const Job& job, const compile::CompiledScene& compiled, const imag
               const std::string& stamp) {
   if (is_shard(job)) {
     try {
-      const image::PartialFile part = image::read_partial(job.outputs.front(), compiled.width, compiled.height);
+      const image::PartialFile part =
+          image::read_partial(job.outputs.images.front().path, compiled.width, compiled.height);
       return difference(part.provenance, provenance, keys_of_checkpoints()).empty() && is_finished(part);
     } catch (const base::Error&) {
       return false;
     }
   }
   const auto is_same = [&](const std::filesystem::path& file) { return image::verified_stamp(file) == stamp; };
-  return std::all_of(job.outputs.begin(), job.outputs.end(), is_same) && (job.deep.empty() || is_same(job.deep));
+  return std::all_of(job.outputs.images.begin(), job.outputs.images.end(),
+                     [&](const ImageFile& image) { return is_same(image.path); }) &&
+         (job.outputs.deep.empty() || is_same(job.outputs.deep));
 }
 
 render::Result render_job(const Job& job, const compile::CompiledScene& compiled, render::Settings settings,
                           Checkpoint& checkpoint, double seconds_so_far, JobReport& report) {
-  set_target(job, seconds_so_far, settings);
-  settings.sample_begin = job.sample_begin;
-  settings.sample_end = job.sample_end;
-  settings.shard = job.shard;
+  settings.sampling = limits_of(job, seconds_so_far);
   settings.keep_partial = is_shard(job);
   settings.snapshot_is_due = [&] { return checkpoint.is_due(); };
   settings.on_snapshot = [&](const film::Partial& partial) { checkpoint.write_snapshot(partial); };

@@ -6,6 +6,7 @@
 #include "job/checkpoint.h"
 #include "job/job.h"
 #include "job/layers.h"
+#include "render/render.h"
 #include "compile/compiled_scene.h"
 #include "image/partial_file.h"
 

@@ -47,13 +47,11 @@ std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& ma
   return out;
 }
 
-std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>& mattes,
-                                                  const std::vector<std::filesystem::path>& pictures) {
+std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>& mattes, const Outputs& outputs) {
   std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path& picture : pictures)
+  for (const auto& [picture, format] : outputs.images)
     for (const MatteNames& matte : mattes)
-      if (is_large(matte) && image::format_of(picture) == image::Format::kExr)
-        files.push_back(manifest_file(matte, picture));
+      if (is_large(matte) && format == image::Format::kExr) files.push_back(manifest_file(matte, picture));
   return files;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "job/layers.h"
+#include "job/outputs.h"
 #include "image/write.h"
 
 namespace orrery::job {
@@ -20,9 +21,8 @@ inline constexpr std::size_t kMostNamesInHeader = 10000;
 std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& mattes,
                                                const std::filesystem::path& picture);
 
-/// The files that write_manifests will write for the EXR files among these.
-std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>& mattes,
-                                                  const std::vector<std::filesystem::path>& pictures);
+/// The files that write_manifests will write for the EXR files among the outputs.
+std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>& mattes, const Outputs& outputs);
 
 /// Writes the files that the header names, PICTURE.CryptoObject.json; none for few names.
 ///

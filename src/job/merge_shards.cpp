@@ -87,7 +87,7 @@ class Coverage {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> gaps_;  ///< and of how many pixels
 };
 
-/// Tiles that no file is for, of those whose ranges have others: "--samples 0:100 --tiles 2/3".
+/// Tiles that no file is for, of those whose ranges have others: "--samples 0:100 --shard 2/3".
 std::string missing_tiles(const std::vector<ShardFile>& parts) {
   std::map<std::pair<std::string, int>, std::set<int>> found;
   for (const ShardFile& part : parts) {
@@ -98,7 +98,7 @@ std::string missing_tiles(const std::vector<ShardFile>& parts) {
   for (const auto& [group, indices] : found)
     for (int i = 0; i < group.second; ++i)
       if (indices.count(i) == 0)
-        words.push_back("--samples " + group.first + " --tiles " + std::to_string(i + 1) + "/" +
+        words.push_back("--samples " + group.first + " --shard " + std::to_string(i + 1) + "/" +
                         std::to_string(group.second));
   constexpr std::size_t kMost = 20;
   if (words.size() > kMost) words.resize(kMost);
@@ -158,13 +158,14 @@ void take_scene(const ShardFile& part, Job& job) {
     const auto found = part.provenance.find(key);
     return found == part.provenance.end() ? std::string() : found->second;
   };
-  if (job.scene.empty()) job.scene = value("scene");
+  if (job.scene.file.empty()) job.scene.file = value("scene");
   std::istringstream lines(value("overrides"));
-  for (std::string line; std::getline(lines, line);) job.overrides.push_back(line);
+  for (std::string line; std::getline(lines, line);) job.scene.overrides.push_back(line);
   const std::string frame = value("frame");
-  std::from_chars(frame.data(), frame.data() + frame.size(), job.frame);
-  for (std::filesystem::path& output : job.outputs) output = base::with_frame(output.string(), job.frame);
-  if (!job.statistics.empty()) job.statistics = base::with_frame(job.statistics.string(), job.frame);
+  std::from_chars(frame.data(), frame.data() + frame.size(), job.scene.frame);
+  for (ImageFile& output : job.outputs.images) output.path = base::with_frame(output.path.string(), job.scene.frame);
+  if (!job.outputs.statistics.empty())
+    job.outputs.statistics = base::with_frame(job.outputs.statistics.string(), job.scene.frame);
 }
 
 MergedShards merge_shards(std::vector<ShardFile> parts, int width_px, int height_px, std::uint32_t samples,

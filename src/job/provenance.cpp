@@ -32,20 +32,21 @@ std::string layers_text(const Layers& layers) {
 }  // namespace
 
 image::Provenance provenance_of(const Job& job, const compile::CompiledScene& compiled, const Layers& layers) {
-  const std::uint32_t end = job.sample_end > 0 ? job.sample_end : static_cast<std::uint32_t>(compiled.samples);
+  const std::uint32_t end =
+      job.sampling.sample_end > 0 ? job.sampling.sample_end : static_cast<std::uint32_t>(compiled.samples);
   image::Provenance out;
   out["version"] = program_version();
   out["sceneHash"] = scene_hash(compiled);
-  out["samples"] = std::to_string(job.sample_begin) + ":" + std::to_string(end);
-  out["tiles"] = std::to_string(job.shard.index + 1) + "/" + std::to_string(job.shard.count);
-  base::append(out["noise"], "%.17g", job.noise);
-  out["time"] = job.seconds > 0 ? "yes" : "no";
+  out["samples"] = std::to_string(job.sampling.sample_begin) + ":" + std::to_string(end);
+  out["shard"] = std::to_string(job.sampling.shard.index + 1) + "/" + std::to_string(job.sampling.shard.count);
+  base::append(out["noise"], "%.17g", job.sampling.noise);
+  out["time"] = job.sampling.seconds > 0 ? "yes" : "no";
   out["limit"] = is_limited(job) ? "yes" : "no";
   out["layers"] = layers_text(layers);
-  out["scene"] = std::filesystem::absolute(job.scene).lexically_normal().string();
+  out["scene"] = std::filesystem::absolute(job.scene.file).lexically_normal().string();
   std::string& overrides = out["overrides"];
-  for (const format::Override& setting : job.overrides) overrides += setting.text + "\n";
-  out["frame"] = std::to_string(job.frame);
+  for (const format::Override& setting : job.scene.overrides) overrides += setting.text + "\n";
+  out["frame"] = std::to_string(job.scene.frame);
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
   out["host"] = host;
@@ -56,12 +57,12 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
   std::string all;
   for (const std::string& key : keys_of_checkpoints()) all += key + " " + provenance.at(key) + "\n";
   base::append(all, "%.17g s, frame %d, %d bits, float %d, multipart %d, reproducible %d, exposure %.17g\n",
-               job.seconds, job.frame, job.bits, job.exr.as_float, job.exr.multipart, job.reproducible,
-               display.exposure.value_or(0));
-  for (const std::string& word :
-       {job.exr.compression, display.config, display.display, display.view, display.look, display.working_space})
+               job.sampling.seconds, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
+               job.outputs.exr.multipart, job.outputs.reproducible, display.exposure.value_or(0));
+  for (const std::string& word : {job.outputs.exr.compression, display.config, display.display, display.view,
+                                  display.look, display.working_space})
     all += word + "\n";
-  for (const format::Override& setting : job.overrides)
+  for (const format::Override& setting : job.scene.overrides)
     if (!setting.sets("render.accelerator")) all += setting.text + "\n";  // either gives the same bits
   return text_hash(all);
 }
@@ -72,7 +73,7 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
     return found == p.end() ? std::string() : found->second;
   };
   static const std::vector<std::pair<std::string, std::string>> names = {
-      {"version", "orrery "}, {"sceneHash", "scene hash "}, {"samples", "--samples "},         {"tiles", "--tiles "},
+      {"version", "orrery "}, {"sceneHash", "scene hash "}, {"samples", "--samples "},         {"shard", "--shard "},
       {"noise", "--noise "},  {"time", "a time limit: "},   {"limit", "a limit of samples: "}, {"layers", "layers "}};
   for (const auto& [key, name] : names) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end() || value(a, key) == value(b, key)) continue;
@@ -88,7 +89,7 @@ const std::vector<std::string>& keys_of_parts() {
 }
 
 const std::vector<std::string>& keys_of_checkpoints() {
-  static const std::vector<std::string> keys = {"version", "sceneHash", "samples", "tiles",
+  static const std::vector<std::string> keys = {"version", "sceneHash", "samples", "shard",
                                                 "noise",   "time",      "limit",   "layers"};
   return keys;
 }
@@ -111,7 +112,7 @@ SampleRange sample_range(const image::Provenance& provenance) {
 
 render::PixelShard pixel_shard(const image::Provenance& provenance) {
   render::PixelShard out;
-  const auto found = provenance.find("tiles");
+  const auto found = provenance.find("shard");
   if (found != provenance.end() && std::sscanf(found->second.c_str(), "%d/%d", &out.index, &out.count) == 2)
     --out.index;
   return out;

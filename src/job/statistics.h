@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "job/job.h"
+#include "job/job_report.h"
 
 namespace orrery::job {
 

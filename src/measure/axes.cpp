@@ -149,9 +149,9 @@ class Planner {
       return;
     }
     add("accelerator", "embree, packets", flag(kTimed) + " --traversal packet", kTimed).traversal =
-        render::Traversal::kPacket;
+        accel::Traversal::kPacket;
     add("accelerator", "embree, single rays", flag(kTimed) + " --traversal single", kTimed).traversal =
-        render::Traversal::kSingle;
+        accel::Traversal::kSingle;
     if (world_.spheres.size() > kLongestList) {
       out_.left_out.push_back("more than 5000 spheres: the list would take too long");
       return;

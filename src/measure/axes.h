@@ -19,7 +19,7 @@ struct Choice {
   std::function<void(compile::CompiledScene&)> apply;  ///< empty: nothing else
   bool is_shortcut = false;                            ///< gives another picture, however many samples
   double slowness = 1;  ///< about how much longer a sample takes than in the scene as it is
-  render::Traversal traversal = render::Traversal::kAuto;
+  std::optional<accel::Traversal> traversal;
 };
 
 struct AxisPlan {

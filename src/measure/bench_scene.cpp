@@ -38,14 +38,14 @@ constexpr double kListTests = 1e8;
 
 constexpr double kMostSamples = 1 << 20;
 
-enum class Accelerator { kEmbree, kList, kSimdList };
+enum class Tracer { kEmbree, kList, kSimdList };
 
 struct Case {
   std::string name;
-  Accelerator accelerator = Accelerator::kEmbree;
+  Tracer tracer = Tracer::kEmbree;
   Precision precision = Precision::kExact;
   kernel::Features features;
-  render::Traversal traversal = render::Traversal::kAuto;
+  std::optional<accel::Traversal> traversal;
   int samples = 1;
   std::vector<double> paths_per_s, tracing;
 };
@@ -61,9 +61,7 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
 /// The scene's picture, small.
 compile::CompiledScene small_world(const BenchRequest& request) {
   job::SceneRequest load;
-  load.file = request.scene;
-  load.overrides = request.overrides;
-  load.frame = request.frame;
+  load.source = request.scene;
   format::ReadResult read = std::move(job::load_scene(load).read);
   job::reduce_picture(read, kPixels);
   return compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
@@ -132,17 +130,16 @@ class Subject {
   }
 
   void prepare(const Case& c) {
-    world_.accelerator =
-        c.accelerator == Accelerator::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
+    world_.accelerator = c.tracer == Tracer::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
     world_.precision = c.precision;
     world_.features = c.features;
   }
 
   accel::Accel& accel(const Case& c) {
-    auto& built = accels_[{c.accelerator, c.precision}];
+    auto& built = accels_[{c.tracer, c.precision}];
     if (!built)
-      built = c.accelerator == Accelerator::kSimdList ? accel::make_simd_list(world_.view(), c.precision)
-                                                      : render::build(world_, render::available_threads());
+      built = c.tracer == Tracer::kSimdList ? accel::make_simd_list(world_.view(), c.precision)
+                                            : render::build(world_, render::available_threads());
     return *built;
   }
 
@@ -156,7 +153,7 @@ class Subject {
   const BenchRequest& request_;
   compile::CompiledScene world_;
   kernel::Features required_;
-  std::map<std::pair<Accelerator, Precision>, std::unique_ptr<accel::Accel>> accels_;
+  std::map<std::pair<Tracer, Precision>, std::unique_ptr<accel::Accel>> accels_;
   std::map<Precision, render::RecordedRays<kernel::RayPacket>> rays_;
   render::RecordedRays<kernel::RayPacketFast> fast_rays_;
 };
@@ -171,27 +168,20 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
   const std::pair<const char*, Precision> precisions[] = {
       {"exact", Precision::kExact}, {"fast", Precision::kFast}, {"book", Precision::kBook}};
   for (const auto& [name, precision] : precisions)
-    cases.push_back({std::string("embree ") + name,
-                     Accelerator::kEmbree,
-                     precision,
-                     compiled.features,
-                     render::Traversal::kAuto,
-                     1,
-                     {},
-                     {}});
+    cases.push_back(
+        {std::string("embree ") + name, Tracer::kEmbree, precision, compiled.features, std::nullopt, 1, {}, {}});
   for (const auto& [name, traversal] :
-       {std::pair{"exact packet", render::Traversal::kPacket}, std::pair{"exact single", render::Traversal::kSingle}})
-    cases.push_back({name, Accelerator::kEmbree, Precision::kExact, compiled.features, traversal, 1, {}, {}});
+       {std::pair{"exact packet", accel::Traversal::kPacket}, std::pair{"exact single", accel::Traversal::kSingle}})
+    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, traversal, 1, {}, {}});
   if (!lists_are_bearable(compiled)) {
     out.left_out.push_back("lists: of so many spheres one would take more than " +
                            std::to_string(static_cast<int>(kLongestList)) + " s for a sample a pixel");
     return cases;
   }
   for (const auto& [name, accelerator] :
-       {std::pair{"SIMD list ", Accelerator::kSimdList}, std::pair{"list ", Accelerator::kList}})
+       {std::pair{"SIMD list ", Tracer::kSimdList}, std::pair{"list ", Tracer::kList}})
     for (const auto& [suffix, precision] : precisions)
-      cases.push_back(
-          {std::string(name) + suffix, accelerator, precision, compiled.features, render::Traversal::kAuto, 1, {}, {}});
+      cases.push_back({std::string(name) + suffix, accelerator, precision, compiled.features, std::nullopt, 1, {}, {}});
   return cases;
 }
 
@@ -200,8 +190,7 @@ std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
   if (compiled.shading != kernel::Shading::kPath) return cases;
   for (const auto& [name, feature] : known_features()) {
     if (compiled.features.*feature) continue;
-    cases.push_back(
-        {name, Accelerator::kEmbree, Precision::kExact, compiled.features, render::Traversal::kAuto, 1, {}, {}});
+    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, std::nullopt, 1, {}, {}});
     cases.back().features.*feature = true;
   }
   return cases;
@@ -288,10 +277,10 @@ Benchmark bench_scene(const BenchRequest& request) {
   }
   for (int round = 0; round < request.rounds; ++round) {
     measure_all(subject, cases, round, [&](Case& c, const render::Statistics& did) {
-      if (c.accelerator == Accelerator::kEmbree && request.threads == 1 && &c < &cases[ways])
+      if (c.tracer == Tracer::kEmbree && request.threads == 1 && &c < &cases[ways])
         c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
       out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
-      if (c.accelerator == Accelerator::kEmbree) out.accelerator = did.accelerator;
+      if (c.tracer == Tracer::kEmbree) out.accelerator = did.accelerator;
       out.isa = did.isa;
       tell();
     });

@@ -10,14 +10,12 @@
 #include <vector>
 
 #include "measure/quartiles.h"
-#include "format/override.h"
+#include "job/scene_source.h"
 
 namespace orrery::measure {
 
 struct BenchRequest {
-  std::filesystem::path scene;
-  std::vector<format::Override> overrides;
-  int frame = 1;
+  job::SceneSource scene;
   std::string isa;  ///< empty: the best
   int threads = 1;
   int rounds = 7;         ///< each round measures every case once

@@ -64,7 +64,7 @@ class Runner {
     job::choose_isa(request.isa);
     out_.threads = request.threads > 0 ? request.threads : job::default_threads();
     out_.budget_s = request.budget_s;
-    out_.scene = request.scene.string();
+    out_.scene = request.scene.file.string();
     out_.version = job::program_version();
   }
 
@@ -98,18 +98,16 @@ class Runner {
   void load() {
     tell("reading", 0);
     base::FileSet files;
-    files.add_input(request_.scene, "scene");
+    files.add_input(request_.scene.file, "scene");
     if (!request_.report.empty()) {
       files.add_output(request_.report, "-o");
       base::check_creatable(request_.report);
     }
     job::SceneRequest load;
-    load.file = request_.scene;
-    load.overrides = request_.overrides;
-    load.frame = request_.frame;
+    load.source = request_.scene;
     read_ = std::move(job::load_scene(load).read);
     scene::Scene& scene = read_.scene;
-    job::add_scene_files(request_.scene, scene, files);
+    job::add_scene_files(request_.scene.file, scene, files);
     if (scene.render.shading != scene::Shading::kPath)
       throw base::Error(base::ErrorKind::kUsage,
                         "render.shading shows no light, so there is nothing to trade; set it to \"path\"");
@@ -152,8 +150,8 @@ class Runner {
     const Spheres::Loan loan(spheres_, compiled);
     render::Settings settings;
     settings.threads = out_.threads;
-    settings.noise = noise;
-    settings.unlimited = noise > 0;
+    settings.sampling.noise = noise;
+    settings.sampling.unlimited = noise > 0;
     settings.traversal = traversal_;
     settings.cancel = request_.cancel;
     render::Result result = render::render(compiled, accel_of(compiled), settings);
@@ -307,7 +305,7 @@ class Runner {
       point.seconds = std::min(point.seconds, seconds_of(result.statistics));
       point.samples = static_cast<double>(result.statistics.paths) / pixels();
     }
-    traversal_ = render::Traversal::kAuto;
+    traversal_.reset();
     job::MemoryNeeds needs = memory_needs_;
     needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
     needs.in_rounds = choice.noise > 0;
@@ -335,8 +333,6 @@ class Runner {
     tell("features");
     measure::BenchRequest bench;
     bench.scene = request_.scene;
-    bench.overrides = request_.overrides;
-    bench.frame = request_.frame;
     bench.isa = request_.isa;
     bench.rounds = 5;
     bench.seconds = std::clamp(request_.budget_s * kFeatureShare / 5 / 6, 0.02, 0.25);
@@ -353,9 +349,9 @@ class Runner {
   /// The options that the study was given for the scene. The number of samples would limit --noise, and is left out.
   std::string scene_flags() const {
     std::string flags;
-    for (const format::Override& override : request_.overrides)
+    for (const format::Override& override : request_.scene.overrides)
       if (!override.sets("render.samples")) flags += override.option + " " + farm::shell_quoted(override.typed) + " ";
-    if (request_.frame != format::kFirstFrame) base::append(flags, "--frames %d ", request_.frame);
+    if (request_.scene.frame != format::kFirstFrame) base::append(flags, "--frames %d ", request_.scene.frame);
     return flags;
   }
 
@@ -474,7 +470,7 @@ class Runner {
   Spheres spheres_;
   AxisPlan plan_;
   std::map<std::pair<compile::Precision, compile::Accelerator>, std::unique_ptr<accel::Accel>> accels_;
-  render::Traversal traversal_ = render::Traversal::kAuto;
+  std::optional<accel::Traversal> traversal_;
   double read_s_ = 0, build_s_ = 0;  ///< of the scene, and of its slowest accelerator
   double paths_ = 0;                 ///< all that were traced
   double paths_per_s_ = 0;

@@ -11,14 +11,12 @@
 
 #include "measure/bench_scene.h"
 #include "film/picture.h"
-#include "format/override.h"
+#include "job/scene_source.h"
 
 namespace orrery::measure {
 
 struct Request {
-  std::filesystem::path scene;
-  std::vector<format::Override> overrides;
-  int frame = 1;
+  job::SceneSource scene;
   std::filesystem::path report;  ///< file that the caller will write; refused where it is read
   std::string isa;               ///< empty: the processor's best
   int threads = 0;               ///< 0: as many as this process may use

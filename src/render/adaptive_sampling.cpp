@@ -44,7 +44,8 @@ class AdaptiveSampling {
         pool_(pool),
         progress_(progress),
         state_(state),
-        most_(settings.unlimited ? kMostSamples : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
+        most_(settings.sampling.unlimited ? kMostSamples
+                                          : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
         pixels_(compiled.width, compiled.height),
         round_begin_(progress.seconds()),
         round_begin_samples_(progress.done()) {
@@ -57,34 +58,34 @@ class AdaptiveSampling {
     if (!state_.goals.empty() && !run_round()) return false;  // that in which an earlier run was stopped
     // With a time limit the first round is the smallest there is: it tells the speed.
     std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
-    for (n = n > 0                   ? next_of_all(n)
-             : settings_.seconds > 0 ? 1
-                                     : std::min(kFirstSamples, most_);
+    for (n = n > 0                            ? next_of_all(n)
+             : settings_.sampling.seconds > 0 ? 1
+                                              : std::min(kFirstSamples, most_);
          n > 0; n = next_of_all(n)) {
       state_.goals.assign(state_.pixel_count(), n);
       if (!run_round()) return false;
     }
-    const double wanted = settings_.noise * settings_.noise;
+    const double wanted = settings_.sampling.noise * settings_.sampling.noise;
     for (;;) {
       noise_ = estimate_noise(pixels_, pool_);
       const double upper = noise_.upper();
       const MissingEvidence evidence = find_missing_evidence(pixels_, pool_);
       unjudged_ = evidence.count;
-      if (settings_.noise > 0 && upper <= wanted && unjudged_ == 0) return ended("noise");
+      if (settings_.sampling.noise > 0 && upper <= wanted && unjudged_ == 0) return ended("noise");
       RoundGoal goal;
-      goal.error_ratio = settings_.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
+      goal.error_ratio = settings_.sampling.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
       goal.most_per_pixel = most_;
       goal.affordable = affordable(kShareOfTime);
       const std::vector<float> errors = errors_of_one_sample(pixels_, noise_, pool_);
       Round round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
-      if (!round.any && settings_.seconds > 0) {
+      if (!round.any && settings_.sampling.seconds > 0) {
         goal.affordable = affordable(1);
         round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
         if (!round.any)
           return ended(round.limited_by_pixels && goal.affordable > pixels_.samples.size() ? "samples" : "time");
       }
       if (!round.any) return ended(round.limited_by_pixels || unjudged_ > 0 ? "samples" : "noise");
-      if (settings_.noise > 0) expect(round, std::sqrt(upper));
+      if (settings_.sampling.noise > 0) expect(round, std::sqrt(upper));
       state_.goals = state_.counts;
       for (std::size_t i = 0; i < state_.goals.size(); ++i)
         if (round.chosen[i]) state_.goals[i] = state_.goals[i] < most_ / 2 ? 2 * state_.goals[i] : most_;
@@ -113,9 +114,9 @@ class AdaptiveSampling {
 
   /// Samples of a half that a share of the remaining time allows; both are rendered.
   std::uint64_t affordable(double share) const {
-    if (settings_.seconds <= 0) return std::numeric_limits<std::uint64_t>::max();
-    const double left = settings_.seconds - progress_.seconds();
-    if (left < settings_.seconds * kTimeToSpare) return 0;
+    if (settings_.sampling.seconds <= 0) return std::numeric_limits<std::uint64_t>::max();
+    const double left = settings_.sampling.seconds - progress_.seconds();
+    if (left < settings_.sampling.seconds * kTimeToSpare) return 0;
     return static_cast<std::uint64_t>(left * share * samples_per_second_ / 2);
   }
 
@@ -123,7 +124,7 @@ class AdaptiveSampling {
     const double limit = 2.0 * static_cast<double>(pixels_.samples.size()) * most_;
     const double total = static_cast<double>(progress_.done()) + 2 * round.samples_to_goal;
     if (total < limit) {
-      progress_.expect(static_cast<std::uint64_t>(total), noise_text(noise, settings_.noise));
+      progress_.expect(static_cast<std::uint64_t>(total), noise_text(noise, settings_.sampling.noise));
     } else {
       progress_.expect(static_cast<std::uint64_t>(std::min(limit, 0x1p62)), "samples");
     }
@@ -176,8 +177,9 @@ bool render_adaptively(const compile::CompiledScene& compiled, const Settings& s
                        const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
                        film::Partial& state, Statistics& statistics) {
   AdaptiveSampling rounds(compiled, settings, render_tile, pool, progress, state);
-  progress.expect(settings.unlimited ? std::uint64_t{1} << 62 : std::uint64_t(compiled.samples) * state.pixel_count(),
-                  settings.noise > 0 ? "noise" : "time");
+  progress.expect(
+      settings.sampling.unlimited ? std::uint64_t{1} << 62 : std::uint64_t(compiled.samples) * state.pixel_count(),
+      settings.sampling.noise > 0 ? "noise" : "time");
   if (!rounds.run()) return false;
   rounds.report(statistics);
   return true;

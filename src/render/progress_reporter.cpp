@@ -24,7 +24,8 @@ void ProgressReporter::add(std::uint64_t samples) {
   if (!lock.owns_lock()) return;  // another thread is reporting
   const double now = seconds();
   double fraction = static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(total_, 1));
-  if (!goal_.empty() && settings_.seconds > 0) fraction = std::max(fraction, std::min(now / settings_.seconds, 0.99));
+  if (!goal_.empty() && settings_.sampling.seconds > 0)
+    fraction = std::max(fraction, std::min(now / settings_.sampling.seconds, 0.99));
   const int percent = static_cast<int>(std::min(fraction, 1.0) * 100);
   if (now - last_ < kInterval && percent == last_percent_ && done < total_) return;
   last_ = now;

@@ -114,7 +114,7 @@ void ProgressiveSampling::render_group(kernel::Tile& tile, std::uint32_t have, s
     render_tile_(tile, worker, layers);
     progress_.add(tile.path_count());
   };
-  render(state_.film, state_.has_halves() ? 0 : settings_.sample_begin);
+  render(state_.film, state_.has_halves() ? 0 : settings_.sampling.sample_begin);
   if (state_.has_halves()) render(state_.second, Sampler::kSecondHalf);
 }
 
@@ -132,7 +132,7 @@ bool render_progressively(const compile::CompiledScene& compiled, const Settings
                           const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
                           film::Partial& state, Statistics& statistics) {
   const std::uint32_t samples = samples_of(compiled, settings);
-  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
+  const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
   ProgressiveSampling passes(settings, render_tile, pool, progress, state);
   std::uint32_t pass = kFirstPass;
   for (std::uint32_t done = 0; done < samples;) {

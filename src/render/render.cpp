@@ -29,13 +29,11 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-bool is_in_rounds(const Settings& settings) { return settings.noise > 0 || settings.seconds > 0; }
-
 int threads_of(const Settings& settings) { return settings.threads > 0 ? settings.threads : available_threads(); }
 
 void count_samples(const compile::CompiledScene& compiled, const Settings& settings, const film::Partial& state,
                    Statistics& statistics) {
-  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
+  const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
   const std::uint64_t halves = state.has_halves() ? 2 : 1;
   statistics.fewest_samples = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t i = 0; i < owned.size(); ++i) {
@@ -49,7 +47,7 @@ void count_samples(const compile::CompiledScene& compiled, const Settings& setti
 /// Where a render begins: nothing done.
 film::Partial fresh_state(const compile::CompiledScene& compiled, const Settings& settings) {
   film::Partial state(compiled.width, compiled.height);
-  if (is_in_rounds(settings)) state.second = film::Film(compiled.width, compiled.height);
+  if (settings.sampling.is_adaptive()) state.second = film::Film(compiled.width, compiled.height);
   if (settings.layers.any()) state.layers.resize(state.pixel_count());
   return state;
 }
@@ -70,8 +68,8 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
 }
 
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings) {
-  return settings.sample_end > 0 ? settings.sample_end - settings.sample_begin
-                                 : static_cast<std::uint32_t>(compiled.samples);
+  return settings.sampling.sample_end > 0 ? settings.sampling.sample_end - settings.sampling.sample_begin
+                                          : static_cast<std::uint32_t>(compiled.samples);
 }
 
 Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, film::Partial partial) {
@@ -99,7 +97,7 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
   statistics.accelerator = accel.name();
 
   film::Partial state = from ? std::move(*from) : fresh_state(compiled, settings);
-  const std::vector<bool> owned = pixels_of(settings.shard, compiled.width, compiled.height);
+  const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
   const auto pixels = static_cast<std::uint64_t>(std::count(owned.begin(), owned.end(), true));
   ProgressReporter progress(settings, samples_of(compiled, settings) * pixels, state.work);
   const accel::Traversals traversals = choose_traversals(compiled, accel, settings.traversal);
@@ -107,7 +105,7 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
   statistics.traversal = name_of(traversals);
   TilePool pool(statistics.threads);
   const TileRenderer render_tile(compiled, accel, settings.layers);
-  const bool completed = is_in_rounds(settings)
+  const bool completed = settings.sampling.is_adaptive()
                              ? render_adaptively(compiled, settings, render_tile, pool, progress, state, statistics)
                              : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);
   state.work = work_so_far(state.work, pool, progress);

@@ -14,33 +14,18 @@
 #include "film/layers.h"
 #include "film/partial.h"
 #include "film/picture.h"
-#include "render/pixel_shard.h"
+#include "render/progress.h"
+#include "render/sampling_limits.h"
+#include "render/statistics.h"
 
 namespace orrery::render {
 
-struct Progress {
-  std::uint64_t samples_done = 0;
-  std::uint64_t samples_total = 0;
-  double seconds = 0;     ///< since rendering began, the acceleration structure's build left out
-  std::string goal = {};  ///< what ends the render, in words; empty: its samples
-};
-
-/// How rays go through the hierarchy; bits do not depend on it.
-enum class Traversal : std::uint8_t {
-  kAuto,    ///< what is quicker in this scene, measured; camera rays and bounced ones apart
-  kPacket,  ///< the rays of a packet together
-  kSingle,  ///< one after the other
-};
-
 struct Settings {
   int threads = 0;  ///< 0: as many as available_threads()
-  Traversal traversal = Traversal::kAuto;
+  /// Traversal of all rays. Empty: the faster one in this scene, measured separately for camera and scattered rays.
+  std::optional<accel::Traversal> traversal;
   film::LayerRequest layers;  ///< beside the beauty; none cost nothing
-  /// Pixels get samples until the root of the mean of their squared errors, as film/display_error.h measures them, is
-  /// this; those first where it helps most. 0: all get the world's samples.
-  double noise = 0;
-  double seconds = 0;      ///< to sample for, wherever that helps most; 0: as long as it takes
-  bool unlimited = false;  ///< with noise or seconds: the world's samples are no limit
+  SamplingLimits sampling;
   /// Called from one thread at a time: at each whole percent, and ten times a second at most between these.
   std::function<void(const Progress&)> on_progress;
   /// Seconds that rendering so many samples takes. For tests, which must not depend on the machine's speed; empty: the
@@ -49,33 +34,10 @@ struct Settings {
   /// Called while the hierarchy is built, with what is done of it, 0..1, from any thread.
   std::function<void(double fraction)> on_build;
   const std::atomic<bool>* cancel = nullptr;  ///< looked at while building and between tiles; true stops the render
-  /// Only these samples of each pixel, of the world's; the sums of all ranges are those of one render. end 0: all.
-  std::uint32_t sample_begin = 0, sample_end = 0;
-  PixelShard shard;  ///< only these pixels
   /// Asked often, from any thread: true has the threads wait while `on_snapshot` gets what there is so far.
   std::function<bool()> snapshot_is_due;
   std::function<void(const film::Partial&)> on_snapshot;
   bool keep_partial = false;  ///< the result shall have what it was made of
-};
-
-/// What a render did.
-struct Statistics {
-  std::uint64_t paths = 0;
-  std::uint64_t rays = 0;
-  std::uint64_t bad_samples = 0;  ///< not finite; counted and left out of their pixel's mean
-  double build_s = 0;             ///< acceleration structure
-  double render_s = 0;
-  double finish_s = 0;      ///< from sums to the finished picture and its layers
-  std::string isa;          ///< instruction set that the kernel ran with, "avx2"
-  std::string accelerator;  ///< "embree 3.13.5", "list"
-  std::string traversal;    ///< "packet, bounced single": of camera rays, and of bounced ones where it differs
-  int threads = 0;
-  std::uint64_t fewest_samples = 0, most_samples = 0;  ///< of a pixel
-  /// Where noise or seconds were given: the noise that the picture is expected to have, and what it rarely exceeds,
-  /// which is what ends the render.
-  std::optional<double> expected_noise, noise;
-  std::uint64_t unjudged_pixels = 0;  ///< around which too few paths found light for these estimates
-  std::string ended_by;               ///< "samples", "noise" or "time", whichever came first
 };
 
 struct Result {

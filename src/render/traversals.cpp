@@ -69,9 +69,9 @@ const char* name_of(accel::Traversal traversal) { return traversal == accel::Tra
 
 }  // namespace
 
-accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel, Traversal wanted) {
-  if (wanted == Traversal::kPacket) return {accel::Traversal::kPacket, accel::Traversal::kPacket};
-  if (wanted == Traversal::kSingle) return {accel::Traversal::kSingle, accel::Traversal::kSingle};
+accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel,
+                                    std::optional<accel::Traversal> requested) {
+  if (requested) return {*requested, *requested};
   if (compiled.accelerator == compile::Accelerator::kList) return unmeasured(compiled);
   const std::vector<kernel::Tile> tiles = trial_tiles(compiled);
   if (tiles.empty()) return unmeasured(compiled);

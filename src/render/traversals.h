@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "accel/accel.h"
@@ -11,10 +12,11 @@ namespace orrery::render {
 
 /// How the rays of a world had best go through its hierarchy.
 ///
-/// With kAuto some thousandths of the picture's paths are rendered, and their rays traced both ways against the clock;
-/// where the picture has too few paths for that to pay, the number of spheres decides. Hits do not depend on the
-/// choice, so neither does the picture.
-accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel, Traversal wanted);
+/// Unless one is requested, some thousandths of the picture's paths are rendered, and their rays traced both ways
+/// against the clock; where the picture has too few paths for that to pay, the number of spheres decides. Hits do not
+/// depend on the choice, so neither does the picture.
+accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel,
+                                    std::optional<accel::Traversal> requested);
 
 /// What can be said before anything is built: "packet" and the like, "list", or that a trial will choose.
 std::string planned_traversal(const compile::CompiledScene& compiled);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "math/vec3.h"
+#include "scene/accelerator.h"
 
 /// The scene as its author wrote it: named things, the author's units, nothing compiled.
 ///
@@ -59,7 +60,6 @@ struct Background {
 
 enum class Precision { kExact, kFast, kBook };
 enum class Shading { kPath, kNormal, kFlat };
-enum class Accelerator { kEmbree, kList };
 enum class Sampler { kIndependent, kSobol, kBlueNoise };
 enum class Filter { kBox, kGaussian, kBlackmanHarris, kMitchell };
 

@@ -51,7 +51,7 @@ TEST_F(BatchParts, AnyCuttingMergesToTheSameBytes) {
       render(by_samples.back(),
              "--samples " + std::to_string(35 * i / count) + ":" + std::to_string(35 * (i + 1) / count));
       by_tiles.push_back("t" + std::to_string(i) + ".exr");
-      render(by_tiles.back(), "--tiles " + std::to_string(i + 1) + "/" + std::to_string(count));
+      render(by_tiles.back(), "--shard " + std::to_string(i + 1) + "/" + std::to_string(count));
     }
     for (const auto& parts : {by_samples, by_tiles}) {
       const Outcome r = merge(parts, "--stats m.json");
@@ -66,16 +66,16 @@ TEST_F(BatchParts, AnyCuttingMergesToTheSameBytes) {
 
 TEST_F(BatchParts, APictureWithoutLayersIsMadeOfPartsWithThem) {
   ASSERT_EQ(run("develop whole.exr -o whole.png -q").status, 0);
-  render("a.exr", "--tiles 1/2");
-  render("b.exr", "--tiles 2/2");
+  render("a.exr", "--shard 1/2");
+  render("b.exr", "--shard 2/2");
   const Outcome r = run("merge a.exr b.exr -o merged.png -q");
   ASSERT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(run("compare merged.png whole.png -q --fail-above max=0.01").status, 0);  // whole.exr is half
 }
 
 TEST_F(BatchParts, BothWaysOfCuttingGoTogether) {
-  render("a.exr", "--samples 0:10 --tiles 1/2");
-  render("b.exr", "--samples 0:10 --tiles 2/2");
+  render("a.exr", "--samples 0:10 --shard 1/2");
+  render("b.exr", "--samples 0:10 --shard 2/2");
   render("c.exr", "--samples 10:35");
   ASSERT_EQ(merge({"a.exr", "b.exr", "c.exr"}).status, 0);
   EXPECT_EQ(text_of(folder_ / "merged.exr"), whole_);
@@ -100,9 +100,9 @@ TEST_F(BatchParts, WhatDoesNotBelongTogetherIsNamed) {
   }
   write("b.exr", bytes);
   expect_refused(run("merge a.exr a.exr -o merged.exr"), 2, {"a.exr is given twice"});
-  render("t1.exr", "--tiles 1/3");
-  render("t3.exr", "--tiles 3/3");
-  expect_refused(run("merge t1.exr t3.exr -o merged.exr"), 65, {"there is no part with --samples 0:35 --tiles 2/3"});
+  render("t1.exr", "--shard 1/3");
+  render("t3.exr", "--shard 3/3");
+  expect_refused(run("merge t1.exr t3.exr -o merged.exr"), 65, {"there is no part with --samples 0:35 --shard 2/3"});
   EXPECT_EQ(run("merge a.exr b.exr -o a.exr").status, 2);  // an input
   EXPECT_EQ(text_of(folder_ / "b.exr"), bytes);
 }
@@ -168,11 +168,11 @@ TEST_F(BatchParts, PartsThatMakeNoSenseAreRefused) {
   for (const char* range : {"5:5", "7:3", ":", "0:", ":4", "a:b", "0:4294967296", "-1:3", "0:3:4"})
     refused(std::string("-o a.exr --samples ") + range);
   for (const char* tiles : {"0/2", "3/2", "1", "1/0", "a/b", "1/99999999"})
-    refused(std::string("-o a.exr --tiles ") + tiles);
-  refused("-o a.png --tiles 1/2");
-  refused("-o a.exr -o b.exr --tiles 1/2");
-  refused("-o a.exr --tiles 1/2 --noise 0.1");
-  refused("-o a.exr --tiles 1/2 --deep d.exr");
+    refused(std::string("-o a.exr --shard ") + tiles);
+  refused("-o a.png --shard 1/2");
+  refused("-o a.exr -o b.exr --shard 1/2");
+  refused("-o a.exr --shard 1/2 --noise 0.1");
+  refused("-o a.exr --shard 1/2 --deep d.exr");
   refused("-o a.exr --samples 0:5");  // the scene has four
 }
 

@@ -150,8 +150,8 @@ TEST(Adaptive, KeepsItsPromiseAndIsNotBiased) {
   s.render.seed = 1000;
   const film::Picture truth = render(compile::compile(s), {}).picture;
   Settings settings;
-  settings.unlimited = true;
-  settings.noise = 0.02;
+  settings.sampling.unlimited = true;
+  settings.sampling.noise = 0.02;
   constexpr int kSeeds = 24;
   double total = 0, true_total = 0, variance = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
@@ -202,8 +202,8 @@ TEST(Adaptive, FavoursNoSampleByItsValue) {
   s.render.seed = 1000;
   const double truth = light_of(render(compile::compile(s), {}).picture);
   Settings settings;
-  settings.unlimited = true;
-  settings.noise = 0.3;
+  settings.sampling.unlimited = true;
+  settings.sampling.noise = 0.3;
   constexpr int kSeeds = 40;
   double sum = 0, squares = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {

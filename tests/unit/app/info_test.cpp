@@ -46,8 +46,8 @@ class AppInfo : public testing::Test {
   SceneInfo info(const std::string& scene, const std::vector<format::Override>& overrides = {}) {
     support::write_bytes(folder_ / "scene.toml", scene);
     job::SceneRequest request;
-    request.file = folder_ / "scene.toml";
-    request.overrides = overrides;
+    request.source.file = folder_ / "scene.toml";
+    request.source.overrides = overrides;
     return scene_info(request);
   }
   bool requires_(const SceneInfo& info, const std::string& name) {

@@ -125,9 +125,9 @@ TEST(GenerateGenerateFinal, SmallMaterialsFollowTheBooksOdds) {
   const auto metal = small_models<scene::Metal>(s);
   const auto glass = small_models<scene::Dielectric>(s);
   const auto share = [n](const auto& models) { return static_cast<double>(models.size()) / n; };
-  expect_near_mean(job::share(diffuse), 0.80, 0.80 * 0.20, n, "diffuse");
-  expect_near_mean(job::share(metal), 0.15, 0.15 * 0.85, n, "metal");
-  expect_near_mean(job::share(glass), 0.05, 0.05 * 0.95, n, "glass");
+  expect_near_mean(share(diffuse), 0.80, 0.80 * 0.20, n, "diffuse");
+  expect_near_mean(share(metal), 0.15, 0.15 * 0.85, n, "metal");
+  expect_near_mean(share(glass), 0.05, 0.05 * 0.95, n, "glass");
 
   // The product of two uniform numbers has mean 1/4 and variance 1/9 - 1/16.
   std::array<double, 3> sums{};

@@ -5,6 +5,7 @@
 
 #include "generate/generate_files.h"
 #include "base/error.h"
+#include "job/job.h"
 #include "support/temp_dir.h"
 
 namespace orrery::job {
@@ -12,17 +13,17 @@ namespace {
 
 class JobDiskSpace : public testing::Test {
  protected:
-  AppDiskSpace() {
+  JobDiskSpace() {
     generate::generate_final({}, folder_ / "final.toml");
-    job_.scene = folder_ / "final.toml";
-    job_.overrides = {"image.width=200", "image.height=112", "render.samples=4"};
+    job_.scene.file = folder_ / "final.toml";
+    job_.scene.overrides = {"image.width=200", "image.height=112", "render.samples=4"};
   }
 
   /// Estimated size of a file by its actual one.
   double ratio(const std::string& name, std::size_t layer_planes = 0) {
-    job_.outputs = {folder_ / name};
+    job_.outputs.images = {folder_ / name};
     run_job(job_);
-    const auto needed = estimate_disk_space(job_, 200, 112, layer_planes);
+    const auto needed = estimate_disk_space(job_.outputs, is_shard(job_), {200, 112, layer_planes});
     EXPECT_EQ(needed.size(), 1u);
     return needed.begin()->second / static_cast<double>(std::filesystem::file_size(folder_ / name));
   }
@@ -38,36 +39,34 @@ TEST_F(JobDiskSpace, TheEstimateIsNearTheFiles) {
     EXPECT_LT(r, 1.6) << name;
   }
   for (const char* compression : {"none", "rle", "zip", "piz", "dwaa"}) {
-    job_.exr.compression = compression;
+    job_.outputs.exr.compression = compression;
     EXPECT_GT(ratio("b.exr"), 0.8) << compression;
     EXPECT_LT(ratio("b.exr"), 1.6) << compression;
   }
-  job_.exr.compression = "zips";
-  job_.sample_end = 2;
+  job_.outputs.exr.compression = "zips";
+  job_.sampling.sample_end = 2;
   EXPECT_GT(ratio("part.exr"), 0.8);
   EXPECT_LT(ratio("part.exr"), 1.6);
 }
 
 TEST_F(JobDiskSpace, LayersCount) {
-  job_.overrides.push_back("output.layers=[\"Z\", \"N\", \"variance\"]");
+  job_.scene.overrides.push_back("output.layers=[\"Z\", \"N\", \"variance\"]");
   EXPECT_GT(ratio("a.exr", 7), 0.8);
   EXPECT_LT(ratio("b.exr", 7), 3);  // distances compress better than noise
 }
 
 TEST_F(JobDiskSpace, ALimitCountsInPlaceOfTheRoom) {
-  job_.outputs = {folder_ / "a.exr"};
-  compile::CompiledScene compiled;
-  compiled.width = compiled.height = 65536;  // 16 GiB
-  job_.disk_limit = std::uint64_t{1} << 30;
+  Outputs outputs;
+  outputs.images = {folder_ / "a.exr"};
+  const ImageSize size{65536, 65536, 0};  // 16 GiB
   try {
-    require_disk_space(job_, compiled, 0);
+    require_disk_space(outputs, false, size, std::uint64_t{1} << 30);
     ADD_FAILURE() << "no error";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kCannotCreate);
     EXPECT_NE(std::string(error.what()).find("--disk-limit allows"), std::string::npos) << error.what();
   }
-  job_.disk_limit = std::uint64_t{1} << 50;
-  EXPECT_NO_THROW(require_disk_space(job_, compiled, 0)) << "whoever gives a limit insists";
+  EXPECT_NO_THROW(require_disk_space(outputs, false, size, std::uint64_t{1} << 50)) << "whoever gives a limit insists";
 }
 
 }  // namespace

@@ -36,12 +36,12 @@ material = "grey"
 
 class JobJob : public testing::Test {
  protected:
-  AppJob() {
+  JobJob() {
     ::unsetenv("OCIO");
     support::write_bytes(folder_ / "scene.toml", kScene);
-    job_.scene = folder_ / "scene.toml";
-    job_.statistics = folder_ / "stats.json";
-    job_.on_progress = [this](const render::Progress&) { rendered_ = true; };
+    job_.scene.file = folder_ / "scene.toml";
+    job_.outputs.statistics = folder_ / "stats.json";
+    job_.hooks.on_progress = [this](const render::Progress&) { rendered_ = true; };
   }
 
   /// The error that the job ends with.
@@ -55,7 +55,7 @@ class JobJob : public testing::Test {
     return {base::ErrorKind::kInternal, ""};
   }
 
-  nlohmann::json statistics() { return nlohmann::json::parse(support::file_bytes(job_.statistics)); }
+  nlohmann::json statistics() { return nlohmann::json::parse(support::file_bytes(job_.outputs.statistics)); }
 
   support::TempDir folder_;
   Job job_;
@@ -63,9 +63,9 @@ class JobJob : public testing::Test {
 };
 
 TEST_F(JobJob, WritesEveryOutputAndTellsWhatItDid) {
-  job_.outputs = {folder_ / "a.exr", folder_ / "a.png", folder_ / "a.hdr"};
+  job_.outputs.images = {folder_ / "a.exr", folder_ / "a.png", folder_ / "a.hdr"};
   const JobReport report = run_job(job_);
-  for (const auto& output : job_.outputs) EXPECT_EQ(image::read(output).width, 24) << output;
+  for (const ImageFile& output : job_.outputs.images) EXPECT_EQ(image::read(output.path).width, 24) << output.path;
   EXPECT_EQ(folder_.count(), 5u) << "the scene, three pictures, statistics";
   EXPECT_EQ(report.render.paths, 24u * 16 * 2);
   EXPECT_EQ(report.spheres, 1u);
@@ -77,42 +77,42 @@ TEST_F(JobJob, WritesEveryOutputAndTellsWhatItDid) {
 }
 
 TEST_F(JobJob, LooksForNoDisplayWhereNoneIsNeeded) {
-  job_.outputs = {folder_ / "a.exr"};
+  job_.outputs.images = {folder_ / "a.exr"};
   ::setenv("OCIO", (folder_ / "nowhere.ocio").c_str(), 1);
   const JobReport report = run_job(job_);
   ::unsetenv("OCIO");
   EXPECT_EQ(report.display.display, "");
-  job_.display.config = folder_ / "nowhere.ocio";
+  job_.outputs.display.config = folder_ / "nowhere.ocio";
   EXPECT_EQ(error().kind(), base::ErrorKind::kMissingInput) << "somebody named it";
 }
 
 TEST_F(JobJob, WhatTheRequestGetsWrongIsKnownBeforeRendering) {
   const auto kind_of_error = [&](const char* output) {
-    job_.outputs = {folder_ / output};
+    job_.outputs.images = {folder_ / output};
     return error().kind();
   };
   EXPECT_EQ(kind_of_error("a.webp"), base::ErrorKind::kUsage);
   EXPECT_EQ(kind_of_error("none/a.png"), base::ErrorKind::kCannotCreate);
-  job_.exr.compression = "zipps";
+  job_.outputs.exr.compression = "zipps";
   EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
-  job_.exr.compression = "zip";
-  job_.isa = "mmx";
+  job_.outputs.exr.compression = "zip";
+  job_.resources.isa = "mmx";
   EXPECT_EQ(kind_of_error("a.exr"), base::ErrorKind::kUsage);
-  job_.isa.clear();
-  job_.display.view = "none such";
+  job_.resources.isa.clear();
+  job_.outputs.display.view = "none such";
   EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kUsage);
-  job_.display.view.clear();
-  job_.overrides = {"render.samples=0"};
+  job_.outputs.display.view.clear();
+  job_.scene.overrides = {"render.samples=0"};
   EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kBadData);
-  job_.scene = folder_ / "missing.toml";
+  job_.scene.file = folder_ / "missing.toml";
   EXPECT_EQ(kind_of_error("a.png"), base::ErrorKind::kMissingInput);
   EXPECT_FALSE(rendered_);
 }
 
 TEST_F(JobJob, StoppedBeforeItBeganItWritesNothing) {
   const std::atomic<bool> cancel{true};
-  job_.cancel = &cancel;
-  job_.outputs = {folder_ / "a.exr"};
+  job_.hooks.cancel = &cancel;
+  job_.outputs.images = {folder_ / "a.exr"};
   EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
   EXPECT_FALSE(rendered_);
   EXPECT_EQ(folder_.count(), 2u) << "the scene and the statistics";
@@ -121,16 +121,16 @@ TEST_F(JobJob, StoppedBeforeItBeganItWritesNothing) {
 }
 
 TEST_F(JobJob, StoppedWhileRenderingItLeavesACheckpointAndResumesToTheSameBytes) {
-  job_.outputs = {folder_ / "a.exr"};
-  job_.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
-  job_.reproducible = true;
+  job_.outputs.images = {folder_ / "a.exr"};
+  job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
+  job_.outputs.reproducible = true;
   run_job(job_);
   const std::string uninterrupted = support::file_bytes(folder_ / "a.exr");
   std::filesystem::remove(folder_ / "a.exr");
 
   std::atomic<bool> cancel{false};
-  job_.cancel = &cancel;
-  job_.on_progress = [&](const render::Progress&) { cancel = true; };
+  job_.hooks.cancel = &cancel;
+  job_.hooks.on_progress = [&](const render::Progress&) { cancel = true; };
   EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
   EXPECT_EQ(folder_.count(), 3u);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
@@ -140,8 +140,8 @@ TEST_F(JobJob, StoppedWhileRenderingItLeavesACheckpointAndResumesToTheSameBytes)
   EXPECT_GT(rays, 0u);
 
   cancel = false;
-  job_.on_progress = {};
-  job_.resume = true;
+  job_.hooks.on_progress = {};
+  job_.checkpoint.resume = true;
   run_job(job_);
   EXPECT_EQ(support::file_bytes(folder_ / "a.exr"), uninterrupted);
   EXPECT_EQ(statistics()["resumed"], true);
@@ -150,15 +150,15 @@ TEST_F(JobJob, StoppedWhileRenderingItLeavesACheckpointAndResumesToTheSameBytes)
 }
 
 TEST_F(JobJob, ACheckpointOfSomethingElseIsRefused) {
-  job_.outputs = {folder_ / "a.exr"};
-  job_.overrides = {"image.width=200", "image.height=100", "render.samples=300"};
+  job_.outputs.images = {folder_ / "a.exr"};
+  job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300"};
   std::atomic<bool> cancel{false};
-  job_.cancel = &cancel;
-  job_.on_progress = [&](const render::Progress&) { cancel = true; };
+  job_.hooks.cancel = &cancel;
+  job_.hooks.on_progress = [&](const render::Progress&) { cancel = true; };
   EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
   cancel = false;
-  job_.on_progress = {};
-  job_.resume = true;
+  job_.hooks.on_progress = {};
+  job_.checkpoint.resume = true;
   const std::string checkpoint = support::file_bytes(folder_ / "a.checkpoint.exr");
   const Job right = job_;
   const auto expect_refused = [&](const std::string& word) {
@@ -168,25 +168,25 @@ TEST_F(JobJob, ACheckpointOfSomethingElseIsRefused) {
     EXPECT_EQ(support::file_bytes(folder_ / "a.checkpoint.exr"), checkpoint);
     job_ = right;
   };
-  job_.overrides.push_back("render.seed=2");
+  job_.scene.overrides.push_back("render.seed=2");
   expect_refused("scene hash");
-  job_.noise = 0.1;
+  job_.sampling.noise = 0.1;
   expect_refused("--noise");
-  job_.share = {0, 2};
-  expect_refused("--tiles 1/1, not 1/2");
-  job_.overrides.push_back("output.layers=[\"N\"]");
+  job_.sampling.shard = {0, 2};
+  expect_refused("--shard 1/1, not 1/2");
+  job_.scene.overrides.push_back("output.layers=[\"N\"]");
   expect_refused("layers none, not N");
   support::write_bytes(folder_ / "a.checkpoint.exr", checkpoint.substr(0, checkpoint.size() / 2));
   EXPECT_EQ(error().kind(), base::ErrorKind::kBadData);
 }
 
 TEST_F(JobJob, CheckpointsComeFromTimeToTime) {
-  job_.outputs = {folder_ / "a.exr"};
-  job_.overrides = {"image.width=64", "image.height=64", "render.samples=64"};
-  job_.checkpoint_s = 0.01;
-  job_.threads = 1;
+  job_.outputs.images = {folder_ / "a.exr"};
+  job_.scene.overrides = {"image.width=64", "image.height=64", "render.samples=64"};
+  job_.checkpoint.interval_s = 0.01;
+  job_.resources.threads = 1;
   bool seen = false;
-  job_.on_progress = [&](const render::Progress&) {
+  job_.hooks.on_progress = [&](const render::Progress&) {
     seen = seen || std::filesystem::exists(folder_ / "a.checkpoint.exr");
     // The one thread that renders waits until a checkpoint is due, whatever its speed.
     if (!seen) std::this_thread::sleep_for(std::chrono::milliseconds(11));
@@ -197,9 +197,9 @@ TEST_F(JobJob, CheckpointsComeFromTimeToTime) {
 }
 
 TEST_F(JobJob, AFailedWriteIsInTheStatistics) {
-  job_.outputs = {folder_ / "a.exr"};
-  job_.overrides = {"image.width=512", "image.height=512", "render.samples=1"};
-  job_.exr.compression = "none";
+  job_.outputs.images = {folder_ / "a.exr"};
+  job_.scene.overrides = {"image.width=512", "image.height=512", "render.samples=1"};
+  job_.outputs.exr.compression = "none";
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -216,10 +216,10 @@ TEST_F(JobJob, AFailedWriteIsInTheStatistics) {
 
 TEST_F(JobJob, WarningsReachTheCaller) {
   const std::string twice = "[[sphere]]\ncenter = [0, 0, -1]\nradius = 0.5\nmaterial = \"grey\"\n";
-  support::write_bytes(job_.scene, kScene + twice);
+  support::write_bytes(job_.scene.file, kScene + twice);
   std::vector<base::Diagnostic> warnings;
-  job_.on_warning = [&](const base::Diagnostic& warning) { warnings.push_back(warning); };
-  job_.outputs = {folder_ / "a.exr"};
+  job_.hooks.on_warning = [&](const base::Diagnostic& warning) { warnings.push_back(warning); };
+  job_.outputs.images = {folder_ / "a.exr"};
   run_job(job_);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].severity, base::Severity::kWarning);
@@ -228,19 +228,19 @@ TEST_F(JobJob, WarningsReachTheCaller) {
 TEST_F(JobJob, TheSceneChoosesTheDisplayAndFlagsWin) {
   support::write_bytes(folder_ / "scene.toml",
                        std::string(kScene) + "[color]\ndisplay = \"Gamma 2.0 Rec.709\"\nexposure = -2\n");
-  job_.outputs = {folder_ / "a.png"};
+  job_.outputs.images = {folder_ / "a.png"};
   EXPECT_EQ(run_job(job_).display.display, "Gamma 2.0 Rec.709");
   const float dark = image::read(folder_ / "a.png").planes[0].values[0];
-  job_.display.exposure = 0;
+  job_.outputs.display.exposure = 0;
   run_job(job_);
   EXPECT_NEAR(image::read(folder_ / "a.png").planes[0].values[0], 2 * dark, 0.01);
-  job_.display.display = "sRGB";
+  job_.outputs.display.display = "sRGB";
   EXPECT_EQ(run_job(job_).display.display, "sRGB");
 }
 
 TEST_F(JobJob, AConfigOfTheSceneIsBesideTheScene) {
   support::write_bytes(folder_ / "scene.toml", std::string(kScene) + "[color]\nconfig = \"none.ocio\"\n");
-  job_.outputs = {folder_ / "a.png"};
+  job_.outputs.images = {folder_ / "a.png"};
   const base::Error missing = error();
   EXPECT_EQ(missing.kind(), base::ErrorKind::kMissingInput);
   ASSERT_EQ(missing.diagnostics().size(), 1u);
@@ -249,38 +249,38 @@ TEST_F(JobJob, AConfigOfTheSceneIsBesideTheScene) {
 }
 
 TEST_F(JobJob, LayersAreInTheExrAndCostNothingWhereThereIsNone) {
-  job_.overrides = {"output.layers=[\"Z\", \"CryptoObject\"]"};
-  job_.outputs = {folder_ / "a.exr", folder_ / "a.png"};
-  job_.deep = folder_ / "deep.exr";
+  job_.scene.overrides = {"output.layers=[\"Z\", \"CryptoObject\"]"};
+  job_.outputs.images = {folder_ / "a.exr", folder_ / "a.png"};
+  job_.outputs.deep = folder_ / "deep.exr";
   run_job(job_);
   EXPECT_NE(image::read(folder_ / "a.exr").find("Z"), nullptr);
   EXPECT_NE(image::read(folder_ / "a.exr").find("CryptoObject02.A"), nullptr);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "deep.exr"));
   EXPECT_EQ(image::read(folder_ / "a.png").planes.size(), 3u);
-  job_.deep = folder_ / "deep.png";
+  job_.outputs.deep = folder_ / "deep.png";
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
-  job_.deep.clear();
-  job_.outputs = {folder_ / "a.png"};  // who asks for layers in so many words wants to have them
+  job_.outputs.deep.clear();
+  job_.outputs.images = {folder_ / "a.png"};  // who asks for layers in so many words wants to have them
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
 }
 
 TEST_F(JobJob, LossOfDataIsRefusedBeforeRendering) {
-  job_.overrides = {"output.layers=[\"CryptoObject\"]"};
-  job_.outputs = {folder_ / "a.exr"};
-  job_.exr.compression = "dwaa";
+  job_.scene.overrides = {"output.layers=[\"CryptoObject\"]"};
+  job_.outputs.images = {folder_ / "a.exr"};
+  job_.outputs.exr.compression = "dwaa";
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
   EXPECT_FALSE(rendered_);
 }
 
 TEST_F(JobJob, ADisplayOfHighDynamicRangeHasSixteenBits) {
-  job_.display.display = "Rec.2100-PQ";
-  job_.outputs = {folder_ / "a.png"};
+  job_.outputs.display.display = "Rec.2100-PQ";
+  job_.outputs.images = {folder_ / "a.png"};
   run_job(job_);
   bool between = false;  // of 8 bits
   for (const float v : image::read(folder_ / "a.png").planes[0].values)
     between = between || std::abs(v * 255 - std::round(v * 255)) > 0.01f;
   EXPECT_TRUE(between);
-  job_.outputs = {folder_ / "a.jpg"};
+  job_.outputs.images = {folder_ / "a.jpg"};
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
 }
 

@@ -136,7 +136,9 @@ TEST(JobMatteManifest, ManifestsAreFilesOfLargeMattesInExr) {
   small.layer = "CryptoMaterial";
   large.layer = "CryptoObject";
   large.things.resize(kMostNamesInHeader + 1);
-  const std::vector<std::filesystem::path> files = manifest_files({small, large}, {"a/shot.exr", "shot.png", "b.exr"});
+  Outputs outputs;
+  outputs.images = image_files({"a/shot.exr", "shot.png", "b.exr"});
+  const std::vector<std::filesystem::path> files = manifest_files({small, large}, outputs);
   EXPECT_EQ(files, (std::vector<std::filesystem::path>{"a/shot.CryptoObject.json", "b.CryptoObject.json"}));
 }
 

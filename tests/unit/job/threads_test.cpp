@@ -12,7 +12,7 @@ namespace {
 
 class JobThreads : public testing::Test {
  protected:
-  AppThreads() { TearDown(); }
+  JobThreads() { TearDown(); }
   void TearDown() override {
     ::unsetenv("SLURM_CPUS_PER_TASK");
     ::unsetenv("CUE_THREADS");

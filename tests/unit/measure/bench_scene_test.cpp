@@ -27,7 +27,7 @@ class MeasureBenchScene : public testing::Test {
     const auto file = folder_.path() / "scene.toml";
     std::ofstream(file) << kGreySphere;
     BenchRequest r;
-    r.scene = file;
+    r.scene.file = file;
     r.rounds = 3;
     r.seconds = 0.001;
     return r;
@@ -78,11 +78,11 @@ TEST_F(MeasureBenchScene, FeaturesAreRequiredByTheSceneAndNotByWhatWasMeasuredLa
 
 TEST_F(MeasureBenchScene, MeasuresMotionBlur) {
   BenchRequest r = request();
-  std::ofstream(r.scene, std::ios::app) << "camera = { shutter_close = 0.5 }\n"
-                                           "key = [{ target = \"sphere[0].center\", frames = [1, 2], "
-                                           "values = [[0, 0, -2], [1, 0, -2]] }]\n";
+  std::ofstream(r.scene.file, std::ios::app) << "camera = { shutter_close = 0.5 }\n"
+                                                "key = [{ target = \"sphere[0].center\", frames = [1, 2], "
+                                                "values = [[0, 0, -2], [1, 0, -2]] }]\n";
   const std::string moving = bench_scene(r).scene_hash;
-  r.overrides = {"camera.shutter_close=0"};
+  r.scene.overrides = {"camera.shutter_close=0"};
   EXPECT_NE(bench_scene(r).scene_hash, moving);
 }
 

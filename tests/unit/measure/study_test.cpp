@@ -54,7 +54,7 @@ class MeasureRun : public ::testing::Test {
            "[[sphere]]\ncenter = [0, -100, 0]\nradius = 100\nmaterial = \"ground\"\n"
            "[[sphere]]\ncenter = [0, 0.5, 0]\nradius = 0.5\nmaterial = \"glass\"\n";
     Request request;
-    request.scene = *folder / "scene.toml";
+    request.scene.file = *folder / "scene.toml";
     request.budget_s = 14;
     request.paths_per_s = kPathsPerSecond;
     request.noise = 0.02;
@@ -72,12 +72,12 @@ class MeasureRun : public ::testing::Test {
   static support::TempDir* folder;
   static Study* study;
 };
-support::TempDir* StudyRun::folder = nullptr;
-Study* StudyRun::study = nullptr;
+support::TempDir* MeasureRun::folder = nullptr;
+Study* MeasureRun::study = nullptr;
 
 app::SceneInfo info_of(const std::filesystem::path& scene) {
   job::SceneRequest request;
-  request.file = scene;
+  request.source.file = scene;
   return app::scene_info(request);
 }
 
@@ -151,8 +151,8 @@ TEST_F(MeasureRun, JsonAndPageHoldIt) {
 
 Study small_study(const std::filesystem::path& scene, double budget_s, std::vector<format::Override> overrides = {}) {
   Request request;
-  request.scene = scene;
-  request.overrides = std::move(overrides);
+  request.scene.file = scene;
+  request.scene.overrides = std::move(overrides);
   request.budget_s = budget_s;
   request.paths_per_s = kPathsPerSecond;
   return run_study(request);

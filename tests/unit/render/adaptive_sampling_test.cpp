@@ -25,8 +25,8 @@ compile::CompiledScene world_of(int samples = 100) {
 
 Settings noise(double value) {
   Settings settings;
-  settings.noise = value;
-  settings.unlimited = true;
+  settings.sampling.noise = value;
+  settings.sampling.unlimited = true;
   return settings;
 }
 
@@ -43,7 +43,7 @@ TEST(RenderRounds, ThreadsAndTraversalsChangeNoBit) {
   EXPECT_EQ(one.statistics.ended_by, "noise");
   EXPECT_LT(one.statistics.fewest_samples, one.statistics.most_samples);
   settings.threads = 5;
-  settings.traversal = Traversal::kSingle;
+  settings.traversal = accel::Traversal::kSingle;
   const Result five = render(world_of(), settings);
   expect_same(one.picture, five.picture);
   EXPECT_EQ(one.statistics.paths, five.statistics.paths);
@@ -59,7 +59,7 @@ TEST(RenderRounds, MoreAccuracyTakesMoreSamples) {
 
 TEST(RenderRounds, SamplesAreALimitWhereTheyWereAskedFor) {
   Settings settings = noise(0.001);
-  settings.unlimited = false;
+  settings.sampling.unlimited = false;
   const Result r = render(world_of(40), settings);
   EXPECT_TRUE(r.completed);
   EXPECT_EQ(r.statistics.ended_by, "samples");
@@ -101,8 +101,8 @@ TEST(RenderRounds, TimeIsKept) {
   for (const double seconds : {0.3, 1.0, 20.0}) {
     Settings settings;
     settings.clock = [](std::uint64_t samples) { return static_cast<double>(samples) * 1e-5; };
-    settings.seconds = seconds;
-    settings.unlimited = true;
+    settings.sampling.seconds = seconds;
+    settings.sampling.unlimited = true;
     const Result r = render(world_of(), settings);
     EXPECT_EQ(r.statistics.ended_by, "time");
     EXPECT_NEAR(r.statistics.render_s, seconds, 0.05 * seconds);
@@ -169,7 +169,7 @@ TEST(RenderRounds, WhatTooFewSamplesCannotJudgeIsCounted) {
   scene::Scene s = test::room(3.95, 5, 12, 8);
   s.render.samples = 64;
   Settings settings = noise(0.3);
-  settings.unlimited = false;
+  settings.sampling.unlimited = false;
   const Result r = render(compile::compile(s), settings);
   EXPECT_TRUE(r.completed);
   EXPECT_EQ(r.statistics.ended_by, "samples");

@@ -40,7 +40,7 @@ struct Outcome {
   friend bool operator==(const Outcome&, const Outcome&) = default;
 };
 
-Outcome outcome(const scene::Scene& s, const scene::Scene* closing, Traversal traversal) {
+Outcome outcome(const scene::Scene& s, const scene::Scene* closing, std::optional<accel::Traversal> traversal) {
   Settings settings;
   settings.traversal = traversal;
   const Result result = render(compile::compile(s, closing), settings);
@@ -57,7 +57,7 @@ void expect_equal(scene::Scene a, scene::Scene b, const std::string& what, const
                   const scene::Scene* b_closing = nullptr) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
     for (const auto accelerator : {scene::Accelerator::kEmbree, scene::Accelerator::kList}) {
-      for (const Traversal traversal : {Traversal::kPacket, Traversal::kSingle}) {
+      for (const accel::Traversal traversal : {accel::Traversal::kPacket, accel::Traversal::kSingle}) {
         a.render.precision = b.render.precision = precision;
         a.render.accelerator = b.render.accelerator = accelerator;
         EXPECT_TRUE(outcome(a, a_closing, traversal) == outcome(b, b_closing, traversal))
@@ -92,8 +92,8 @@ TEST(RenderCoincident, AGreySphereInAWhiteFurnaceIsHalf) {
   s.spheres.push_back(s.spheres[0]);
   s.camera.look_at = s.spheres[0].center;
   s.camera.vfov = 5;
-  for (const float value : outcome(s, nullptr, Traversal::kAuto).values) ASSERT_TRUE(value == 0.5f || value == 1.0f);
-  EXPECT_EQ(outcome(s, nullptr, Traversal::kAuto).values[0], 0.5f);
+  for (const float value : outcome(s, nullptr, std::nullopt).values) ASSERT_TRUE(value == 0.5f || value == 1.0f);
+  EXPECT_EQ(outcome(s, nullptr, std::nullopt).values[0], 0.5f);
 }
 
 /// Everything twice: the ground, which stands apart from the boxes, too; and points twice in one file.
@@ -125,7 +125,7 @@ TEST(RenderCoincident, SpheresThatPartAreBothRendered) {
   s.spheres.push_back({s.spheres[0].center, 1, 1, ""});
   scene::Scene closing = s;
   closing.spheres[1].center.x = 0.5;
-  EXPECT_FALSE(outcome(s, &closing, Traversal::kAuto) == outcome(s, nullptr, Traversal::kAuto));
+  EXPECT_FALSE(outcome(s, &closing, std::nullopt) == outcome(s, nullptr, std::nullopt));
 }
 
 /// In single precision these two are one; in double they are not.
@@ -136,7 +136,7 @@ TEST(RenderCoincident, FastComparesWhatItComputesWith) {
   for (const auto precision : {scene::Precision::kFast, scene::Precision::kExact}) {
     scene::Scene a = one, b = two;
     a.render.precision = b.render.precision = precision;
-    EXPECT_EQ(outcome(a, nullptr, Traversal::kAuto) == outcome(b, nullptr, Traversal::kAuto),
+    EXPECT_EQ(outcome(a, nullptr, std::nullopt) == outcome(b, nullptr, std::nullopt),
               precision == scene::Precision::kFast);
   }
 }

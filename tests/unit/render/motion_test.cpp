@@ -46,7 +46,7 @@ TEST(RenderMotion, EveryAcceleratorThreadCountAndTraversalGivesTheSameBits) {
     Moving moving;
     moving.opening.render.precision = precision;
     const std::vector<float> expected = values(render(moving.compiled(), with_layers()).picture);
-    for (const Traversal traversal : {Traversal::kPacket, Traversal::kSingle}) {
+    for (const accel::Traversal traversal : {accel::Traversal::kPacket, accel::Traversal::kSingle}) {
       Settings settings = with_layers();
       settings.threads = 3;
       settings.traversal = traversal;

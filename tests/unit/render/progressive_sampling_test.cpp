@@ -71,8 +71,8 @@ Settings with_layers(Settings settings = {}) {
 }
 
 Settings in_rounds(Settings settings = {}) {
-  settings.noise = 0.02;
-  settings.unlimited = true;
+  settings.sampling.noise = 0.02;
+  settings.sampling.unlimited = true;
   return settings;
 }
 
@@ -173,12 +173,12 @@ TEST(RenderShare, PartsAddUpToTheWholeWithItsLayers) {
     for (int i = 0; i < count; ++i) {
       for (const std::uint32_t begin : {0u, 6u}) {
         Settings settings = with_layers();
-        settings.shard = {i, count};
-        settings.sample_begin = begin;
-        settings.sample_end = begin == 0 ? 6 : 19;
+        settings.sampling.shard = {i, count};
+        settings.sampling.sample_begin = begin;
+        settings.sampling.sample_end = begin == 0 ? 6 : 19;
         settings.keep_partial = true;
         const Result part = render(compiled, settings);
-        EXPECT_EQ(part.statistics.fewest_samples, settings.sample_end - begin);
+        EXPECT_EQ(part.statistics.fewest_samples, settings.sampling.sample_end - begin);
         sum.film.add(part.partial->film);
         for (std::size_t p = 0; p < sum.layers.size(); ++p) sum.layers[p].add(part.partial->layers[p]);
         sum.work += part.partial->work;

@@ -12,7 +12,7 @@
 namespace orrery::render {
 namespace {
 
-std::vector<float> pixels(const scene::Scene& scene, Traversal traversal) {
+std::vector<float> pixels(const scene::Scene& scene, std::optional<accel::Traversal> traversal) {
   Settings settings;
   settings.traversal = traversal;
   const Result result = render(compile::compile(scene), settings);
@@ -26,18 +26,18 @@ TEST(RenderTraversals, AllGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
     scene::Scene scene = test::everything();
     scene.render.precision = precision;
-    const auto packet = pixels(scene, Traversal::kPacket);
-    EXPECT_EQ(pixels(scene, Traversal::kSingle), packet) << static_cast<int>(precision);
-    EXPECT_EQ(pixels(scene, Traversal::kAuto), packet) << static_cast<int>(precision);
+    const auto packet = pixels(scene, accel::Traversal::kPacket);
+    EXPECT_EQ(pixels(scene, accel::Traversal::kSingle), packet) << static_cast<int>(precision);
+    EXPECT_EQ(pixels(scene, std::nullopt), packet) << static_cast<int>(precision);
   }
 }
 
 TEST(RenderTraversals, WhatIsAskedForIsUsed) {
   const compile::CompiledScene compiled = compile::compile(test::everything());
   Settings settings;
-  settings.traversal = Traversal::kSingle;
+  settings.traversal = accel::Traversal::kSingle;
   EXPECT_EQ(render(compiled, settings).statistics.traversal, "single");
-  settings.traversal = Traversal::kPacket;
+  settings.traversal = accel::Traversal::kPacket;
   EXPECT_EQ(render(compiled, settings).statistics.traversal, "packet");
 }
 
@@ -63,7 +63,7 @@ TEST(RenderTraversals, WithoutATrialTheNumberOfSpheresDecides) {
   for (const auto& [count, name] : {std::pair{900, "packet"}, std::pair{4000, "packet, bounced single"}}) {
     const compile::CompiledScene compiled = compile::compile(balls(count));
     const std::unique_ptr<accel::Accel> accel = build(compiled, 1);
-    EXPECT_EQ(name_of(choose_traversals(compiled, *accel, Traversal::kAuto)), name);
+    EXPECT_EQ(name_of(choose_traversals(compiled, *accel, std::nullopt)), name);
   }
 }
 
@@ -74,7 +74,7 @@ TEST(RenderTraversals, ATrialChoosesBetweenBoth) {
   scene.render.samples = 4096;
   const compile::CompiledScene compiled = compile::compile(scene);
   const std::unique_ptr<accel::Accel> accel = build(compiled, 1);
-  const std::string name = name_of(choose_traversals(compiled, *accel, Traversal::kAuto));
+  const std::string name = name_of(choose_traversals(compiled, *accel, std::nullopt));
   EXPECT_TRUE(name == "packet" || name == "single" || name == "packet, bounced single" ||
               name == "single, bounced packet")
       << name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/output_files.h"
+#include "job/outputs.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 /// What is said about such files; nothing where all is well.
 std::string verdict(const std::vector<std::filesystem::path>& pictures, int bits = 0) {
   try {
-    check_formats(pictures, bits);
+    check_bits(image_files(pictures), bits);
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
     return error.what();
@@ -21,9 +21,9 @@ std::string verdict(const std::vector<std::filesystem::path>& pictures, int bits
   return {};
 }
 
-TEST(JobOutputFiles, UnknownExtensionsAreUsage) { EXPECT_NE(verdict({"a.png", "a.webp"}), ""); }
+TEST(JobOutputs, UnknownExtensionsAreUsage) { EXPECT_NE(verdict({"a.png", "a.webp"}), ""); }
 
-TEST(JobOutputFiles, BitsMustFitTheFormat) {
+TEST(JobOutputs, BitsMustFitTheFormat) {
   EXPECT_EQ(verdict({"a.png", "a.exr"}, 16), "");
   EXPECT_NE(verdict({"a.png", "a.jpg"}, 16).find("a.jpg holds 8 bits"), std::string::npos);
 }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace orrery::accel {
+
+/// How rays traverse the BVH. Hits do not depend on it.
+enum class Traversal : std::uint8_t {
+  kPacket,  ///< the rays of a packet together, which pays as long as they visit the same nodes
+  kSingle,  ///< one ray after the other
+};
+
+/// The traversal of camera rays and that of scattered rays.
+struct Traversals {
+  Traversal camera = Traversal::kPacket, bounced = Traversal::kPacket;
+};
+
+}  // namespace orrery::accel

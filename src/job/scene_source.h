@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "format/override.h"
+
+namespace orrery::job {
+
+/// The scene that a command was given: its file, the settings that replace the file's, and a frame of its animation.
+struct SceneSource {
+  std::filesystem::path file;
+  std::vector<format::Override> overrides;  ///< "camera.vfov=30"
+  int frame = 1;
+};
+
+}  // namespace orrery::job

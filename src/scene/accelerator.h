@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace orrery::scene {
+
+/// What finds the closest sphere along a ray. The image does not depend on it.
+enum class Accelerator {
+  kEmbree,  ///< a BVH
+  kList,    ///< a loop over all spheres
+};
+
+}  // namespace orrery::scene
