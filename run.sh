@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds, and hands its arguments to orrery; without any it renders the book's final scene into
-# out/.
+# Installs missing packages, builds, and runs orrery with the given arguments. Without arguments it renders the final
+# scene of the book into out/.
 #
 #   ./run.sh
 #   ./run.sh render scenes/book/17-hollow-glass.toml -o glass.png
@@ -10,7 +10,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$root/tools/setup.sh"
 
 install_missing "$root/tools/packages-build.txt"
-# However it was configured before, by test.sh for one, is fine.
+# An existing configuration, for example that of test.sh, is kept.
 if [ ! -f "$root/build/.configured-with" ]; then configure -DBUILD_TESTING=OFF; fi
 build 4 orrery
 
@@ -20,5 +20,5 @@ if [ $# -gt 0 ]; then exec "$orrery" "$@"; fi
 mkdir -p "$root/out"
 say "Rendering scenes/book/final.toml ..."
 "$orrery" render "$root/scenes/book/final.toml" -o "$root/out/final.exr" -o "$root/out/final.png"
-say "The picture to look at:       $root/out/final.png"
-say "The same, scene-linear, EXR:  $root/out/final.exr"
+say "Image for display:            $root/out/final.png"
+say "Scene-linear EXR:             $root/out/final.exr"

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs missing packages, builds, and runs every test but the slow ones. Arguments go to ctest instead of `-LE slow`.
+# Installs missing packages, builds, and runs all tests except the slow ones. Arguments are passed to ctest instead of
+# `-LE slow`.
 #
 #   ./test.sh
 #   ./test.sh -L unit
 #   ./test.sh -R Camera
-#   GTEST_FILTER='AppJob.*' ./test.sh -R unit_app
+#   GTEST_FILTER='AppInfo.*' ./test.sh -R unit_app
 #
-# Test files are written to /dev/shm where that has room, else to $TMPDIR or /tmp: a disk that confirms every write makes
-# some tests take twenty times as long.
+# Tests write their files to $TMPDIR if set, otherwise to /dev/shm if it has 2 GB of free space, otherwise to /tmp. On a disk
+# that syncs every write some tests take twenty times as long.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$root/tools/setup.sh"
@@ -25,7 +26,7 @@ if [ -z "${TMPDIR:-}" ] && [ "$(stat -f -c %T /dev/shm 2>/dev/null)" = tmpfs ] &
   trap 'rm -rf "$TMPDIR"' EXIT
 fi
 log=$root/build/test.log
-# ctest's summary of labels would follow the line that counts.
+# Without ctest's label summary the result is the last line.
 set -- --test-dir "$root/build" --no-tests=error --output-on-failure --no-label-summary --parallel "$(nproc)" \
   --output-log "$log" "$@"
 say "Testing ..."
@@ -33,7 +34,7 @@ begin=$SECONDS status=0
 if [ -t 1 ]; then
   ctest --progress "$@" || status=$?
 else
-  # In a log, tests that pass need no line. The closing lines follow the times below.
+  # Passed tests are not logged. The closing lines follow the times below.
   ctest "$@" | sed -u -E '/^ *[0-9]+\/[0-9]+ Test +#.* Passed |^ +Start +[0-9]+: /d; /^[0-9]+% tests passed/,$d' || status=$?
   printf 'Built in %s s, tested in %s s. The slowest tests:\n' "$build_seconds" $((SECONDS - begin))
   # Columns: name, number of runs, mean seconds.

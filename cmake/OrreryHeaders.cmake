@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# orrery_internal_headers(<out> <folder of a room> [<foreign include prefix>...])
+# orrery_internal_headers(<out> <folder of a room> [<include prefix>...])
 #
-# Lists the headers that stay within their room: those that include a foreign library by one of the prefixes, themselves
-# or through another header of the room. The build installs the others; the test `layering` holds rooms to it.
+# Lists the internal headers of a room: those that include a third-party library by one of the prefixes, directly or
+# through another header of the room. Only the others are installed; the test `layering` enforces this.
 function(orrery_internal_headers out folder)
   get_filename_component(room ${folder} NAME)
   file(GLOB headers ${folder}/*.h)

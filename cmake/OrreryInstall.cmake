@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where, the package that find_package(orrery) finds, and the Debian packages of
-# `cpack -G DEB`: orrery, the program, and orrery-dev, the rooms as static libraries with their headers.
+# Installation, the package config for find_package(orrery), and the Debian packages of `cpack -G DEB`: orrery (the
+# program) and orrery-dev (the rooms as static libraries, with headers).
 include(CMakePackageConfigHelpers)
 
 if(TARGET orrery)
@@ -12,7 +12,7 @@ endif()
 if(EXISTS ${PROJECT_SOURCE_DIR}/docs/orrery.1)
   install(FILES docs/orrery.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
 endif()
-# scenes/ are examples that a reader may copy; Debian asks for the licence under the name `copyright`.
+# scenes/ contains examples to copy. Debian requires the licence under the name `copyright`.
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT runtime FILES_MATCHING PATTERN "*.toml")
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime RENAME copyright)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev COMPONENT development RENAME copyright)
@@ -21,13 +21,13 @@ set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/orrery)
 install(EXPORT orrery NAMESPACE orrery:: FILE orreryTargets.cmake DESTINATION ${config_dir} COMPONENT development)
 configure_package_config_file(cmake/orreryConfig.cmake.in ${PROJECT_BINARY_DIR}/orreryConfig.cmake
                               INSTALL_DESTINATION ${config_dir} NO_SET_AND_CHECK_MACRO)
-# Before 1.0 a minor version may change what headers say.
+# Before 1.0 a minor version may change interfaces.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/orreryConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/orreryConfig.cmake ${PROJECT_BINARY_DIR}/orreryConfigVersion.cmake
               cmake/OrreryDependencies.cmake
         DESTINATION ${config_dir} COMPONENT development)
 
-# A build below /usr/local is for one machine; a package goes to /usr.
+# Packages install to /usr, builds to /usr/local.
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_VENDOR "The orrery authors")
 set(CPACK_PACKAGE_CONTACT "The orrery authors <noreply@example.org>")
@@ -42,12 +42,12 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME orrery)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
-    "Path tracing of spheres, from thousands to millions, on Embree:\n scene files in TOML, pictures as EXR, PNG, JPEG, TIFF and PPM.")
+    "Path tracing of up to millions of spheres with Embree: scene files in\n TOML, images as EXR, HDR, PNG, JPEG, TIFF and PPM.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME orrery-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-    "The rooms of orrery as static libraries, their headers, and the package\n that find_package(orrery) of CMake finds.")
-# Whoever links the rooms links what they link: the -dev packages that this was built with.
+    "Static libraries and headers of orrery, and a CMake package config for\n find_package(orrery).")
+# The static libraries require the -dev packages that they were built with.
 file(STRINGS tools/packages-build.txt build_packages REGEX "-dev( |$)")
 list(TRANSFORM build_packages REPLACE " .*" "")
 list(JOIN build_packages ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)

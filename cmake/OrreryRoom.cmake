@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 include(OrreryHeaders)
 
-# orrery_room(<name> [DEPENDS <room>...] [LIBRARIES <foreign target>...] [FOREIGN <include prefix>...]
-#                    [EXPOSED_LIBRARIES <foreign target>...] [EXPOSED <include prefix>...])
+# orrery_room(<name> [DEPENDS <room>...] [LIBRARIES <third-party target>...] [FOREIGN <include prefix>...]
+#                    [EXPOSED_LIBRARIES <third-party target>...] [EXPOSED <include prefix>...])
 #
-# One folder under src/ is one room, one target and one namespace. DEPENDS drives the linking and, written to
-# rooms.txt in the build folder, the test `layering`, which reads the includes: the rule stands in one place.
-# FOREIGN lists the include prefixes of the foreign libraries that this room, and no other, may include. They stay behind
-# its walls: a header that includes one is neither for other rooms nor installed. EXPOSED ones may stand in any header.
+# Declares a room: one folder under src/, one target, one namespace.
+#
+# DEPENDS   rooms that it may include. Drives linking and, through rooms.txt in the build folder, the test `layering`.
+# FOREIGN   include prefixes of third-party libraries that only this room may include. A header that includes one is
+#           internal: other rooms must not include it, and it is not installed.
+# EXPOSED   include prefixes that any header of the room may include.
+# LIBRARIES, EXPOSED_LIBRARIES   the targets that provide FOREIGN and EXPOSED.
 function(orrery_room name)
   cmake_parse_arguments(PARSE_ARGV 1 ROOM "" "" "DEPENDS;LIBRARIES;FOREIGN;EXPOSED_LIBRARIES;EXPOSED")
   if(ROOM_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "orrery_room(${name}): what is ${ROOM_UNPARSED_ARGUMENTS}?")
+    message(FATAL_ERROR "orrery_room(${name}): unknown arguments: ${ROOM_UNPARSED_ARGUMENTS}")
   endif()
   set(folder ${CMAKE_CURRENT_SOURCE_DIR}/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
@@ -53,12 +56,12 @@ function(orrery_room name)
   set_property(GLOBAL APPEND_STRING PROPERTY ORRERY_ROOM_TABLE "${name} | ${depends} | ${foreign} | ${exposed}\n")
 endfunction()
 
-# No rounding but the one that is written: a fused operation stands in the text where one is wanted. So that pictures are
-# the same bit for bit, also in programs that instantiate the installed kernel text.
+# The compiler must not fuse operations: the source has explicit fused operations where they are wanted. Images are
+# therefore bit-identical, also in programs that instantiate the installed kernel source.
 set(ORRERY_ARITHMETIC -ffp-contract=off)
 
-# What every processor must have: rooms with per-instruction-set text start here, and dispatch upwards from it at run time.
-# AVX-512's later additions are left out: they bring nothing to this code and cost a compilation each.
+# Minimum CPU requirements: rooms with Highway code start from this instruction set and dispatch to better ones at run
+# time. Later AVX-512 targets are disabled: they do not speed up this code, and each would cost one more compilation.
 set(ORRERY_SIMD "")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(ORRERY_SIMD -march=x86-64-v2 -maes -mpclmul)
@@ -71,7 +74,7 @@ endif()
 
 set(ORRERY_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  list(APPEND ORRERY_WARNINGS -Wno-restrict) # GCC 12 sees overlapping copies in std::string's operator+ that are not there
+  list(APPEND ORRERY_WARNINGS -Wno-restrict) # GCC 12 reports overlapping copies in std::string's operator+ by mistake
 endif()
 if(ORRERY_WERROR)
   list(APPEND ORRERY_WARNINGS -Werror)

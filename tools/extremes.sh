@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Renders scenes/extremes with each precision, side by side into one picture: exact, fast, book; a row a scene.
+# Renders scenes/extremes into one image: a row per scene, with the precisions exact, fast and book side by side.
 #
 #   tools/extremes.sh [out/extremes.png]
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 output=${1:-$root/out/extremes.png}
 orrery=${ORRERY:-$root/build/src/orrery}
-command -v oiiotool >/dev/null || { echo "oiiotool is missing; it is in the package openimageio-tools" >&2; exit 1; }
+command -v oiiotool >/dev/null || { echo "extremes.sh: oiiotool not found; install openimageio-tools" >&2; exit 1; }
 mkdir -p "$(dirname "$output")"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -22,6 +22,6 @@ for scene in "$root"/scenes/extremes/*.toml; do
   done
   rows=$((rows + 1))
 done
-# Nothing but pixels: the same pictures give the same file.
+# Without metadata the same images give the same file.
 oiiotool "${pictures[@]}" --mosaic:pad=4 "3x$rows" --eraseattrib ".*" -o "$output"
 echo "$output"

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Prints every figure that docs/numerics.md promises, each measured now by the test behind it, and fails if one of them is
-# missed. Wants a build with tests in build/ (ORRERY_BUILD for another).
+# Measures and prints every figure that docs/numerics.md guarantees, with the test behind it. Fails if a test fails.
+# Requires a build with tests in build/ (ORRERY_BUILD selects another build folder).
 #
-#   tools/figures.sh           the length of the tests, a minute or two
-#   tools/figures.sh --long    the length that is promised: 1e7 rays in each regime, 1e9 in the furnace, 1e8 by Embree and
-#                              by the list; a quarter of an hour and more
+#   tools/figures.sh           as many rays as in ./test.sh; takes one or two minutes
+#   tools/figures.sh --long    as in docs/numerics.md: 1e7 rays per regime, 1e9 in the furnace, 1e8 with Embree and with
+#                              the list; takes 15 minutes or more
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${ORRERY_BUILD:-$root/build}
@@ -14,7 +14,7 @@ if [ "${1:-}" = --long ]; then
 fi
 status=0
 
-# figure WHAT PROGRAM FILTER: what the tests print, and their verdict.
+# figure WHAT PROGRAM FILTER: runs tests; prints their verdict and output.
 figure() {
   local output verdict=held start=$SECONDS
   output=$("$build/tests/$2" --gtest_filter="$3" 2>&1) || verdict="MISSED"
@@ -27,16 +27,16 @@ figure() {
   fi
 }
 
-figure "hit or miss, hit point, distance, against 113 and 320 bits" numeric/numeric 'Extremes.HitOrMissAndHitPointError'
-figure "the book's formula before the same judge, which must find it guilty" numeric/numeric 'Extremes.TheBooksFormulaFailsThem'
-figure "grey furnace, radii 1e-12 .. 1e12: no self-hit" numeric/numeric 'ExtremeScenes.AGreySphereNeverHitsItself'
-figure "contacts at gaps of 1e-13 radii and more" numeric/numeric 'Extremes.NoContactIsLost'
+figure "hit or miss, hit point and distance against 113 and 320 bits" numeric/numeric 'Extremes.HitOrMissAndHitPointError'
+figure "the book's formula must fail the same test" numeric/numeric 'Extremes.TheBooksFormulaFailsThem'
+figure "grey furnace, radii 1e-12 .. 1e12: no self-intersection" numeric/numeric 'ExtremeScenes.AGreySphereNeverHitsItself'
+figure "contacts at gaps of 1e-13 radii or more" numeric/numeric 'Extremes.NoContactIsLost'
 figure "white furnaces" numeric/numeric 'ExtremeScenes.*-*AGreySphereNeverHitsItself'
-figure "Embree against the list, id and distance" unit_accel 'AccelAccel.EmbreeFindsExactlyWhatTheListFinds'
-figure "scaled by 2^-60 .. 2^48: the same bits" unit_render 'RenderRender.TheSizeOfTheWorldChangesNoBit'
-figure "threads, tiles, shards, lanes, traversals: the same bits" unit_render 'RenderRender.*SameBits:RenderTiles.*:RenderTraversals.AllGiveTheSameBits'
-figure "hollow glass by negative radius is the inverse index" unit_render 'RenderRender.AShellOfNegativeRadius*'
-figure "an albedo wrong by 0.1 %" statistical/statistical 'StatisticalClosedForm.AnAlbedoWrong*'
+figure "Embree against the list: ids and distances" unit_accel 'AccelAccel.EmbreeFindsExactlyWhatTheListFinds'
+figure "scenes scaled by 2^-60 .. 2^48: the same bits" unit_render 'RenderRender.TheSizeOfTheWorldChangesNoBit'
+figure "threads, tiles, shards, lanes, traversals: the same bits" unit_render 'RenderRender.*SameBits:RenderPasses.*SameBits*:RenderTraversals.AllGiveTheSameBits'
+figure "a shell of negative radius is a sphere of the inverse index" unit_render 'RenderRender.AShellOfNegativeRadius*'
+figure "an albedo wrong by 0.1 % is detected" statistical/statistical 'StatisticalClosedForm.AnAlbedoWrong*'
 figure "samplers against their distributions" statistical/statistical 'StatisticalSamplers.*'
 echo
 "$build/src/orrery" bench "$root/scenes/book/final.toml" --quiet

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes docs/layers.jpg: the layers of the book's last picture, side by side. Needs oiiotool (openimageio-tools).
+# Makes docs/layers.jpg: the layers of the book's final scene, side by side. Needs oiiotool (openimageio-tools).
 #
 #   tools/layers.sh [ORRERY]
 set -euo pipefail
@@ -33,7 +33,7 @@ tile Z Z,Z,Z --mulc 0.04
 tile P P.X,P.Y,P.Z --mulc 0.1
 tile variance variance.R,variance.G,variance.B --mulc 300
 tile CryptoObject CryptoObject00.G,CryptoObject00.A,CryptoObject01.G
-# Only the picture: commands, and with them this machine's paths, stay out of it.
+# Metadata is removed, because it contains commands with paths of this machine.
 oiiotool --nosoftwareattrib "${tiles[@]}" --mosaic:pad=4 4x4 --resize 1200x0 --eraseattrib '.*' --compression jpeg:85 \
   -o "$root/docs/layers.jpg"
 echo "docs/layers.jpg"

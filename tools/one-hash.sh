@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Renders one scene with every material in many ways and compares the pictures' bytes: compilers, optimisation levels,
-# threads, instruction sets, accelerators. Takes some minutes, since it builds the program several times.
+# Checks that a scene with every material renders to the same bytes with different compilers, optimisation levels, numbers
+# of threads, instruction sets and accelerators. Builds the program several times, which takes some minutes.
 #
-#   tools/one-hash.sh [WORKDIR]      a kept WORKDIR makes the second run quick
+#   tools/one-hash.sh [WORKDIR]      keeping WORKDIR speeds up the next run
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 work=${1:-$(mktemp -d)}
@@ -12,14 +12,14 @@ scene="$root/tests/determinism/everything.toml"
 reference=""
 status=0
 
-# picture NAME PROGRAM ARGS...: renders, hashes, compares with the first. The instruction set is the one that ran, as
-# --stats reports it, not the one that was requested.
+# picture NAME PROGRAM ARGS...: renders, hashes, and compares with the first hash. Prints the instruction set that ran, from
+# --stats, which may not be the requested one.
 picture() {
   local name=$1 program=$2 hash isa
   shift 2
   if ! "$program" render "$scene" -o "$work/picture.exr" --type float --reproducible -q --stats "$work/stats.json" "$@" \
     2>"$work/error"; then
-    printf '%-44s left out: %s\n' "$name" "$(head -n 1 "$work/error")"
+    printf '%-44s skipped: %s\n' "$name" "$(head -n 1 "$work/error")"
     return
   fi
   isa=$(sed -n 's/.*"isa": "\(.*\)".*/\1/p' "$work/stats.json")
@@ -27,10 +27,10 @@ picture() {
   reference=${reference:-$hash}
   printf '%-44s %s  %s\n' "$name" "$hash" "$isa"
   [ "$hash" = "$reference" ] || status=1
-  case " $* " in *" --isa $isa "*) ;; *" --isa "*) echo "another instruction set than requested ran"; status=1 ;; esac
+  case " $* " in *" --isa $isa "*) ;; *" --isa "*) echo "$name: ran with $isa, not with the requested instruction set"; status=1 ;; esac
 }
 
-# program NAME COMPILER FLAGS: builds once, prints the path.
+# program NAME COMPILER FLAGS: builds the program, prints its path.
 program() {
   local build="$work/$1"
   if ! command -v "$2" >/dev/null; then return 1; fi
@@ -48,5 +48,5 @@ if p=$(program gcc-native g++ "-O3 -march=native -DNDEBUG"); then picture "GCC -
 if p=$(program clang-O2 clang++ "-O2 -DNDEBUG"); then picture "Clang -O2" "$p"; fi
 if p=$(program clang-native clang++ "-O3 -march=native -DNDEBUG"); then picture "Clang -O3 -march=native" "$p"; fi
 "$first" --version | grep -E 'Embree'
-if [ "$status" -eq 0 ]; then echo "one hash"; else echo "NOT one hash"; fi
+if [ "$status" -eq 0 ]; then echo "all hashes are equal"; else echo "HASHES DIFFER"; fi
 exit "$status"

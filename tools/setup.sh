@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2154  # read by scripts that have set `root`
-# Sourced by run.sh and test.sh, which set `root` first: installs what is missing, configures, builds. Quiet about what
-# succeeds; where something fails it shows the log and says what to do.
+# Sourced by run.sh, test.sh and .ci/run, which set `root` first: installs missing packages, configures, builds. Prints
+# little on success; on failure it prints the end of the log and what to do.
 
 say() { printf '%s\n' "$*" >&2; }
 die() {
@@ -9,16 +9,16 @@ die() {
   exit 1
 }
 
-# The last lines of a log, where a failure shows.
+# show_log FILE: prints the last lines of a log.
 show_log() {
   tail -n 60 "$1" >&2
-  say "(the last lines of $1)"
+  say "(last lines of $1)"
 }
 
-# missing_packages LIST...: those packages of the lists that are not installed, one a line.
+# missing_packages LIST...: prints the packages in the lists that are not installed, one per line.
 missing_packages() {
   local wanted
-  # One question for all packages, so that an up-to-date machine loses no time. Unknown ones make its status 1.
+  # One query for all packages saves time on an up-to-date machine. Unknown packages make its status 1.
   wanted=$(sed 's/#.*//' "$@")
   # shellcheck disable=SC2086  # a word is a package
   { dpkg-query -W -f '${Package} ${db:Status-Status}\n' $wanted 2>/dev/null || true; } |
@@ -26,10 +26,10 @@ missing_packages() {
       END { n = split(wanted, names); for (i = 1; i <= n; ++i) if (!(names[i] in have)) print names[i] }'
 }
 
-# install_missing LIST...: installs them; does nothing where nothing is missing.
+# install_missing LIST...: installs the missing packages of the lists, if any.
 install_missing() {
   if ! command -v dpkg-query >/dev/null; then
-    say "This is no Debian or Ubuntu: taking for granted that what tools/packages-*.txt list is there."
+    say "Not a Debian or Ubuntu system: assuming that the packages in tools/packages-*.txt are installed."
     return 0
   fi
   local missing
@@ -38,25 +38,25 @@ install_missing() {
 
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || die "these packages are missing: $missing
-Install them as root (apt-get install --no-install-recommends $missing), or install sudo, then start this again."
+    command -v sudo >/dev/null || die "missing packages: $missing
+Install them as root (apt-get install --no-install-recommends $missing) or install sudo, then try again."
     as_root=(sudo)
   fi
-  say "Installing the packages that are missing: $missing"
+  say "Installing missing packages: $missing"
   local log
   log=$(mktemp)
-  # An index that cannot be refreshed does not matter if the packages are found all the same.
+  # A stale index does not matter if the packages can be installed.
   "${as_root[@]}" apt-get update -qq >"$log" 2>&1 </dev/null || true
   # shellcheck disable=SC2086  # a word is a package
   if ! "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 install -y -qq \
     --no-install-recommends $missing >>"$log" 2>&1 </dev/null; then
     show_log "$log"
-    die "apt-get could not install: $missing"
+    die "apt-get cannot install: $missing"
   fi
   rm -f "$log"
 }
 
-# configure OPTION...: configures build/ with these CMake options, where that has not been done with the same ones.
+# configure OPTION...: configures build/ with these CMake options, unless it is already configured with the same ones.
 configure() {
   local stamp="$root/build/.configured-with"
   set -- "-DORRERY_WERROR=${ORRERY_WERROR:-OFF}" "$@"
@@ -64,12 +64,12 @@ configure() {
   mkdir -p "$root/build"
   if ! cmake -S "$root" -B "$root/build" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$root/build/configure.log" 2>&1; then
     show_log "$root/build/configure.log"
-    die "CMake could not configure; where $root/build is left from something else, remove it and start this again"
+    die "CMake configuration failed; if $root/build is from another build, remove it and try again"
   fi
   printf '%s' "$*" >"$stamp"
 }
 
-# build MINUTES TARGET: builds a target in build/. MINUTES is what that takes one core the first time, for the message.
+# build MINUTES TARGET: builds a target in build/. MINUTES is the time of the first build on one core, for the message.
 # Sets build_seconds.
 build() {
   local cpu_minutes=$1 target=$2 begin=$SECONDS
@@ -80,18 +80,18 @@ build() {
     first=1
     say "Building orrery (first time: about $(((cpu_minutes + cores - 1) / cores)) minutes) ..."
   elif [ -n "$(find "$root/src" "$root/tests" "$root/bench" "$root/cmake" "$root/CMakeLists.txt" -newer "$stamp" -print -quit)" ]; then
-    say "Building what has changed ..."
+    say "Building changes ..."
   fi
-  # Two that start at once, of one checkout, take turns.
+  # Concurrent calls in one checkout take turns.
   exec 9>"$root/build/.lock"
   flock 9
   if ! cmake --build "$root/build" --target "$target" >"$root/build/build.log" 2>&1 9>&-; then
     show_log "$root/build/build.log"
-    die "orrery could not be built; where memory was short, CMAKE_BUILD_PARALLEL_LEVEL=1 before the command helps"
+    die "the build failed; if memory ran out, try again with CMAKE_BUILD_PARALLEL_LEVEL=1 in the environment"
   fi
   exec 9>&-
   touch "$stamp"
-  # shellcheck disable=SC2034  # for the scripts that source this
+  # shellcheck disable=SC2034  # used by the scripts that source this
   build_seconds=$((SECONDS - begin))
   if [ "$first" = 1 ]; then say "Built in $build_seconds s."; fi
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Searches the matrices of src/kernel/sobol_columns.h, kSobolOrders, and prints them. Some seconds.
+// Searches for the matrices kSobolOrders of src/kernel/sobol_columns.h and prints them. Takes some seconds.
 //   c++ -std=c++20 -O2 -Isrc tools/sobol_orders.cpp -o build/sobol_orders && build/sobol_orders
 //
-// Vertex v of a path takes the points of one two-dimensional sequence in the order index -> A_v index, where A_v is a
-// matrix over two elements. All A_v together make one net in twice as many dimensions, and this search chooses them so
-// that numbers of different vertices fill space evenly, too. The judge is the variance of scrambled nets in closed
-// form: over all scramblings two points whose coordinates share l leading digits have the covariance k(l) of a random
-// function with independent wavelets, and dimensions multiply as prod (1 + weight k(l)). Only differences of indices
-// count, so 2^m points cost 2^m terms.
+// Vertex v of a path uses the points of one two-dimensional sequence in the order index -> A_v index, where A_v is a
+// matrix over GF(2). All A_v together define one digital net with twice as many dimensions as vertices; the search
+// makes numbers of different vertices jointly well distributed, too. The cost function is the closed-form variance of
+// scrambled nets: over all scramblings, two points whose coordinates share l leading digits have the covariance k(l) of
+// a random function with independent wavelets, and dimensions multiply as prod (1 + weight k(l)). The covariance
+// depends only on the difference of two indices, so 2^m points cost 2^m terms.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -27,29 +27,29 @@ using orrery::kernel::kSobolFreeBits;
 using orrery::kernel::kSobolVertices;
 using orrery::kernel::SobolOrder;
 
-constexpr int kJudgedBits = 10;  ///< nets of 4 to 1024 points
+constexpr int kJudgedBits = 10;  ///< nets of 4 to 1024 points count
 constexpr int kJudged = 1 << kJudgedBits;
 
-/// How important the numbers of a vertex are: 1 at the camera, 0.6 of the vertex before at the others.
+/// Weight of a vertex relative to the previous one; the camera has weight 1.
 constexpr double kDecay = 0.6;
-/// What a product of two vertices that varies twice as much as independent ones costs, in factors of e of a variance.
+/// Cost, in factors of e in the variance, of a product of two vertices with twice the variance of independent numbers.
 constexpr double kExcess = 1;
 constexpr int kStarts = 12, kFirstTries = 750, kSteps = 3000, kMostInVain = 800;
 
-/// What a function's variance is made of: shares of the levels of digits.
+/// Distribution of an integrand's variance over the digits.
 enum class Kind { kSmooth, kRough };
 double covariance(Kind kind, int shared_digits) {
   return kind == Kind::kSmooth ? 1 - 1.75 * std::pow(0.25, shared_digits) : 1 - 1.5 * std::pow(0.5, shared_digits);
 }
 
-/// One of Sobol's first four dimensions, bits in opposite order.
+/// A coordinate in one of the first four Sobol dimensions, with its bits in reverse order.
 std::uint32_t coordinate(int dimension, std::uint32_t at) {
   if (dimension == 0) return at;
   std::uint32_t out = 0;
   for (std::size_t j = 0; j < kSobolBits; ++j) {
     if ((at >> j & 1) == 0) continue;
     if (dimension == 1) {
-      // (1 + t)^j over two elements.
+      // (1 + t)^j over GF(2).
       for (std::size_t i = 0; i <= j; ++i) out ^= ((i & j) == i ? 1u : 0u) << i;
     } else {
       out ^= dimension == 2 ? kSobolColumns.third[j] : kSobolColumns.fourth[j];
@@ -65,7 +65,7 @@ std::uint32_t apply(const SobolOrder& order, std::uint32_t index) {
   return out;
 }
 
-/// Whether the corner of the first `bits` rows and columns has an inverse.
+/// Whether the submatrix of the first `bits` rows and columns is invertible.
 bool is_invertible(const SobolOrder& order, std::size_t bits) {
   std::vector<std::uint32_t> rows(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(bits));
   for (std::size_t bit = 0; bit < bits; ++bit) {
@@ -79,7 +79,7 @@ bool is_invertible(const SobolOrder& order, std::size_t bits) {
   return true;
 }
 
-using Covariances = std::vector<double>;  ///< by the difference of two indices
+using Covariances = std::vector<double>;  ///< indexed by the difference of two indices
 
 Covariances covariances(const SobolOrder& order, int dimension, Kind kind) {
   double by_digits[33];
@@ -90,10 +90,10 @@ Covariances covariances(const SobolOrder& order, int dimension, Kind kind) {
   return out;
 }
 
-/// The functions of all dimensions so far.
+/// Product of the covariances of all dimensions so far.
 struct Net {
   Covariances product = Covariances(kJudged, 1.0);
-  double independent = 1;  ///< the same at one point
+  double independent = 1;  ///< the same for independent points
 
   void add(const Covariances& dimension, double weight) {
     for (std::size_t d = 0; d < kJudged; ++d) product[d] *= 1 + weight * dimension[d];
@@ -127,7 +127,7 @@ class Search {
       }
       orders_.push_back(order);
     }
-    // When a path happens matters most together with where it starts, and at few samples, too: no bits are free.
+    // A path's time matters most in combination with the camera's numbers, also at few samples: no free bits.
     with_lens_ = camera_only.with_lens_;
     pinhole_ = camera_only.pinhole_;
     earlier_ = camera_only.earlier_;
@@ -140,8 +140,10 @@ class Search {
   }
 
  private:
-  /// Of nets of 4 .. 1024 points: the sum of the logarithms of their variances, with and without a lens, each relative
-  /// to independent points. And what products of two numbers of different vertices vary more than independent ones.
+  /// For nets of 4 to 1024 points: the sum of the logarithms of their variances, with and without a lens, relative to
+  /// independent points; plus the excess variance of products of two numbers at different vertices.
+  ///
+  /// Result     a lower bound if it is `most` or more
   double cost(const SobolOrder& order, int dimensions, double weight, Kind kind, double most) const {
     Covariances own(kJudged, 1.0);
     double one = 1;
@@ -189,7 +191,7 @@ class Search {
     return out;
   }
 
-  /// Changes up to three bits.
+  /// Flips up to three random bits.
   void change(SobolOrder& order, std::size_t free_bits) {
     for (auto n = 1 + chance() % 3; n > 0; --n) {
       const std::size_t j = chance() % kJudgedBits;
@@ -197,7 +199,7 @@ class Search {
     }
   }
 
-  /// The best of a few climbs.
+  /// The best order of kStarts hill climbs.
   SobolOrder best(int dimensions, double weight, Kind kind, std::size_t free_bits) {
     SobolOrder out{};
     double lowest = HUGE_VAL;
@@ -230,7 +232,7 @@ class Search {
 
   std::mt19937 random_{11};
   Net with_lens_, pinhole_;
-  std::vector<Covariances> earlier_;  ///< of all dimensions at earlier vertices
+  std::vector<Covariances> earlier_;  ///< of all dimensions of earlier vertices
   std::vector<SobolOrder> orders_;
 };
 

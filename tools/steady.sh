@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Shows that no test depends on the speed of the machine: runs the built tests several times on an idle machine, beside
-# four busy processes on the same two processors, and on a single processor. Prints a table of the runs; exit status 1
-# where a test failed.
+# Checks that no test depends on the speed of the machine: runs the built tests several times on two processors of an idle
+# machine, on two processors with four busy processes, and on a single processor. Prints a table of the runs. Exit status
+# 1 if a test failed.
 #
 #   tools/steady.sh [--idle N] [--busy N] [--single N] [--build DIR] [CTEST_ARGUMENT ...]
 #
-#   --idle N     N runs with nothing else to do (the script cannot know; it prints the load)
-#   --busy N     N runs beside four processes that never wait, pinned to the same two processors
-#   --single N   N runs under `taskset -c` of one processor
-#   --build DIR  the build folder; default: build
+#   --idle N     N runs without other load (the script only prints the load)
+#   --busy N     N runs with four busy processes pinned to the same two processors
+#   --single N   N runs pinned to one processor
+#   --build DIR  build folder; default: build
 #
-# Without --idle, --busy and --single: three, three and one. Further arguments go to ctest, by default `-LE slow`.
+# Default: three idle, three busy and one single run. Further arguments are passed to ctest; default: `-LE slow`.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 usage() {
@@ -38,7 +38,7 @@ done
 if [ ${#runs[@]} -eq 0 ]; then runs=([idle]=3 [busy]=3 [single]=1); fi
 if [ $# -eq 0 ]; then set -- -LE slow; fi
 
-# "0-3,8" as one number a line: the processors that this shell may use.
+# processors: prints the processors that this shell may use, one per line (expands "0-3,8").
 processors() {
   local range
   for range in $(taskset -cp $$ | sed 's/.*: //; s/,/ /g'); do seq "${range%-*}" "${range#*-}"; done
@@ -55,7 +55,7 @@ stop_busy() {
 }
 trap 'stop_busy; rm -rf "$work"' EXIT
 
-# attribute NAME FILE: of the <testsuite> in a JUnit file.
+# attribute NAME FILE: prints an attribute of the <testsuite> in a JUnit file.
 attribute() { sed -n "s/^[[:space:]]*$1=\"\([0-9]*\)\".*/\1/p" "$2" | head -n 1; }
 
 status=0

@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Renders scenes/thumbnails/, the pictures that scenes/README.md shows. Three or four minutes on two cores.
+# Renders scenes/thumbnails/, the images in scenes/README.md. Takes three or four minutes on two cores.
 #   tools/thumbnails.sh [PROGRAM]     default: build/src/orrery, which ./run.sh builds
 set -eu
 cd "$(dirname "$0")/.."
 program=${1:-build/src/orrery}
 if ! command -v "$program" > /dev/null; then
-  echo "thumbnails: there is no program $program; build it by ./run.sh --version, or name another" >&2
+  echo "thumbnails.sh: $program not found; build it with ./run.sh --version, or give its path" >&2
   exit 66
 fi
 out=scenes/thumbnails
@@ -22,7 +22,7 @@ picture() {
   echo "$name"
   "$program" render "$scene" -o "$out/$name.png" --width 240 --height 135 --quiet "$@"
 }
-# As the book shows a scene before it knows of gamma, and after.
+# The book's display transforms: linear until it introduces gamma, then the square root.
 linear() { name=$1; shift; picture "scenes/book/$name.toml" "$name" --view Raw "$@"; }
 gamma() { name=$1; shift; picture "scenes/book/$name.toml" "$name" --display "Gamma 2.0 Rec.709" --samples 1000 "$@"; }
 
