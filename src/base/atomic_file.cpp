@@ -21,7 +21,7 @@
 namespace orrery::base {
 namespace {
 
-/// Names that a signal handler would have to unlink: fixed memory, since a handler may not allocate.
+/// File names that a signal handler must unlink; in static memory because a handler must not allocate.
 struct Slot {
   std::atomic<bool> taken{false}, armed{false};
   char name[PATH_MAX];
@@ -36,7 +36,7 @@ int take_slot(const std::string& name) {
     slots[i].armed.store(true, std::memory_order_release);
     return static_cast<int>(i);
   }
-  return -1;  // more files at a time than anybody writes: this one is not cleaned up by a signal
+  return -1;  // all slots are taken: a signal leaves this file behind
 }
 
 void free_slot(int index) noexcept {
@@ -56,24 +56,24 @@ std::filesystem::path directory_of(const std::filesystem::path& path) {
   throw Error(ErrorKind::kIo, "writing " + path.string() + " failed: " + std::strerror(error));
 }
 
-/// What a rename would replace: a link stays, and the file it leads to is written. Devices and pipes are refused, since
-/// a rename would put a plain file in the place of /dev/null.
+/// Returns the path to rename onto: the target of a symbolic link, so that the link itself stays. Devices and pipes are
+/// refused, because a rename would replace /dev/null by a regular file.
 std::filesystem::path renamed_onto(const std::filesystem::path& path) {
   std::error_code ignored;
   struct stat entry {};
-  // A name that is too long, a loop of links, a folder that may not be searched: found here, not after the work.
+  // Finds names that are too long, loops of links and unsearchable directories before rendering, not after.
   if (::lstat(path.c_str(), &entry) != 0 && errno != ENOENT && errno != ENOTDIR)
     cannot_create(path, std::strerror(errno));
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (path.filename().empty() || std::filesystem::is_directory(status)) cannot_create(path, "it is a directory");
   if (!std::filesystem::exists(status)) return path;
-  if (!std::filesystem::is_regular_file(status)) cannot_create(path, "it is no regular file");
+  if (!std::filesystem::is_regular_file(status)) cannot_create(path, "it is not a regular file");
   if (!std::filesystem::is_symlink(path, ignored)) return path;
   std::filesystem::path target = std::filesystem::canonical(path, ignored);
   return target.empty() ? path : target;
 }
 
-/// A new, empty file, and its entry among the names that a signal handler unlinks.
+/// A new, empty file, and its slot in the table that a signal handler unlinks.
 struct NewFile {
   std::string name;
   int slot = -1;
@@ -88,15 +88,15 @@ std::string random_letters(std::size_t count) {
   return out;
 }
 
-/// Creates a file beside `target`; `path` is what the user calls it.
+/// Creates a file in the directory of `target`; messages name it `path`.
 NewFile create_beside(const std::filesystem::path& path, const std::filesystem::path& target) {
   constexpr std::size_t kLetters = 8;
   constexpr int kTries = 16;
   std::error_code ignored;
   const std::filesystem::path directory = directory_of(target);
   if (!std::filesystem::is_directory(directory, ignored))
-    cannot_create(path, "there is no directory " + directory.string());
-  // Where a name fits into the directory its temporary name must fit, too.
+    cannot_create(path, "directory " + directory.string() + " does not exist");
+  // If the file system accepts a name, it must also accept the temporary name.
   const long limit = ::pathconf(directory.c_str(), _PC_NAME_MAX);
   const std::size_t longest = limit > 0 ? static_cast<std::size_t>(limit) : kLongestFileName;
   const std::size_t room = longest - std::min(longest, 2 + kLetters);
@@ -104,7 +104,7 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
   for (int i = 0; i < kTries; ++i) {
     NewFile file;
     file.name = (directory / ("." + stem + "." + random_letters(kLetters))).string();
-    // The slot first: a signal that comes right after the file is created must find its name.
+    // The slot is taken first: a signal right after the file is created must find its name.
     file.slot = take_slot(file.name);
     const int descriptor = ::open(file.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0) {
@@ -137,12 +137,12 @@ void AtomicFile::commit() {
   const int synced = ::fsync(file);
   const int error = errno;
   ::close(file);
-  if (synced != 0 && error != EINVAL) io_failed(path_, error);  // EINVAL: this file system has nothing to sync
+  if (synced != 0 && error != EINVAL) io_failed(path_, error);  // EINVAL: the file system does not support fsync
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) io_failed(path_, errno);
   committed_ = true;
   const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
-    ::fsync(directory);  // the name itself; where that is not possible the file is still whole
+    ::fsync(directory);  // the name itself; if that fails, the file is still complete
     ::close(directory);
   }
 }

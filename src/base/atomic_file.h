@@ -6,25 +6,25 @@
 
 namespace orrery::base {
 
-/// A file that appears under its name whole, or not at all.
+/// A file that appears under its name complete, or not at all.
 ///
-/// It is written under a temporary name in the same directory by whoever likes, then synced and renamed. What was not
-/// committed is removed, also when an exception passes by or the process is told to stop (remove_unfinished_files).
+/// The caller writes to a temporary file in the same directory, which commit() syncs and renames. A file that is not
+/// committed is removed, also if an exception is thrown or a signal ends the process (remove_unfinished_files).
 class AtomicFile {
  public:
-  /// A link stays a link: the file that it leads to is written.
+  /// Creates the temporary file. If `path` is a symbolic link, its target is written and the link stays.
   ///
-  /// Errors     base::Error(kCannotCreate) naming the reason, where the directory cannot take a new file, or where the
-  ///            name belongs to a directory, a device or a pipe
+  /// Errors     base::Error(kCannotCreate) with the reason, if no file can be created in the directory, or if the name
+  ///            belongs to a directory, a device or a pipe
   explicit AtomicFile(std::filesystem::path path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Where to write; exists, and is empty, until somebody writes.
+  /// Returns the path to write to; the file exists and is empty.
   const std::filesystem::path& temporary() const noexcept { return temporary_; }
 
-  /// Syncs and renames.
+  /// Syncs the temporary file and renames it.
   ///
   /// Errors     base::Error(kIo)
   void commit();
@@ -35,15 +35,16 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Unlinks what AtomicFiles have not committed. Safe in a signal handler; the process must end right after.
+/// Unlinks the temporary files of all uncommitted AtomicFiles. Safe in a signal handler; the process must end right
+/// after.
 void remove_unfinished_files() noexcept;
 
-/// Writes a text as an AtomicFile.
+/// Writes a text to a file by an AtomicFile.
 ///
 /// Errors     as AtomicFile
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
-/// Finds out before any work is done whether a file could be created there; leaves no trace.
+/// Checks whether a file could be created, so that failure is found before any work; leaves no trace.
 ///
 /// Errors     base::Error(kCannotCreate) naming path and reason
 void check_creatable(const std::filesystem::path& path);

@@ -7,7 +7,7 @@
 namespace orrery::base {
 namespace {
 
-/// Text out of a file goes to a terminal: bytes that would command it become question marks.
+/// Replaces control characters, which could control the terminal, by question marks.
 std::string printable(std::string_view text) {
   std::string out(text);
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -19,10 +19,10 @@ std::string printable(std::string_view text) {
   return out;
 }
 
-/// The second and later bytes of a UTF-8 character take no room of their own.
+/// True for the second and later bytes of a UTF-8 character, which take no column.
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
 
-/// A tab must stay a tab under a tab, or the caret does not stand under its column.
+/// Returns the line with the caret. It repeats the tabs of the source line, so that the caret is under its column.
 std::string caret_line(const Diagnostic& diagnostic) {
   const std::string& source = diagnostic.source_line;
   const std::size_t begin = std::min(static_cast<std::size_t>(diagnostic.column) - 1, source.size());

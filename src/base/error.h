@@ -9,22 +9,22 @@
 
 namespace orrery::base {
 
-/// What went wrong, in the classes that a caller can act on; each is one exit status of the program.
+/// Kinds of errors that a caller can distinguish; exit_status() maps them to the exit status of the program.
 enum class ErrorKind {
-  kInternal,      ///< a broken promise of our own code (exit 1)
-  kNoMemory,      ///< more memory is needed than there is (exit 1)
-  kUsage,         ///< the request itself makes no sense (exit 2)
-  kBadData,       ///< a scene or data file says something wrong (exit 65)
+  kInternal,      ///< a bug in orrery (exit 1)
+  kNoMemory,      ///< not enough memory (exit 1)
+  kUsage,         ///< the request is invalid (exit 2)
+  kBadData,       ///< a scene or data file is invalid (exit 65)
   kMissingInput,  ///< an input cannot be opened (exit 66)
   kCannotCreate,  ///< an output cannot be created (exit 73)
-  kIo,            ///< reading or writing failed midway (exit 74)
-  kStopped,       ///< stopped early on request; nothing was wrong (exit 75)
+  kIo,            ///< reading or writing failed (exit 74)
+  kStopped,       ///< stopped early on request; not a failure (exit 75)
 };
 
-/// The one exception type of all cold paths.
+/// The exception type of all cold paths.
 ///
-/// A foreign library's error is translated into this once, at the edge of the room that owns the library. Where a
-/// file's text caused it, `findings` hold every place that is wrong, not only the first.
+/// The room that owns a third-party library translates the library's errors into this type. For errors in a file,
+/// `diagnostics` holds all of them, not only the first.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}

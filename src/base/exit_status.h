@@ -5,7 +5,7 @@
 
 namespace orrery::base {
 
-/// The program's exit status for each kind of error; stable, documented in the man page.
+/// Returns the program's exit status for a kind of error; stable, documented in the man page.
 constexpr int exit_status(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::kInternal: return 1;

@@ -8,7 +8,9 @@
 namespace orrery::base {
 namespace {
 
-/// FNV-1a, 32 bits.
+/// Returns the 32-bit FNV-1a hash of a text.
+///
+/// Reference  fnv
 std::uint32_t digest(std::string_view text) {
   std::uint32_t hash = 0x811c9dc5u;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193u;

@@ -7,17 +7,17 @@
 
 namespace orrery::base {
 
-/// Bytes of the longest file name that the common file systems store.
+/// Maximum length of a file name on common file systems, bytes.
 inline constexpr std::size_t kLongestFileName = 255;
 
-/// The longest prefix of at most `bytes` bytes that does not end inside a UTF-8 character: some file systems refuse
-/// names that are not UTF-8.
+/// Returns the longest prefix of at most `bytes` bytes that does not split a UTF-8 character: some file systems refuse
+/// names that are not valid UTF-8.
 std::string_view utf8_prefix(std::string_view text, std::size_t bytes);
 
-/// `stem` + `suffix` as the name of a companion file, such as a checkpoint. Where that is longer than kLongestFileName
-/// the stem is shortened and ends in a digest of the whole stem, so that different stems keep different names.
+/// Returns `stem` + `suffix` as the name of a companion file, such as a checkpoint. If that exceeds kLongestFileName,
+/// the stem is truncated and a digest of the whole stem appended, so that different stems keep different names.
 ///
-/// Domain     the suffix is shorter than half of a name
+/// Domain     a suffix shorter than kLongestFileName / 2
 std::string companion_name(std::string_view stem, std::string_view suffix);
 
 }  // namespace orrery::base

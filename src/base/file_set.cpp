@@ -31,7 +31,7 @@ std::vector<FileSet::Key> FileSet::keys_of(const fs::path& file) {
     std::error_code ignored;
     if (fs::is_symlink(file, ignored)) entry = fs::canonical(file, ignored);
   }
-  // The name counts for a file that exists, too: it may be replaced, and have another inode, before it is looked up.
+  // The name is a key of existing files, too: a file may be replaced, and get another inode, before the next lookup.
   const Folder& folder = folder_of(entry);
   std::error_code ignored;
   const std::string name =

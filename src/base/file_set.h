@@ -13,21 +13,21 @@ namespace orrery::base {
 /// The files that a run reads and writes. Every command adds all of its files here before it writes any, so that no
 /// input is overwritten and no two outputs are the same file.
 ///
-/// Files are compared by identity, not by path: by device and inode where they exist, and by their folder and name
-/// where they do not. A symbolic link, a hard link and another spelling of a path are the same file.
+/// Files are compared by identity, not by path: by device and inode if they exist, else by folder and name. A symbolic
+/// link, a hard link and another spelling of a path are the same file.
 class FileSet {
  public:
-  /// Adds a file that is read. Reading a file twice is no conflict.
+  /// Adds an input file. Reading a file twice is not a conflict.
   ///
   /// `role`     for messages: "the scene", "points file"
-  /// Result     false where it was an input already
-  /// Errors     base::Error(kUsage) where it is also an output
+  /// Result     false if it was already an input
+  /// Errors     base::Error(kUsage) if it is also an output
   bool add_input(const std::filesystem::path& file, const std::string& role);
 
-  /// Adds a file that is written.
+  /// Adds an output file.
   ///
   /// `role`     for messages: "-o", "--stats"
-  /// Errors     base::Error(kUsage) where it is also an input or another output
+  /// Errors     base::Error(kUsage) if it is also an input or another output
   void add_output(const std::filesystem::path& file, const std::string& role);
 
  private:
@@ -44,7 +44,7 @@ class FileSet {
     Inode inode = 0;
     bool exists = false;
   };
-  /// Device and inode of a file with an empty name, or those of its folder with its name there.
+  /// Device and inode of the file and an empty name, or device and inode of its folder and its name.
   using Key = std::pair<std::pair<Device, Inode>, std::string>;
 
   const Folder& folder_of(const std::filesystem::path& file);
@@ -53,7 +53,7 @@ class FileSet {
   void insert(const std::vector<Key>& keys, const Entry& entry);
 
   std::vector<Entry> entries_;
-  std::map<Key, std::size_t> index_;  ///< of an entry
+  std::map<Key, std::size_t> index_;  ///< into entries_
   std::map<std::string, Folder> folders_;
 };
 

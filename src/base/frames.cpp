@@ -14,14 +14,14 @@ namespace orrery::base {
 namespace {
 
 constexpr int kLargestFrame = 9'999'999;
-/// More than an hour of film: each frame is a job, and all of them are known before the first one starts.
+/// Maximum number of frames, more than an hour of animation: all jobs are listed before the first one starts.
 constexpr std::size_t kMostFrames = 100'000;
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
   throw Error(ErrorKind::kUsage, "`" + text + "` is not a frame range: " + why + "; write 1-10, 1-10x2 or 1,3,7-9");
 }
 
-/// Takes a number from the front of `rest`, a part of `text`.
+/// Parses a number at the front of `rest`, the unread end of `text`, and removes it.
 int take_number(const std::string& text, std::string_view& rest, const char* missing) {
   int number = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
@@ -29,7 +29,7 @@ int take_number(const std::string& text, std::string_view& rest, const char* mis
   const auto length = static_cast<std::size_t>(end - rest.data());
   if (error != std::errc() || std::abs(number) > kLargestFrame)
     refuse(text,
-           std::string(rest.substr(0, length)) + " is beyond the largest frame, " + std::to_string(kLargestFrame));
+           std::string(rest.substr(0, length)) + " exceeds the maximum frame number " + std::to_string(kLargestFrame));
   rest.remove_prefix(length);
   return number;
 }
@@ -39,7 +39,7 @@ struct Pattern {
   int digits = 0;
 };
 
-/// The first place for a frame at or behind `from`.
+/// Finds the first frame pattern at or after `from`.
 Pattern find_pattern(const std::string& name, std::size_t from) {
   for (std::size_t i = from; i < name.size(); ++i) {
     if (name[i] == '#') {
@@ -72,14 +72,14 @@ std::vector<int> parse_frames(const std::string& text) {
     }
     if (!rest.empty() && (rest[0] == ':' || rest[0] == 'x')) {
       rest.remove_prefix(1);
-      step = take_number(text, rest, "a step is a whole number of at least 1");
-      if (step < 1) refuse(text, "a step is a whole number of at least 1");
+      step = take_number(text, rest, "the step must be an integer of at least 1");
+      if (step < 1) refuse(text, "the step must be an integer of at least 1");
     }
     more = !rest.empty() && rest[0] == ',';
     if (more) {
       rest.remove_prefix(1);
     } else if (!rest.empty()) {
-      refuse(text, "`" + std::string(rest) + "` is left over");
+      refuse(text, "unexpected `" + std::string(rest) + "`");
     }
     count += static_cast<std::size_t>(std::abs(last - first) / step) + 1;
     if (count > kMostFrames) refuse(text, "it has more than " + std::to_string(kMostFrames) + " frames");

@@ -17,7 +17,7 @@ void require_readable(const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& reason) {
     throw Error(ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + reason);
   };
-  // The type comes first: opening a pipe blocks, and opening a device may do more than that.
+  // The type is checked before opening: opening a pipe blocks, and opening a device may have side effects.
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) refuse(std::strerror(errno));
   if (S_ISDIR(status.st_mode)) refuse("it is a directory");

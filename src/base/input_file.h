@@ -5,10 +5,10 @@
 
 namespace orrery::base {
 
-/// Refuses an input that is missing, that may not be read, or that is not a regular file: a directory, a device or a
-/// pipe. Inputs are read more than once, and a pipe without a writer would block.
+/// Checks that an input is a readable regular file. Directories, devices and pipes are refused: inputs are read more
+/// than once, and a pipe without a writer would block.
 ///
-/// Errors     base::Error(kMissingInput) naming the file and the reason
+/// Errors     base::Error(kMissingInput) with the file and the reason
 void require_readable(const std::filesystem::path& file);
 
 }  // namespace orrery::base

@@ -11,7 +11,7 @@
 
 namespace orrery::base {
 
-/// A Bloom filter of hashes: it has every hash that was inserted, and one in fifty others at the most.
+/// A Bloom filter of hashes, with a false-positive rate of at most 1 in 50.
 ///
 /// Reference  bloom1970
 class HashFilter {
@@ -20,7 +20,9 @@ class HashFilter {
       : shift_(63 - static_cast<int>(std::bit_width(static_cast<std::uint64_t>(count) / 8))),
         words_(std::size_t{1} << (64 - shift_)) {}
 
-  /// Result     whether the filter had it before
+  /// Inserts a hash.
+  ///
+  /// Result     true if the filter contained it before
   bool insert(std::uint64_t hash) {
     std::uint64_t& word = words_[hash >> shift_];
     const bool had = (word & bits(hash)) == bits(hash);
@@ -30,7 +32,7 @@ class HashFilter {
   bool has(std::uint64_t hash) const { return (words_[hash >> shift_] & bits(hash)) == bits(hash); }
 
  private:
-  /// Both bits are in one word: one cache miss a hash.
+  /// Both bits are in one word: one cache miss per hash.
   static std::uint64_t bits(std::uint64_t hash) {
     return std::uint64_t{1} << (hash >> 8 & 63) | std::uint64_t{1} << (hash >> 14 & 63);
   }
@@ -39,8 +41,8 @@ class HashFilter {
   std::vector<std::uint64_t> words_;
 };
 
-/// Inserts hashes into a filter and collects those that it seemed to have already. Hashes are inserted in the order of
-/// their upper bits, some at a time, so that a filter of hundreds of megabytes is not visited at random.
+/// Inserts hashes into a filter and collects those that it already contains. Hashes are buffered and inserted in the
+/// order of their upper bits, so that a filter of hundreds of megabytes is not accessed at random.
 class RepeatedHashes {
  public:
   explicit RepeatedHashes(std::size_t count) : filter_(count) {}
@@ -82,21 +84,20 @@ std::uint64_t hash_of(const std::array<double, N>& key) {
   return h * 0xD6E8FEB86659FD93u;
 }
 
-/// A thing whose key equals that of an earlier one, and the first with this key.
+/// Index of an item whose key equals that of an earlier item, and index of the first item with this key.
 struct Repeated {
   std::size_t index, first;
 };
 
-/// Finds the things among 0 .. count - 1 whose keys are not the first of their value, by ascending index.
+/// Finds all items of 0 .. count - 1 whose key equals that of an earlier item, by ascending index.
 ///
-/// `key_of(i)` gives N numbers as a std::array; -0 equals 0, and a key with a NaN equals none.
-/// Cost       measured on two busy cores: 0.4 s for ten million things, 4 s for a hundred million; 1 to 3 bytes for
-/// each
-///            thing, and 40 for each that is repeated
+/// `key_of(i)` returns N numbers as a std::array; -0 equals 0, and a key with a NaN equals no other.
+/// Cost       on two busy cores 0.4 s for ten million items, 4 s for a hundred million; memory 1 to 3 bytes per item,
+///            and 40 bytes per repeated item
 template <std::size_t N, class KeyOf>
 std::vector<Repeated> find_repeated(std::size_t count, KeyOf key_of) {
-  // Sorted hashes of a hundred million keys would need a quarter of the memory of the spheres behind them. The filters
-  // drop nearly all keys that are unique, and only the rest is sorted.
+  // Sorting the hashes of a hundred million keys would take a quarter of the memory of their spheres. The filters drop
+  // nearly all unique keys, and only the rest is sorted.
   const auto each = [&](auto visit) {
     for (std::size_t i = 0; i < count; ++i) {
       std::array<double, N> key = key_of(i);
@@ -126,7 +127,7 @@ std::vector<Repeated> find_repeated(std::size_t count, KeyOf key_of) {
   });
   std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.hash != b.hash ? a.hash < b.hash : a.index < b.index; });
-  std::vector<std::size_t> firsts;  // of one hash; several only where hashes of different keys are the same
+  std::vector<std::size_t> firsts;  // of one hash; more than one only if different keys have the same hash
   for (std::size_t e = 0; e < entries.size(); ++e) {
     if (e == 0 || entries[e].hash != entries[e - 1].hash) firsts.clear();
     const std::size_t i = entries[e].index;

@@ -8,7 +8,7 @@
 namespace orrery::base {
 namespace {
 
-/// Letters to insert, delete, replace or swap with their neighbour to get from one word to the other.
+/// Returns the number of insertions, deletions, replacements and swaps of neighbouring letters between two words.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> two_back(b.size() + 1), back(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) back[j] = j;
@@ -33,7 +33,7 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// Names longer than this are not typed by hand, and comparing them would cost too much.
+/// Maximum length of names to compare: longer names are not typed by hand and are expensive to compare.
 constexpr std::size_t kLongestName = 64;
 
 }  // namespace

@@ -7,17 +7,17 @@
 
 namespace orrery::base {
 
-/// The candidate that somebody who typed `wrong` most likely meant.
+/// Returns the candidate closest to a misspelt word.
 ///
-/// Result     empty where none is near: more than a third of the letters, or the only one, would have to change; of
-///            equally near ones the first
-/// Cost       candidates x letters^2
+/// Result     the first of equally close candidates; empty if more than a third of the letters, or the only letter,
+///            would have to change
+/// Cost       number of candidates times the square of the word length
 std::string closest(std::string_view wrong, const std::vector<std::string>& candidates);
 
-/// "did you mean `samples`?", or nothing.
+/// Returns "did you mean `samples`?", or an empty string if no candidate is close.
 std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& candidates);
 
-/// "a, b, c".
+/// Joins names with commas: "a, b, c".
 std::string joined(const std::vector<std::string>& names);
 
 }  // namespace orrery::base

@@ -14,7 +14,7 @@ void append(std::string& out, const char* format, ...) {
   va_end(arguments);
   if (length > 0) {
     const std::size_t begin = out.size();
-    out.resize(begin + static_cast<std::size_t>(length) + 1);  // with the zero that is written
+    out.resize(begin + static_cast<std::size_t>(length) + 1);  // with the terminating zero
     std::vsnprintf(out.data() + begin, static_cast<std::size_t>(length) + 1, format, again);
     out.pop_back();
   }

@@ -6,10 +6,10 @@
 
 namespace orrery::base {
 
-/// printf at the end of a string, of any length.
+/// Appends printf output of any length to a string.
 [[gnu::format(printf, 2, 3)]] void append(std::string& out, const char* format, ...);
 
-/// "49.4 MiB".
+/// Formats a size in bytes: "49.4 MiB".
 std::string bytes_text(std::uint64_t bytes);
 
 }  // namespace orrery::base

@@ -23,7 +23,7 @@ void set(double (&to)[3], Vec3d from) {
   to[2] = from.z;
 }
 
-/// Schlick's constant for an index ratio.
+/// Returns R0 of Schlick's approximation, the reflectance at normal incidence, for a ratio of refractive indices.
 double normal_reflectance(double eta) {
   const double r = (1 - eta) / (1 + eta);
   return r * r;
@@ -63,14 +63,14 @@ kernel::Material compile_model(const scene::Dielectric& m) {
   return out;
 }
 
-/// The material of a sphere whose normal points inward: what met it from outside meets it from inside.
+/// Returns the material for a sphere whose normal points inward: its inside and outside are exchanged.
 kernel::Material turned_inside_out(kernel::Material m) {
   std::swap(m.eta[0], m.eta[1]);
   std::swap(m.r0[0], m.r0[1]);
   return m;
 }
 
-/// Hands out compiled materials, only those that some sphere uses.
+/// Compiles materials on first use, so that unused ones are left out.
 class MaterialTable {
  public:
   MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
@@ -81,7 +81,7 @@ class MaterialTable {
     if (at != kNone) return at;
     kernel::Material m =
         std::visit([](const auto& model) { return compile_model(model); }, scene_.materials[authored].model);
-    // Only glass has two different sides; anything else is the same material both ways.
+    // Only dielectrics have two different sides; other materials are the same from both.
     if (inside_out && m.kind != kernel::MaterialKind::kDielectric) return at = index(authored, false);
     if (inside_out) m = turned_inside_out(m);
     at = static_cast<std::uint32_t>(world_.materials.size());
@@ -130,7 +130,7 @@ Bounds bounds_of(const std::vector<kernel::Sphere>& spheres) {
   return b;
 }
 
-/// What camera and spheres of tables do until the shutter closes.
+/// Adds the motion of the camera and of [[sphere]] tables from shutter open to shutter close.
 void add_motion(const scene::Scene& opening, const scene::Scene& closing, CompiledScene& compiled) {
   for (std::size_t i = opening.spheres.size(); i-- > 0;) {
     const scene::Sphere &from = opening.spheres[i], &to = closing.spheres[i];
@@ -165,8 +165,8 @@ void set_background(const scene::Background& from, CompiledScene& compiled) {
   compiled.features.sky = gradient && !(from.bottom == from.top);
 }
 
-/// With blue noise a pixel takes as many points of a sequence as it has samples, up to the next power of two, and
-/// leaves the others to its neighbours.
+/// With blue noise, a pixel owns a power of two of consecutive points of the sequence, at least as many as its samples;
+/// its neighbours own the next ones.
 kernel::Sampler compile_sampler(const scene::Render& render) {
   kernel::Sampler out;
   out.seed = render.seed;

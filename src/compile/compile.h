@@ -6,17 +6,16 @@
 
 namespace orrery::compile {
 
-/// Turns the authored scene into flat arrays and finds out what it requires.
+/// Compiles the authored scene into flat arrays and determines the features that it requires.
 ///
-/// Authored meaning ends here: a negative radius becomes a positive one with the material turned inside out, degrees
-/// become vectors, and materials that no sphere uses are left out.
+/// A negative radius becomes a positive one with the material turned inside out, angles become vectors, and unused
+/// materials are left out.
 ///
-/// `closing`  what the shutter closes on, without points; null: it is never open. What then turns out not to move costs
-///            nothing.
-/// Domain     scenes that scene::validate finds no error in
+/// `closing`  the scene at shutter close, without points; null: no motion blur. What does not move costs nothing.
+/// Domain     scenes in which scene::validate finds no error
 CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = nullptr);
 
-/// Bits that count a pixel's samples where blue noise shares a sequence among neighbours.
+/// Returns the number of index bits that count a pixel's samples when blue noise shares a sequence among neighbours.
 int blue_noise_bits(int samples) noexcept;
 
 }  // namespace orrery::compile

@@ -16,21 +16,21 @@ namespace orrery::compile {
 using kernel::Precision;
 using scene::Accelerator;
 
-/// The box around all spheres; meaningless where there is none.
+/// Bounding box of all spheres; unspecified if there are none.
 struct Bounds {
   math::Vec3d lower;
   math::Vec3d upper;
 };
 
-/// A scene ready to be rendered: flat arrays, camera basis, and what the scene requires.
+/// A scene ready for rendering: flat arrays, camera basis, and the features that it requires.
 ///
-/// Spheres keep the order of the scene file, [[sphere]] tables first, then each [[points]] file; their index is their
-/// id in every hit.
+/// Spheres are in the order of the scene file, first the [[sphere]] tables, then each [[points]] file. The index of a
+/// sphere is its id in hits.
 struct CompiledScene {
   std::vector<kernel::Sphere> spheres;
   std::vector<std::uint32_t> sphere_materials;  ///< one per sphere, index into `materials`
   std::vector<kernel::Material> materials;
-  std::vector<kernel::Sphere> motion;  ///< of the first spheres; see kernel::SceneView. Empty: none moves
+  std::vector<kernel::Sphere> motion;  ///< of the first motion.size() spheres, see kernel::SceneView; empty: none moves
   kernel::Camera camera;
   kernel::Camera camera_motion;
   kernel::Background background;
@@ -40,19 +40,19 @@ struct CompiledScene {
   Accelerator accelerator = Accelerator::kEmbree;
   Bounds bounds;
   FilterTables filter;
-  int width = 0;                                       ///< px, of what is rendered
+  int width = 0;                                       ///< px, of the rendered window
   int height = 0;                                      ///< px
-  int window_x = 0;                                    ///< px, its upper left corner within the frame
+  int window_x = 0;                                    ///< px, upper left corner of the window in the frame
   int window_y = 0;                                    ///< px
   int frame_width = 0;                                 ///< px
   int frame_height = 0;                                ///< px
-  double pixel_aspect = 1;                             ///< a pixel's width by its height
+  double pixel_aspect = 1;                             ///< pixel width divided by pixel height
   int samples = 0;                                     ///< per pixel
-  std::uint32_t max_depth = 0;                         ///< rays of a path, the camera ray included
+  std::uint32_t max_depth = 0;                         ///< rays per path, including the camera ray
   std::uint32_t roulette_depth = kernel::kNoRoulette;  ///< scattering events before Russian roulette begins
   kernel::Sampler sampler;
 
-  /// The same for the inner loops; valid as long as this CompiledScene is neither changed nor destroyed.
+  /// Returns a view for the kernel; valid until this CompiledScene is modified or destroyed.
   kernel::SceneView view() const noexcept;
 };
 

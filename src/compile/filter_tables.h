@@ -7,12 +7,12 @@
 
 namespace orrery::compile {
 
-/// A pixel filter's tables; empty for the pixel's own square, which needs none.
+/// Tables to sample a pixel filter; empty for the box of width 1, which needs no table.
 struct FilterTables {
   std::vector<double> above, below;
-  double below_mass = 0;  ///< of one axis, the integral of the part below zero by that of the part above
+  double below_mass = 0;  ///< per axis: integral of the negative part divided by that of the positive part
 
-  /// Valid as long as this is neither changed nor destroyed.
+  /// Returns a view for the kernel; valid until this object is modified or destroyed.
   kernel::PixelFilter view() const noexcept;
 };
 

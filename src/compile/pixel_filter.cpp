@@ -10,13 +10,13 @@ namespace {
 
 using kernel::PixelFilter;
 
-/// Parts of half the filter's width that are summed: far finer than the table that comes of it.
+/// Intervals of numerical integration over half the filter width: far finer than the resulting table.
 constexpr int kParts = 1 << 16;
 
-/// The middle of a part, 0 .. 0.5 of the width.
+/// Returns the midpoint of an interval, 0 .. 0.5 of the filter width.
 double place(int part) { return (part + 0.5) / kParts / 2; }
 
-/// The filter at 0 .. 0.5 of its width; any scale.
+// The filters at 0 .. 0.5 of their width, not normalised.
 double box(double) { return 1; }
 double gaussian(double x) { return std::exp(-18 * x * x); }  // the width is six standard deviations
 double blackman_harris(double x) {
@@ -40,7 +40,8 @@ double (*function_of(scene::Filter filter))(double) {
   return box;
 }
 
-/// Where the integral of `density` from the middle to 0.5 reaches even steps of its whole, in pixels.
+/// Returns the inverse of the cumulative distribution of `density` over 0 .. 0.5 of the width, at even steps, in
+/// pixels.
 template <class Density>
 std::vector<double> inverse(Density density, double width) {
   double total = 0;
@@ -53,7 +54,7 @@ std::vector<double> inverse(Density density, double width) {
     while (table.size() <= PixelFilter::kSteps) {
       const double missing = total * static_cast<double>(table.size()) / PixelFilter::kSteps - sum;
       if (missing > part) break;
-      // On a grid that no library's last bit reaches: pictures are the same everywhere.
+      // Rounded so that the last bit of the math library does not matter: images are the same everywhere.
       table.push_back(std::round((i + missing / part) / kParts / 2 * width * 0x1p24) * 0x1p-24);
     }
     sum += part;

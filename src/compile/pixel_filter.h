@@ -6,12 +6,12 @@
 
 namespace orrery::compile {
 
-/// Integrates a filter and turns the integral round.
+/// Returns the tables for importance sampling of a pixel filter: the inverse of its integral.
 ///
-/// Reference  mitchell1988; harris1978 for the window of Blackman and Harris
+/// Reference  mitchell1988; harris1978 for the Blackman-Harris window
 FilterTables compile_filter(const scene::Render& render);
 
-/// Full width of a filter in pixels, as authored or by default.
+/// Returns the full width of the filter in pixels, as set or by default.
 double filter_width(const scene::Render& render);
 
 }  // namespace orrery::compile

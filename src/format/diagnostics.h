@@ -15,14 +15,13 @@
 
 namespace orrery::format {
 
-/// Errors reported of one scene; a generated scene may have the same fault in each of a million spheres.
+/// Maximum number of errors reported for one scene; a generated scene may have the same error in a million spheres.
 inline constexpr std::size_t kMostErrors = 100;
 
-/// Collects what is wrong with a scene, in the order of the places: the first kMostErrors errors, and how many there
-/// are.
+/// Collects the diagnostics of a scene: warnings, the first kMostErrors errors by location, and the number of errors.
 class Diagnostics {
  public:
-  /// `make` gives the finding; it is called only for one that will be shown.
+  /// Adds a diagnostic. `make` returns it, and is called only if it is kept.
   template <class Make>
   void add(base::Severity severity, const Place& place, base::ErrorKind kind, Make make) {
     if (severity == base::Severity::kWarning) {
@@ -40,10 +39,10 @@ class Diagnostics {
   bool has_errors() const { return errors_ > 0; }
   std::vector<base::Diagnostic> take_warnings() { return std::move(warnings_); }
 
-  /// Ends the reading of `file` where there is an error.
+  /// Throws if there are errors.
   ///
-  /// Errors     base::Error with the findings: kMissingInput where nothing is wrong but inputs that cannot be opened,
-  ///            else kBadData
+  /// Errors     base::Error with the diagnostics: kMissingInput if all errors are inputs that cannot be opened, else
+  ///            kBadData
   void raise_errors(const std::string& file) const;
 
  private:

@@ -4,7 +4,7 @@
 namespace orrery::format {
 namespace {
 
-/// Walks over a text and knows its line and column.
+/// Position in a text, with line and column.
 class Cursor {
  public:
   explicit Cursor(std::string_view text) : text_(text) {}
@@ -36,7 +36,7 @@ void skip_comment(Cursor& cursor) {
   while (!cursor.at_end() && cursor.now() != '\n') cursor.step();
 }
 
-/// A string of any of the four kinds, which begins here. One that is not closed ends with its line, or with the text.
+/// Skips a TOML string of any of the four kinds. An unclosed string ends at the end of the line or of the text.
 void skip_string(Cursor& cursor) {
   const char quote = cursor.now();
   const bool escapes = quote == '"';
@@ -48,7 +48,7 @@ void skip_string(Cursor& cursor) {
       cursor.step(2);
     } else if (is_long && cursor.begins(triple)) {
       cursor.step(3);
-      // Up to two quotes more belong to the string.
+      // Up to two more quotes belong to the string.
       for (int i = 0; i < 2 && !cursor.at_end() && cursor.now() == quote; ++i) cursor.step();
       return;
     } else if (!is_long && (cursor.now() == quote || cursor.now() == '\n')) {
@@ -64,7 +64,7 @@ void skip_string(Cursor& cursor) {
 
 Place too_deep_key(std::string_view text) {
   Cursor cursor(text);
-  // A key is what stands between two of the other signs; the dot of a number counts as well, which harms nobody.
+  // Keys are delimited by the other characters. Decimal points count as dots, too, which does no harm.
   for (int parts = 1; !cursor.at_end();) {
     switch (cursor.now()) {
       case '#': skip_comment(cursor); break;

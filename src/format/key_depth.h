@@ -7,14 +7,14 @@
 
 namespace orrery::format {
 
-/// Most parts of a dotted key: a scene needs three. The library makes a table for each part and takes tables down one
-/// inside of the other, so that a key of some ten thousand parts would overflow the stack.
+/// Maximum number of parts in a dotted key: a scene needs three. The TOML library creates a table per part and destroys
+/// tables recursively, so that a key of some ten thousand parts would overflow the stack.
 inline constexpr int kDeepestKey = 8;
 
-/// The first key of a TOML text that has more than kDeepestKey parts.
+/// Finds the first key with more than kDeepestKey parts in a TOML text.
 ///
-/// Result     line 0 where there is none; text_name is not set
-/// Domain     any bytes; after what is no TOML the answer means nothing, and nobody reads on there
+/// Domain     any bytes; after invalid TOML, where parsing stops, the result is meaningless
+/// Result     location of the first excess dot; line 0 if there is no such key; text_name is not set
 Place too_deep_key(std::string_view text);
 
 }  // namespace orrery::format

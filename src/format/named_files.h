@@ -9,16 +9,16 @@
 
 namespace orrery::format {
 
-/// The files that a scene names, as it spells them: relative to its folder, points files with places for a frame.
+/// The files that a scene names, as written in it: relative to its folder, points files with frame patterns.
 struct NamedFiles {
   std::vector<std::string> points;
   std::string ocio_config;
 };
 
-/// Finds them without reading the scene's spheres or the files themselves. Values of other types are left out:
-/// reading the scene reports them.
+/// Finds the files that a scene names, without reading its spheres or those files. Values of the wrong type are
+/// skipped: read_scene reports them.
 ///
-/// Errors     base::Error(kBadData) for a file that is not TOML; kMissingInput, kIo
+/// Errors     base::Error(kBadData) for invalid TOML; kMissingInput, kIo
 /// Cost       parses the whole file
 NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<Override>& overrides);
 

@@ -9,20 +9,20 @@
 
 namespace orrery::format {
 
-/// A key set from outside the scene file, and the option that set it, which messages name.
+/// A key set from the command line, and the option that set it, which messages name.
 struct Override {
   // NOLINTNEXTLINE(google-explicit-constructor): "camera.vfov=30" is an override
   Override(std::string key_and_value) : text(std::move(key_and_value)), typed(text) {}
   // NOLINTNEXTLINE(google-explicit-constructor)
   Override(const char* key_and_value) : Override(std::string(key_and_value)) {}
 
-  /// A short form: `--samples 20` is Override("render.samples=20", "--samples", "20").
+  /// An override by a short option: `--samples 20` is Override("render.samples=20", "--samples", "20").
   ///
-  /// Domain     `value` is the end of the text, but for a closing bracket
+  /// Domain     `value` ends `key_and_value`, except for a closing bracket
   Override(std::string key_and_value, std::string name, std::string value)
       : text(std::move(key_and_value)), option(std::move(name)), typed(std::move(value)) {}
 
-  /// True where the key is this one.
+  /// True if the override sets this key.
   bool sets(std::string_view key) const {
     const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
     const std::size_t end = text.find_first_not_of(" \t", begin + key.size());
@@ -30,7 +30,7 @@ struct Override {
   }
 
   std::string text;              ///< "camera.vfov=30"
-  std::string option = "--set";  ///< as the user typed it
+  std::string option = "--set";  ///< as typed by the user
   std::string typed;             ///< the option's value
 };
 

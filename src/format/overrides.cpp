@@ -15,21 +15,21 @@
 namespace orrery::format {
 namespace {
 
-constexpr const char* kExample = "write it like camera.vfov=30 or sphere[0].radius=2";
+constexpr const char* kExample = "write KEY=VALUE, e.g. camera.vfov=30 or sphere[0].radius=2";
 
-/// What is wrong with an override as a whole, and what to do.
+/// A fault of an override as a whole, and its remedy.
 struct Fault {
   std::string text, remedy = kExample;
 };
 
-/// "sphere[2].radius=0.5" taken apart.
+/// The parts of "sphere[2].radius=0.5".
 struct Parts {
-  std::string_view list;      ///< "sphere[2]"; empty where no element of a list is named
+  std::string_view list;      ///< "sphere[2]"; empty if the key names no list element
   std::size_t key_begin = 0;  ///< of "radius"
   std::size_t equals = 0;     ///< of "="
 };
 
-/// Finds the "=" between key and value, and the last "]" of the key, outside of quotes.
+/// Finds the "=" between key and value and the last "]" of the key, both outside quotes.
 Parts parts_of(std::string_view text) {
   char quote = 0;
   std::size_t list_end = 0;
@@ -43,17 +43,17 @@ Parts parts_of(std::string_view text) {
     } else if (c == ']') {
       list_end = i + 1;
     } else if (c == '=') {
-      if (i == 0) throw Fault{"there is no key before the ="};
+      if (i == 0) throw Fault{"no key before the ="};
       if (list_end == 0) return {{}, 0, i};
       if (text[list_end] != '.')
-        throw Fault{"an element of a list is not set as a whole", "name one of its keys, like sphere[0].radius=2"};
+        throw Fault{"a list element cannot be set as a whole", "set one of its keys, e.g. sphere[0].radius=2"};
       return {text.substr(0, list_end), list_end + 1, i};
     }
   }
-  throw Fault{"this is no key=value"};
+  throw Fault{"not of the form KEY=VALUE"};
 }
 
-/// The table that "sphere[2]" names.
+/// Returns the table that "sphere[2]" names.
 toml::table& element_of(toml::table& root, std::string_view list) {
   const std::size_t open = list.find('[');
   const std::string name(list.substr(0, open));
@@ -62,28 +62,28 @@ toml::table& element_of(toml::table& root, std::string_view list) {
   const char* const end = list.data() + list.size() - 1;  // the "]"
   const auto [stop, fault] = std::from_chars(digits, end, index);
   if (open == std::string_view::npos || fault != std::errc() || stop != end)
-    throw Fault{"`" + std::string(list) + "` is no element of a list"};
+    throw Fault{"`" + std::string(list) + "` is not a list element"};
   toml::node* node = root.get(name);
   toml::array* array = node == nullptr ? nullptr : node->as_array();
   if (array == nullptr) throw Fault{"the scene has no list `" + name + "`"};
   if (index >= array->size())
-    throw Fault{"there is no " + std::string(list) + "; the scene has " + std::to_string(array->size()) + " of `" +
-                    name + "`, counted from 0",
+    throw Fault{std::string(list) + " does not exist; the scene has " + std::to_string(array->size()) + " of `" + name +
+                    "`, counted from 0",
                 ""};
   toml::table* element = array->get(index)->as_table();
-  if (element == nullptr) throw Fault{std::string(list) + " is no table"};
+  if (element == nullptr) throw Fault{std::string(list) + " is not a table"};
   return *element;
 }
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(" \t") == std::string_view::npos; }
 
-/// True where a value can only be meant as TOML: then what is wrong with it is worth telling.
+/// True if a value can only be meant as TOML, so that its syntax error is worth reporting.
 bool looks_like_toml(std::string_view value) {
   const std::size_t begin = value.find_first_not_of(" \t");
   return begin != std::string_view::npos && std::string_view("[{\"'").find(value[begin]) != std::string_view::npos;
 }
 
-/// A text in which some bytes were inserted, which messages must not count.
+/// A text with inserted bytes, which columns in messages must not count.
 struct Quoted {
   std::string text;
   std::vector<std::size_t> inserted;
@@ -102,13 +102,13 @@ struct Quoted {
   }
 };
 
-/// True for what TOML knows as a value without quotes that begins with a letter, and for what begins otherwise.
+/// True for an element that needs no quotes: it does not begin with a letter, or is a TOML keyword.
 bool is_bare_value(std::string_view element) {
   const auto first = static_cast<unsigned char>(element.front());
   return std::isalpha(first) == 0 || element == "true" || element == "false" || element == "inf" || element == "nan";
 }
 
-/// A list of words without quotes, "[Z, N]", with quotes around them; false where it is no such list.
+/// Quotes the words of a list such as "[Z, N]"; false if `value` is not such a list.
 bool quote_list(std::string_view value, Quoted& out) {
   constexpr const char* kBlanks = " \t";
   const std::size_t begin = value.find_first_not_of(kBlanks), end = value.find_last_not_of(kBlanks);
@@ -120,10 +120,10 @@ bool quote_list(std::string_view value, Quoted& out) {
     const std::size_t comma = std::min(elements.find(',', at), elements.size());
     const std::string_view element = elements.substr(at, comma - at);
     const std::size_t first = std::min(element.find_first_not_of(kBlanks), element.size());
-    const std::size_t last = element.find_last_not_of(kBlanks) + 1;  // 0 where there are only blanks
+    const std::size_t last = element.find_last_not_of(kBlanks) + 1;  // 0 if there are only blanks
     const std::string_view word = element.substr(first, std::max(last, first) - first);
     out.text += element.substr(0, first);
-    const bool is_end = word.empty() && comma == elements.size();  // behind the last comma
+    const bool is_end = word.empty() && comma == elements.size();  // after the last comma
     if (is_end || (!word.empty() && is_bare_value(word))) {
       out.text += word;
     } else {
@@ -137,19 +137,20 @@ bool quote_list(std::string_view value, Quoted& out) {
   return true;
 }
 
-/// An override as the TOML library gets it: its key and value, with quotes where they were left out.
+/// A parsed override, and its text as passed to the TOML library, with added quotes.
 struct Parsed {
   toml::table tree;
   Quoted line;
 };
 
-/// Key and value as a tree of their own. What stands before is filled with blanks, so that places are those of `text`.
+/// Parses key and value into a separate tree. Preceding text is replaced by blanks, so that locations are those of
+/// `text`.
 Parsed parse_override(const std::string& text, const Parts& parts, int line) {
   const std::string above(static_cast<std::size_t>(line) - 1, '\n');
   const std::string key =
       std::string(parts.key_begin, ' ') + text.substr(parts.key_begin, parts.equals + 1 - parts.key_begin);
   const std::string value = text.substr(parts.equals + 1);
-  if (is_blank(value)) throw Fault{"there is no value behind the ="};
+  if (is_blank(value)) throw Fault{"no value after the ="};
   const auto parsed = [&](Quoted quoted) {
     toml::table tree = toml::parse(std::string_view(above + quoted.text), std::string_view(kOverrideName));
     return Parsed{std::move(tree), std::move(quoted)};
@@ -161,7 +162,7 @@ Parsed parse_override(const std::string& text, const Parts& parts, int line) {
     if (quote_list(value, list)) {
       try {
         return parsed(std::move(list));
-      } catch (const toml::parse_error&) {  // of what nobody typed; the first one counts
+      } catch (const toml::parse_error&) {  // refers to text that was not typed; the first error counts
       }
     }
     if (looks_like_toml(value)) throw;
@@ -171,7 +172,7 @@ Parsed parse_override(const std::string& text, const Parts& parts, int line) {
   return parsed(std::move(word));
 }
 
-/// Moves `from` into `to`. Tables that only a dotted key made are gone into, a table that is the value replaces.
+/// Moves `from` into `to`. Tables from dotted keys are merged; an inline table replaces the old value.
 void merge(toml::table& to, toml::table& from) {
   for (auto&& [key, node] : from) {
     toml::table* const inner = node.as_table();
@@ -181,17 +182,17 @@ void merge(toml::table& to, toml::table& from) {
         merge(*table, *inner);
         continue;
       }
-      throw Fault{"`" + std::string(key.str()) + "` is no table",
-                  there->is_array() ? "name one of its elements, like sphere[0].radius=2" : ""};
+      throw Fault{"`" + std::string(key.str()) + "` is not a table",
+                  there->is_array() ? "name one of its elements, e.g. sphere[0].radius=2" : ""};
     }
     node.visit([&to, &name = key](auto& value) { to.insert_or_assign(name, std::move(value)); });
   }
 }
 
-/// Reads one override; `line` of kOverrideName is what the library is given for it.
+/// Applies one override. Its locations are in `line` of kOverrideName; `given` receives the text that was parsed.
 void apply_override(toml::table& root, const std::string& text, int line, Quoted& given) {
-  if (text.find_first_of("\r\n") != std::string::npos) throw Fault{"an override is one line"};
-  if (too_deep_key(text).line > 0) throw Fault{"a key of more than " + std::to_string(kDeepestKey) + " parts"};
+  if (text.find_first_of("\r\n") != std::string::npos) throw Fault{"an override must be one line"};
+  if (too_deep_key(text).line > 0) throw Fault{"the key has more than " + std::to_string(kDeepestKey) + " parts"};
   const Parts parts = parts_of(text);
   toml::table& target = parts.list.empty() ? root : element_of(root, parts.list);
   Parsed parsed = parse_override(text, parts, line);

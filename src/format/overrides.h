@@ -12,12 +12,11 @@
 
 namespace orrery::format {
 
-/// Puts overrides into a scene's tree, as if they stood in its file: "camera.vfov=30", "render.precision=fast",
-/// "material.\"my gold\".fuzz=0.3", "sphere[2].radius=0.5", "output.layers=[Z,N]". Keys and values get their places in
-/// the override.
+/// Applies overrides to the tree of a scene file: "camera.vfov=30", "render.precision=fast",
+/// "material.\"my gold\".fuzz=0.3", "sphere[2].radius=0.5", "output.layers=[Z,N]". The locations of the new nodes are
+/// those in the override.
 ///
-/// A value is TOML; a word, and a list of words, need no quotes. Missing tables are created; elements of lists must
-/// exist.
+/// A value is TOML; words and lists of words need no quotes. Missing tables are created; list elements must exist.
 void apply_overrides(toml::table& root, const std::vector<Override>& overrides, SourceText& source,
                      Diagnostics& diagnostics);
 

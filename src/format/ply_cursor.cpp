@@ -88,15 +88,15 @@ bool PlyCursor::skip(const PlyProperty& property) {
   if (is_bad_length_) return false;
   for (double i = 0; i < value; ++i) {
     double ignored = 0;
-    if (!take(property.type, ignored)) return false;  // ends with the data, whatever the count says
+    if (!take(property.type, ignored)) return false;  // stops at the end of the data, whatever the length is
   }
   return true;
 }
 
 std::string PlyCursor::fault() const {
-  if (is_bad_length_) return "the length of a list is not a whole number";
+  if (is_bad_length_) return "the length of the list is not a non-negative integer";
   if (ascii_ && at_ < row_end_) return "`" + word() + "` is not a number";
-  return ascii_ && row_end_ < end_ ? "the line ends; a row is one line" : "the file ends";
+  return ascii_ && row_end_ < end_ ? "unexpected end of line; a row must be one line" : "unexpected end of file";
 }
 
 std::string PlyCursor::word() const {

@@ -10,29 +10,32 @@
 
 namespace orrery::format {
 
-/// Takes values one after the other out of the data behind the header. In an ascii file each row is one line.
+/// Reads values in sequence from the data after the header. In an ascii file, each row is one line.
 class PlyCursor {
  public:
-  /// `line` is that of the first byte of the data.
+  /// `line` is the line number of the first data byte.
   PlyCursor(std::string_view data, PlyEncoding encoding, int line);
 
-  /// Goes to the next row. Blank lines are no rows.
+  /// Advances to the next row; skips blank lines.
   void begin_row();
-  /// False where something is left of the row.
+  /// Ends a row; false if the row has unread values.
   bool end_row();
-  /// Of the row; 0 in a binary file.
+  /// Returns the line number of the row; 0 in a binary file.
   int line() const { return row_line_; }
 
-  /// False where the row or the data end, or where an ascii value is no number.
+  /// Reads a value; false at the end of the row or of the data, or if an ascii value is not a number.
   bool take(PlyType type, double& value);
+  /// Skips a value or a list; false as for take(), and if the length of the list is invalid.
   bool skip(const PlyProperty& property);
-  /// Domain     a binary file that has as many
+  /// Skips bytes of a binary file.
+  ///
+  /// Domain     bytes <= bytes_left()
   void skip_bytes(std::uint64_t bytes) { at_ += bytes; }
 
   std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
-  /// Why the last take or skip was false.
+  /// Returns why the last take or skip failed.
   std::string fault() const;
-  /// The word that comes next in the row; the beginning of one that is long.
+  /// Returns the next word in the row, truncated if it is long.
   std::string word() const;
 
  private:

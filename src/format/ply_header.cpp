@@ -46,8 +46,8 @@ bool is_named(const std::vector<Named>& list, const std::string& name) {
 }
 
 std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
-  if (words.size() != 3) return "a format line is `format ENCODING 1.0`";
-  if (words[2] != "1.0") return "version `" + std::string(words[2]) + "` of the format is not known; known is 1.0";
+  if (words.size() != 3) return "a format line must be `format ENCODING 1.0`";
+  if (words[2] != "1.0") return "unsupported format version `" + std::string(words[2]) + "`; supported is 1.0";
   if (words[1] == "ascii") {
     header.encoding = PlyEncoding::kAscii;
   } else if (words[1] == "binary_little_endian") {
@@ -55,34 +55,33 @@ std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& 
   } else if (words[1] == "binary_big_endian") {
     header.encoding = PlyEncoding::kBigEndian;
   } else {
-    return "unknown encoding; known are ascii, binary_little_endian, binary_big_endian";
+    return "unknown encoding; allowed are ascii, binary_little_endian, binary_big_endian";
   }
   return {};
 }
 
 std::string parse_element(const std::vector<std::string_view>& words, PlyHeader& header) {
   PlyElement element;
-  if (words.size() != 3) return "an element line is `element NAME COUNT`";
+  if (words.size() != 3) return "an element line must be `element NAME COUNT`";
   element.name = words[1];
   const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
   if (error != std::errc() || end != words[2].data() + words[2].size())
-    return "an element's count must be a whole number";
-  if (is_named(header.elements, element.name)) return "element `" + element.name + "` stands twice";
+    return "the count of an element must be a non-negative integer";
+  if (is_named(header.elements, element.name)) return "duplicate element `" + element.name + "`";
   header.elements.push_back(element);
   return {};
 }
 
 std::string parse_property(const std::vector<std::string_view>& words, PlyHeader& header) {
-  if (header.elements.empty()) return "a property before any element";
+  if (header.elements.empty()) return "property before the first element";
   PlyProperty property;
   property.is_list = words.size() == 5 && words[1] == "list";
-  if (!property.is_list && words.size() != 3) return "a property line is `property TYPE NAME`";
-  if (property.is_list && !parse_type(words[2], property.count_type)) return "unknown type of a list's length";
+  if (!property.is_list && words.size() != 3) return "a property line must be `property TYPE NAME`";
+  if (property.is_list && !parse_type(words[2], property.count_type)) return "unknown type of the list length";
   if (!parse_type(words[words.size() - 2], property.type))
-    return "unknown type; known are char .. double, int8 .. float64";
+    return "unknown type; allowed are char .. double, int8 .. float64";
   property.name = words.back();
-  if (is_named(header.elements.back().properties, property.name))
-    return "property `" + property.name + "` stands twice";
+  if (is_named(header.elements.back().properties, property.name)) return "duplicate property `" + property.name + "`";
   header.elements.back().properties.push_back(property);
   return {};
 }
@@ -90,7 +89,7 @@ std::string parse_property(const std::vector<std::string_view>& words, PlyHeader
 }  // namespace
 
 std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line) {
-  constexpr const char* kNoPly = "this is no PLY file: its first line is not `ply`";
+  constexpr const char* kNoPly = "not a PLY file: the first line is not `ply`";
   const std::string_view head = file.substr(0, kLongestHeader);
   std::size_t at = 0;
   bool has_format = false;
@@ -99,7 +98,7 @@ std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line
     if (end == std::string_view::npos) {
       if (line == 1) return kNoPly;
       if (file.size() == head.size()) return "the header has no end_header";
-      return "the header is longer than " + std::to_string(kLongestHeader) + " bytes, which is the limit";
+      return "the header exceeds the limit of " + std::to_string(kLongestHeader) + " bytes";
     }
     const auto words = words_of(head.substr(at, end - at));
     at = end + 1;
@@ -109,7 +108,7 @@ std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line
     } else if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
       continue;
     } else if (words[0] == "format") {
-      fault = has_format ? "the format stands twice" : parse_format(words, header);
+      fault = has_format ? "duplicate format line" : parse_format(words, header);
       has_format = true;
     } else if (words[0] == "element") {
       fault = parse_element(words, header);
@@ -120,7 +119,7 @@ std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line
       header.lines = line;
       return has_format ? "" : "the header has no format line";
     } else {
-      fault = "unknown word in the header";
+      fault = "unknown keyword in the header";
     }
     if (!fault.empty()) return fault;
   }

@@ -12,7 +12,7 @@ namespace orrery::format {
 enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
-/// Bytes of a value in a binary file.
+/// Returns the size of a value in a binary file, bytes.
 constexpr std::size_t ply_size(PlyType type) {
   switch (type) {
     case PlyType::kInt8:
@@ -31,7 +31,7 @@ struct PlyProperty {
   std::string name;
   PlyType type = PlyType::kFloat32;
   bool is_list = false;
-  PlyType count_type = PlyType::kUint8;  ///< of a list's length
+  PlyType count_type = PlyType::kUint8;  ///< type of the list length
 };
 
 struct PlyElement {
@@ -49,16 +49,17 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  std::size_t bytes = 0;  ///< length of the header, the data follow
+  std::size_t bytes = 0;  ///< length of the header, which the data follow
   int lines = 0;
 };
 
-/// Bytes of a header: ten thousand properties. A file without an end_header must not be searched to its end.
+/// Maximum length of a header, bytes: room for ten thousand properties. A file without end_header must not be searched
+/// to its end.
 inline constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
 /// Parses a PLY header.
 ///
-/// Result     empty string, or what is wrong; `line` then is where
+/// Result     an empty string; on failure the fault, with its line number in `line`
 std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line);
 
 }  // namespace orrery::format

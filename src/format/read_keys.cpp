@@ -14,9 +14,9 @@ std::string type_name(const toml::node& node) {
     case toml::node_type::table: return "a table";
     case toml::node_type::array: return "a list";
     case toml::node_type::string: return "a string";
-    case toml::node_type::integer: return "a whole number";
+    case toml::node_type::integer: return "an integer";
     case toml::node_type::floating_point: return "a floating-point number";
-    case toml::node_type::boolean: return "true or false";
+    case toml::node_type::boolean: return "a boolean";
     case toml::node_type::date: return "a date";
     case toml::node_type::time: return "a time";
     case toml::node_type::date_time: return "a date";
@@ -26,7 +26,7 @@ std::string type_name(const toml::node& node) {
 }
 
 void wrong_type(Reading& reading, const toml::node& node, const std::string& name, const std::string& wanted) {
-  reading.error(place_of(node), name + " must be " + wanted + ", this is " + type_name(node));
+  reading.error(place_of(node), name + " must be " + wanted + ", not " + type_name(node));
 }
 
 std::optional<double> read_number(Reading& reading, const toml::node& node, const std::string& name,
@@ -48,7 +48,7 @@ std::optional<Value> read_vector(Reading& reading, const toml::node& node, const
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 3) {
     reading.error(place_of(node),
-                  name + " must be three numbers like [0, 1, 0], this is " +
+                  name + " must be three numbers like [0, 1, 0], not " +
                       (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
@@ -66,7 +66,7 @@ std::optional<Value> read_vector(Reading& reading, const toml::node& node, const
 std::optional<Value> read_integer(Reading& reading, const toml::node& node, const std::string& name,
                                   const scene::Range& range) {
   if (!node.is_integer()) {
-    wrong_type(reading, node, name, "a whole number");
+    wrong_type(reading, node, name, "an integer");
     return {};
   }
   const std::int64_t x = node.as_integer()->get();
@@ -99,7 +99,7 @@ std::optional<Value> read_window(Reading& reading, const toml::node& node, const
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 4) {
     reading.error(place_of(node),
-                  name + " must be x, y, width and height like [0, 0, 640, 360], this is " +
+                  name + " must be x, y, width and height like [0, 0, 640, 360], not " +
                       (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
@@ -112,7 +112,7 @@ std::optional<Value> read_window(Reading& reading, const toml::node& node, const
   return scene::Window{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
 }
 
-/// Each wrong word is a finding of its own.
+/// Reports each invalid word separately.
 std::optional<Value> read_words(Reading& reading, const toml::node& node, const std::string& name,
                                 const std::vector<std::string>& choices) {
   const toml::array* array = node.as_array();
@@ -129,7 +129,7 @@ std::optional<Value> read_words(Reading& reading, const toml::node& node, const 
     good = good && word.has_value();
     if (!word) continue;
     if (std::find(words.begin(), words.end(), std::get<std::string>(*word)) != words.end()) {
-      reading.error(place_of(element), element_name + " stands there twice", "leave one out");
+      reading.error(place_of(element), element_name + " is a duplicate", "remove it");
       good = false;
     }
     words.push_back(std::get<std::string>(*word));
@@ -160,7 +160,7 @@ void report_unknown_key(Reading& reading, const toml::key& key, const std::strin
                         const std::vector<std::string>& known, const std::string& hint) {
   const std::string name(key.str());
   std::string remedy = hint.empty() ? base::did_you_mean(name, known) : hint;
-  if (remedy.empty()) remedy = "known are " + base::joined(known);
+  if (remedy.empty()) remedy = "known keys are " + base::joined(known);
   reading.error(place_of(key), "unknown key `" + name + "` in " + table_name, remedy);
 }
 

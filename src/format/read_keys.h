@@ -14,11 +14,11 @@
 
 namespace orrery::format {
 
-/// Collects what is wrong while a tree is read.
+/// State while a tree is read: its texts and the diagnostics so far.
 struct Reading {
   SourceText source;
   Diagnostics diagnostics;
-  std::set<std::string> unread;  ///< full names of keys whose values stayed at their defaults for an error
+  std::set<std::string> unread;  ///< full names of keys that kept their defaults because of an error
 
   void error(const Place& place, const std::string& text, const std::string& remedy = {},
              base::ErrorKind kind = base::ErrorKind::kBadData) {
@@ -30,18 +30,19 @@ struct Reading {
   }
 };
 
-/// The node as the type that a key wants, checked against the key's range; nothing, and a finding, where it is not.
+/// Converts a node to the type of a key and checks its range or choices.
 ///
-/// `name` is the key's full name for messages.
+/// `name`     full name of the key, for messages
+/// Result     nullopt on failure, which is reported
 std::optional<scene::Value> read_value(Reading& reading, const toml::node& node, const std::string& name,
                                        scene::ValueType type, const scene::Range& range,
                                        const std::vector<std::string>& choices);
 
-/// Reports a key that the schema does not know; `hint` takes the place of the suggestion.
+/// Reports an unknown key; `hint` replaces the suggestion.
 void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint = {});
 
-/// Reads a table into a target by its keys. Keys in `also` are known, but read by the caller.
+/// Reads a table into a target according to its keys. Keys in `also` are valid, but read by the caller.
 template <class Target>
 void read_keys(Reading& reading, const toml::table& table, const std::string& table_name,
                const std::vector<scene::Key<Target>>& keys, const std::vector<std::string>& also, Target& target) {

@@ -10,7 +10,7 @@
 namespace orrery::format {
 namespace {
 
-/// Where else a key of a material would be right: "`fuzz` belongs to metal".
+/// Returns which material types have a key: "`fuzz` belongs to metal".
 std::string other_type_with(const std::string& key) {
   std::vector<std::string> owners;
   for (const scene::MaterialType& type : scene::material_types())
@@ -19,7 +19,7 @@ std::string other_type_with(const std::string& key) {
   return owners.empty() ? "" : "`" + key + "` belongs to " + base::joined(owners);
 }
 
-/// Keys that no type of material has, of a material whose type is not known.
+/// Reports the keys that no material type has, for a material of unknown type.
 void report_keys_of_no_type(Reading& reading, const toml::table& table, const std::string& full_name) {
   std::vector<std::string> known = {"type"};
   for (const scene::MaterialType& type : scene::material_types())
@@ -30,7 +30,7 @@ void report_keys_of_no_type(Reading& reading, const toml::table& table, const st
       report_unknown_key(reading, key, full_name, known);
 }
 
-/// The type that [material.NAME] says it has; nothing, and a finding, where it does not say or there is none such.
+/// Reads the type of [material.NAME]; null, and an error is reported, if it is missing or unknown.
 const scene::MaterialType* read_type(Reading& reading, const toml::table& table, const std::string& full_name) {
   std::vector<std::string> names;
   for (const scene::MaterialType& type : scene::material_types()) names.push_back(type.name);
@@ -52,7 +52,7 @@ void read_material(Reading& reading, const toml::table& table, scene::Material& 
   if (type == nullptr) return report_keys_of_no_type(reading, table, full_name);
   std::vector<std::string> known = {"type"};
   for (const auto& key : type->keys) known.push_back(key.name);
-  std::vector<std::string> also = {"type"};  // and what other types own: reported with their names, and not again
+  std::vector<std::string> also = {"type"};  // and keys of other types, which are reported here with the types' names
   for (const auto& [key, node] : table) {
     const std::string word(key.str());
     if (std::find(known.begin(), known.end(), word) != known.end() || other_type_with(word).empty()) continue;
@@ -70,11 +70,11 @@ void read_materials(Reading& reading, const toml::table& root, std::vector<scene
   if (node == nullptr) return;
   const toml::table* all = node->as_table();
   if (all == nullptr) {
-    reading.error(place_of(*node), "`material` must hold tables", "write [material.NAME]");
+    reading.error(place_of(*node), "`material` must contain tables", "write [material.NAME]");
     return;
   }
-  // The library sorts keys by name; data files count materials in the order of the file. What an override adds comes
-  // behind, or it would change the material of every point.
+  // The library sorts keys by name, but points files count materials in the order of the file. Materials added by
+  // overrides come last, because they would otherwise change the indices.
   struct Entry {
     bool is_override;
     int line, column;
@@ -91,7 +91,7 @@ void read_materials(Reading& reading, const toml::table& root, std::vector<scene
   });
   for (const Entry& entry : in_order) {
     const std::string name(entry.key->str());
-    // Also a material that is wrong has a name that spheres may use: one mistake is one finding.
+    // An invalid material is added, too: spheres may use its name without further errors.
     materials.push_back({name, scene::Lambertian{}});
     if (const toml::table* table = entry.value->as_table()) {
       read_material(reading, *table, materials.back());

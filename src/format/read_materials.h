@@ -8,8 +8,9 @@
 
 namespace orrery::format {
 
-/// Reads [material.NAME] tables, in the order of the file: data files count materials. Those that only an override
-/// makes come behind. A material that is wrong is there too, by its name, so that one mistake is one finding.
+/// Reads the [material.NAME] tables in the order of the file, which defines the material indices of points files.
+/// Materials that only overrides define follow. An invalid material keeps its name and index, so that spheres that use
+/// it cause no further errors.
 void read_materials(Reading& reading, const toml::table& root, std::vector<scene::Material>& materials);
 
 }  // namespace orrery::format

@@ -19,10 +19,10 @@
 namespace orrery::format {
 namespace {
 
-/// A hundred million spheres in doubles with a radius.
+/// Maximum size of a points file, bytes: room for a hundred million spheres in double precision.
 constexpr std::uint64_t kLargestFile = std::uint64_t{8} << 30;
 
-/// Collects findings of one file.
+/// Collects the diagnostics of one file.
 class PlyFaults {
  public:
   explicit PlyFaults(const std::filesystem::path& file) : file_(file.string()) {}
@@ -56,7 +56,7 @@ class PlyFaults {
   std::uint64_t many_ = 0;
 };
 
-/// Where in a vertex the values stand that we want; -1: nowhere.
+/// Indices of the properties that are used in a vertex; -1: absent.
 struct VertexLayout {
   int x = -1, y = -1, z = -1, radius = -1, material = -1;
   bool r_is_color = false;
@@ -93,7 +93,7 @@ VertexLayout layout_of(const PlyElement& vertex) {
   return layout;
 }
 
-/// The fewest bytes that one row of an element can take: what a lying count is held against before memory is asked for.
+/// Returns the minimum size of a row of an element, bytes, to check counts before memory is allocated.
 std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding) {
   std::uint64_t bytes = 0;
   for (const PlyProperty& p : element.properties)
@@ -103,16 +103,17 @@ std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding) {
 
 void check_count(PlyFaults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left) {
   const std::uint64_t each = std::max<std::uint64_t>(1, fewest_bytes(element, header.encoding));
-  // The last ascii word needs no space behind it.
+  // The last ascii word needs no space after it.
   const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
   if (element.count > bytes / each)
-    faults.fail(0, "the header promises " + std::to_string(element.count) + " of `" + element.name + "`, but only " +
-                       std::to_string(bytes_left) + " bytes follow; the file is cut off, or its count is wrong");
+    faults.fail(0, "the header declares " + std::to_string(element.count) + " rows of `" + element.name +
+                       "`, but only " + std::to_string(bytes_left) +
+                       " bytes follow; the file is truncated, or the count is wrong");
 }
 
-/// Reads one row by `take(property, its number)`, which is false for a value that is none.
+/// Reads one row: calls `take(property, index)` for each property, which returns false if the value is invalid.
 ///
-/// `name()` is the row's for messages
+/// `name()`   name of the row, for messages
 template <class Name, class Take>
 void read_row(PlyFaults& faults, const PlyElement& element, PlyCursor& cursor, Name name, Take take) {
   cursor.begin_row();
@@ -120,10 +121,11 @@ void read_row(PlyFaults& faults, const PlyElement& element, PlyCursor& cursor, N
     if (!take(element.properties[k], k))
       faults.fail(cursor.line(), name() + ", `" + element.properties[k].name + "`: " + cursor.fault());
   if (!cursor.end_row())
-    faults.fail(cursor.line(), name() + ": `" + cursor.word() + "` follows the last value that the header promises");
+    faults.fail(cursor.line(),
+                name() + ": unexpected `" + cursor.word() + "` after the last value that the header declares");
 }
 
-/// Passes over an element that holds no spheres.
+/// Skips an element other than `vertex`.
 void skip_element(PlyFaults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor) {
   if (element.properties.empty()) return;
   if (header.encoding != PlyEncoding::kAscii && !element.has_list())
@@ -134,22 +136,22 @@ void skip_element(PlyFaults& faults, const PlyElement& element, const PlyHeader&
         [&](const PlyProperty& property, std::size_t) { return cursor.skip(property); });
 }
 
-/// More rows than the header promises, or something else, behind the last one.
+/// Reports data after the last row that the header declares.
 void check_end(PlyFaults& faults, PlyCursor& cursor) {
   cursor.begin_row();
   if (cursor.bytes_left() == 0) return;
   faults.fail(cursor.line(), std::to_string(cursor.bytes_left()) +
-                                 " bytes follow the last row that the header promises; its counts are wrong, or the "
+                                 " bytes follow the last row that the header declares; the counts are wrong, or the "
                                  "file is damaged");
 }
 
 void read_vertices(PlyFaults& faults, const PlyElement& vertex, PlyCursor& cursor, std::size_t material_count,
                    scene::Points& points) {
   const VertexLayout at = layout_of(vertex);
-  if (at.x < 0 || at.y < 0 || at.z < 0) faults.fail(0, "`vertex` has no x, y and z");
+  if (at.x < 0 || at.y < 0 || at.z < 0) faults.fail(0, "`vertex` needs x, y and z");
   if (at.radius < 0 && !points.radius)
     faults.fail(0, std::string("`vertex` has no `radius`") +
-                       (at.r_is_color ? ", and its `r` is a colour, beside `g` and `b`" : "") +
+                       (at.r_is_color ? ", and `r` is a colour because of `g` and `b`" : "") +
                        "; add one, or set `radius` in [[points]]");
   for (std::size_t k = 0; k < vertex.properties.size(); ++k)
     if (!at.uses(static_cast<int>(k))) points.unused.push_back(vertex.properties[k].name);
@@ -168,7 +170,7 @@ void read_vertices(PlyFaults& faults, const PlyElement& vertex, PlyCursor& curso
     points.centers[i] = {value(at.x), value(at.y), value(at.z)};
     points.radii[i] = points.radius ? *points.radius : value(at.radius);
     if (!math::is_finite(points.centers[i]) || !std::isfinite(points.radii[i]))
-      faults.add_of_many(cursor.line(), "vertex " + std::to_string(i) + " has a number that is not finite");
+      faults.add_of_many(cursor.line(), "vertex " + std::to_string(i) + " has a non-finite value");
     if (at.material < 0) continue;
     const double material = value(at.material);
     if (!(material >= 0 && material < static_cast<double>(material_count)) || material != std::floor(material)) {

@@ -20,16 +20,16 @@
 namespace orrery::format {
 namespace {
 
-/// Materials by their names.
+/// Material indices by name.
 using MaterialIndex = std::unordered_map<std::string, std::uint32_t>;
 
-/// Lists that are no list of tables are reported once, not per element.
+/// Returns an array of tables; null if it is absent, or if it is not an array of tables, which is reported once.
 const toml::array* tables_under(Reading& reading, const toml::table& root, const char* name) {
   const toml::node* node = root.get(name);
   if (node == nullptr) return nullptr;
   const toml::array* array = node->as_array();
   if (array == nullptr || (!array->empty() && !array->is_array_of_tables())) {
-    reading.error(place_of(*node), std::string("each ") + name + " is a table of its own",
+    reading.error(place_of(*node), std::string("`") + name + "` must be an array of tables",
                   std::string("write [[") + name + "]]");
     return nullptr;
   }
@@ -48,7 +48,8 @@ void read_single_tables(Reading& reading, const toml::table& root, scene::Scene&
   }
 }
 
-/// The index of the material that a sphere or a points file names; 0 and a finding where there is none.
+/// Returns the index of the material that a sphere or a points file names; 0, and an error is reported, if it does not
+/// exist.
 std::uint32_t read_material_name(Reading& reading, const toml::table& table, const std::string& table_name,
                                  const scene::Scene& scene, const MaterialIndex& index) {
   const std::string full_name = table_name + ".material";
@@ -66,9 +67,9 @@ std::uint32_t read_material_name(Reading& reading, const toml::table& table, con
     for (const scene::Material& material : scene.materials) names.push_back(material.name);
     constexpr std::size_t kMostNamed = 12;
     std::string remedy = base::did_you_mean(name, names);
-    if (remedy.empty() && names.empty()) remedy = "the scene has no [material.NAME] at all";
-    if (remedy.empty() && names.size() <= kMostNamed) remedy = "there are " + base::joined(names);
-    reading.error(place_of(*node), full_name + " is \"" + name + "\", and there is no such material", remedy);
+    if (remedy.empty() && names.empty()) remedy = "the scene defines no materials";
+    if (remedy.empty() && names.size() <= kMostNamed) remedy = "defined are " + base::joined(names);
+    reading.error(place_of(*node), full_name + " is \"" + name + "\", which is not defined", remedy);
   }
   reading.unread.insert(full_name);
   return 0;
@@ -88,7 +89,7 @@ void read_spheres(Reading& reading, const toml::table& root, const MaterialIndex
   }
 }
 
-/// Reads a data file; what is wrong is reported at the place in the scene that names it, then by the file itself.
+/// Reads a points file. Errors are reported at the location in the scene that names the file, and at those in the file.
 void read_points_file(Reading& reading, const Place& place, const std::string& full_name,
                       const std::filesystem::path& file, std::size_t materials, scene::Points& points) {
   try {
@@ -121,7 +122,7 @@ void read_points(Reading& reading, const toml::table& root, const std::filesyste
   }
 }
 
-/// The node that a problem's key names, or the nearest table around it.
+/// Returns the node that a diagnostic's key names, or the closest enclosing table; null if there is none.
 const toml::node* node_of(const toml::table& root, const std::string& key) {
   const toml::node* at = &root;
   std::size_t i = 0;
@@ -142,15 +143,15 @@ const toml::node* node_of(const toml::table& root, const std::string& key) {
   return at == &root ? nullptr : at;
 }
 
-/// Adds a problem at the place of its key; without one at the file.
+/// Adds a diagnostic at the location of its key, or of the file if the key is not set.
 void add_problem(Reading& reading, const toml::table& root, const std::string& file,
                  const scene::SceneDiagnostic& diagnostic, const std::string& text) {
   const toml::node* node = node_of(root, diagnostic.key);
   reading.add(diagnostic.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, diagnostic.kind);
 }
 
-/// Adds what is wrong with the whole. A value that could not be read stands at its default: what the whole makes of
-/// that would be a finding too many, and nobody is warned of a scene that is wrong.
+/// Adds the diagnostics of the whole scene. Those that may follow from the default of a key that could not be read are
+/// dropped, and so are warnings if the scene has errors.
 void add_problems(Reading& reading, const toml::table& root, const std::vector<scene::SceneDiagnostic>& diagnostics,
                   const std::string& file) {
   const bool has_errors = reading.diagnostics.has_errors();
@@ -164,7 +165,7 @@ void add_problems(Reading& reading, const toml::table& root, const std::vector<s
   }
 }
 
-/// Brings the scene to the moment of the frame; where the shutter stays open, to its two moments.
+/// Poses the scene at the frame; with motion blur, at shutter open and at shutter close.
 void pose(Reading& reading, const toml::table& root, const std::string& file, int frame, ReadResult& result) {
   scene::Scene& scene = result.scene;
   const scene::Camera& shutter = scene.camera;
@@ -185,7 +186,7 @@ void pose(Reading& reading, const toml::table& root, const std::string& file, in
   for (std::size_t i = 0; is_open && i < scene.spheres.size(); ++i)
     if ((scene.spheres[i].radius < 0) != (result.closing->spheres[i].radius < 0))
       reading.error(Place{file, 0, 0, 1},
-                    "sphere[" + std::to_string(i) + "].radius changes its sign while the shutter is open");
+                    "sphere[" + std::to_string(i) + "].radius changes sign while the shutter is open");
 }
 
 void report_unknown_tables(Reading& reading, const toml::table& root) {

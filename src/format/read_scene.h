@@ -14,39 +14,37 @@
 
 namespace orrery::format {
 
-/// One value of the scene and where it came from.
+/// The value of a key, and its origin.
 struct Setting {
   std::string key;     ///< "camera.vfov"
-  std::string value;   ///< as it would stand in a scene file
+  std::string value;   ///< as written in a scene file
   std::string origin;  ///< "default", "scene.toml:12", "--set", "--samples"
 };
 
-/// The frame of a scene that nobody asks for another one of.
+/// The frame that is read by default.
 inline constexpr int kFirstFrame = 1;
 
 struct ReadResult {
   scene::Scene scene;
   std::vector<base::Diagnostic> warnings;
-  std::vector<Setting> settings;  ///< every key of which a scene has one, in the documentation's order
-  /// The scene without points as it stands when the shutter closes; `scene` is then what it opens on. Nothing where it
-  /// is never open.
+  std::vector<Setting> settings;  ///< all keys that a scene has at most once, in documentation order
+  /// The scene at shutter close, without points; `scene` is then the scene at shutter open. Empty without motion blur.
   std::optional<scene::Scene> closing = {};
 };
 
-/// What somebody else finds wrong with a scene that is valid by itself, such as names that an OCIO config lacks.
+/// A further check of a scene, such as for names that are not in the OCIO config.
 using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene::Scene&)>;
 
-/// Reads and checks a scene file, and the data files it names.
+/// Reads and checks a scene file, and the points files that it names.
 ///
-/// `frame` selects the values of animated keys and the files of sequences. `also` is asked where nothing in [color] is
-/// wrong by itself.
+/// `overrides` are "key=value", with the value as in the file; words need no quotes. Keys are dotted, spheres are
+/// counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5". `frame` selects the values of
+/// animated keys and the files of sequences. `also` is called if [color] has no errors.
 ///
-/// `overrides` are "key=value" with the value as in the file; quotes around a word may be left out. Keys are dotted,
-/// spheres are counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5".
-///
-/// Errors     base::Error: kMissingInput where the scene or nothing but data files cannot be opened; kIo; kBadData with
-///            the findings of the file, of the overrides and of the data files, each with its place, the first
-///            kMostErrors of them
+/// Errors     base::Error: kMissingInput if the scene cannot be opened, or if all errors are points files that cannot
+/// be
+///            opened; kIo; kBadData with the diagnostics of the file, the overrides and the points files, each with its
+///            location, the first kMostErrors of them
 /// Reference  docs/scene-format.md
 ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {},
                       int frame = kFirstFrame, const SceneCheck& also = {});

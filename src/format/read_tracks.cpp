@@ -15,13 +15,13 @@ using scene::interpolation_names;
 using scene::Track;
 using scene::ValueType;
 
-/// A list under a key of the table; null and a finding where there is none.
+/// Returns the list of a key; null, and an error is reported, if it is missing, empty or not a list.
 const toml::array* list_at(Reading& reading, const toml::table& table, const std::string& full_name, const char* key) {
   const toml::node* node = table.get(key);
   const toml::array* list = node == nullptr ? nullptr : node->as_array();
   if (list != nullptr && !list->empty()) return list;
   const std::string what = full_name + (node == nullptr ? " needs `" + std::string(key) + "`"
-                                                        : "." + std::string(key) + " must be a list that is not empty");
+                                                        : "." + std::string(key) + " must be a non-empty list");
   reading.error(node == nullptr ? place_of(table) : place_of(*node), what);
   return nullptr;
 }
@@ -33,7 +33,7 @@ bool read_frames(Reading& reading, const toml::array& list, const std::string& n
         read_value(reading, node, name, ValueType::kNumber, {-scene::kMostFrames, scene::kMostFrames}, {});
     const double frame = value ? std::get<double>(*value) : 0;
     if (value && !frames.empty() && good && frame <= frames.back()) {
-      reading.error(place_of(node), name + ": frame " + scene::number_text(frame) + " does not come after " +
+      reading.error(place_of(node), name + " must ascend: " + scene::number_text(frame) + " follows " +
                                         scene::number_text(frames.back()));
       good = false;
     }
@@ -56,7 +56,7 @@ bool read_values(Reading& reading, const toml::array& list, const std::string& n
   return good;
 }
 
-/// The name of what changes, and what that is; nothing, and a finding, where it is nothing.
+/// Reads the target of a track and its name; nullopt, and an error is reported, if it is invalid.
 std::optional<scene::Animated> read_target(Reading& reading, const toml::table& table, const std::string& full_name,
                                            const scene::Scene& scene, std::string& name) {
   const toml::node* node = table.get("target");
@@ -72,17 +72,16 @@ std::optional<scene::Animated> read_target(Reading& reading, const toml::table& 
     const auto numbered = [&](std::size_t i) {
       return "sphere[" + std::to_string(spheres[i]) + "]" + name.substr(name.rfind('.'));
     };
-    reading.error(
-        place_of(*node),
-        full_name + ".target: " + std::to_string(spheres.size()) + " spheres have the name in \"" + name + "\"",
-        "name one by its number, such as " + numbered(0) + " or " + numbered(1));
+    reading.error(place_of(*node),
+                  full_name + ".target: \"" + name + "\" matches " + std::to_string(spheres.size()) + " spheres",
+                  "use an index, such as " + numbered(0) + " or " + numbered(1));
     return {};
   }
   if (target) return target;
   std::string remedy = base::did_you_mean(name, scene::animated_names(scene));
   if (remedy.empty())
-    remedy = "numbers of camera, background, material.NAME, sphere.NAME and sphere[NUMBER] can change";
-  reading.error(place_of(*node), full_name + ".target: there is no number \"" + name + "\" that can change", remedy);
+    remedy = "targets are numbers of camera, background, material.NAME, sphere.NAME and sphere[INDEX]";
+  reading.error(place_of(*node), full_name + ".target: \"" + name + "\" is not a number that can be animated", remedy);
   return {};
 }
 
@@ -109,10 +108,10 @@ void read_tracks(Reading& reading, const toml::array& list, scene::Scene& scene)
     if (!target || frames == nullptr || values == nullptr) continue;
     if (frames->size() != values->size())
       reading.error(place_of(*table.get("values")), full_name + " has " + std::to_string(frames->size()) +
-                                                        " frames and " + std::to_string(values->size()) + " values");
+                                                        " frames but " + std::to_string(values->size()) + " values");
     const auto is_same = [&](const Track& other) { return other.target == track.target; };
     if (std::any_of(scene.tracks.begin(), scene.tracks.end(), is_same))
-      reading.error(place_of(*table.get("target")), full_name + ": " + track.target + " has keys already",
+      reading.error(place_of(*table.get("target")), full_name + ": " + track.target + " already has keys",
                     "put all its frames into one [[key]]");
     const bool frames_are_good = read_frames(reading, *frames, full_name + ".frames", track.frames);
     const bool values_are_good = read_values(reading, *values, full_name + ".values", *target, track.values);
@@ -132,7 +131,7 @@ void check_tracks(Reading& reading, const toml::array& list, const scene::Scene&
     reading.error(place_of(*list.get(i)),
                   track.target + " is " + (is_vector ? scene::vector_text(v) : scene::number_text(v.x)) + " at frame " +
                       scene::number_text(frame) + "; allowed is " + target->range.text(),
-                  "a cubic track goes beyond its keys; set more of them, or let it be linear");
+                  "cubic interpolation may overshoot; add keys, or make it linear");
   }
 }
 

@@ -6,10 +6,10 @@
 
 namespace orrery::format {
 
-/// Reads [[key]], the numbers that change from frame to frame, into a scene whose materials and spheres are read.
+/// Reads the [[key]] tables into the tracks of a scene whose materials and spheres have been read.
 void read_tracks(Reading& reading, const toml::array& list, scene::Scene& scene);
 
-/// Reports numbers that go out of range between their keys at a frame, as cubic tracks may.
+/// Reports the tracks whose values are out of range at a frame: cubic tracks may overshoot between their keys.
 void check_tracks(Reading& reading, const toml::array& list, const scene::Scene& scene, double frame);
 
 }  // namespace orrery::format

@@ -16,13 +16,14 @@ namespace orrery::format {
 
 namespace {
 
-/// A file may be nothing but line ends: the place of every line would be eight times as large as the file.
+/// Lines per stored offset: in a file of line ends only, an offset per line would take eight times the size of the
+/// file.
 constexpr std::size_t kStride = 64;
 
-/// A line that wraps ten times helps nobody.
+/// Maximum length of a quoted line, bytes: a line that wraps ten times does not help.
 constexpr std::size_t kLongestShown = 400;
 
-/// The byte, from 0, at which the `index`-th character begins; beyond the end where there are not as many.
+/// Returns the 0-based byte index of the `index`-th character; beyond the end if the line has fewer characters.
 std::size_t byte_of_character(std::string_view line, std::size_t index) {
   std::size_t at = 0;
   for (; at < line.size(); ++at) {
@@ -40,7 +41,7 @@ void SourceText::add_override(const Override& override, std::string parsed, std:
   ShownOverride own;
   own.option = override.option;
   own.shown = override.option + ' ' + override.typed;
-  // One line, whatever is in it.
+  // Shown on one line.
   std::replace_if(
       own.shown.begin(), own.shown.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   own.parsed = std::move(parsed);
@@ -70,7 +71,7 @@ std::string_view SourceText::line_of(const Text& text, int line) {
   return out;
 }
 
-/// Brings a place in what was parsed back to what was typed.
+/// Maps a location in the parsed text to the typed text.
 void SourceText::point_into(const ShownOverride& override, const Place& place, base::Diagnostic& diagnostic) {
   const auto shown_byte = [&](int column) {
     std::size_t at = byte_of_character(override.parsed, static_cast<std::size_t>(column) - 1);
@@ -115,8 +116,8 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
 
 std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes) {
   const auto too_large = [&] {
-    return base::Error(base::ErrorKind::kBadData, file.string() + " is larger than the " +
-                                                      std::to_string(largest_bytes >> 20) + " MiB that are read");
+    return base::Error(base::ErrorKind::kBadData,
+                       file.string() + " exceeds the limit of " + std::to_string(largest_bytes >> 20) + " MiB");
   };
   std::error_code error;
   base::require_readable(file);
@@ -129,7 +130,7 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
   bytes.resize(error ? 0 : static_cast<std::size_t>(size));
   std::size_t got = std::fread(bytes.data(), 1, bytes.size(), in.get());
   if (got < bytes.size()) bytes.resize(got);
-  // What grew meanwhile is read on until its end; files of /proc say that they are empty.
+  // A file may have grown in the meantime, and files in /proc report a size of 0: read to the end.
   char more[65536];
   while ((got = std::fread(more, 1, sizeof(more), in.get())) > 0) {
     bytes.append(more, got);

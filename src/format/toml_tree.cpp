@@ -30,7 +30,7 @@ void add_parse_error(const toml::parse_error& error, const SourceText& source, D
   if (text.rfind(kPreface, 0) == 0) text.erase(0, kPreface.size());
   std::string remedy;
   if (const std::size_t at = text.find("cannot redefine existing"); at != std::string::npos) {
-    text = "this stands twice: " + text.substr(at);
+    text = "duplicate: " + text.substr(at);
     remedy = "remove one of them";
   }
   diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData,
@@ -44,7 +44,7 @@ toml::table parse_tree(const std::string& file_name, const std::string& text, co
     place.text_name = file_name;
     diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData, [&] {
       return source.diagnostic(base::Severity::kError, place,
-                               "a key of more than " + std::to_string(kDeepestKey) + " parts");
+                               "the key has more than " + std::to_string(kDeepestKey) + " parts");
     });
     return {};
   }

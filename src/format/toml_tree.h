@@ -12,16 +12,16 @@
 
 namespace orrery::format {
 
-/// Where a node or a key stands.
+/// Returns the location of a node or a key.
 Place place_of(const toml::node& node);
 Place place_of(const toml::key& key);
 
-/// Adds a parse error of the library, in our own words.
+/// Adds a parse error of the TOML library as a diagnostic.
 void add_parse_error(const toml::parse_error& error, const SourceText& source, Diagnostics& diagnostics);
 
-/// Parses the scene file's text and puts the overrides in; what cannot be parsed becomes diagnostics.
+/// Parses the text of a scene file and applies the overrides; failures are added to `diagnostics`.
 ///
-/// Result     the tree as far as there is one; nodes know their places, also those of overrides
+/// Result     the tree, empty if the text is invalid; nodes have their locations, also in overrides
 toml::table parse_tree(const std::string& file_name, const std::string& text, const std::vector<Override>& overrides,
                        SourceText& source, Diagnostics& diagnostics);
 

@@ -5,7 +5,7 @@
 
 namespace orrery::format {
 
-/// The version of toml++ in use.
+/// Returns the version of toml++.
 std::string toml_version();
 
 }  // namespace orrery::format

@@ -29,13 +29,13 @@ void append_bytes(std::string& out, T value) {
 
 void append_float(std::string& out, double value, std::size_t index) {
   if (std::abs(value) > std::numeric_limits<float>::max())
-    throw base::Error(base::ErrorKind::kBadData, "sphere " + std::to_string(index) + " has the number " +
+    throw base::Error(base::ErrorKind::kBadData, "sphere " + std::to_string(index) + " has the value " +
                                                      scene::number_text(value) +
-                                                     ", too large for a float; write doubles");
+                                                     ", which overflows a float; write doubles");
   append_bytes(out, static_cast<float>(value));
 }
 
-/// The comment is how is_own_ply knows the file again.
+/// is_own_ply recognises files by the comment.
 constexpr const char* kPlyBegin = "ply\nformat binary_little_endian 1.0\ncomment made by orrery\n";
 
 std::string header(const scene::Points& points, PlyReal real) {

@@ -7,21 +7,21 @@
 
 namespace orrery::format {
 
-/// The type of centres and radii in a written file.
+/// Number type of centres and radii in the file.
 enum class PlyReal {
-  kFloat,   ///< half the size; what other programs expect
+  kFloat,   ///< half the size; expected by other programs
   kDouble,  ///< reads back to the same bits
 };
 
-/// Writes spheres as binary little-endian PLY: x, y, z, radius, and material as uint where there is one. A comment in
-/// the header says that orrery made it.
+/// Writes spheres as binary little-endian PLY: x, y, z, radius, and material as uint if `points` has materials. A
+/// comment in the header identifies orrery as the writer.
 ///
-/// Errors     base::Error: kCannotCreate, kIo; kBadData where a number does not fit into a float: it would be infinite
-/// Cost       the file stands in memory before it is written
+/// Errors     base::Error: kCannotCreate, kIo; kBadData if a number overflows a float
+/// Cost       the whole file is built in memory before it is written
 /// Reference  turk1994
 void write_ply(const scene::Points& points, const std::filesystem::path& file, PlyReal real = PlyReal::kDouble);
 
-/// Whether write_ply wrote a file, so that writing it again destroys nobody's data.
+/// True if write_ply wrote the file, so that replacing it destroys no user data.
 bool is_own_ply(const std::filesystem::path& file);
 
 }  // namespace orrery::format

@@ -26,7 +26,7 @@ bool is_bare_key(const std::string& name) {
 void add_comment(std::string& out, const std::string& comment) {
   std::istringstream lines(comment);
   for (std::string line; std::getline(lines, line);) {
-    // TOML has no control characters in comments, not even in a file name that stands there.
+    // TOML comments must not contain control characters, which a file name in the comment may have.
     std::replace_if(
         line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 0x7f; }, '?');
     out += line.empty() ? "#\n" : "# " + line + "\n";
@@ -44,14 +44,14 @@ void add_tables(std::string& out, const scene::Scene& scene) {
   }
 }
 
-/// One line each: a scene may have as many materials as spheres.
+/// Writes one line per material: a scene may have as many materials as spheres.
 void add_materials(std::string& out, const std::vector<scene::Material>& materials) {
   if (materials.empty()) return;
   out += "[material]\n";
   std::set<std::string> names;
   for (const scene::Material& material : materials) {
     if (!names.insert(material.name).second)
-      throw base::Error(base::ErrorKind::kInternal, "a scene to write has two materials named " + material.name);
+      throw base::Error(base::ErrorKind::kInternal, "cannot write a scene with two materials named " + material.name);
     const scene::MaterialType& type = scene::material_types()[material.model.index()];
     out += (is_bare_key(material.name) ? material.name : string_text(material.name)) +
            " = { type = " + string_text(type.name);
@@ -83,7 +83,8 @@ void add_tracks(std::string& out, const scene::Scene& scene) {
 
 const std::string& material_name(const scene::Scene& scene, std::uint32_t material) {
   if (material >= scene.materials.size())
-    throw base::Error(base::ErrorKind::kInternal, "a scene to write has no material " + std::to_string(material));
+    throw base::Error(base::ErrorKind::kInternal,
+                      "cannot write a scene that uses missing material " + std::to_string(material));
   return scene.materials[material].name;
 }
 
@@ -110,7 +111,7 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
     if (points.radius) out += "radius = " + number_text(*points.radius) + "\n";
     out += '\n';
   }
-  if (!out.empty()) out.pop_back();  // the blank line behind the last block
+  if (!out.empty()) out.pop_back();  // the blank line after the last block
   return out;
 }
 

@@ -8,17 +8,16 @@
 
 namespace orrery::format {
 
-/// The scene as text that reads back to the same scene, without what has its default.
+/// Returns a scene file that reads back to the same scene. Keys with default values are left out.
 ///
-/// `comment` stands at the head, each line behind a #.
-///
-/// Errors     base::Error(kInternal) for a scene that no file can say: two materials of one name, or one that is not
-/// there
+/// `comment`  placed at the top, each line after a #
+/// Errors     base::Error(kInternal) for a scene that no file can represent: two materials of the same name, or a
+///            material index that does not exist
 std::string scene_text(const scene::Scene& scene, const std::string& comment);
 
-/// Writes the scene, and beside it a PLY file for each of its Points.
+/// Writes a scene file, and a PLY file for each of its Points.
 ///
-/// Errors     base::Error: kCannotCreate, kIo; kInternal as above
+/// Errors     base::Error: kCannotCreate, kIo; kInternal as for scene_text
 void write_scene(const scene::Scene& scene, const std::string& comment, const std::filesystem::path& file);
 
 }  // namespace orrery::format

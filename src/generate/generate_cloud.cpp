@@ -16,7 +16,7 @@ namespace {
 
 using math::Vec3d;
 
-/// A ball of the cloud's shape: flat below, heaped up in the middle, trailing off to the right.
+/// One of the balls that form the cloud: flat below, high in the middle, tapering to the right.
 struct Puff {
   Vec3d center;
   double radius;
@@ -30,24 +30,24 @@ constexpr std::array<Puff, 8> kPuffs{{{{-1.45, 0.00, 0.05}, 0.50},
                                       {{1.65, -0.12, -0.05}, 0.38},
                                       {{2.00, -0.20, 0.05}, 0.24}}};
 
-/// Sum of the cross-sections of all spheres, scene units^2: the shape's own silhouette about two and a half times.
+/// Total cross-section of all spheres, scene units^2: about 2.5 times the silhouette of the cloud.
 constexpr double kCrossSection = 12;
-/// So that a cloud of three spheres is not one ball.
+/// Maximum mean radius by default, so that three spheres do not merge into one ball.
 constexpr double kLargestDefaultRadius = 0.3;
-/// How far out the sum of two points of the unit ball goes, against one point of it.
+/// Scale of the sum of two points in the unit ball.
 constexpr double kSpread = 0.65;
-/// A sphere's size, in units of the one that makes the cross-section right.
+/// Range of a sphere's radius, relative to the mean that gives the total cross-section.
 constexpr double kSmallestShare = 0.5, kLargestShare = 1.4;
 
 double mean_radius(std::uint64_t count) {
-  // The mean square of a share that is uniform between the two.
+  // Mean square of a relative radius that is uniform between the two.
   constexpr double kMeanSquare =
       (kSmallestShare * kSmallestShare + kSmallestShare * kLargestShare + kLargestShare * kLargestShare) / 3;
   const double r = std::sqrt(kCrossSection / (std::numbers::pi * kMeanSquare * static_cast<double>(count)));
   return std::min(r, kLargestDefaultRadius);
 }
 
-/// Picks puffs by volume, so that the cloud is about equally dense where they do not overlap.
+/// Chooses puffs in proportion to volume, so that the density is about uniform where they do not overlap.
 class PuffChoice {
  public:
   PuffChoice() {
@@ -65,14 +65,14 @@ class PuffChoice {
   std::array<double, kPuffs.size()> up_to_{};
 };
 
-/// Mostly white, a few spheres tinted, fewer of metal. The order is that of the scene's materials.
+/// Returns a material index, in the order of the scene's materials: mostly white, some tinted, few metal.
 std::uint32_t pick_material(double u) { return u < 0.75 ? 0 : u < 0.87 ? 1 : u < 0.95 ? 2 : 3; }
 
 void check(const Cloud& options) {
   if (options.count < 1 || options.count > kLargestCloud)
     throw base::Error(base::ErrorKind::kUsage,
                       "count is " + std::to_string(options.count) + "; allowed is 1.." + std::to_string(kLargestCloud));
-  // Negated so that NaN is refused too.
+  // Negated, so that NaN is refused too.
   if (options.radius && !(*options.radius >= scene::kSmallestRadius && *options.radius <= kLargestCloudRadius))
     throw base::Error(base::ErrorKind::kUsage, "radius is " + scene::number_text(*options.radius) + "; allowed is " +
                                                    scene::number_text(scene::kSmallestRadius) + ".." +
@@ -87,7 +87,7 @@ scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& point
   scene.camera.look_from = {0.3, 0.1, 9};
   scene.camera.look_at = {0.15, 0.3, 0};
   scene.camera.vfov = 20;
-  // Light from above: white tops and dark undersides before a middling blue, which is what is seen of the sky.
+  // Light from above: white tops and dark undersides against a medium blue, the visible part of the sky.
   scene.background.bottom = {0, 0.05, 0.2};
   scene.background.top = {0.8, 0.95, 1.2};
   scene.materials = {{"white", scene::Lambertian{{0.95, 0.95, 0.95}}},
@@ -106,7 +106,7 @@ scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& point
   points.materials.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Puff& puff = choose(random.unit());
-    // The sum of two points thins out towards the rim: from one alone the balls of the shape could be told apart.
+    // The density of the sum of two points falls off towards the rim; with one point, single puffs would stand out.
     const Vec3d a = random.in_ball(), b = random.in_ball();
     points.centers.push_back(puff.center + kSpread * puff.radius * (a + b));
     const double share = random.between(kSmallestShare, kLargestShare);

@@ -7,14 +7,13 @@
 
 namespace orrery::generate {
 
-/// Writes a generated scene: TOML to `file`, bulk spheres beside it to the same name with .ply for an extension.
+/// Writes a generated scene: TOML to `file`, points to a file of the same name with the extension .ply.
 ///
-/// A comment at the head says what it shows and which command makes it again, the same byte for byte.
+/// A comment at the top describes the scene and gives the command that reproduces it, byte for byte. An existing points
+/// file is replaced only if orrery wrote it.
 ///
-/// A points file is replaced only where orrery made it.
-///
-/// Errors     base::Error: kUsage for options outside their range and for a `file` that itself ends in .ply;
-///            kCannotCreate before anything is generated, also for a points file of other origin; kIo
+/// Errors     base::Error: kUsage for options out of range and for a `file` that ends in .ply; kCannotCreate, before
+///            anything is generated, also for a points file that orrery did not write; kIo
 void generate_final(const FinalScene& options, const std::filesystem::path& file);
 void generate_cloud(const Cloud& options, const std::filesystem::path& file);
 

@@ -15,7 +15,7 @@ using math::Vec3d;
 
 constexpr double kSmallRadius = 0.2;
 
-/// Four decimals are as good as sixteen to the eye.
+/// Rounds to four decimals, which makes no visible difference.
 double rounded(double x) { return std::round(x * 1e4) / 1e4; }
 Vec3d rounded(Vec3d v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
 
@@ -24,13 +24,13 @@ std::uint32_t add_material(scene::Scene& scene, const std::string& name, const s
   return static_cast<std::uint32_t>(scene.materials.size() - 1);
 }
 
-/// Makes materials by the book's odds. There is only one glass; of the others each is new.
+/// Draws materials with the book's probabilities. All glass is one material; every other one is new.
 class SmallMaterials {
  public:
   SmallMaterials(GenerateRandom& random, scene::Scene& scene, std::uint32_t glass)
       : random_(random), scene_(scene), glass_(glass) {}
 
-  /// The material for a number of 0..1, as an index into the scene's.
+  /// Returns the material index for a random number in 0..1.
   std::uint32_t next(double choice) {
     if (choice < 0.8) {
       const Vec3d a = random_.unit3(), b = random_.unit3();
@@ -59,7 +59,7 @@ class SmallMaterials {
 /// Calls `place(choice, center)` for every small sphere, cell by cell.
 template <class Place>
 void for_each_small_sphere(int grid, GenerateRandom& random, Place place) {
-  constexpr Vec3d kKeepClear{4, kSmallRadius, 0};  // there stands the metal ball
+  constexpr Vec3d kKeepClear{4, kSmallRadius, 0};  // position of the large metal sphere
   constexpr double kClearance = 0.9;
   for (int a = -grid; a < grid; ++a) {
     for (int b = -grid; b < grid; ++b) {
@@ -72,14 +72,15 @@ void for_each_small_sphere(int grid, GenerateRandom& random, Place place) {
   }
 }
 
-/// One sphere, one material: every small sphere stands in the scene itself.
+/// Adds the small spheres to the scene, each with its own material.
 void add_written_spheres(int grid, GenerateRandom& random, SmallMaterials& materials, scene::Scene& scene) {
   for_each_small_sphere(grid, random, [&](double choice, Vec3d center) {
     scene.spheres.push_back({center, kSmallRadius, materials.next(choice), ""});
   });
 }
 
-/// A palette drawn by the odds, of which each sphere takes any: the shares of diffuse, metal and glass stay.
+/// Adds the small spheres as points with materials from a random palette, which keeps the fractions of diffuse, metal
+/// and glass.
 void add_points(int grid, GenerateRandom& random, SmallMaterials& materials, const std::filesystem::path& file,
                 scene::Scene& scene) {
   std::vector<std::uint32_t> palette;

@@ -9,29 +9,32 @@
 
 namespace orrery::generate {
 
-/// Random numbers of the scene generators: one seed gives the same scene on every machine.
+/// Random numbers for the scene generators: one seed gives the same scene on every machine.
 ///
-/// The engine's bits are the C++ standard's; the distributions of the standard library are not, so the way from bits to
-/// numbers is our own, and takes nothing but IEEE arithmetic.
+/// The C++ standard specifies the bits of the engine, but not those of its distributions. The conversion from bits to
+/// numbers therefore is ours, and uses only IEEE arithmetic.
+///
+/// Reference  matsumoto1998
 class GenerateRandom {
  public:
   explicit GenerateRandom(std::uint64_t seed) : engine_(seed) {}
 
-  /// Uniform in [0, 1), a multiple of 2^-53.
+  /// Returns a multiple of 2^-53, uniform in [0, 1).
   double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
-  /// Uniform in [from, to).
+  /// Returns a number uniform in [from, to).
   double between(double from, double to) { return from + (to - from) * unit(); }
 
-  /// Three independent numbers, x first.
+  /// Returns three independent numbers uniform in [0, 1), drawn in the order x, y, z.
   math::Vec3d unit3() {
     const double x = unit(), y = unit(), z = unit();
     return {x, y, z};
   }
 
-  /// A point of the ball of radius 1 around the origin, uniform by volume.
+  /// Returns a point in the unit ball, uniform by volume.
   ///
-  /// Cost       1.9 tries on average; mapping without tries would need functions whose last bit differs by machine
+  /// Cost       1.9 iterations on average: a mapping without rejection needs functions whose last bit depends on the
+  ///            machine
   math::Vec3d in_ball() {
     for (;;) {
       const math::Vec3d p = 2 * unit3() - math::Vec3d{1, 1, 1};

@@ -8,23 +8,24 @@
 
 namespace orrery::math {
 
-/// The Highway targets that dispatched functions of this process may use; the one place that knows.
+/// The Highway targets that dispatched functions of this process may use.
 ///
-/// Highway's own record is not used: every call of hwy::SupportedTargets() resets it to all that the processor has,
-/// and would lift a limit. The processor is asked once, which is slow on virtual machines.
+/// Highway's own chosen target is not used: every call of hwy::SupportedTargets() resets it to all targets of the
+/// processor, which would remove a limit. The processor is queried only once, because that is slow on virtual machines.
 class TargetChoice {
  public:
   TargetChoice() : available_(HWY_TARGETS & static_cast<std::int64_t>(hwy::SupportedTargets())) {
     chosen_.Update(available_);
   }
 
-  /// Targets that were compiled and that this processor has, as a mask of HWY_AVX2 etc.
+  /// Returns the compiled targets that this processor supports, as a mask of HWY_AVX2 etc.
   std::int64_t available() const { return available_; }
 
-  /// Allows the available targets in `mask` only; the best of them is used from now on.
+  /// Limits the targets to those in `mask`; the best of them is used from now on.
   void limit(std::int64_t mask) { chosen_.Update(available_ & mask); }
 
-  /// The entry of an HWY_EXPORT table with `size` entries. Where only one target is compiled the table has one entry.
+  /// Returns the index of the best target in an HWY_EXPORT table of `size` entries. The table has one entry if only one
+  /// target is compiled.
   std::size_t index(std::size_t size) const { return size == 1 ? 0 : chosen_.GetIndex(); }
 
  private:
@@ -32,6 +33,7 @@ class TargetChoice {
   hwy::ChosenTarget chosen_;
 };
 
+/// Returns the choice of this process.
 inline TargetChoice& target_choice() {
   static TargetChoice choice;
   return choice;
@@ -39,7 +41,7 @@ inline TargetChoice& target_choice() {
 
 }  // namespace orrery::math
 
-/// The instance of an HWY_EXPORTed function for the best instruction set that may be used, as a pointer.
+/// A pointer to the instance of an HWY_EXPORTed function for the best target that may be used.
 #define ORRERY_BEST(function)                                                                              \
   (HWY_DISPATCH_TABLE(function)[orrery::math::target_choice().index(sizeof(HWY_DISPATCH_TABLE(function)) / \
                                                                     sizeof(HWY_DISPATCH_TABLE(function)[0]))])

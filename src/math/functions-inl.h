@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions without libm, whose results differ between processors. Compiled once per instruction set.
+// Elementary functions without libm, whose results depend on the processor. Compiled once per instruction set.
 #if defined(ORRERY_MATH_FUNCTIONS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_MATH_FUNCTIONS_INL_H_
 #undef ORRERY_MATH_FUNCTIONS_INL_H_
@@ -21,15 +21,14 @@ struct SinCos {
   V sin, cos;
 };
 
-/// Sine and cosine of 2 pi u.
+/// Returns sine and cosine of 2 pi u.
 ///
 /// Domain     0 <= u <= 1
 /// Precision  double: 2.3e-16 absolute, float: 1.2e-7; test MathFunctions.SineAndCosineOfATurn
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE SinCos<V> sin_cos_turn(D d, V u) {
   using T = hn::TFromD<D>;
-  // The turn is cut into quarters around multiples of 90 degrees: what is left is exact and at most an eighth of a
-  // turn.
+  // Range reduction to the nearest multiple of 90 degrees: the remainder is exact and at most an eighth of a turn.
   const V quarters = u * hn::Set(d, T(4));
   const V q = hn::Round(quarters);
   const V r = quarters - q;
@@ -51,11 +50,11 @@ HWY_INLINE SinCos<V> sin_cos_turn(D d, V u) {
           hn::IfThenElse(hn::Or(is1, is2), hn::Neg(cos_magnitude), cos_magnitude)};
 }
 
-/// A whole number below 2^31 (2^52 in 64-bit lanes) as a floating-point number, exactly (float: rounded).
+/// Converts an integer below 2^31 (2^52 in 64-bit lanes) to floating point; exact in double, rounded in float.
 template <class D, class U>
 HWY_INLINE hn::Vec<D> to_real(D d, U bits) {
   if constexpr (sizeof(hn::TFromD<D>) == 8) {
-    // 2^52 + n has n in its low bits: no instruction set below AVX-512 converts 64-bit integers.
+    // The low bits of 2^52 + n are n: no instruction set below AVX-512 converts 64-bit integers.
     const hn::RebindToUnsigned<D> du;
     return hn::BitCast(d, hn::Or(bits, hn::Set(du, 0x4330000000000000u))) - hn::Set(d, 0x1p52);
   } else {

@@ -9,8 +9,8 @@ namespace orrery::math {
 inline constexpr double kHalfPi = 1.57079632679489661923;
 
 namespace detail {
-/// Taylor coefficients of sin (first = 1) or cos (first = 0) of (pi / 2) r in powers of r^2; the odd factor r of the
-/// sine is left to the caller.
+/// Returns the Taylor coefficients of sin (first = 1) or cos (first = 0) of (pi / 2) r in powers of r^2; the caller
+/// multiplies the sine by r.
 constexpr std::array<double, 9> quarter_series(int first) {
   std::array<double, 9> c{};
   double term = first == 1 ? kHalfPi : 1.0;

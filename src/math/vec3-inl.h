@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of lanes. This file is compiled once per instruction set: include it inside a foreach_target unit.
+// Vectors of SIMD lanes. Compiled once per instruction set: include this file inside a foreach_target unit.
 #if defined(ORRERY_MATH_VEC3_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_MATH_VEC3_INL_H_
 #undef ORRERY_MATH_VEC3_INL_H_
@@ -14,7 +14,7 @@ namespace orrery::math::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Three components of as many vectors as V has lanes.
+/// Three-component vectors, one per lane of V.
 template <class V>
 struct Vec3 {
   V x, y, z;
@@ -36,12 +36,12 @@ template <class V>
 HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
   return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, a.x * b.x));
 }
-/// a s + b, each component rounded once.
+/// Returns a s + b; each component is rounded once.
 template <class V>
 HWY_INLINE Vec3<V> mul_add(const Vec3<V>& a, V s, const Vec3<V>& b) {
   return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};
 }
-/// b - a s, each component rounded once.
+/// Returns b - a s; each component is rounded once.
 template <class V>
 HWY_INLINE Vec3<V> neg_mul_add(const Vec3<V>& a, V s, const Vec3<V>& b) {
   return {hn::NegMulAdd(a.x, s, b.x), hn::NegMulAdd(a.y, s, b.y), hn::NegMulAdd(a.z, s, b.z)};
@@ -54,7 +54,8 @@ template <class M, class V>
 HWY_INLINE Vec3<V> select(M mask, const Vec3<V>& yes, const Vec3<V>& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
-/// Not a number in every lane whose vector is zero: callers compare afterwards, and a comparison with NaN is false.
+/// Returns unit vectors; NaN in lanes whose vector is zero: callers compare afterwards, and comparisons with NaN are
+/// false.
 template <class D, class V>
 HWY_INLINE Vec3<V> normalized(D d, const Vec3<V>& a) {
   return a * (hn::Set(d, static_cast<hn::TFromD<D>>(1)) / hn::Sqrt(dot(a, a)));
@@ -69,9 +70,9 @@ HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const T* v) {
   return {hn::Set(d, static_cast<F>(v[0])), hn::Set(d, static_cast<F>(v[1])), hn::Set(d, static_cast<F>(v[2]))};
 }
 
-/// What a - b lost when it was rounded to `difference`: difference + result equals a - b exactly.
+/// Returns the rounding error of a - b rounded to `difference`: difference + result equals a - b exactly.
 ///
-/// Reference  Knuth, two-sum
+/// Reference  knuth1997, two-sum
 template <class V>
 HWY_INLINE V difference_error(V a, V b, V difference) {
   const V b_virtual = difference - a;
@@ -82,7 +83,7 @@ HWY_INLINE Vec3<V> difference_error(const Vec3<V>& a, const Vec3<V>& b, const Ve
   return {difference_error(a.x, b.x, difference.x), difference_error(a.y, b.y, difference.y),
           difference_error(a.z, b.z, difference.z)};
 }
-/// What a + b lost when it was rounded to `sum`.
+/// Returns the rounding error of a + b rounded to `sum`.
 template <class V>
 HWY_INLINE Vec3<V> sum_error(const Vec3<V>& a, const Vec3<V>& b, const Vec3<V>& sum) {
   return difference_error(a, negated(b), sum);

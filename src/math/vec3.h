@@ -5,7 +5,7 @@
 
 namespace orrery::math {
 
-/// Three doubles: a point, a direction or a colour of the cold paths (scene, compile, tests).
+/// A point, direction or colour in double precision, for cold paths (scene, compile, tests).
 struct Vec3d {
   double x = 0, y = 0, z = 0;
 

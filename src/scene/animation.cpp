@@ -13,7 +13,7 @@ namespace {
 
 bool is_number(ValueType type) { return type == ValueType::kNumber || type == ValueType::kVector; }
 
-/// Tables whose numbers are of one moment; those of others are of the whole film.
+/// True for the tables whose numbers can be animated; those of the other tables hold for the whole animation.
 bool is_of_a_moment(const std::string& table) { return table == "camera" || table == "background"; }
 
 template <class Target>
@@ -25,7 +25,7 @@ const Key<Target>* find_key(const std::vector<Key<Target>>& keys, const std::str
 
 const MaterialType& type_of(const Material& material) { return material_types()[material.model.index()]; }
 
-/// The sphere that "3" counts, or that has the name.
+/// Returns the index of the sphere with this index ("3") or name.
 std::optional<std::size_t> find_sphere(const Scene& scene, const std::string& name, bool is_index) {
   if (is_index) {
     std::size_t i = 0;
@@ -56,7 +56,7 @@ std::optional<Animated> animated_material(const Scene& scene, const std::string&
   return {};
 }
 
-/// "sphere[3].center" or "material.gold.fuzz" taken apart; of "camera.vfov" the name is empty.
+/// The parts of "sphere[3].center" or "material.gold.fuzz"; the name is empty in "camera.vfov".
 struct TargetParts {
   std::string table, name, key;
   bool is_index = false;
@@ -75,16 +75,16 @@ std::optional<TargetParts> parts_of(const std::string& target) {
   return out;
 }
 
-/// The slope at key i by the frames around it; at the ends by the one neighbour.
+/// Returns the slope at key i from its two neighbours, at the ends from the only one.
 Vec3d slope(const Track& t, std::size_t i) {
   const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, t.frames.size() - 1);
   const double span = t.frames[after] - t.frames[before];
   return span > 0 ? (t.values[after] - t.values[before]) * (1 / span) : Vec3d{0, 0, 0};
 }
 
-/// Turns a vector about a unit axis.
+/// Rotates a vector about a unit axis.
 ///
-/// Precision  sine and cosine are rounded from long double, so that they don't depend on the library
+/// Precision  sine and cosine are rounded from long double, so that they do not depend on the math library
 /// Reference  rodrigues1840
 Vec3d turned(Vec3d v, Vec3d axis, double turns) {
   const long double angle = 2 * std::numbers::pi_v<long double> * static_cast<long double>(turns - std::floor(turns));

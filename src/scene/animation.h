@@ -12,35 +12,38 @@
 
 namespace orrery::scene {
 
-/// A number or vector of a scene that may change from frame to frame.
+/// A number or vector of the scene that a track can animate.
 struct Animated {
   ValueType type;  ///< kNumber or kVector
   Range range;
   std::function<void(Scene&, const Value&)> set;
 };
 
-/// Finds what "camera.look_from", "background.top", "sphere[3].center", "sphere.NAME.radius" or "material.NAME.albedo"
-/// names; nothing where the scene has no such number.
+/// Finds the number or vector that a target names: "camera.look_from", "background.top", "sphere[3].center",
+/// "sphere.NAME.radius", "material.NAME.albedo".
+///
+/// Result     nullopt if the scene has no such target
 std::optional<Animated> find_animated(const Scene& scene, const std::string& target);
 
-/// The spheres that a target may mean, by number: several where they share its name. Empty for other targets.
+/// Returns the indices of the spheres that a target matches; several if they share a name. Empty for other targets.
 std::vector<std::size_t> spheres_of_target(const Scene& scene, const std::string& target);
 
-/// All names that find_animated knows in this scene, of spheres only those that have names.
+/// Returns all targets that find_animated accepts in this scene, except those by sphere index.
 std::vector<std::string> animated_names(const Scene& scene);
 
-/// As they stand in files, in the order of the enumerators.
+/// Returns the names of the interpolations in scene files, in enumerator order.
 const std::vector<std::string>& interpolation_names();
 
-/// The value of a track at a frame, which need not be whole. Before the first key and behind the last one it rests.
+/// Returns the value of a track at a frame, which may be fractional. It is constant before the first key and after the
+/// last one.
 ///
-/// Domain     frames ascend, as many values as frames, at least one
-/// Reference  catmull1974 for cubic tracks, whose keys need not be evenly spaced
+/// Domain     ascending frames, as many values as frames, at least one
+/// Reference  catmull1974 for cubic tracks, generalised to unevenly spaced keys
 Vec3d value_at(const Track& track, double frame);
 
-/// The scene as it stands at a frame: tracks, then the turntable.
+/// Returns the scene at a frame: applies the tracks, then the turntable.
 ///
-/// Domain     tracks whose targets are known
+/// Domain     tracks whose targets exist
 Scene posed(const Scene& scene, double frame);
 
 }  // namespace orrery::scene

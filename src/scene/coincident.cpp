@@ -9,14 +9,14 @@
 namespace orrery::scene {
 namespace {
 
-/// Where a sphere of the whole scene is written.
+/// Location of a sphere in the scene.
 struct Place {
-  std::size_t points = 0;  ///< file, where it is not a table's
-  std::size_t index = 0;   ///< among the tables' or the file's
+  std::size_t points = 0;  ///< index of the points file, unless is_table
+  std::size_t index = 0;   ///< in the [[sphere]] tables or in the points file
   bool is_table = true;
 };
 
-/// Finds the spheres of a scene by their ids; quickest where ids ascend.
+/// Maps sphere ids to locations; fastest for ascending ids.
 class SphereIndex {
  public:
   explicit SphereIndex(const Scene& scene) : scene_(scene) {}
@@ -37,7 +37,7 @@ class SphereIndex {
  private:
   const Scene& scene_;
   std::size_t file_ = 0;
-  std::size_t begin_ = scene_.spheres.size();  ///< id of the first sphere of the file
+  std::size_t begin_ = scene_.spheres.size();  ///< id of the first sphere of `file_`
 };
 
 std::string key_of(const Place& place) {
@@ -60,7 +60,7 @@ Coincidents coincident_spheres(const Scene& scene, std::size_t most_told, const 
   const auto path_of = [&](std::size_t id) {
     const std::array<double, 4> p = place_of(id);
     std::array<double, 8> path = {p[0], p[1], p[2], p[3], 0, 0, 0, 0};
-    if (id >= scene.spheres.size()) return path;  // points rest
+    if (id >= scene.spheres.size()) return path;  // points files do not move
     const Sphere &from = scene.spheres[id], &to = closing->spheres[id];
     const Vec3d way = to.center - from.center;
     path[4] = number(way.x);

@@ -9,21 +9,21 @@
 
 namespace orrery::scene {
 
-/// A sphere with exactly the centre and the absolute radius of one before it, both by their keys: "sphere[3]",
+/// The keys of a sphere and of the first earlier sphere with exactly the same centre and absolute radius: "sphere[3]",
 /// "points[0][17]".
 struct Coincident {
   std::string key, first;
 };
 
 struct Coincidents {
-  std::vector<Coincident> told;  ///< in the scene's order
-  std::size_t count = 0;         ///< of all, told or not
+  std::vector<Coincident> told;  ///< in scene order
+  std::size_t count = 0;         ///< of all coincident spheres, including those not in `told`
 };
 
-/// Spheres that coincide with an earlier one; the first `most_told` of them by name. With `precision = "fast"` spheres
-/// coincide that differ by less than single precision can tell.
+/// Returns the number of spheres that coincide with an earlier one, and the keys of the first `most_told` of them. With
+/// `precision = "fast"`, spheres coincide if they are equal in single precision.
 ///
-/// `closing`  the scene when the shutter closes: spheres that coincide only when it opens are left out. Null: no motion
+/// `closing`  the scene at shutter close: spheres that coincide only at shutter open are not counted; null: no motion
 /// Cost       see base::find_repeated
 Coincidents coincident_spheres(const Scene& scene, std::size_t most_told, const Scene* closing = nullptr);
 

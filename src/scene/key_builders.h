@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways in which schema.cpp writes down a key; nobody else needs them.
+// Helpers for the definition of keys; used only by schema.cpp.
 #pragma once
 
 #include <string>
@@ -12,14 +12,14 @@
 
 namespace orrery::scene {
 
-/// What people read about a key.
+/// Documentation of a key.
 struct KeyDoc {
   const char* unit;
   const char* doc;
   const char* cost = "";
 };
 
-/// A key for the member that `at` finds in its target; `at` changes nothing, it only gives a reference.
+/// Builds a key for the member that `at` returns a reference to; `at` does not modify its target.
 template <class Target, class At, class Text>
 Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& about, At at, Text text) {
   return {name,
@@ -58,7 +58,7 @@ template <class Target, class At>
 Key<Target> text(const char* name, const KeyDoc& about, At at) {
   return key_of<Target>(name, ValueType::kText, {}, about, at, string_text);
 }
-/// A number that may be left out, and then is what `otherwise` says.
+/// Builds a key for an optional number; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_number(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
   return {name,
@@ -75,7 +75,7 @@ Key<Target> optional_number(const char* name, Range range, const KeyDoc& about, 
             return x ? number_text(*x) : otherwise;
           }};
 }
-/// Choices stand in the order of the enumerators.
+/// Builds a key for an enumeration; `choices` are in enumerator order.
 template <class Target, class At>
 Key<Target> choice(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
   return {name,
@@ -95,7 +95,7 @@ Key<Target> choice(const char* name, std::vector<std::string> choices, const Key
             return string_text(choices[static_cast<std::size_t>(at(const_cast<Target&>(t)))]);
           }};
 }
-/// A rectangle that may be left out, and then is what `otherwise` says.
+/// Builds a key for an optional window; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_window(const char* name, const KeyDoc& about, const char* otherwise, At at) {
   Key<Target> key;
@@ -113,7 +113,7 @@ Key<Target> optional_window(const char* name, const KeyDoc& about, const char* o
   };
   return key;
 }
-/// Some of the choices, in any order.
+/// Builds a key for a list of choices in any order.
 template <class Target, class At>
 Key<Target> choices(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
   Key<Target> key = key_of<Target>(name, ValueType::kChoices, {}, about, at, list_text);

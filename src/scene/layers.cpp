@@ -9,14 +9,14 @@
 namespace orrery::scene {
 namespace {
 
-/// Whole numbers beyond this have no float of their own.
+/// Integers above this are not all exact in a float.
 constexpr std::size_t kMostCounted = std::size_t{1} << 24;
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Every name that [output] layers knows.
+/// Returns all valid names of [output] layers.
 const std::vector<std::string>& layer_names() {
   static const std::vector<std::string> names = [] {
     for (const Table& table : tables())
@@ -38,9 +38,10 @@ bool has_groups(const Scene& scene) {
 std::string layer_fault(const Scene& scene, const std::string& layer) {
   static const std::vector<std::string> light = {"diffuse", "specular", "transmission", "background"};
   if (contains(light, layer) && scene.render.shading != Shading::kPath)
-    return layer + " needs light paths; set render.shading to \"path\"";
+    return layer + " requires render.shading = \"path\"";
   if (layer == "object_id" && scene.sphere_count() >= kMostCounted)
-    return std::to_string(scene.sphere_count()) + " spheres are more than a float counts exactly; use CryptoObject";
+    return "a float cannot represent the ids of " + std::to_string(scene.sphere_count()) +
+           " spheres exactly; use CryptoObject";
   return {};
 }
 

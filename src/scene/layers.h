@@ -8,16 +8,16 @@
 
 namespace orrery::scene {
 
-/// The name in [output] that stands for every layer of available_layers().
+/// Name in [output] that selects every layer of available_layers().
 inline constexpr const char* kAllLayers = "all";
 
-/// Why a scene cannot have a layer; empty where it can.
+/// Returns why a scene cannot have a layer; empty if it can.
 std::string layer_fault(const Scene& scene, const std::string& layer);
 
-/// The layers that a scene can have and that are not empty, in the order of the documentation.
+/// Returns the non-empty layers that a scene can have, in schema order.
 std::vector<std::string> available_layers(const Scene& scene);
 
-/// The layers in [output], with kAllLayers replaced.
+/// Returns the layers in [output], with kAllLayers expanded.
 std::vector<std::string> requested_layers(const Scene& scene);
 
 }  // namespace orrery::scene

@@ -3,37 +3,39 @@
 
 namespace orrery::scene {
 
-/// Frames before or behind its own that a picture's shutter may reach.
+/// Maximum absolute shutter time relative to the frame, frames.
 inline constexpr double kLongestShutter = 100;
 
-/// Frames of a film.
+/// Maximum absolute frame number of a [[key]], and maximum turntable length, frames.
 inline constexpr double kMostFrames = 1e6;
 
-/// Largest absolute coordinate and radius, scene units: its square and the square's products stay far inside a double.
+/// Maximum absolute coordinate and radius, scene units: its square and products of squares stay far inside the range
+/// of a double.
 inline constexpr double kLargestLength = 1e18;
 
-/// Smallest absolute radius, and smallest distance that has a direction, scene units: its square keeps all its bits.
+/// Minimum absolute radius, and minimum length of a vector that defines a direction, scene units: its square has full
+/// precision.
 inline constexpr double kSmallestRadius = 1e-30;
 
-/// Smallest sine of the angle between the view and `up`: below this the picture's roll would be rounding.
+/// Minimum sine of the angle between the view direction and `up`: below it, the camera roll would be rounding error.
 inline constexpr double kSmallestUpSine = 1e-9;
 
-/// A pixel's name is y << 16 | x.
+/// Maximum image width and height, px: a pixel id is y << 16 | x.
 inline constexpr int kLargestSide = 65536;
 
-/// Keeps the sum of a pixel's samples inside its 128 bits whatever the background.
+/// Maximum background radiance: the sum of a pixel's samples then fits into 128 bits.
 inline constexpr double kBrightestBackground = 1e6;
 
-/// More than this around a frame is another frame, px.
+/// Maximum overscan, px: a wider border calls for a larger frame.
 inline constexpr int kWidestOverscan = 4096;
 
-/// More stops than any scene has: 2^100 would only be infinity by another name.
+/// Maximum absolute exposure, stops: no scene needs more, and 2^100 is as good as infinity.
 inline constexpr double kMaxStops = 100;
 
-/// A wider filter is a blur, px.
+/// Maximum pixel filter width, px: a wider filter is a blur.
 inline constexpr double kWidestFilter = 32;
 
-/// A path of more rays would only be a program that does not end.
+/// Maximum path depth, rays: with more, a render would not end in practice.
 inline constexpr int kDeepestPath = 10000;
 
 }  // namespace orrery::scene

@@ -11,7 +11,7 @@ namespace {
 
 const char* type_name(ValueType type) {
   switch (type) {
-    case ValueType::kInteger: return "whole number";
+    case ValueType::kInteger: return "integer";
     case ValueType::kNumber: return "number";
     case ValueType::kVector: return "[x, y, z]";
     case ValueType::kText: return "string";
@@ -29,7 +29,7 @@ std::string range_text(const Key<Target>& key) {
       return std::to_string(static_cast<std::int64_t>(key.range.from)) + ".." +
              std::to_string(static_cast<std::int64_t>(key.range.to));
     case ValueType::kNumber: return key.range.text();
-    case ValueType::kWindow: return "inside of the frame";
+    case ValueType::kWindow: return "inside the frame";
     case ValueType::kVector: return "each " + key.range.text();
     case ValueType::kText: return "any";
     case ValueType::kChoice:
@@ -39,7 +39,7 @@ std::string range_text(const Key<Target>& key) {
 }
 
 std::string header() {
-  return "| key | type | range | unit | default | what it is | cost |\n|---|---|---|---|---|---|---|\n";
+  return "| key | type | range | unit | default | description | cost |\n|---|---|---|---|---|---|---|\n";
 }
 
 template <class Target>
@@ -53,14 +53,14 @@ std::string row(const Key<Target>& key, const Target& defaults) {
 }
 
 std::string material_row() {
-  return "| `material` | string | the name of a material | - | **required** | what it is made of | - |\n";
+  return "| `material` | string | name of a `[material.NAME]` | - | **required** | Material | - |\n";
 }
 
 std::string material_section() {
-  std::string out = "### [material.NAME]\n\n| `type` | what it is |\n|---|---|\n";
+  std::string out = "### [material.NAME]\n\n| `type` | description |\n|---|---|\n";
   for (const MaterialType& type : material_types()) out += "| `\"" + type.name + "\"` | " + type.doc + " |\n";
   for (const MaterialType& type : material_types()) {
-    out += "\nBeside `type = \"" + type.name + "\"`:\n\n" + header();
+    out += "\nOther keys of `type = \"" + type.name + "\"`:\n\n" + header();
     for (const auto& key : type.keys) out += row(key, type.model);
   }
   return out;

@@ -5,8 +5,8 @@
 
 namespace orrery::scene {
 
-/// Tables of all keys with type, range, unit, default and cost, as Markdown: the part of docs/scene-format.md that the
-/// schema knows. A test holds the two together.
+/// Returns the "Keys" section of docs/scene-format.md: Markdown tables of all keys with type, range, unit, default and
+/// cost, generated from the schema. A test compares the two.
 std::string reference_markdown();
 
 }  // namespace orrery::scene

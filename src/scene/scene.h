@@ -11,27 +11,27 @@
 #include "math/vec3.h"
 #include "scene/accelerator.h"
 
-/// The scene as its author wrote it: named things, the author's units, nothing compiled.
+/// The authored scene: names, user units, nothing compiled.
 ///
-/// The values given to members here are the documented defaults of docs/scene-format.md, and stand nowhere else.
+/// The member initialisers are the defaults documented in docs/scene-format.md, and their only definition.
 namespace orrery::scene {
 
 using math::Vec3d;
 
 /// A rectangle of pixels.
 struct Window {
-  int x = 0, y = 0;  ///< px, upper left corner; 0, 0 is that of the frame
+  int x = 0, y = 0;  ///< px, upper left corner, relative to that of the frame
   int width = 0, height = 0;
 };
 
 struct Image {
-  int width = 1200;                 ///< px, of the frame
-  int height = 675;                 ///< px
-  double pixel_aspect = 1;          ///< a pixel's width by its height
-  std::optional<Window> crop = {};  ///< what is rendered of the frame; default: all
-  int overscan = 0;                 ///< px beyond each edge of the frame that are rendered, too
+  int width = 1200;                 ///< px, frame width
+  int height = 675;                 ///< px, frame height
+  double pixel_aspect = 1;          ///< pixel width divided by pixel height
+  std::optional<Window> crop = {};  ///< rendered window; default: the whole frame
+  int overscan = 0;                 ///< px rendered beyond each edge of the frame
 
-  /// What is rendered.
+  /// Returns the rendered window.
   Window data_window() const {
     return crop ? *crop : Window{-overscan, -overscan, width + 2 * overscan, height + 2 * overscan};
   }
@@ -41,21 +41,21 @@ struct Camera {
   Vec3d look_from{0, 0, 0};
   Vec3d look_at{0, 0, -1};
   Vec3d up{0, 1, 0};
-  double vfov = 90;                      ///< degrees, vertical
-  double defocus_angle = 0;              ///< degrees, apex angle of the cone at the focus plane; 0 = pinhole
+  double vfov = 90;          ///< degrees, vertical
+  double defocus_angle = 0;  ///< degrees, apex angle of the cone from a point in focus to the lens; 0: pinhole
   std::optional<double> focus_distance;  ///< scene units; default: distance from look_from to look_at
-  double shutter_open = 0;               ///< frames, from the frame's own time
-  double shutter_close = 0;              ///< frames; not before shutter_open; the same: nothing is blurred
+  double shutter_open = 0;               ///< frames, relative to the frame
+  double shutter_close = 0;              ///< frames, relative to the frame; equal to shutter_open: no motion blur
 };
 
 enum class BackgroundType { kGradient, kConstant };
 
 struct Background {
   BackgroundType type = BackgroundType::kGradient;
-  Vec3d bottom{1, 1, 1};   ///< gradient: looking straight down
-  Vec3d top{0.5, 0.7, 1};  ///< gradient: looking straight up
+  Vec3d bottom{1, 1, 1};   ///< gradient: straight down
+  Vec3d top{0.5, 0.7, 1};  ///< gradient: straight up
   Vec3d color{1, 1, 1};    ///< constant
-  int alpha = 1;           ///< 0: where only the background is seen, the picture is empty
+  int alpha = 1;           ///< 0: the background is transparent
 };
 
 enum class Precision { kExact, kFast, kBook };
@@ -65,21 +65,21 @@ enum class Filter { kBox, kGaussian, kBlackmanHarris, kMitchell };
 
 struct Render {
   int samples = 100;   ///< per pixel
-  int max_depth = 50;  ///< rays of a path, the camera ray included
+  int max_depth = 50;  ///< rays per path, including the camera ray
   std::uint32_t seed = 1;
   Precision precision = Precision::kExact;
   Shading shading = Shading::kPath;
   Accelerator accelerator = Accelerator::kEmbree;
   Filter filter = Filter::kBox;
-  std::optional<double> filter_width = {};  ///< px, from end to end; default: 1, 3, 3 or 4, by filter
-  int roulette_depth = 3;                   ///< scattering events before Russian roulette begins; 0: never
+  std::optional<double> filter_width = {};  ///< px, full width; default: 1, 3, 3 or 4, by filter
+  int roulette_depth = 3;                   ///< scattering events before Russian roulette begins; 0: off
   Sampler sampler = Sampler::kSobol;
 };
 
 struct Lambertian {
   Vec3d albedo{0.5, 0.5, 0.5};
 };
-/// The book's first diffuse: directions uniform over the hemisphere, weighted by the albedo alone.
+/// The book's first diffuse material: directions uniform over the hemisphere, weighted by the albedo alone.
 struct Hemisphere {
   Vec3d albedo{0.5, 0.5, 0.5};
 };
@@ -102,36 +102,36 @@ struct Material {
 
 struct Sphere {
   Vec3d center;
-  double radius = 1;           ///< negative: inward normal (hollow glass)
+  double radius = 1;           ///< negative: normal points inward (hollow glass)
   std::uint32_t material = 0;  ///< index into Scene::materials
   std::string name = {};       ///< optional, for mattes
-  std::string group = {};      ///< optional, for mattes: spheres of one name are one thing
+  std::string group = {};      ///< optional, for mattes: all objects of a group are one matte
 };
 
-/// Spheres from a data file: flat arrays, since there may be ten million. Filled by format::read.
+/// Spheres of a points file, in flat arrays because there may be ten million. Filled by format::read_scene.
 struct Points {
-  std::filesystem::path file;    ///< as written in the scene, relative to the scene file
-  std::uint32_t material = 0;    ///< index into Scene::materials; where the file has none of its own
-  std::string name = {};         ///< optional, for mattes: all of them are one thing; default: the file's name
+  std::filesystem::path file;    ///< as in the scene file, relative to it
+  std::uint32_t material = 0;    ///< index into Scene::materials; used if the file has no materials
+  std::string name = {};         ///< optional, for mattes: all spheres share it; default: the file name
   std::string group = {};        ///< optional, for mattes
-  std::optional<double> radius;  ///< of every point, whatever the file says; default: the file's
+  std::optional<double> radius;  ///< of every sphere, overrides the file
   std::vector<Vec3d> centers;
   std::vector<double> radii;             ///< as many as centers
   std::vector<std::uint32_t> materials;  ///< as many as centers, or empty: `material` for all
-  std::vector<std::string> unused = {};  ///< properties of the file's vertices that nothing uses, such as colours
+  std::vector<std::string> unused = {};  ///< unused vertex properties of the file, such as colours
 };
 
-/// What files hold beside the beauty.
+/// Contents of output files in addition to the beauty image.
 struct Output {
-  std::vector<std::string> layers;  ///< names out of the schema's choices
+  std::vector<std::string> layers;  ///< names from the schema's choices
 };
 
-/// Colours of the scene file, of the picture made of it, and of what a display shows of that.
+/// Colour management: colour spaces of the scene file and of the image, and the display transform.
 struct Color {
   std::string space = "lin_rec709";
-  std::string working;              ///< of light and of the picture; empty: `space`
-  std::filesystem::path config;     ///< of OCIO, relative to the scene file; empty: $OCIO, without it the built-in one
-  std::string display, view, look;  ///< names of the config; empty: its defaults, and no look
+  std::string working;              ///< for rendering and for EXR output; empty: `space`
+  std::filesystem::path config;     ///< OCIO config, relative to the scene file; empty: $OCIO or the built-in config
+  std::string display, view, look;  ///< names in the config; empty: its defaults, and no look
   double exposure = 0;              ///< stops
 
   const std::string& working_space() const { return working.empty() ? space : working; }
@@ -139,17 +139,17 @@ struct Color {
 
 enum class Interpolation { kLinear, kCubic, kHold };
 
-/// A number that changes from frame to frame: what it is at some of them, its keys, and how it goes between.
+/// Keyframes of an animated number or vector, and the interpolation between them.
 struct Track {
-  std::string target;  ///< "camera.look_from", "sphere[3].radius"; what scene::find_animated finds
+  std::string target;  ///< as for scene::find_animated: "camera.look_from", "sphere[3].radius"
   Interpolation interpolation = Interpolation::kLinear;
   std::vector<double> frames;  ///< ascending
-  std::vector<Vec3d> values;   ///< one for each frame; of a single number x
+  std::vector<Vec3d> values;   ///< one per frame; a single number is in x
 };
 
 struct Animation {
   double fps = 24;       ///< frames per second
-  double turntable = 0;  ///< frames in which the camera turns once around look_at, about up; 0: it stands
+  double turntable = 0;  ///< frames per orbit of the camera around look_at, about up; 0: off
 };
 
 struct Scene {
@@ -165,7 +165,7 @@ struct Scene {
   std::vector<Sphere> spheres;
   std::vector<Points> points;
 
-  /// Of tables and of points files.
+  /// Returns the number of spheres in [[sphere]] tables and points files.
   std::size_t sphere_count() const {
     std::size_t count = spheres.size();
     for (const Points& p : points) count += p.centers.size();

@@ -18,75 +18,88 @@ constexpr Range kLight{0, kBrightestBackground};
 using S = Scene;
 
 Table image_table() {
-  const char* const cost = "time and memory in proportion";
-  return {"image",
-          {integer<S>("width", {1, kLargestSide}, {"px", "pixels in a row", cost},
-                      [](S& s) -> int& { return s.image.width; }),
-           integer<S>("height", {1, kLargestSide}, {"px", "rows", cost}, [](S& s) -> int& { return s.image.height; }),
-           number<S>("pixel_aspect", {0.1, 10}, {"", "width of a pixel by its height, as the screen will show it"},
-                     [](S& s) -> double& { return s.image.pixel_aspect; }),
-           optional_window<S>("crop",
-                              {"px",
-                               "[x, y, width, height]: only this part of the frame is rendered; its pixels are "
-                               "those of the whole, bit for bit; not together with `overscan`"},
-                              "the whole frame", [](S& s) -> std::optional<Window>& { return s.image.crop; }),
-           integer<S>("overscan", {0, kWidestOverscan},
-                      {"px", "rows and columns beyond each edge of the frame; not together with `crop`", cost},
-                      [](S& s) -> int& { return s.image.overscan; })}};
+  const char* const cost = "Time and memory scale linearly";
+  return {
+      "image",
+      {integer<S>("width", {1, kLargestSide}, {"px", "Frame width", cost}, [](S& s) -> int& { return s.image.width; }),
+       integer<S>("height", {1, kLargestSide}, {"px", "Frame height", cost},
+                  [](S& s) -> int& { return s.image.height; }),
+       number<S>("pixel_aspect", {0.1, 10}, {"", "Pixel width divided by pixel height on the display"},
+                 [](S& s) -> double& { return s.image.pixel_aspect; }),
+       optional_window<S>("crop",
+                          {"px",
+                           "Window of the frame to render, as [x, y, width, height]. Its pixels are identical to "
+                           "those of the full frame, bit for bit. Cannot be combined with `overscan`"},
+                          "the whole frame", [](S& s) -> std::optional<Window>& { return s.image.crop; }),
+       integer<S>(
+           "overscan", {0, kWidestOverscan},
+           {"px", "Rows and columns to render beyond each edge of the frame. Cannot be combined with `crop`", cost},
+           [](S& s) -> int& { return s.image.overscan; })}};
 }
 
 Table camera_table() {
-  return {"camera",
-          {vector<S>("look_from", kAnyLength, {"scene units", "where the camera stands; may be inside of a sphere"},
-                     [](S& s) -> Vec3d& { return s.camera.look_from; }),
-           vector<S>("look_at", kAnyLength, {"scene units", "the point in the middle of the picture"},
-                     [](S& s) -> Vec3d& { return s.camera.look_at; }),
-           vector<S>("up", kAnyLength, {"any length", "what is up in the picture; not parallel to the view"},
-                     [](S& s) -> Vec3d& { return s.camera.up; }),
-           number<S>("vfov", {0, 180, true, true}, {"degrees", "angle of view from the lower edge to the upper one"},
-                     [](S& s) -> double& { return s.camera.vfov; }),
-           number<S>("defocus_angle", {0, 180, false, true},
-                     {"degrees", "apex angle of the cone from a point in focus to the rim of the lens; 0 is a pinhole",
-                      "above 0 one lens sample for each path"},
-                     [](S& s) -> double& { return s.camera.defocus_angle; }),
-           optional_number<S>("focus_distance", kLength, {"scene units", "distance of the plane that is in focus"},
-                              "distance to look_at",
-                              [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
-           number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
-                     {"frames", "when the shutter opens, counted from the frame's own time"},
-                     [](S& s) -> double& { return s.camera.shutter_open; }),
-           number<S>("shutter_close", {-kLongestShutter, kLongestShutter},
-                     {"frames", "when it closes; later than `shutter_open`: what moves meanwhile is blurred",
-                      "only where something moves: a random number more at each vertex, and boxes that move"},
-                     [](S& s) -> double& { return s.camera.shutter_close; })}};
+  return {
+      "camera",
+      {vector<S>("look_from", kAnyLength, {"scene units", "Camera position. May be inside a sphere"},
+                 [](S& s) -> Vec3d& { return s.camera.look_from; }),
+       vector<S>("look_at", kAnyLength, {"scene units", "Point at the centre of the image"},
+                 [](S& s) -> Vec3d& { return s.camera.look_at; }),
+       vector<S>("up", kAnyLength,
+                 {"any length", "Up direction of the image. Must not be parallel to the view direction"},
+                 [](S& s) -> Vec3d& { return s.camera.up; }),
+       number<S>("vfov", {0, 180, true, true}, {"degrees", "Vertical field of view"},
+                 [](S& s) -> double& { return s.camera.vfov; }),
+       number<S>(
+           "defocus_angle", {0, 180, false, true},
+           {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",
+            "Above 0: one lens sample per path"},
+           [](S& s) -> double& { return s.camera.defocus_angle; }),
+       optional_number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the plane of focus"},
+                          "distance to look_at",
+                          [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
+       number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
+                 {"frames", "Shutter opening time, relative to the frame"},
+                 [](S& s) -> double& { return s.camera.shutter_open; }),
+       number<S>(
+           "shutter_close", {-kLongestShutter, kLongestShutter},
+           {"frames",
+            "Shutter closing time, relative to the frame. If later than `shutter_open`, whatever moves in between is "
+            "motion-blurred",
+            "Only if something moves: one extra random dimension per vertex, and motion-blurred bounds"},
+           [](S& s) -> double& { return s.camera.shutter_close; })}};
 }
 
 Table animation_table() {
-  return {"animation",
-          {number<S>("fps", {0.001, 1000}, {"frames per second", "told in the header of an EXR"},
-                     [](S& s) -> double& { return s.animation.fps; }),
-           number<S>("turntable", {-kMostFrames, kMostFrames},
-                     {"frames",
-                      "in which the camera turns once around `look_at`, about `up`, to the right from frame 1 "
-                      "on; below 0 to the left; 0: it stands"},
-                     [](S& s) -> double& { return s.animation.turntable; })}};
+  return {
+      "animation",
+      {number<S>("fps", {0.001, 1000}, {"frames per second", "Frame rate, written to the EXR header"},
+                 [](S& s) -> double& { return s.animation.fps; }),
+       number<S>(
+           "turntable", {-kMostFrames, kMostFrames},
+           {"frames",
+            "Number of frames per orbit of the camera around `look_at`, about `up`. The orbit starts at frame 1, to "
+            "the right; negative values orbit to the left. 0: no orbit"},
+           [](S& s) -> double& { return s.animation.turntable; })}};
 }
 
 Table background_table() {
   const char* const unit = "scene-linear";
   return {
       "background",
-      {choice<S>("type", {"gradient", "constant"},
-                 {"", "`gradient`: from `bottom` to `top`, linear in the height of the direction; `constant`: `color`"},
-                 [](S& s) -> BackgroundType& { return s.background.type; }),
-       vector<S>("bottom", kLight, {unit, "gradient: light from straight below"},
+      {choice<S>(
+           "type", {"gradient", "constant"},
+           {"",
+            "`gradient`: from `bottom` to `top`, linear in the y component of the unit ray direction. `constant`: "
+            "`color`"},
+           [](S& s) -> BackgroundType& { return s.background.type; }),
+       vector<S>("bottom", kLight, {unit, "Gradient: radiance from straight below"},
                  [](S& s) -> Vec3d& { return s.background.bottom; }),
-       vector<S>("top", kLight, {unit, "gradient: light from straight above"},
+       vector<S>("top", kLight, {unit, "Gradient: radiance from straight above"},
                  [](S& s) -> Vec3d& { return s.background.top; }),
-       vector<S>("color", kLight, {unit, "constant: light from everywhere"},
+       vector<S>("color", kLight, {unit, "Constant: radiance from every direction"},
                  [](S& s) -> Vec3d& { return s.background.color; }),
        integer<S>("alpha", {0, 1},
-                  {"", "1: the background is part of the picture; 0: the picture is empty where nothing else is seen",
+                  {"", "1: the background is opaque. 0: the image is transparent where only the background is visible",
                    "0: as much as a layer"},
                   [](S& s) -> int& { return s.background.alpha; })}};
 }
@@ -95,95 +108,103 @@ Table render_table() {
   return {
       "render",
       {integer<S>("samples", {1, std::numeric_limits<std::int32_t>::max()},
-                  {"per pixel", "paths for each pixel", "time in proportion; four times as many halve the noise"},
+                  {"per pixel", "Paths per pixel", "Time scales linearly; four times as many samples halve the noise"},
                   [](S& s) -> int& { return s.render.samples; }),
-       integer<S>("max_depth", {1, kDeepestPath},
-                  {"rays",
-                   "most rays of a path, counted as in the book: the camera ray is the first; a path whose last "
-                   "ray hits a sphere is black",
-                   "a bound only: most paths leave the scene earlier"},
-                  [](S& s) -> int& { return s.render.max_depth; }),
-       integer<S>("roulette_depth", {0, kDeepestPath},
-                  {"scattering events",
-                   "from here on a path is ended by chance, the less light it can still bring the likelier, and counts "
-                   "for more if it is not; without bias; 0: never",
-                   "0: a little to twice the time, the more is dark the more"},
-                  [](S& s) -> int& { return s.render.roulette_depth; }),
+       integer<S>(
+           "max_depth", {1, kDeepestPath},
+           {"rays",
+            "Maximum number of rays per path, counted as in the book: the camera ray is the first. A path whose last "
+            "ray hits a sphere is black",
+            "An upper bound only: most paths leave the scene earlier"},
+           [](S& s) -> int& { return s.render.max_depth; }),
+       integer<S>(
+           "roulette_depth", {0, kDeepestPath},
+           {"scattering events",
+            "Scattering events before Russian roulette begins. It terminates paths with a probability that grows "
+            "as their throughput falls, and weights the survivors up; the result is unbiased. 0: no roulette",
+            "0: from slightly more to twice the time, most in dark scenes"},
+           [](S& s) -> int& { return s.render.roulette_depth; }),
        choice<S>("sampler", {"independent", "sobol", "blue-noise"},
                  {"",
-                  "how the random numbers of a pixel's paths go together: `independent`: not at all, as in the book; "
-                  "`sobol`: evenly spread; `blue-noise`: so that neighbouring pixels' errors differ, too",
+                  "Distribution of the random numbers over a pixel's paths. `independent`: uncorrelated, as in the "
+                  "book. `sobol`: stratified. `blue-noise`: stratified, and decorrelates the errors of neighbouring "
+                  "pixels",
                   "`sobol` and `blue-noise` need fewer samples for the same error"},
                  [](S& s) -> Sampler& { return s.render.sampler; }),
        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},
-                  {"", "chooses the random numbers; the same seed gives the same picture, bit for bit"},
+                  {"", "Random seed. The same seed gives the same image, bit for bit"},
                   [](S& s) -> std::uint32_t& { return s.render.seed; }),
        choice<S>(
            "precision", {"exact", "fast", "book"},
-           {"", "`exact`: double without any epsilon; `fast`: float; `book`: the book's formula with its smallest t",
+           {"",
+            "`exact`: double precision without epsilons. `fast`: single precision. `book`: the book's intersection "
+            "formula with its minimum t",
             "`fast` and `book` trade accuracy for time"},
            [](S& s) -> Precision& { return s.render.precision; }),
        choice<S>("shading", {"path", "normal", "flat"},
-                 {"", "`path`: light; `normal`: normals as colour; `flat`: the albedo, without light",
-                  "`normal` and `flat` follow no light, one ray for each sample"},
+                 {"", "`path`: path tracing. `normal`: surface normals as colours. `flat`: albedo without lighting",
+                  "`normal` and `flat`: one ray per sample"},
                  [](S& s) -> Shading& { return s.render.shading; }),
        choice<S>("accelerator", {"embree", "list"},
-                 {"", "`list`: each ray tries each sphere, for comparison; the picture is the same, bit for bit",
-                  "`list`: time in proportion to the number of spheres"},
+                 {"",
+                  "`embree`: Embree's BVH. `list`: each ray tests every sphere, for comparison. The image is the same, "
+                  "bit for bit",
+                  "`list`: time is proportional to the number of spheres"},
                  [](S& s) -> Accelerator& { return s.render.accelerator; }),
        choice<S>("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
                  {"",
-                  "how a pixel weighs what is around its middle: `box`, as in the book: its own square; `gaussian` and "
-                  "`blackman-harris` softer; `mitchell` sharper, with negative lobes"},
+                  "Pixel filter. `box`: the area of the pixel, as in the book. `gaussian`, `blackman-harris`: softer. "
+                  "`mitchell`: sharper, with negative lobes"},
                  [](S& s) -> Filter& { return s.render.filter; }),
-       optional_number<S>("filter_width", {0, kWidestFilter, true, false},
-                          {"px", "width of the filter from end to end"},
+       optional_number<S>("filter_width", {0, kWidestFilter, true, false}, {"px", "Full width of the filter"},
                           "1 for box, 3 for gaussian and blackman-harris, 4 for mitchell",
                           [](S& s) -> std::optional<double>& { return s.render.filter_width; })}};
 }
 
 Table output_table() {
   return {"output",
-          {choices<S>("layers",
-                      {"Z", "depth", "N", "P", "albedo", "diffuse", "specular", "transmission", "background",
-                       "variance", "samples", "object_id", "material_id", "denoise.albedo", "denoise.normal",
-                       "CryptoObject", "CryptoMaterial", "CryptoGroup", kAllLayers},
-                      {"", "what an EXR holds beside the beauty; `all`: every layer that the scene can have",
-                       "one a tenth to a fifth of the time, all of them two fifths; files grow"},
-                      [](S& s) -> std::vector<std::string>& { return s.output.layers; })}};
+          {choices<S>(
+              "layers",
+              {"Z", "depth", "N", "P", "albedo", "diffuse", "specular", "transmission", "background", "variance",
+               "samples", "object_id", "material_id", "denoise.albedo", "denoise.normal", "CryptoObject",
+               "CryptoMaterial", "CryptoGroup", kAllLayers},
+              {"", "Layers of EXR files in addition to the beauty image. `all`: every layer that the scene can have",
+               "One layer adds a tenth to a fifth to the time, all layers two fifths. Files grow"},
+              [](S& s) -> std::vector<std::string>& { return s.output.layers; })}};
 }
 
 std::vector<MaterialType> make_material_types() {
   using M = MaterialModel;
-  const KeyDoc albedo{"scene-linear", "share of the light that is scattered, by colour"};
+  const KeyDoc albedo{"scene-linear", "Fraction of the light that is scattered, per colour channel"};
   return {
       {"lambertian",
-       "diffuse: light leaves by the cosine law",
+       "Diffuse, with Lambert's cosine law",
        Lambertian{},
        {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Lambertian>(m).albedo; }))}},
       {"hemisphere",
-       "the book's first diffuse: light leaves evenly over the hemisphere",
+       "The book's first diffuse material: scatters uniformly over the hemisphere",
        Hemisphere{},
        {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Hemisphere>(m).albedo; }))}},
       {"metal",
-       "mirror, sharp or fuzzy",
+       "Metal, from a perfect mirror to fuzzy reflection",
        Metal{},
        {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Metal>(m).albedo; })),
         number<M>("fuzz", kUnit,
                   {"",
-                   "radius of the sphere around the tip of the unit mirror direction; reflections end on its surface, "
-                   "and those that point into the metal are absorbed; 0 is a sharp mirror"},
+                   "Radius of the sphere around the tip of the unit mirror direction, on whose surface reflected "
+                   "directions end. Those that point into the metal are absorbed. 0 is a perfect mirror"},
                   [](M& m) -> double& { return std::get<Metal>(m).fuzz; })}},
       {"dielectric",
-       "clear glass, water, air in water",
+       "Clear dielectric, such as glass, water, or an air bubble in water",
        Dielectric{},
-       {number<M>("ior", {1e-6, 1e6}, {"", "refractive index of the inside, relative to what is around"},
+       {number<M>("ior", {1e-6, 1e6}, {"", "Refractive index of the inside, relative to the surrounding medium"},
                   [](M& m) -> double& { return std::get<Dielectric>(m).ior; }),
-        choice<M>("fresnel", {"schlick", "exact", "none"},
-                  {"",
-                   "share of the light that is reflected: `schlick`, as in the book; `exact`; `none`: all is refracted "
-                   "unless reflected totally"},
-                  [](M& m) -> Fresnel& { return std::get<Dielectric>(m).fresnel; })}},
+        choice<M>(
+            "fresnel", {"schlick", "exact", "none"},
+            {"",
+             "Fresnel reflectance. `schlick`: Schlick's approximation, as in the book. `exact`: Fresnel equations. "
+             "`none`: refraction only, apart from total internal reflection"},
+            [](M& m) -> Fresnel& { return std::get<Dielectric>(m).fresnel; })}},
   };
 }
 
@@ -207,20 +228,21 @@ const std::vector<Table>& tables() {
       background_table(),
       render_table(),
       {"color",
-       {text<S>("space", {"", "name of the colour space of all colours here: any scene-linear one of the OCIO config"},
+       {text<S>("space",
+                {"", "Colour space of all colours in the scene file: any scene-linear space of the OCIO config"},
                 [](S& s) -> std::string& { return s.color.space; }),
-        text<S>("working", {"", "colour space in which light is reckoned, and of the EXR; default: `space`"},
+        text<S>("working", {"", "Colour space for rendering and for EXR output. Default: `space`"},
                 [](S& s) -> std::string& { return s.color.working; }),
-        text<S>("config",
-                {"", "OCIO config, relative to the scene file; default: `$OCIO`, and without it the built-in one"},
-                [](S& s) -> std::filesystem::path& { return s.color.config; }),
-        text<S>("display", {"", "display for PNG, TIFF, JPEG and PPM; default: the config's"},
+        text<S>(
+            "config",
+            {"", "OCIO config, relative to the scene file. Default: `$OCIO`, or the built-in config if it is not set"},
+            [](S& s) -> std::filesystem::path& { return s.color.config; }),
+        text<S>("display", {"", "Display for PNG, TIFF, JPEG and PPM. Default: that of the config"},
                 [](S& s) -> std::string& { return s.color.display; }),
-        text<S>("view", {"", "view of that display; default: the display's"},
+        text<S>("view", {"", "View of the display. Default: that of the display"},
                 [](S& s) -> std::string& { return s.color.view; }),
-        text<S>("look", {"", "look to apply before the view"}, [](S& s) -> std::string& { return s.color.look; }),
-        number<S>("exposure", {-kMaxStops, kMaxStops},
-                  {"stops", "to brighten what a display shows; an EXR stays as it is"},
+        text<S>("look", {"", "Look to apply before the view"}, [](S& s) -> std::string& { return s.color.look; }),
+        number<S>("exposure", {-kMaxStops, kMaxStops}, {"stops", "Exposure of display output. Does not affect EXR"},
                   [](S& s) -> double& { return s.color.exposure; })}},
       output_table(),
       animation_table()};
@@ -234,14 +256,15 @@ const std::vector<MaterialType>& material_types() {
 
 const std::vector<Key<Sphere>>& sphere_keys() {
   static const std::vector<Key<Sphere>> keys = {
-      required(vector<Sphere>("center", kAnyLength, {"scene units", "where it is"},
+      required(vector<Sphere>("center", kAnyLength, {"scene units", "Centre"},
                               [](Sphere& s) -> Vec3d& { return s.center; })),
-      required(number<Sphere>("radius", kAnyLength,
-                              {"scene units", "its size; not 0; below 0 the normal points inward: hollow glass"},
-                              [](Sphere& s) -> double& { return s.radius; })),
-      text<Sphere>("name", {"", "for mattes; default: `sphere.` and its number"},
+      required(number<Sphere>(
+          "radius", kAnyLength,
+          {"scene units", "Radius. Must not be 0. If negative, the normal points inward, for hollow glass"},
+          [](Sphere& s) -> double& { return s.radius; })),
+      text<Sphere>("name", {"", "Name for mattes. Default: `sphere.` and the index"},
                    [](Sphere& s) -> std::string& { return s.name; }),
-      text<Sphere>("group", {"", "for mattes: what has the same name is one thing"},
+      text<Sphere>("group", {"", "Group for mattes: all objects of a group are one matte"},
                    [](Sphere& s) -> std::string& { return s.group; })};
   return keys;
 }
@@ -249,15 +272,15 @@ const std::vector<Key<Sphere>>& sphere_keys() {
 const std::vector<Key<Points>>& points_keys() {
   static const std::vector<Key<Points>> keys = [] {
     auto file = required(text<Points>(
-        "file", {"", "PLY file, relative to the scene file", "one read; 32 bytes a sphere, 36 with materials"},
+        "file", {"", "PLY file, relative to the scene file", "Read once; 32 bytes per sphere, 36 with materials"},
         [](Points& p) -> std::filesystem::path& { return p.file; }));
     return std::vector<Key<Points>>{
         file,
-        optional_number<Points>("radius", kLength, {"scene units", "radius of every sphere, whatever the file says"},
+        optional_number<Points>("radius", kLength, {"scene units", "Radius of every sphere. Overrides the file"},
                                 "as in the file", [](Points& p) -> std::optional<double>& { return p.radius; }),
-        text<Points>("name", {"", "for mattes: all spheres of the file are one thing; default: the file's name"},
+        text<Points>("name", {"", "Name for mattes, shared by all spheres of the file. Default: the file name"},
                      [](Points& p) -> std::string& { return p.name; }),
-        text<Points>("group", {"", "for mattes: what has the same name is one thing"},
+        text<Points>("group", {"", "Group for mattes: all objects of a group are one matte"},
                      [](Points& p) -> std::string& { return p.group; })};
   }();
   return keys;

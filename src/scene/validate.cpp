@@ -41,14 +41,15 @@ void check_image(const Image& image, Problems& diagnostics) {
     const Window& w = *image.crop;
     if (w.width < 1 || w.height < 1 || w.x < 0 || w.y < 0 || w.width > image.width - w.x ||
         w.height > image.height - w.y)
-      diagnostics.error("image.crop", "is not a part of the frame, which is " + std::to_string(image.width) + " x " +
-                                          std::to_string(image.height) + "; it is [x, y, width, height]");
-    if (image.overscan > 0) diagnostics.error("image.overscan", "there is a crop already; leave one of them out");
+      diagnostics.error("image.crop", "must be a non-empty [x, y, width, height] inside the " +
+                                          std::to_string(image.width) + " x " + std::to_string(image.height) +
+                                          " frame");
+    if (image.overscan > 0) diagnostics.error("image.overscan", "cannot be combined with crop; remove one of them");
   }
   const Window all = image.data_window();
   if (all.width > kLargestSide || all.height > kLargestSide)
-    diagnostics.error("image.overscan", "the frame and its overscan have more than " + std::to_string(kLargestSide) +
-                                            " pixels along a side");
+    diagnostics.error("image.overscan",
+                      "frame plus overscan exceeds the limit of " + std::to_string(kLargestSide) + " pixels per side");
 }
 
 void check_camera(const Camera& camera, Problems& diagnostics) {
@@ -57,10 +58,10 @@ void check_camera(const Camera& camera, Problems& diagnostics) {
        {std::pair{"look_from", camera.look_from}, {"look_at", camera.look_at}, {"up", camera.up}}) {
     if (in_domain(v)) continue;
     diagnostics.error(std::string("camera.") + name,
-                      vector_text(v) + " is not finite or beyond " + number_text(kLargestLength));
+                      vector_text(v) + " is not finite or exceeds " + number_text(kLargestLength));
     usable = false;
   }
-  if (!usable) return;  // what they make together would be a finding too many
+  if (!usable) return;  // the checks below would report the same mistake again
   const Vec3d view = camera.look_at - camera.look_from;
   if (!has_direction(view)) {
     diagnostics.error("camera.look_at", view == Vec3d{}
@@ -68,12 +69,12 @@ void check_camera(const Camera& camera, Problems& diagnostics) {
                                             : "look_at is closer to look_from than " + number_text(kSmallestRadius) +
                                                   ", so the camera has no direction");
   } else if (!has_direction(camera.up)) {
-    diagnostics.error("camera.up", camera.up == Vec3d{} ? "up is zero; any direction that is not the view's will do"
-                                                        : "up is shorter than " + number_text(kSmallestRadius) +
-                                                              "; any direction that is not the view's will do");
+    diagnostics.error("camera.up", camera.up == Vec3d{}
+                                       ? "up is zero; use any direction that is not parallel to the view"
+                                       : "up is shorter than " + number_text(kSmallestRadius) +
+                                             "; use any direction that is not parallel to the view");
   } else if (math::length(math::cross(math::normalized(view), math::normalized(camera.up))) < kSmallestUpSine) {
-    diagnostics.error("camera.up",
-                      "up is parallel to the view, so the picture has no upright; choose another direction");
+    diagnostics.error("camera.up", "up is parallel to the view; choose another direction");
   }
 }
 
@@ -83,37 +84,36 @@ void check_shutter(const Camera& camera, Problems& diagnostics) {
                                                   ", before it opens at " + number_text(camera.shutter_open));
 }
 
-/// Where the rays start is a coordinate like any other.
+/// Ray origins on the lens must be inside the domain of coordinates.
 void check_lens(const Camera& camera, Problems& diagnostics) {
   if (!(camera.defocus_angle > 0)) return;
   const double focus = camera.focus_distance.value_or(math::length(camera.look_at - camera.look_from));
   const double radius = std::tan(camera.defocus_angle / 360 * std::numbers::pi) * focus;
   if (radius <= kLargestLength) return;
-  diagnostics.error("camera.defocus_angle", "the lens would have a radius of " + number_text(radius) +
-                                                "; allowed is up to " + number_text(kLargestLength) +
-                                                ": choose a smaller angle or focus_distance");
+  diagnostics.error("camera.defocus_angle", "the lens radius would be " + number_text(radius) + "; the maximum is " +
+                                                number_text(kLargestLength) + "; reduce the angle or focus_distance");
 }
 
-/// What is wrong with a radius by itself; empty where nothing is.
+/// Returns what is wrong with a radius; empty if it is valid.
 std::string radius_fault(double radius) {
   if (!std::isfinite(radius)) return "radius is not finite; allowed is " + length_range();
-  if (radius == 0) return "radius is 0; allowed is " + length_range() + ", or the same below 0 for an inward normal";
+  if (radius == 0) return "radius is 0; allowed is " + length_range() + ", or negative for an inward normal";
   if (std::abs(radius) < kSmallestRadius || std::abs(radius) > kLargestLength)
-    return "radius " + number_text(radius) + " is outside of " + length_range();
+    return "radius is " + number_text(radius) + "; its magnitude must be in " + length_range();
   return {};
 }
 
 std::string material_fault(std::uint32_t material, const Scene& scene) {
   if (material < scene.materials.size()) return {};
-  return "there is no material number " + std::to_string(material) + "; the scene has " +
+  return "there is no material with index " + std::to_string(material) + "; the scene has " +
          std::to_string(scene.materials.size()) + ", counted from 0";
 }
 
-/// Calls `tell(part of the key, text)` for each thing that is wrong with a sphere.
+/// Calls `tell(key suffix, text)` for each fault of a sphere.
 template <class Tell>
 void check_sphere(Vec3d center, double radius, std::uint32_t material, const Scene& scene, Tell tell) {
   if (!in_domain(center))
-    tell(".center", "center " + vector_text(center) + " is not finite or beyond " + number_text(kLargestLength));
+    tell(".center", "center " + vector_text(center) + " is not finite or exceeds " + number_text(kLargestLength));
   if (const std::string fault = radius_fault(radius); !fault.empty()) tell(".radius", fault);
   if (const std::string fault = material_fault(material, scene); !fault.empty()) tell(".material", fault);
 }
@@ -142,7 +142,7 @@ void check_points(const Points& points, const std::string& key, const Scene& sce
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
     const std::uint32_t material = points.materials.empty() ? 0 : points.materials[i];
     check_sphere(points.centers[i], points.radii[i], material, scene, [&](const std::string& part, std::string text) {
-      if (points.materials.empty() && part == ".material") return;  // told above, once
+      if (points.materials.empty() && part == ".material") return;  // reported once, above
       if (++faults <= kMaxReported) diagnostics.error(key + "[" + std::to_string(i) + "]" + part, std::move(text));
     });
   }
@@ -157,17 +157,16 @@ void check_layers(const Scene& scene, Problems& diagnostics) {
       diagnostics.error("output.layers[" + std::to_string(i) + "]", fault);
 }
 
-/// Two surfaces in exactly the same place: their order alone decides which of them is rendered.
+/// Warns of coincident spheres: of two identical surfaces only the first is rendered.
 void check_coincident(const Scene& scene, const Scene* closing, Problems& diagnostics) {
   for (const Points& p : scene.points)
-    if (p.radii.size() != p.centers.size()) return;  // told above, and not to be walked through
+    if (p.radii.size() != p.centers.size()) return;  // reported above; the arrays must not be indexed
   const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
   for (const Coincident& c : found.told)
-    diagnostics.warning(c.key,
-                        "has exactly the same place and size as " + c.first + "; rays meet the first of them only");
+    diagnostics.warning(c.key, "has exactly the same centre and radius as " + c.first + "; only the first is rendered");
   if (found.count > kMaxReported)
-    diagnostics.warning("", "and " + std::to_string(found.count - kMaxReported) +
-                                " more spheres in the place of another (" + std::to_string(found.count) + " in all)");
+    diagnostics.warning("", "and " + std::to_string(found.count - kMaxReported) + " more coincident spheres (" +
+                                std::to_string(found.count) + " in all)");
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 namespace orrery::scene {
 
 std::string number_text(double value) {
-  if (value == 0 && std::signbit(value)) return "-0.0";  // "-0" would be the whole number 0, which has no sign
+  if (value == 0 && std::signbit(value)) return "-0.0";  // TOML reads "-0" as the integer 0, which has no sign
   char buffer[32];
-  // Beyond this the shortest text may be all digits of a whole number, which a scene file reads as one of 64 bits.
+  // Above this, the shortest text may have only digits, which TOML reads as a 64-bit integer.
   constexpr double kLongestDigits = 1e15;
   const auto end = std::abs(value) < kLongestDigits
                        ? std::to_chars(buffer, buffer + sizeof(buffer), value).ptr

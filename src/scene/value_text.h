@@ -8,20 +8,19 @@
 
 namespace orrery::scene {
 
-/// A double as the shortest decimal that reads back to the same bits, as a scene file writes it: "0.1", "-0.0",
-/// "1e+18".
+/// Formats a double for a scene file as the shortest decimal that reads back to the same bits: "0.1", "-0.0", "1e+18".
 std::string number_text(double value);
 
-/// "[0, 1, 0]".
+/// Formats a vector for a scene file: "[0, 1, 0]".
 std::string vector_text(math::Vec3d value);
 
-/// With quotes and escapes, as a scene file writes it.
+/// Formats a string for a scene file, with quotes and escapes.
 std::string string_text(const std::string& value);
 
-/// ["a", "b"].
+/// Formats a list of strings for a scene file: ["a", "b"].
 std::string list_text(const std::vector<std::string>& values);
 
-/// The word out of a string_text that has no escapes.
+/// Removes the quotes of a string_text without escapes; other text is returned unchanged.
 std::string unquoted(const std::string& text);
 
 }  // namespace orrery::scene

@@ -58,7 +58,7 @@ const Case kCases[] = {
     {"render good.toml -o a.png --stats good.toml", 2,
      "orrery: good.toml (--stats) would overwrite good.toml (scene); choose another name\n"},
     {"render none.toml -o a.png", 66, "orrery: cannot open none.toml: No such file or directory\n"},
-    {"render good.toml -o none/a.png", 73, "orrery: cannot create none/a.png: there is no directory none\n"},
+    {"render good.toml -o none/a.png", 73, "orrery: cannot create none/a.png: directory none does not exist\n"},
     {"info good.toml --json --settings", 2,
      "orrery: --json excludes --settings\n"
      "Try orrery info --help.\n"},

@@ -38,7 +38,7 @@ const Broken kBroken[] = {
     {"AnOverriddenView", "", "--set color.view=Filmik", 65, "--set: error: color.view: "},
     {"ALayer", "[output]\nlayers = [\"Z\", \"Y\"]\n", "", 65, ":15:16: error: output.layers[1] is \"Y\""},
     {"ALayerWithoutLight", "[output]\nlayers = [\"Z\", \"diffuse\"]\n", "--set render.shading=normal", 65,
-     ":15:16: error: output.layers[1]: diffuse needs light paths"},
+     ":15:16: error: output.layers[1]: diffuse requires render.shading"},
     {"ALayerOption", "", "--layers Z,Y", 65, "--layers: error: output.layers[1] is \"Y\""},
     {"ASampleCount", "", "--samples 0", 65, "--samples: error: render.samples is 0; allowed"},
     {"ACameraWithoutDirection", "[camera]\nlook_at = [0, 0, 0]\n", "", 65, "error: camera.look_at: "},
@@ -50,8 +50,7 @@ const Broken kBroken[] = {
      "center = [0, 1, -3]\nradius = 1\nmaterial = \"grey\"\n"
      "[[key]]\ntarget = \"sphere.b.radius\"\nframes = [1]\nvalues = [1]\n",
      "", 65,
-     "key[0].target: 2 spheres have the name in \"sphere.b.radius\"; name one by its number, such as sphere[1].radius "
-     "or "
+     "key[0].target: \"sphere.b.radius\" matches 2 spheres; use an index, such as sphere[1].radius or "
      "sphere[2].radius"},
     {"AValueBetweenItsKeys",
      "[[key]]\ntarget = \"sphere[0].radius\"\ninterpolation = \"cubic\"\nframes = [-9, 0, 2, 3]\n"
@@ -66,9 +65,9 @@ const Broken kBroken[] = {
     {"PointsThatAreAFolder", "[[points]]\nfile = \".\"\nmaterial = \"grey\"\n", "", 66,
      "cannot open .: it is a directory"},
     {"PointsOfAnotherVersion", "[[points]]\nfile = \"two.ply\"\nmaterial = \"grey\"\n", "", 65,
-     "two.ply:2: error: version `2.0` of the format is not known"},
+     "two.ply:2: error: unsupported format version `2.0`"},
     {"PointsInBrokenLines", "[[points]]\nfile = \"lines.ply\"\nmaterial = \"grey\"\n", "", 65,
-     "lines.ply:9: error: vertex 0 of 2, `radius`: the line ends"},
+     "lines.ply:9: error: vertex 0 of 2, `radius`: unexpected end of line"},
     {"MorePointsThanPromised", "[[points]]\nfile = \"more.ply\"\nmaterial = \"grey\"\n", "", 65,
      "more.ply:11: error: 9 bytes"},
     {"MissingPointsAndMore", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,

@@ -20,7 +20,7 @@ using support::file_bytes;
 using support::TempDir;
 using support::write_bytes;
 
-/// The error that `act` throws; fails the test where there is none.
+/// Returns the error that `act` throws; fails the test if it throws none.
 template <class Act>
 Error error_of(Act act) {
   try {
@@ -32,7 +32,7 @@ Error error_of(Act act) {
   return {ErrorKind::kInternal, "no error"};
 }
 
-TEST(BaseAtomicFile, AppearsWholeOnCommitAndNotBefore) {
+TEST(BaseAtomicFile, AppearsCompleteOnCommitAndNotBefore) {
   const TempDir folder;
   write_bytes(folder / "a.txt", "old");
   {
@@ -53,7 +53,7 @@ TEST(BaseAtomicFile, LeavesNothingWithoutCommit) {
   EXPECT_EQ(folder.count(), 0u);
 }
 
-TEST(BaseAtomicFile, LeavesNothingWhenAnExceptionPasses) {
+TEST(BaseAtomicFile, LeavesNothingAfterAnException) {
   const TempDir folder;
   EXPECT_THROW(
       {
@@ -65,7 +65,7 @@ TEST(BaseAtomicFile, LeavesNothingWhenAnExceptionPasses) {
   EXPECT_EQ(folder.count(), 0u);
 }
 
-TEST(BaseAtomicFile, IsAsReadableAsTheUmaskSays) {
+TEST(BaseAtomicFile, ModeFollowsTheUmask) {
   const TempDir folder;
   const mode_t before = ::umask(0027);
   write_text_file(folder / "a.txt", "x");
@@ -75,11 +75,12 @@ TEST(BaseAtomicFile, IsAsReadableAsTheUmaskSays) {
   EXPECT_EQ(status.st_mode & 0777u, 0640u);
 }
 
-TEST(BaseAtomicFile, FolderThatIsNotThereIsNamed) {
+TEST(BaseAtomicFile, MissingFolderIsNamed) {
   const TempDir folder;
   const Error error = error_of([&] { AtomicFile file(folder / "none" / "a.txt"); });
   EXPECT_EQ(error.kind(), ErrorKind::kCannotCreate);
-  EXPECT_NE(std::string(error.what()).find("there is no directory " + (folder / "none").string()), std::string::npos)
+  EXPECT_NE(std::string(error.what()).find("directory " + (folder / "none").string() + " does not exist"),
+            std::string::npos)
       << error.what();
 }
 
@@ -98,7 +99,7 @@ TEST(BaseAtomicFile, APipeOrDeviceIsNotReplaced) {
   EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
 }
 
-TEST(BaseAtomicFile, ALinkStaysALink) {
+TEST(BaseAtomicFile, WritesTheTargetOfALink) {
   const TempDir folder;
   write_bytes(folder / "target.txt", "old");
   std::filesystem::create_symlink("target.txt", folder / "link.txt");
@@ -107,14 +108,14 @@ TEST(BaseAtomicFile, ALinkStaysALink) {
   EXPECT_EQ(file_bytes(folder / "target.txt"), "new");
 }
 
-TEST(BaseAtomicFile, TakesANameOfTheGreatestLength) {
+TEST(BaseAtomicFile, AcceptsANameOfMaximumLength) {
   const TempDir folder;
   const std::string name(255, 'n');
   write_text_file(folder / name, "x");
   EXPECT_EQ(file_bytes(folder / name), "x");
 }
 
-TEST(BaseAtomicFile, ANameThatIsTooLongIsFoundBeforeItIsWritten) {
+TEST(BaseAtomicFile, ANameThatIsTooLongIsFoundBeforeWriting) {
   const TempDir folder;
   for (const std::string& name :
        {std::string(256, 'n'), std::string(128, 'n') + std::string(20, '/') + std::string(300, 'm')})
@@ -123,7 +124,7 @@ TEST(BaseAtomicFile, ANameThatIsTooLongIsFoundBeforeItIsWritten) {
   EXPECT_EQ(folder.count(), 0u);
 }
 
-TEST(BaseAtomicFile, ATemporaryNameStaysUtf8) {
+TEST(BaseAtomicFile, TemporaryNamesAreValidUtf8) {
   const TempDir folder;
   std::string name;
   while (name.size() < 254) name += "ä";
@@ -131,11 +132,11 @@ TEST(BaseAtomicFile, ATemporaryNameStaysUtf8) {
   const std::string temporary = file.temporary().filename().string();
   const std::string stem = temporary.substr(1, temporary.size() - 8);
   EXPECT_LE(temporary.size(), 255u);
-  EXPECT_EQ(stem.size() % 2, 0u) << "a character was cut";
+  EXPECT_EQ(stem.size() % 2, 0u) << "a character is split";
 }
 
 TEST(BaseAtomicFile, FullDiskIsAnIoErrorThatLeavesNothing) {
-  // A limit on the size of files stands in for a full disk: write fails midway in the same manner.
+  // A file size limit stands in for a full disk: write fails midway in the same way.
   const TempDir folder;
   struct rlimit before {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -155,7 +156,7 @@ TEST(BaseAtomicFile, FullDiskIsAnIoErrorThatLeavesNothing) {
   EXPECT_EQ(folder.count(), 0u);
 }
 
-TEST(BaseAtomicFile, TemporaryThatVanishedIsAnIoError) {
+TEST(BaseAtomicFile, AMissingTemporaryFileIsAnIoError) {
   const TempDir folder;
   AtomicFile file(folder / "a.txt");
   std::filesystem::remove(file.temporary());
@@ -171,7 +172,7 @@ TEST(BaseAtomicFile, CheckLeavesNoTrace) {
   EXPECT_EQ(folder.count(), 1u);
 }
 
-TEST(BaseAtomicFile, ASignalHandlerCanRemoveWhatIsUnfinished) {
+TEST(BaseAtomicFile, ASignalHandlerCanRemoveUnfinishedFiles) {
   const TempDir folder;
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -179,7 +180,7 @@ TEST(BaseAtomicFile, ASignalHandlerCanRemoveWhatIsUnfinished) {
     AtomicFile done(folder / "done.txt"), unfinished(folder / "unfinished.txt");
     done.commit();
     remove_unfinished_files();
-    ::_exit(0);  // as a handler would: no destructor runs
+    ::_exit(0);  // as a handler does: no destructor runs
   }
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);

@@ -17,7 +17,7 @@ Diagnostic at(int line, int column, int width, const std::string& text, const st
   return diagnostic;
 }
 
-TEST(BaseFinding, PlaceTextLineCaretAndRemedy) {
+TEST(BaseDiagnostic, HasLocationTextRemedyLineAndCaret) {
   Diagnostic diagnostic = at(12, 8, 3, "camera.vfov is 200; allowed is above 0, below 180", "vfov = 200");
   diagnostic.remedy = "write degrees";
   EXPECT_EQ(formatted(diagnostic),
@@ -26,7 +26,7 @@ TEST(BaseFinding, PlaceTextLineCaretAndRemedy) {
             "           ^~~\n");
 }
 
-TEST(BaseFinding, WithoutALineThereIsNoCaret) {
+TEST(BaseDiagnostic, HasNoCaretWithoutALine) {
   Diagnostic diagnostic;
   diagnostic.file = "cloud.ply";
   diagnostic.severity = Severity::kWarning;
@@ -34,32 +34,32 @@ TEST(BaseFinding, WithoutALineThereIsNoCaret) {
   EXPECT_EQ(formatted(diagnostic), "cloud.ply: warning: vertex 3 is odd\n");
 }
 
-TEST(BaseFinding, WithoutAFileItBeginsWithTheSeverity) {
+TEST(BaseDiagnostic, BeginsWithTheSeverityWithoutAFile) {
   Diagnostic diagnostic;
   diagnostic.text = "nothing to do";
   EXPECT_EQ(formatted(diagnostic), "error: nothing to do\n");
 }
 
-TEST(BaseFinding, TabsStayTabsUnderTheLine) {
+TEST(BaseDiagnostic, CaretLineRepeatsTabs) {
   EXPECT_EQ(formatted(at(1, 3, 4, "bad", "\t\tfuzz = 2")),
             "scene.toml:1:3: error: bad\n    \t\tfuzz = 2\n    \t\t^~~~\n");
 }
 
-TEST(BaseFinding, CaretCountsCharactersWhereColumnsCountBytes) {
-  // "ü" has two bytes and takes the room of one: the caret stands under the u.
+TEST(BaseDiagnostic, CaretCountsCharactersWhereColumnsCountBytes) {
+  // "ü" has two bytes but one column: the caret is under the u.
   EXPECT_EQ(formatted(at(1, 4, 2, "bad", "\xC3\xBC u\xC3\xBC")),
             "scene.toml:1:4: error: bad\n    \xC3\xBC u\xC3\xBC\n      ^~\n");
   EXPECT_EQ(formatted(at(1, 4, 3, "bad", "\xC3\xBC u\xC3\xBC")),
             "scene.toml:1:4: error: bad\n    \xC3\xBC u\xC3\xBC\n      ^~\n")
-      << "the second byte of a character has no wave of its own";
+      << "the second byte of a character gets no tilde";
 }
 
-TEST(BaseFinding, NeverUnderlinesBeyondTheLine) {
+TEST(BaseDiagnostic, DoesNotUnderlineBeyondTheLine) {
   EXPECT_EQ(formatted(at(1, 2, 90, "bad", "ab")), "scene.toml:1:2: error: bad\n    ab\n     ^\n");
   EXPECT_EQ(formatted(at(1, 90, 90, "bad", "ab")), "scene.toml:1:90: error: bad\n    ab\n      ^\n");
 }
 
-TEST(BaseFinding, BytesOutOfAFileDoNotCommandTheTerminal) {
+TEST(BaseDiagnostic, ReplacesControlCharacters) {
   const std::string shown = formatted(at(1, 1, 1,
                                          "name \"\x1b[2J\" \xC2\x9B"
                                          "31m",

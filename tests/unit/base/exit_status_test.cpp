@@ -6,7 +6,7 @@
 namespace orrery::base {
 namespace {
 
-// Scripts of users depend on these numbers.
+// Users' scripts depend on these numbers.
 TEST(BaseExitStatus, EachKindHasItsDocumentedNumber) {
   EXPECT_EQ(exit_status(ErrorKind::kInternal), 1);
   EXPECT_EQ(exit_status(ErrorKind::kUsage), 2);

@@ -6,13 +6,13 @@
 namespace orrery::base {
 namespace {
 
-TEST(BaseFileName, AnOrdinaryCompanionHasStemAndSuffix) {
+TEST(BaseFileName, ACompanionHasStemAndSuffix) {
   EXPECT_EQ(companion_name("shot.0007", ".checkpoint.exr"), "shot.0007.checkpoint.exr");
   const std::string fits(kLongestFileName - 4, 'a');
   EXPECT_EQ(companion_name(fits, ".ply"), fits + ".ply");
 }
 
-TEST(BaseFileName, ACompanionOfALongNameFitsAndStaysItsOwn) {
+TEST(BaseFileName, ACompanionOfALongNameFitsAndStaysUnique) {
   const std::string stem(251, 'a');
   const std::string name = companion_name(stem, ".checkpoint.exr");
   EXPECT_EQ(name.size(), kLongestFileName);
@@ -20,8 +20,8 @@ TEST(BaseFileName, ACompanionOfALongNameFitsAndStaysItsOwn) {
   EXPECT_EQ(name.substr(name.size() - 15), ".checkpoint.exr");
 }
 
-TEST(BaseFileName, CharactersStayWhole) {
-  std::string stem = "x";  // so that no limit of even length is at the end of a character
+TEST(BaseFileName, CharactersAreNotSplit) {
+  std::string stem = "x";  // so that no even length ends at the end of a character
   while (stem.size() < 250) stem += "ä";
   EXPECT_EQ(utf8_prefix(stem, 4), "xä");
   EXPECT_EQ(utf8_prefix(stem, 5), "xää");

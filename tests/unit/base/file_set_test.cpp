@@ -19,7 +19,7 @@ class BaseFileSet : public testing::Test {
     fs::create_directory_symlink("sub", folder_ / "link");
   }
 
-  /// The complaint about writing one file where another is read or written; empty where there is none.
+  /// Returns the message about writing one file while another is read or written; empty if there is no conflict.
   static std::string conflict(const fs::path& output, const fs::path& other, bool is_input) {
     FileSet files, reverse;
     std::string found[2];
@@ -42,7 +42,7 @@ class BaseFileSet : public testing::Test {
   support::TempDir folder_;
 };
 
-TEST_F(BaseFileSet, AnInputIsNotWrittenUnderAnyName) {
+TEST_F(BaseFileSet, AnInputIsProtectedUnderAnyName) {
   fs::create_symlink("in", folder_ / "soft");
   fs::create_hard_link(folder_ / "in", folder_ / "hard");
   fs::create_symlink("soft", folder_ / "sub/chain");
@@ -54,19 +54,19 @@ TEST_F(BaseFileSet, AnInputIsNotWrittenUnderAnyName) {
   EXPECT_EQ(conflict(folder_ / "out", in, true), "");
 }
 
-TEST_F(BaseFileSet, TwoOutputsAreTwoFiles) {
+TEST_F(BaseFileSet, TwoOutputsMustBeDifferentFiles) {
   const fs::path& f = folder_.path();
   EXPECT_NE(conflict(f / "out", f / "out", false), "");
-  EXPECT_NE(conflict(f / "sub/out", f / "link/out", false), "") << "neither is there";
-  EXPECT_NE(conflict(f / "none/out", f / "none/../none/out", false), "") << "not even their folder is";
+  EXPECT_NE(conflict(f / "sub/out", f / "link/out", false), "") << "neither file exists";
+  EXPECT_NE(conflict(f / "none/out", f / "none/../none/out", false), "") << "their folder does not exist either";
   EXPECT_EQ(conflict(f / "sub/out", f / "out", false), "");
   fs::create_hard_link(f / "in", f / "hard");
   EXPECT_NE(conflict(f / "hard", f / "in", false), "");
-  fs::create_symlink("../later", f / "sub/dangling");  // a rename replaces the link, not what it may lead to one day
+  fs::create_symlink("../later", f / "sub/dangling");  // a rename replaces a dangling link, not its future target
   EXPECT_EQ(conflict(f / "sub/dangling", f / "later", false), "");
 }
 
-TEST_F(BaseFileSet, ANameStaysTakenWhenItsFileComesOrGoes) {
+TEST_F(BaseFileSet, ANameStaysTakenWhenItsFileAppearsOrDisappears) {
   FileSet files;
   files.add_output(folder_ / "later", "-o");
   files.add_output(folder_ / "in", "-o");

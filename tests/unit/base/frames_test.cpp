@@ -10,7 +10,7 @@ namespace {
 
 using Frames = std::vector<int>;
 
-TEST(BaseFrames, RangesStepsAndLists) {
+TEST(BaseFrames, ParsesRangesStepsAndLists) {
   EXPECT_EQ(parse_frames("7"), (Frames{7}));
   EXPECT_EQ(parse_frames("1-4"), (Frames{1, 2, 3, 4}));
   EXPECT_EQ(parse_frames("1-10:3"), (Frames{1, 4, 7, 10}));
@@ -20,7 +20,7 @@ TEST(BaseFrames, RangesStepsAndLists) {
   EXPECT_EQ(parse_frames("-2--1,-1-1"), (Frames{-2, -1, 0, 1}));
 }
 
-TEST(BaseFrames, WhatIsNoRangeIsRefused) {
+TEST(BaseFrames, InvalidRangesAreRefused) {
   for (const char* text :
        {"", "a", "1-", "-", "1-2-3", "1,", ",1", "1-5x", "1-5x0", "1-5x-1", "1 2", "99999999", "1-9999999"}) {
     try {
@@ -32,7 +32,7 @@ TEST(BaseFrames, WhatIsNoRangeIsRefused) {
   }
 }
 
-TEST(BaseFrames, TooManyAreRefusedByTheirNumber) {
+TEST(BaseFrames, TooManyFramesAreRefused) {
   const auto told = [](const std::string& text) -> std::string {
     try {
       return std::to_string(parse_frames(text).size()) + " frames";
@@ -47,21 +47,22 @@ TEST(BaseFrames, TooManyAreRefusedByTheirNumber) {
   EXPECT_EQ(told("1-60000,70001-120000"),
             "`1-60000,70001-120000` is not a frame range: it has more than 100000 frames" + forms);
   EXPECT_EQ(told("1-1000000000"),
-            "`1-1000000000` is not a frame range: 1000000000 is beyond the largest frame, 9999999" + forms);
-  EXPECT_EQ(told("1-99999999999999999999"),
-            "`1-99999999999999999999` is not a frame range: 99999999999999999999 is beyond the largest frame, 9999999" +
-                forms);
+            "`1-1000000000` is not a frame range: 1000000000 exceeds the maximum frame number 9999999" + forms);
+  EXPECT_EQ(
+      told("1-99999999999999999999"),
+      "`1-99999999999999999999` is not a frame range: 99999999999999999999 exceeds the maximum frame number 9999999" +
+          forms);
   EXPECT_EQ(told("1-"), "`1-` is not a frame range: the end of a range is missing" + forms);
 }
 
-TEST(BaseFrames, TextsAreShort) {
+TEST(BaseFrames, FormatsShortRanges) {
   EXPECT_EQ(frames_text({}), "");
   EXPECT_EQ(frames_text({7}), "7");
   EXPECT_EQ(frames_text({1, 2, 3, 5, 8, 9}), "1-3,5,8-9");
   EXPECT_EQ(parse_frames(frames_text({-2, -1, 4})), (Frames{-2, -1, 4}));
 }
 
-TEST(BaseFrames, PlacesAreFilled) {
+TEST(BaseFrames, ReplacesPatterns) {
   EXPECT_EQ(with_frame("shot.####.exr", 7), "shot.0007.exr");
   EXPECT_EQ(with_frame("shot.####.exr", 12345), "shot.12345.exr");
   EXPECT_EQ(with_frame("a/%04d/b.%d.exr", 12), "a/0012/b.12.exr");

@@ -12,7 +12,7 @@
 namespace orrery::base {
 namespace {
 
-/// Why a file is refused, without its name; empty where it is not.
+/// Returns why a file is refused, without its name; empty if it is accepted.
 std::string reason(const std::filesystem::path& file) {
   try {
     require_readable(file);
@@ -30,12 +30,12 @@ TEST(BaseInputFile, OnlyRegularFilesAreInputs) {
   support::write_bytes(folder / "file", "x");
   EXPECT_EQ(reason(folder / "file"), "");
   std::filesystem::create_symlink("file", folder / "link");
-  EXPECT_EQ(reason(folder / "link"), "") << "a link is what it leads to";
+  EXPECT_EQ(reason(folder / "link"), "") << "a link counts as its target";
   EXPECT_EQ(reason(folder / "none"), "No such file or directory");
   EXPECT_EQ(reason(folder.path()), "it is a directory");
   EXPECT_EQ(reason("/dev/zero"), "it is not a regular file");
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_EQ(reason(folder / "pipe"), "it is not a regular file") << "and nobody waits for a writer";
+  EXPECT_EQ(reason(folder / "pipe"), "it is not a regular file") << "and opening does not wait for a writer";
 }
 
 }  // namespace

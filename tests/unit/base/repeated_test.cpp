@@ -19,18 +19,18 @@ Pairs repeated(const std::vector<std::array<double, 2>>& keys) {
   return out;
 }
 
-TEST(BaseRepeated, NamesTheFirstOfEachValue) {
+TEST(BaseRepeated, ReportsTheFirstItemWithTheSameKey) {
   EXPECT_EQ(repeated({}), Pairs());
   EXPECT_EQ(repeated({{1, 2}, {2, 1}, {1, 2}, {3, 3}, {2, 1}, {1, 2}}), (Pairs{{2, 0}, {4, 1}, {5, 0}}));
 }
 
-TEST(BaseRepeated, ZeroHasNoSignAndNotANumberEqualsNothing) {
+TEST(BaseRepeated, IgnoresTheSignOfZeroAndNaNEqualsNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(repeated({{0, 1}, {-0.0, 1}, {nan, 1}, {nan, 1}}), (Pairs{{1, 0}}));
 }
 
-/// Enough keys that the filters claim some wrongly.
-TEST(BaseRepeated, FindsExactlyTheRepeatedOnesAmongMany) {
+/// Enough keys for false positives in the filters.
+TEST(BaseRepeated, FindsExactlyTheRepeatedItemsAmongMany) {
   std::mt19937_64 engine{5};
   std::vector<std::array<double, 2>> keys;
   for (int i = 0; i < 200'000; ++i) keys.push_back({static_cast<double>(engine() >> 11), 0});

@@ -8,37 +8,37 @@ namespace {
 
 const std::vector<std::string> kKeys = {"samples", "max_depth", "seed", "precision", "shading", "accelerator"};
 
-TEST(BaseSuggestion, FindsALetterTooMuchTooFewReplacedOrSwapped) {
+TEST(BaseSuggestion, FindsInsertedDeletedReplacedAndSwappedLetters) {
   EXPECT_EQ(closest("sampless", kKeys), "samples");
   EXPECT_EQ(closest("sampes", kKeys), "samples");
   EXPECT_EQ(closest("sanples", kKeys), "samples");
   EXPECT_EQ(closest("smaples", kKeys), "samples");
 }
 
-TEST(BaseSuggestion, ASwapIsOneMistakeAndNotTwo) {
-  // Four letters allow one mistake: as two this would be too far.
+TEST(BaseSuggestion, ASwapIsOneEdit) {
+  // Four letters allow one edit: two edits would be too many.
   EXPECT_EQ(closest("sede", {"seed"}), "seed");
 }
 
-TEST(BaseSuggestion, CaseDoesNotCount) { EXPECT_EQ(closest("Max_Depth", kKeys), "max_depth"); }
+TEST(BaseSuggestion, IgnoresCase) { EXPECT_EQ(closest("Max_Depth", kKeys), "max_depth"); }
 
-TEST(BaseSuggestion, NothingWhenTooFar) {
+TEST(BaseSuggestion, EmptyIfNothingIsClose) {
   EXPECT_EQ(closest("gamma", kKeys), "");
   EXPECT_EQ(closest("", kKeys), "");
   EXPECT_EQ(closest("seed", {}), "");
-  EXPECT_EQ(closest("r", {"x", "y", "z"}), "") << "a single letter shares nothing with another one";
+  EXPECT_EQ(closest("r", {"x", "y", "z"}), "") << "single letters have nothing in common";
 }
 
-TEST(BaseSuggestion, OfTwoTheNearer) {
-  EXPECT_EQ(closest("material", {"materials", "material_"}), "materials") << "the first of equally near ones";
+TEST(BaseSuggestion, ChoosesTheClosest) {
+  EXPECT_EQ(closest("material", {"materials", "material_"}), "materials") << "the first of equally close candidates";
   EXPECT_EQ(closest("shadin", {"shadow", "shading"}), "shading");
 }
 
-TEST(BaseSuggestion, EndlessNamesAreNotCompared) {
+TEST(BaseSuggestion, VeryLongNamesAreNotCompared) {
   EXPECT_EQ(closest(std::string(100000, 'a'), {std::string(100000, 'a')}), "");
 }
 
-TEST(BaseSuggestion, AsksOnlyWhereThereIsSomethingToAsk) {
+TEST(BaseSuggestion, DidYouMeanIsEmptyWithoutACandidate) {
   EXPECT_EQ(did_you_mean("sampels", kKeys), "did you mean `samples`?");
   EXPECT_EQ(did_you_mean("gamma", kKeys), "");
 }

@@ -19,7 +19,7 @@ scene::Scene one_of_each() {
   return s;
 }
 
-TEST(CompileCompile, LeavesOutWhatNoSphereUses) {
+TEST(CompileCompile, LeavesOutUnusedMaterials) {
   const CompiledScene compiled = compile(one_of_each());
   EXPECT_FALSE(compiled.features.hemisphere);
   EXPECT_EQ(compiled.materials.size(), 3u);  // grey, glass, glass turned inside out
@@ -55,7 +55,7 @@ TEST(CompileCompile, PointsFollowSpheresInTheOrderOfTheirIds) {
   EXPECT_EQ(compiled.materials[compiled.sphere_materials[5]].kind, kernel::MaterialKind::kMetal);
 }
 
-TEST(CompileCompile, AConstantBackgroundNeedsNoDirection) {
+TEST(CompileCompile, AConstantBackgroundIgnoresTheDirection) {
   scene::Scene s = one_of_each();
   s.background.type = scene::BackgroundType::kConstant;
   s.background.color = {0.25, 0.5, 0.75};
@@ -64,7 +64,7 @@ TEST(CompileCompile, AConstantBackgroundNeedsNoDirection) {
   EXPECT_EQ(compiled.background.bottom[2], 0.75);
 }
 
-TEST(CompileCameraBasis, SpansThePictureOnTheFocusPlane) {
+TEST(CompileCameraBasis, SpansTheImageOnTheFocusPlane) {
   scene::Camera camera;
   camera.look_from = {0, 0, 10};
   camera.look_at = {0, 0, 0};
@@ -73,13 +73,13 @@ TEST(CompileCameraBasis, SpansThePictureOnTheFocusPlane) {
   camera.focus_distance = 2;
   const kernel::Camera c = compile_camera(camera, {200, 100});
   EXPECT_DOUBLE_EQ(c.forward[2], -2);
-  EXPECT_DOUBLE_EQ(c.right[0] * 100, 4);  // twice the tangent of 45 degrees at distance 2, by the height in pixels
+  EXPECT_DOUBLE_EQ(c.right[0] * 100, 4);  // 2 tan(45 degrees) at distance 2, divided by the height in pixels
   EXPECT_DOUBLE_EQ(c.down[1] * 100, -4);
   EXPECT_DOUBLE_EQ(c.lens_u[0], 2);
   EXPECT_EQ(c.half_width, 100);
 }
 
-TEST(CompileCompile, KnowsWhenAHemisphereIsUsed) {
+TEST(CompileCompile, HemisphereFeatureIsSetOnlyIfUsed) {
   scene::Scene s = one_of_each();
   s.materials[0].model = scene::Hemisphere{{1, 1, 1}};
   EXPECT_FALSE(compile(s).features.hemisphere);
@@ -87,7 +87,7 @@ TEST(CompileCompile, KnowsWhenAHemisphereIsUsed) {
   EXPECT_TRUE(compile(s).features.hemisphere);
 }
 
-TEST(CompileCameraBasis, FocusesOnWhatItLooksAtByDefault) {
+TEST(CompileCameraBasis, FocusesOnLookAtByDefault) {
   scene::Camera camera;
   camera.look_from = {3, 0, 4};
   camera.look_at = {0, 0, 0};

@@ -15,7 +15,7 @@ scene::Render with(scene::Filter filter, std::optional<double> width = {}) {
   return render;
 }
 
-/// The second moment of what a table samples: its steps are as probable as each other, and even inside.
+/// Second moment of the distribution that a table samples: its steps are equally probable and uniform.
 double second_moment(const std::vector<double>& table) {
   double sum = 0;
   for (std::size_t i = 0; i + 1 < table.size(); ++i)
@@ -23,14 +23,14 @@ double second_moment(const std::vector<double>& table) {
   return sum / static_cast<double>(table.size() - 1);
 }
 
-TEST(CompilePixelFilter, ThePixelsOwnSquareNeedsNoTable) {
+TEST(CompilePixelFilter, ABoxOfWidthOneNeedsNoTable) {
   const FilterTables tables = compile_filter({});
   EXPECT_TRUE(tables.above.empty());
   EXPECT_EQ(tables.view().above, nullptr);
   EXPECT_EQ(tables.view().weight(0, 100), 100);
 }
 
-TEST(CompilePixelFilter, TablesReachFromTheMiddleToTheEnd) {
+TEST(CompilePixelFilter, TablesReachFromTheCentreToTheEnd) {
   using enum scene::Filter;
   for (const auto filter : {kBox, kGaussian, kBlackmanHarris, kMitchell}) {
     const FilterTables tables = compile_filter(with(filter, 3));
@@ -42,23 +42,23 @@ TEST(CompilePixelFilter, TablesReachFromTheMiddleToTheEnd) {
       EXPECT_NEAR(tables.above.back(), 1.5, 1e-4);
       continue;
     }
-    // Its lobes are apart, and touch.
+    // The positive and negative lobes have separate tables, which touch.
     EXPECT_NEAR(tables.above.back(), tables.below.front(), 1e-4);
     EXPECT_NEAR(tables.below.back(), 1.5, 1e-4);
   }
 }
 
-/// Known: a box of width w has w^2 / 12; a Gaussian cut at three standard deviations 0.97334 of its own.
-TEST(CompilePixelFilter, SpreadsAreThoseOfTheFormulas) {
+/// Expected: w^2 / 12 for a box of width w; 0.97334 sigma^2 for a Gaussian truncated at three standard deviations.
+TEST(CompilePixelFilter, VariancesMatchTheFormulas) {
   EXPECT_NEAR(second_moment(compile_filter(with(scene::Filter::kBox, 2.5)).above), 2.5 * 2.5 / 12, 1e-4);
   const double sigma = 3.0 / 6;
   EXPECT_NEAR(second_moment(compile_filter(with(scene::Filter::kGaussian)).above), 0.97334 * sigma * sigma, 2e-4);
 }
 
-/// The part above and the part below together come to what the polynomial comes to.
-TEST(CompilePixelFilter, MitchellsNegativeLobesHaveTheirShare) {
+/// Positive and negative lobes together have the moments of the polynomial.
+TEST(CompilePixelFilter, MitchellsNegativeLobesHaveTheirWeight) {
   const FilterTables tables = compile_filter(with(scene::Filter::kMitchell));
-  // By brute force over the polynomial.
+  // Numerical integration of the polynomial.
   double above = 0, below = 0, moment = 0;
   for (double x = -2 + 5e-6; x < 2; x += 1e-5) {
     const double t = std::abs(x);
@@ -72,7 +72,7 @@ TEST(CompilePixelFilter, MitchellsNegativeLobesHaveTheirShare) {
   const double sampled =
       (second_moment(tables.above) - tables.below_mass * second_moment(tables.below)) / (1 - tables.below_mass);
   EXPECT_NEAR(sampled, moment, 1e-3);
-  // Signs: of a long run of samples the weights come to what the product of two such filters integrates to.
+  // Signs: over many samples the weights sum to the integral of the product of two such filters.
   const double share = 2 * tables.below_mass / ((1 + tables.below_mass) * (1 + tables.below_mass));
   constexpr std::uint64_t kMany = 1'000'000;
   EXPECT_NEAR(static_cast<double>(tables.view().weight(0, kMany)), (1 - 2 * share) * kMany, 2);

@@ -28,14 +28,14 @@ radius = 1
 material = "gold"
 )";
 
-/// The first line of what an override is told.
+/// First line of the message about an override.
 std::string told(const std::string& override_text) {
   SceneFiles files;
   const std::string all = files.diagnostics(kScene, {override_text});
   return all.substr(0, all.find('\n'));
 }
 
-TEST(FormatOverrides, ReplaceWhatStandsInTheFile) {
+TEST(FormatOverrides, ReplaceValuesOfTheFile) {
   SceneFiles files;
   const auto scene = files
                          .read(kScene, {"camera.vfov=30", "camera.look_from=[1, 2, 3]", "material.gold.fuzz=0.25",
@@ -44,13 +44,14 @@ TEST(FormatOverrides, ReplaceWhatStandsInTheFile) {
   EXPECT_EQ(scene.camera.vfov, 30);
   EXPECT_EQ(scene.camera.look_from, (scene::Vec3d{1, 2, 3}));
   EXPECT_EQ(std::get<scene::Metal>(scene.materials[0].model).fuzz, 0.25);
-  EXPECT_EQ(std::get<scene::Metal>(scene.materials[0].model).albedo, (scene::Vec3d{0.8, 0.6, 0.2})) << "and no more";
+  EXPECT_EQ(std::get<scene::Metal>(scene.materials[0].model).albedo, (scene::Vec3d{0.8, 0.6, 0.2}))
+      << "other keys are unchanged";
   EXPECT_EQ(scene.spheres[0].radius, 1);
   EXPECT_EQ(scene.spheres[1].radius, -2);
   EXPECT_EQ(std::get<scene::Metal>(scene.materials[1].model).albedo, (scene::Vec3d{1, 1, 1}));
 }
 
-TEST(FormatOverrides, MakeTablesThatTheFileDoesNotHave) {
+TEST(FormatOverrides, CreateMissingTables) {
   SceneFiles files;
   const auto scene = files.read(kScene, {"image.width=7", "render.samples=3"}).scene;
   EXPECT_EQ(scene.image.width, 7);
@@ -75,12 +76,12 @@ TEST(FormatOverrides, WordsNeedNoQuotes) {
   EXPECT_EQ(files.read(kScene, {"color.space=Utility - \\ \"x\""}).scene.color.space, "Utility - \\ \"x\"");
 }
 
-TEST(FormatOverrides, BlanksAroundTheSignsAreAllRight) {
+TEST(FormatOverrides, BlanksAreIgnored) {
   SceneFiles files;
   EXPECT_EQ(files.read(kScene, {" camera.vfov = 30 "}).scene.camera.vfov, 30);
 }
 
-TEST(FormatOverrides, MistakesArePointedAtInTheOverride) {
+TEST(FormatOverrides, ErrorsAreLocatedInTheOverride) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics(kScene, {"image.width=5", "camera.vfov=300", "camera.vfow=3", "sphere[1].radius=0",
                                        "sphere[0].center=[0, 1]"}),
@@ -90,16 +91,16 @@ TEST(FormatOverrides, MistakesArePointedAtInTheOverride) {
             "--set: error: unknown key `vfow` in camera; did you mean `vfov`?\n"
             "    --set camera.vfow=3\n"
             "                 ^~~~\n"
-            "--set: error: sphere[1].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 for an inward "
+            "--set: error: sphere[1].radius: radius is 0; allowed is 1e-30..1e+18, or negative for an inward "
             "normal\n"
             "    --set sphere[1].radius=0\n"
             "                           ^\n"
-            "--set: error: sphere[0].center must be three numbers like [0, 1, 0], this is a list of 2\n"
+            "--set: error: sphere[0].center must be three numbers like [0, 1, 0], not a list of 2\n"
             "    --set sphere[0].center=[0, 1]\n"
             "                           ^~~~~~\n");
 }
 
-TEST(FormatOverrides, AShortFormIsNamedByItsOption) {
+TEST(FormatOverrides, MessagesNameTheShortOption) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics(kScene, {{"render.samples=0", "--samples", "0"},
                                        "camera.vfov=0",
@@ -132,50 +133,49 @@ TEST(FormatOverrides, ListsOfWordsNeedNoQuotes) {
       "--set: error: output.layers[1] is \"\"; allowed is Z, depth, N, P, albedo, diffuse, specular, transmission, "
       "background, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, CryptoObject, "
       "CryptoMaterial, CryptoGroup, all");
-  EXPECT_EQ(told("camera.up=[0,1,x]"), "--set: error: camera.up[2] must be a number, this is a string");
+  EXPECT_EQ(told("camera.up=[0,1,x]"), "--set: error: camera.up[2] must be a number, not a string");
 }
 
-TEST(FormatOverrides, SameChecksAsTheFile) {
+TEST(FormatOverrides, AreCheckedLikeTheFile) {
   EXPECT_EQ(told("material.gold.ior=1.5"),
             "--set: error: unknown key `ior` in material.gold of type metal; `ior` belongs to dielectric");
   EXPECT_EQ(told("sphere[0].material=glod"),
-            "--set: error: sphere[0].material is \"glod\", and there is no such material; did you mean `gold`?");
-  EXPECT_EQ(told("render.samples=1.5"),
-            "--set: error: render.samples must be a whole number, this is a floating-point number");
+            "--set: error: sphere[0].material is \"glod\", which is not defined; did you mean `gold`?");
+  EXPECT_EQ(told("render.samples=1.5"), "--set: error: render.samples must be an integer, not a floating-point number");
   EXPECT_EQ(told("camera=3"), "--set: error: `camera` must be a table; write [camera]");
   EXPECT_EQ(told("material.new.fuzz=0.5"),
             "--set: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric");
 }
 
-TEST(FormatOverrides, WhatIsNoOverrideIsTold) {
-  const std::string example = "; write it like camera.vfov=30 or sphere[0].radius=2";
-  EXPECT_EQ(told("camera.vfov"), "--set: error: this is no key=value" + example);
-  EXPECT_EQ(told(""), "--set: error: this is no key=value" + example);
-  EXPECT_EQ(told("=3"), "--set: error: there is no key before the =" + example);
-  EXPECT_EQ(told("camera.vfov="), "--set: error: there is no value behind the =" + example);
-  EXPECT_EQ(told("camera.vfov=1\nimage.width=0"), "--set: error: an override is one line" + example);
-  EXPECT_EQ(told("a.b.c.d.e.f.g.h.i=1"), "--set: error: a key of more than 8 parts" + example);
+TEST(FormatOverrides, InvalidOverridesAreReported) {
+  const std::string example = "; write KEY=VALUE, e.g. camera.vfov=30 or sphere[0].radius=2";
+  EXPECT_EQ(told("camera.vfov"), "--set: error: not of the form KEY=VALUE" + example);
+  EXPECT_EQ(told(""), "--set: error: not of the form KEY=VALUE" + example);
+  EXPECT_EQ(told("=3"), "--set: error: no key before the =" + example);
+  EXPECT_EQ(told("camera.vfov="), "--set: error: no value after the =" + example);
+  EXPECT_EQ(told("camera.vfov=1\nimage.width=0"), "--set: error: an override must be one line" + example);
+  EXPECT_EQ(told("a.b.c.d.e.f.g.h.i=1"), "--set: error: the key has more than 8 parts" + example);
 }
 
-TEST(FormatOverrides, SyntaxOfAListIsToldAndNotTakenForAWord) {
+TEST(FormatOverrides, SyntaxErrorsInListsAreReported) {
   EXPECT_EQ(told("camera.up=[1,2"), "--set: error: array: encountered end-of-file");
   EXPECT_EQ(told("camera..vfov=1").rfind("--set: error: key: ", 0), 0u) << told("camera..vfov=1");
 }
 
-TEST(FormatOverrides, ElementsOfListsMustBeThere) {
+TEST(FormatOverrides, ListElementsMustExist) {
   EXPECT_EQ(told("sphere[2].radius=1"),
-            "--set: error: there is no sphere[2]; the scene has 2 of `sphere`, counted from 0");
+            "--set: error: sphere[2] does not exist; the scene has 2 of `sphere`, counted from 0");
   EXPECT_EQ(told("points[0].radius=1").rfind("--set: error: the scene has no list `points`", 0), 0u);
   EXPECT_EQ(told("camera[0].vfov=1").rfind("--set: error: the scene has no list `camera`", 0), 0u);
-  EXPECT_EQ(told("sphere[0]=1").rfind("--set: error: an element of a list is not set as a whole", 0), 0u);
-  EXPECT_EQ(told("sphere[].radius=1").rfind("--set: error: `sphere[]` is no element of a list", 0), 0u);
-  EXPECT_EQ(told("sphere[-1].radius=1").rfind("--set: error: `sphere[-1]` is no element of a list", 0), 0u);
-  EXPECT_EQ(told("sphere[0][1].radius=1").rfind("--set: error: `sphere[0][1]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("sphere[0]=1").rfind("--set: error: a list element cannot be set as a whole", 0), 0u);
+  EXPECT_EQ(told("sphere[].radius=1").rfind("--set: error: `sphere[]` is not a list element", 0), 0u);
+  EXPECT_EQ(told("sphere[-1].radius=1").rfind("--set: error: `sphere[-1]` is not a list element", 0), 0u);
+  EXPECT_EQ(told("sphere[0][1].radius=1").rfind("--set: error: `sphere[0][1]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere[99999999999999999999].radius=1").rfind("--set: error: `sphere[9", 0), 0u);
-  EXPECT_EQ(told("].radius=1").rfind("--set: error: `]` is no element of a list", 0), 0u);
+  EXPECT_EQ(told("].radius=1").rfind("--set: error: `]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere.radius=1"),
-            "--set: error: `sphere` is no table; name one of its elements, like sphere[0].radius=2");
-  EXPECT_EQ(told("camera.vfov.x=1"), "--set: error: `vfov` is no table");
+            "--set: error: `sphere` is not a table; name one of its elements, e.g. sphere[0].radius=2");
+  EXPECT_EQ(told("camera.vfov.x=1"), "--set: error: `vfov` is not a table");
 }
 
 }  // namespace

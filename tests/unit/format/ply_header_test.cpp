@@ -6,7 +6,7 @@
 namespace orrery::format {
 namespace {
 
-/// "line: fault" of a header; empty where it is good.
+/// "line: fault" of a header; empty if it is valid.
 std::string fault_of(const std::string& text) {
   PlyHeader header;
   int line = 0;
@@ -14,7 +14,7 @@ std::string fault_of(const std::string& text) {
   return fault.empty() ? "" : std::to_string(line) + ": " + fault;
 }
 
-TEST(FormatPlyHeader, KnowsElementsPropertiesAndWhereTheDataBegin) {
+TEST(FormatPlyHeader, ParsesElementsPropertiesAndTheStartOfTheData) {
   const std::string text =
       "ply\r\ncomment made by hand\nformat binary_big_endian 1.0\nobj_info x\nelement vertex 12\nproperty float x\n"
       "property  double\ty\nproperty list uchar int neighbours\nelement face 0\nend_header\n";
@@ -53,37 +53,38 @@ TEST(FormatPlyHeader, TypesHaveTheirSizes) {
   }
 }
 
-TEST(FormatPlyHeader, FaultsNameTheirLine) {
+TEST(FormatPlyHeader, FaultsHaveTheirLine) {
   const std::string begin = "ply\nformat ascii 1.0\n";
-  EXPECT_EQ(fault_of(""), "1: this is no PLY file: its first line is not `ply`");
-  EXPECT_EQ(fault_of("polygon\n"), "1: this is no PLY file: its first line is not `ply`");
+  EXPECT_EQ(fault_of(""), "1: not a PLY file: the first line is not `ply`");
+  EXPECT_EQ(fault_of("polygon\n"), "1: not a PLY file: the first line is not `ply`");
   EXPECT_EQ(fault_of("ply\nend_header\n"), "2: the header has no format line");
-  EXPECT_EQ(fault_of("ply\nformat ascii\n"), "2: a format line is `format ENCODING 1.0`");
+  EXPECT_EQ(fault_of("ply\nformat ascii\n"), "2: a format line must be `format ENCODING 1.0`");
   EXPECT_EQ(fault_of("ply\nformat text 1.0\n"),
-            "2: unknown encoding; known are ascii, binary_little_endian, binary_big_endian");
-  EXPECT_EQ(fault_of("ply\nformat ascii 2.0\n"), "2: version `2.0` of the format is not known; known is 1.0");
-  EXPECT_EQ(fault_of(begin + "format ascii 1.0\n"), "3: the format stands twice");
-  EXPECT_EQ(fault_of(begin + "element vertex\n"), "3: an element line is `element NAME COUNT`");
+            "2: unknown encoding; allowed are ascii, binary_little_endian, binary_big_endian");
+  EXPECT_EQ(fault_of("ply\nformat ascii 2.0\n"), "2: unsupported format version `2.0`; supported is 1.0");
+  EXPECT_EQ(fault_of(begin + "format ascii 1.0\n"), "3: duplicate format line");
+  EXPECT_EQ(fault_of(begin + "element vertex\n"), "3: an element line must be `element NAME COUNT`");
   for (const char* count : {"-1", "1.5", "many", "18446744073709551616"})
-    EXPECT_EQ(fault_of(begin + "element vertex " + count + "\n"), "3: an element's count must be a whole number")
+    EXPECT_EQ(fault_of(begin + "element vertex " + count + "\n"),
+              "3: the count of an element must be a non-negative integer")
         << count;
-  EXPECT_EQ(fault_of(begin + "element a 1\nelement a 1\n"), "4: element `a` stands twice");
-  EXPECT_EQ(fault_of(begin + "property float x\n"), "3: a property before any element");
-  EXPECT_EQ(fault_of(begin + "element a 1\nproperty float\n"), "4: a property line is `property TYPE NAME`");
+  EXPECT_EQ(fault_of(begin + "element a 1\nelement a 1\n"), "4: duplicate element `a`");
+  EXPECT_EQ(fault_of(begin + "property float x\n"), "3: property before the first element");
+  EXPECT_EQ(fault_of(begin + "element a 1\nproperty float\n"), "4: a property line must be `property TYPE NAME`");
   EXPECT_EQ(fault_of(begin + "element a 1\nproperty half x\n"),
-            "4: unknown type; known are char .. double, int8 .. float64");
-  EXPECT_EQ(fault_of(begin + "element a 1\nproperty list half int x\n"), "4: unknown type of a list's length");
-  EXPECT_EQ(fault_of(begin + "element a 1\nproperty int x\nproperty float x\n"), "5: property `x` stands twice");
-  EXPECT_EQ(fault_of(begin + "texture a\n"), "3: unknown word in the header");
+            "4: unknown type; allowed are char .. double, int8 .. float64");
+  EXPECT_EQ(fault_of(begin + "element a 1\nproperty list half int x\n"), "4: unknown type of the list length");
+  EXPECT_EQ(fault_of(begin + "element a 1\nproperty int x\nproperty float x\n"), "5: duplicate property `x`");
+  EXPECT_EQ(fault_of(begin + "texture a\n"), "3: unknown keyword in the header");
   EXPECT_EQ(fault_of(begin + "element a 1\n"), "4: the header has no end_header");
 }
 
-TEST(FormatPlyHeader, TheLimitIsNamed) {
+TEST(FormatPlyHeader, TheLengthIsLimited) {
   std::string text = "ply\nformat ascii 1.0\n";
   const std::string end = "end_header\n";
   text += "comment " + std::string(kLongestHeader - text.size() - end.size() - 9, 'x') + "\n";
-  EXPECT_EQ(fault_of(text + end), "") << "as long as allowed";
-  EXPECT_EQ(fault_of(text + "\n" + end), "5: the header is longer than 1048576 bytes, which is the limit");
+  EXPECT_EQ(fault_of(text + end), "") << "the maximum length";
+  EXPECT_EQ(fault_of(text + "\n" + end), "5: the header exceeds the limit of 1048576 bytes");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 
 using support::SceneFiles;
 
-/// The text of the first finding, without place and source line.
+/// Text of the first diagnostic, without location and source line.
 std::string text_of(const std::string& scene) {
   SceneFiles files;
   const std::string told = files.diagnostics(scene);
@@ -19,24 +19,24 @@ std::string text_of(const std::string& scene) {
 }
 
 TEST(FormatReadKeys, WrongTypesAreNamed) {
-  EXPECT_EQ(text_of("camera.vfov = \"20\""), "camera.vfov must be a number, this is a string");
-  EXPECT_EQ(text_of("camera.vfov = true"), "camera.vfov must be a number, this is true or false");
-  EXPECT_EQ(text_of("camera.vfov = [20]"), "camera.vfov must be a number, this is a list");
-  EXPECT_EQ(text_of("camera.vfov = 2024-01-01"), "camera.vfov must be a number, this is a date");
-  EXPECT_EQ(text_of("camera.vfov = {}"), "camera.vfov must be a number, this is a table");
-  EXPECT_EQ(text_of("camera.up = 1"), "camera.up must be three numbers like [0, 1, 0], this is a whole number");
-  EXPECT_EQ(text_of("camera.up = [0, \"1\", 0]"), "camera.up[1] must be a number, this is a string");
-  EXPECT_EQ(text_of("color.space = 1"), "color.space must be a string, this is a whole number");
-  EXPECT_EQ(text_of("render.shading = 1"), "render.shading must be one of path, normal, flat, this is a whole number");
+  EXPECT_EQ(text_of("camera.vfov = \"20\""), "camera.vfov must be a number, not a string");
+  EXPECT_EQ(text_of("camera.vfov = true"), "camera.vfov must be a number, not a boolean");
+  EXPECT_EQ(text_of("camera.vfov = [20]"), "camera.vfov must be a number, not a list");
+  EXPECT_EQ(text_of("camera.vfov = 2024-01-01"), "camera.vfov must be a number, not a date");
+  EXPECT_EQ(text_of("camera.vfov = {}"), "camera.vfov must be a number, not a table");
+  EXPECT_EQ(text_of("camera.up = 1"), "camera.up must be three numbers like [0, 1, 0], not an integer");
+  EXPECT_EQ(text_of("camera.up = [0, \"1\", 0]"), "camera.up[1] must be a number, not a string");
+  EXPECT_EQ(text_of("color.space = 1"), "color.space must be a string, not an integer");
+  EXPECT_EQ(text_of("render.shading = 1"), "render.shading must be one of path, normal, flat, not an integer");
 }
 
-TEST(FormatReadKeys, AWholeNumberServesAsNumberButNotTheOtherWay) {
+TEST(FormatReadKeys, AnIntegerIsANumberButNotViceVersa) {
   SceneFiles files;
   EXPECT_EQ(files.read("camera.vfov = 20").scene.camera.vfov, 20);
-  EXPECT_EQ(text_of("render.samples = 10.0"), "render.samples must be a whole number, this is a floating-point number");
+  EXPECT_EQ(text_of("render.samples = 10.0"), "render.samples must be an integer, not a floating-point number");
 }
 
-TEST(FormatReadKeys, RangesAreClosedOrOpenAsTheySay) {
+TEST(FormatReadKeys, RangesAreClosedOrOpen) {
   EXPECT_EQ(text_of("camera.vfov = 0"), "camera.vfov is 0; allowed is above 0, below 180");
   EXPECT_EQ(text_of("camera.vfov = 180"), "camera.vfov is 180; allowed is above 0, below 180");
   EXPECT_EQ(text_of("camera.defocus_angle = 180"), "camera.defocus_angle is 180; allowed is from 0, below 180");
@@ -48,13 +48,13 @@ TEST(FormatReadKeys, RangesAreClosedOrOpenAsTheySay) {
   EXPECT_EQ(text_of("background.top = [0, -0.5, 0]"), "background.top[1] is -0.5; allowed is 0..1e+06");
 }
 
-TEST(FormatReadKeys, NotANumberAndInfinityAreInNoRange) {
+TEST(FormatReadKeys, NaNAndInfinityAreInNoRange) {
   EXPECT_EQ(text_of("camera.vfov = nan"), "camera.vfov is nan; allowed is above 0, below 180");
   EXPECT_EQ(text_of("camera.look_at = [0, 0, -inf]"), "camera.look_at[2] is -inf; allowed is -1e+18..1e+18");
   EXPECT_EQ(text_of("camera.focus_distance = inf"), "camera.focus_distance is inf; allowed is 1e-30..1e+18");
 }
 
-TEST(FormatReadKeys, EachWrongComponentIsAFinding) {
+TEST(FormatReadKeys, EachInvalidComponentIsReported) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("camera.up = [nan,\n inf, 0]"),
             "scene.toml:1:14: error: camera.up[0] is nan; allowed is -1e+18..1e+18\n"
@@ -65,29 +65,28 @@ TEST(FormatReadKeys, EachWrongComponentIsAFinding) {
             "     ^~~\n");
 }
 
-TEST(FormatReadKeys, ListsOfWords) {
+TEST(FormatReadKeys, ReadsListsOfWords) {
   EXPECT_EQ(text_of("output.layers = []"), "");
-  EXPECT_EQ(text_of("output.layers = \"Z\""), "output.layers must be a list like [\"Z\"], this is a string");
+  EXPECT_EQ(text_of("output.layers = \"Z\""), "output.layers must be a list like [\"Z\"], not a string");
   EXPECT_EQ(text_of("output.layers = [1]").substr(0, 31), "output.layers[0] must be one of");
-  EXPECT_EQ(text_of("output.layers = [\"Z\", \"Z\"]"), "output.layers[1] stands there twice; leave one out");
+  EXPECT_EQ(text_of("output.layers = [\"Z\", \"Z\"]"), "output.layers[1] is a duplicate; remove it");
   const std::string near = text_of("output.layers = [\"albdo\"]");
   EXPECT_EQ(near.substr(near.find("; did")), "; did you mean `albedo`?");
 }
 
-TEST(FormatReadKeys, Windows) {
+TEST(FormatReadKeys, ReadsWindows) {
   EXPECT_EQ(text_of("image.crop = [0, 0, 8, 8]"), "");
   EXPECT_EQ(text_of("image.crop = [0, 0, 8]"),
-            "image.crop must be x, y, width and height like [0, 0, 640, 360], this is a list of 3");
+            "image.crop must be x, y, width and height like [0, 0, 640, 360], not a list of 3");
   EXPECT_EQ(text_of("image.crop = 8"),
-            "image.crop must be x, y, width and height like [0, 0, 640, 360], this is a whole number");
-  EXPECT_EQ(text_of("image.crop = [0, 0, 8, 1.5]"),
-            "image.crop[3] must be a whole number, this is a floating-point number");
+            "image.crop must be x, y, width and height like [0, 0, 640, 360], not an integer");
+  EXPECT_EQ(text_of("image.crop = [0, 0, 8, 1.5]"), "image.crop[3] must be an integer, not a floating-point number");
   EXPECT_EQ(text_of("image.crop = [-1, 0, 8, 8]"), "image.crop[0] is -1; allowed is 0..65536");
 }
 
-TEST(FormatReadKeys, UnknownKeysWithNothingNearAreToldWhatThereIs) {
+TEST(FormatReadKeys, UnknownKeysWithoutASuggestionListTheKnownKeys) {
   EXPECT_EQ(text_of("color.gamma = 2.2"),
-            "unknown key `gamma` in color; known are space, working, config, display, view, look, exposure");
+            "unknown key `gamma` in color; known keys are space, working, config, display, view, look, exposure");
   EXPECT_EQ(text_of("image.Width = 2"), "unknown key `Width` in image; did you mean `width`?");
 }
 

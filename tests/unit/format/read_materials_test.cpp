@@ -17,7 +17,7 @@ std::vector<std::string> names_of(const scene::Scene& scene) {
 }
 using Names = std::vector<std::string>;
 
-TEST(FormatReadMaterials, StandInTheOrderOfTheFile) {
+TEST(FormatReadMaterials, AreInTheOrderOfTheFile) {
   SceneFiles files;
   EXPECT_EQ(names_of(files
                          .read("[material]\nz = { type = \"dielectric\" }\na = { type = \"dielectric\" }\n"
@@ -26,8 +26,8 @@ TEST(FormatReadMaterials, StandInTheOrderOfTheFile) {
             (Names{"z", "a", "m"}));
 }
 
-// Points count materials: an override must not move those of the file.
-TEST(FormatReadMaterials, OverridesDoNotMoveThoseOfTheFile) {
+// Points files have material indices: an override must not change those of the file.
+TEST(FormatReadMaterials, OverridesDoNotChangeTheIndicesOfTheFile) {
   SceneFiles files;
   const std::string text = "\n\n[material.z]\ntype = \"dielectric\"\n[material.a]\ntype = \"dielectric\"\n";
   EXPECT_EQ(names_of(files.read(text, {"material.b={type=\"dielectric\"}", "material.a.ior=2"}).scene),
@@ -48,7 +48,7 @@ TEST(FormatReadMaterials, AKeyOfAnotherTypeNamesThatType) {
       "    ^~~~~~\n");
 }
 
-TEST(FormatReadMaterials, WithoutATypeItsOtherKeysAreCheckedAgainstAll) {
+TEST(FormatReadMaterials, WithoutATypeKeysAreCheckedAgainstAllTypes) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[material.a]\nalbedo = [1, 1, 1]\nfuz = 0.5\n"),
             "scene.toml:1:1: error: material.a needs `type`; one of lambertian, hemisphere, metal, dielectric\n"
@@ -59,7 +59,7 @@ TEST(FormatReadMaterials, WithoutATypeItsOtherKeysAreCheckedAgainstAll) {
             "    ^~~\n");
 }
 
-TEST(FormatReadMaterials, ValuesAreInTheirRanges) {
+TEST(FormatReadMaterials, RangesOfValuesAreChecked) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[material]\na = { type = \"metal\", albedo = [1, 1.5, 1], fuzz = 2 }\n"),
             "scene.toml:2:36: error: material.a.albedo[1] is 1.5; allowed is 0..1\n"
@@ -70,7 +70,7 @@ TEST(FormatReadMaterials, ValuesAreInTheirRanges) {
             "                                                       ^\n");
 }
 
-TEST(FormatReadMaterials, AMaterialThatIsNoTableIsOneFinding) {
+TEST(FormatReadMaterials, AMaterialThatIsNotATableIsReportedOnce) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[material]\na = 3\n[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
             "scene.toml:2:5: error: material.a must be a table; write [material.a]\n"
@@ -78,7 +78,7 @@ TEST(FormatReadMaterials, AMaterialThatIsNoTableIsOneFinding) {
             "        ^\n");
 }
 
-TEST(FormatReadMaterials, NamesOfAnyLettersAndUnusedOnesAreAllRight) {
+TEST(FormatReadMaterials, AcceptsAnyNameAndUnusedMaterials) {
   SceneFiles files;
   EXPECT_EQ(
       names_of(files.read("[material.\"dark gold\"]\ntype = \"dielectric\"\n[material.\"\"]\ntype = \"dielectric\"\n")

@@ -38,7 +38,7 @@ class FormatReadPly : public testing::Test {
     read_ply(folder_ / "a.ply", materials, points);
     return points;
   }
-  /// Findings without the name of the file.
+  /// Diagnostics without the name of the file.
   std::string faults(const std::string& bytes, std::optional<double> radius = {}) {
     std::string out;
     try {
@@ -77,7 +77,7 @@ TEST_F(FormatReadPly, EveryNumberTypeInBothByteOrders) {
                              bytes_of<std::int16_t>(-3000, big) + bytes_of<std::uint16_t>(60000, big) +
                              bytes_of<std::int32_t>(-100000, big) + bytes_of<std::uint32_t>(4000000000u, big) +
                              bytes_of<double>(0.1, big) + bytes_of<float>(2.5f, big);
-    // Two vertices out of eight types: read as x, y, z, radius of one and of the other.
+    // Two vertices with values of eight types: x, y, z, radius of the first and of the second.
     const char* const encoding = big ? "binary_big_endian" : "binary_little_endian";
     const auto first = read(header(encoding,
                                    "element vertex 1\nproperty char x\nproperty uchar y\nproperty short z\n"
@@ -94,7 +94,7 @@ TEST_F(FormatReadPly, EveryNumberTypeInBothByteOrders) {
   }
 }
 
-TEST_F(FormatReadPly, PassesOverOtherElementsPropertiesAndLists) {
+TEST_F(FormatReadPly, SkipsOtherElementsPropertiesAndLists) {
   const std::string elements =
       "element face 2\nproperty list uchar int corners\nproperty uchar flag\nelement vertex 2\nproperty float nx\n"
       "property float x\nproperty list ushort float weights\nproperty float y\nproperty float z\nproperty float "
@@ -116,7 +116,7 @@ TEST_F(FormatReadPly, PassesOverOtherElementsPropertiesAndLists) {
   EXPECT_EQ(ascii.radii, points.radii);
 }
 
-TEST_F(FormatReadPly, RadiusHasThreeNamesAndTheLongestComesFirst) {
+TEST_F(FormatReadPly, RadiusHasThreeNamesAndTheLongestWins) {
   const std::string xyz = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
   EXPECT_EQ(read(header("ascii", xyz + "property float r\n") + "1 2 3 4").radii[0], 4);
   EXPECT_EQ(read(header("ascii", xyz + "property float scalar_radius\n") + "1 2 3 4").radii[0], 4);
@@ -124,7 +124,7 @@ TEST_F(FormatReadPly, RadiusHasThreeNamesAndTheLongestComesFirst) {
   EXPECT_EQ(read(header("ascii", xyz + "property float radius\nproperty float r\n") + "1 2 3 4 9").radii[0], 4);
 }
 
-TEST_F(FormatReadPly, TheScenesRadiusIsThatOfEveryPoint) {
+TEST_F(FormatReadPly, TheRadiusOfTheSceneAppliesToEveryPoint) {
   const auto points = read(
       header("ascii", "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n") + "1 2 3", 3, 0.125);
   EXPECT_EQ(points.radii, std::vector<double>{0.125});
@@ -141,50 +141,51 @@ TEST_F(FormatReadPly, MaterialsAreIndices) {
             "12: vertex 2 has material 0.5; the scene has 3, counted from 0\n");
 }
 
-TEST_F(FormatReadPly, NoVerticesAreNoMistake) {
+TEST_F(FormatReadPly, AcceptsZeroVertices) {
   EXPECT_TRUE(read(header("ascii", std::string("element vertex 0\n") + kXyzr)).centers.empty());
 }
 
-TEST_F(FormatReadPly, WhatIsMissingIsNamed) {
+TEST_F(FormatReadPly, MissingElementsAndPropertiesAreNamed) {
   EXPECT_EQ(faults(header("ascii", "element face 0\n")), "there is no element `vertex`\n");
   EXPECT_EQ(faults(header("ascii", "element vertex 0\nproperty float x\nproperty float y\n")),
-            "`vertex` has no x, y and z\n");
+            "`vertex` needs x, y and z\n");
   EXPECT_EQ(faults(header("ascii", "element vertex 0\nproperty float x\nproperty float y\nproperty float z\n")),
             "`vertex` has no `radius`; add one, or set `radius` in [[points]]\n");
   EXPECT_EQ(
       faults(header("ascii", "element vertex 1\nproperty float x\nproperty float y\nproperty list uchar float z\n") +
                  "1 1 1 1",
              1.0),
-      "`vertex` has no x, y and z\n");
+      "`vertex` needs x, y and z\n");
 }
 
 TEST_F(FormatReadPly, HeaderFaultsHaveALine) {
-  EXPECT_EQ(faults("ply\nformat ascii 1.0\nelement vertex many\n"), "3: an element's count must be a whole number\n");
+  EXPECT_EQ(faults("ply\nformat ascii 1.0\nelement vertex many\n"),
+            "3: the count of an element must be a non-negative integer\n");
 }
 
-TEST_F(FormatReadPly, ACountThatLiesIsRefusedBeforeMemoryIsAskedFor) {
-  // Sixteen bytes each: the promise of 2^60 would be beyond any machine.
+TEST_F(FormatReadPly, AnExcessiveCountIsRefusedBeforeAllocation) {
+  // 2^60 rows of sixteen bytes exceed the memory of any machine.
   const std::string data(31, '\0');
   EXPECT_EQ(
       faults(header("binary_little_endian", std::string("element vertex 1152921504606846976\n") + kXyzr) + data),
-      "the header promises 1152921504606846976 of `vertex`, but only 31 bytes follow; the file is cut off, or its "
-      "count is wrong\n");
+      "the header declares 1152921504606846976 rows of `vertex`, but only 31 bytes follow; the file is truncated, or "
+      "the count is wrong\n");
   EXPECT_EQ(faults(header("binary_little_endian", std::string("element vertex 18446744073709551615\n") + kXyzr) + data)
-                .rfind("the header promises 18446744073709551615", 0),
+                .rfind("the header declares 18446744073709551615", 0),
             0u);
   EXPECT_EQ(faults(header("binary_little_endian", std::string("element vertex 2\n") + kXyzr) + data)
-                .rfind("the header promises 2 of `vertex`, but only 31 bytes follow", 0),
+                .rfind("the header declares 2 rows of `vertex`, but only 31 bytes follow", 0),
             0u);
   EXPECT_EQ(faults(header("binary_little_endian", std::string("element vertex 1\n") + kXyzr) + data.substr(0, 16)), "");
   EXPECT_NE(faults(header("ascii", std::string("element vertex 3\n") + kXyzr) + "1 2 3 4 1 2 3 4"), "");
 }
 
-TEST_F(FormatReadPly, AListThatLies) {
+TEST_F(FormatReadPly, InvalidListLengths) {
   const std::string elements = "element face 1\nproperty list double float corners\nelement vertex 0\n";
   EXPECT_EQ(faults(header("binary_little_endian", elements + kXyzr) + bytes_of(1e300) + bytes_of(1.f)),
-            "row 0 of `face`, `corners`: the file ends\n");
+            "row 0 of `face`, `corners`: unexpected end of file\n");
   EXPECT_EQ(faults(header("binary_little_endian", elements + kXyzr) + bytes_of(-1.0) + bytes_of(1.f)),
-            "row 0 of `face`, `corners`: the length of a list is not a whole number\n");
+            "row 0 of `face`, `corners`: the length of the list is not a non-negative integer\n");
 }
 
 // The sixth line is blank, the rows are on lines 9 and 11.
@@ -193,43 +194,44 @@ constexpr const char* kTwo =
 
 TEST_F(FormatReadPly, AnAsciiRowIsOneLine) {
   EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n\n1 2 3\n4\n"),
-            "11: vertex 1 of 2, `radius`: the line ends; a row is one line\n");
+            "11: vertex 1 of 2, `radius`: unexpected end of line; a row must be one line\n");
   EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4 1\n2 3 4\n"),
-            "9: vertex 0 of 2: `1` follows the last value that the header promises\n");
+            "9: vertex 0 of 2: unexpected `1` after the last value that the header declares\n");
   EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4x\n"),
             "10: vertex 1 of 2, `radius`: `4x` is not a number\n");
   EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4 \r\n \t\n1 2 3 4\n"), "");
   EXPECT_EQ(faults(header("ascii", std::string("element face 1\nproperty list uchar int v\n") + kTwo) +
                    "3 1 2\n7\n1 2 3 4\n1 2 3 4\n"),
-            "11: row 0 of `face`, `v`: the line ends; a row is one line\n");
+            "11: row 0 of `face`, `v`: unexpected end of line; a row must be one line\n");
 }
 
-TEST_F(FormatReadPly, AnAsciiRowThatIsMissingIsTheEndOfTheFile) {
+TEST_F(FormatReadPly, AMissingAsciiRowIsAnUnexpectedEndOfFile) {
   const std::string elements = "element face 3\nproperty list uchar int v\nelement vertex 0\n";
-  EXPECT_EQ(faults(header("ascii", elements + kXyzr) + "1 7\n1 7\n"), "13: row 2 of `face`, `v`: the file ends\n");
+  EXPECT_EQ(faults(header("ascii", elements + kXyzr) + "1 7\n1 7\n"),
+            "13: row 2 of `face`, `v`: unexpected end of file\n");
 }
 
-TEST_F(FormatReadPly, MoreThanTheHeaderPromisesIsRefused) {
+TEST_F(FormatReadPly, ExcessDataIsRefused) {
   EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n5 6 7 8\n"),
-            "11: 8 bytes follow the last row that the header promises; its counts are wrong, or the file is damaged\n");
-  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n \n\r\n"), "") << "blank lines are no rows";
+            "11: 8 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n");
+  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n \n\r\n"), "") << "blank lines are not rows";
   EXPECT_EQ(faults(header("binary_little_endian", kTwo) + std::string(2 * 16 + 3, '\0')),
-            "3 bytes follow the last row that the header promises; its counts are wrong, or the file is damaged\n");
+            "3 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n");
 }
 
-TEST_F(FormatReadPly, ElementsBehindTheVerticesMustBeThere) {
+TEST_F(FormatReadPly, ElementsAfterTheVerticesMustBeComplete) {
   const std::string elements = std::string(kTwo) + "element face 1\nproperty list uchar int v\n";
   EXPECT_EQ(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n3 1 2 3\n"), "");
   EXPECT_NE(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n"), "");
   EXPECT_EQ(faults(header("binary_little_endian", elements) + std::string(2 * 16, '\0') + "\2abcd"),
-            "row 0 of `face`, `v`: the file ends\n");
+            "row 0 of `face`, `v`: unexpected end of file\n");
 }
 
-TEST_F(FormatReadPly, RBesideGAndBIsAColour) {
+TEST_F(FormatReadPly, RWithGAndBIsAColour) {
   const std::string xyz = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string rgb = "property uchar r\nproperty uchar g\nproperty uchar b\n";
   EXPECT_EQ(faults(header("ascii", xyz + rgb) + "1 2 3 255 0 0"),
-            "`vertex` has no `radius`, and its `r` is a colour, beside `g` and `b`; add one, or set `radius` in "
+            "`vertex` has no `radius`, and `r` is a colour because of `g` and `b`; add one, or set `radius` in "
             "[[points]]\n");
   const scene::Points points = read(header("ascii", xyz + rgb) + "1 2 3 255 0 0", 3, 0.5);
   EXPECT_EQ(points.radii[0], 0.5);
@@ -237,30 +239,30 @@ TEST_F(FormatReadPly, RBesideGAndBIsAColour) {
   EXPECT_TRUE(read(header("ascii", xyz + "property float r\n") + "1 2 3 4").unused.empty());
 }
 
-TEST_F(FormatReadPly, CutOffInsideOfAVertex) {
-  // Lists make rows of unknown length, which the count alone cannot find out.
+TEST_F(FormatReadPly, TruncationInsideAVertex) {
+  // With lists the length of a row is unknown, so the count alone does not reveal the truncation.
   const std::string elements = std::string("element vertex 2\nproperty list uchar float weights\n") + kXyzr;
   const std::string row = bytes_of<std::uint8_t>(2) + std::string(8, '\0') + std::string(16, '\0');
   EXPECT_EQ(faults(header("binary_little_endian", elements) + row + row.substr(0, 20)),
-            "vertex 1 of 2, `z`: the file ends\n");
+            "vertex 1 of 2, `z`: unexpected end of file\n");
 }
 
-TEST_F(FormatReadPly, AWordThatIsNoNumber) {
+TEST_F(FormatReadPly, AWordThatIsNotANumber) {
   EXPECT_EQ(faults(header("ascii", std::string("element vertex 2\n") + kXyzr) + "1 2 3 4\n1 2 three 4"),
             "10: vertex 1 of 2, `z`: `three` is not a number\n");
 }
 
-TEST_F(FormatReadPly, NumbersThatAreNotFiniteAreAllCountedAndTenAreTold) {
+TEST_F(FormatReadPly, NonFiniteValuesAreCountedAndTenReported) {
   std::string data;
   for (int i = 0; i < 25; ++i)
     data += i == 3 ? "1 2 3 4\n" : i == 4 ? "1 inf 3 4\n" : i == 5 ? "1 2 3 1e999\n" : "nan 2 3 4\n";
   const std::string told = faults(header("ascii", std::string("element vertex 25\n") + kXyzr) + data);
   EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 11);
-  EXPECT_NE(told.find("11: vertex 2 has a number that is not finite\n13: vertex 4 has"), std::string::npos) << told;
+  EXPECT_NE(told.find("11: vertex 2 has a non-finite value\n13: vertex 4 has"), std::string::npos) << told;
   EXPECT_NE(told.find("and 14 more (24 in all)\n"), std::string::npos) << told;
 }
 
-TEST_F(FormatReadPly, AMistakeLeavesThePointsAsTheyWere) {
+TEST_F(FormatReadPly, AnErrorLeavesThePointsUnchanged) {
   support::write_bytes(folder_ / "a.ply",
                        header("ascii", std::string("element vertex 2\n") + kXyzr) + "1 2 3 4\n1 2 nan 4");
   scene::Points points;

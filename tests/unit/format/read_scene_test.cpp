@@ -15,7 +15,7 @@ namespace {
 using scene::Vec3d;
 using support::SceneFiles;
 
-TEST(FormatReadScene, AnEmptyFileIsThePictureOfTheDefaults) {
+TEST(FormatReadScene, AnEmptyFileHasTheDefaults) {
   SceneFiles files;
   const auto read = files.read("");
   EXPECT_TRUE(read.scene.spheres.empty());
@@ -110,7 +110,7 @@ material = "glass"
   EXPECT_EQ(s.spheres[1].material, 3u);
 }
 
-TEST(FormatReadScene, ReadsWhatFilesShallHold) {
+TEST(FormatReadScene, ReadsTheKeysOfOutput) {
   SceneFiles files;
   const auto read = files.read(R"(
 [image]
@@ -156,7 +156,7 @@ group = "left"
   EXPECT_EQ(s.spheres[0].group, "left");
 }
 
-TEST(FormatReadScene, AllFindingsInOneRunInTheOrderOfTheFile) {
+TEST(FormatReadScene, ReportsAllErrorsInFileOrder) {
   SceneFiles files;
   EXPECT_EQ(
       files.diagnostics("[camera]\n"
@@ -194,19 +194,19 @@ TEST(FormatReadScene, AllFindingsInOneRunInTheOrderOfTheFile) {
       "scene.toml:10:1: error: unknown key `albdo` in material.gold; did you mean `albedo`?\n"
       "    albdo = [0.8, 0.6, 0.2]\n"
       "    ^~~~~\n"
-      "scene.toml:12:10: error: sphere[0].center must be three numbers like [0, 1, 0], this is a list of 2\n"
+      "scene.toml:12:10: error: sphere[0].center must be three numbers like [0, 1, 0], not a list of 2\n"
       "    center = [0, 0]\n"
       "             ^~~~~~\n"
-      "scene.toml:13:10: error: sphere[0].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 for an "
+      "scene.toml:13:10: error: sphere[0].radius: radius is 0; allowed is 1e-30..1e+18, or negative for an "
       "inward normal\n"
       "    radius = 0\n"
       "             ^\n"
-      "scene.toml:14:12: error: sphere[0].material is \"glod\", and there is no such material; did you mean `gold`?\n"
+      "scene.toml:14:12: error: sphere[0].material is \"glod\", which is not defined; did you mean `gold`?\n"
       "    material = \"glod\"\n"
       "               ^~~~~~\n");
 }
 
-TEST(FormatReadScene, TheErrorCountsItsFindings) {
+TEST(FormatReadScene, TheMessageCountsTheErrors) {
   SceneFiles files;
   files.add("bad.toml", "camera.vfov = 0\nimage.width = 0\n");
   try {
@@ -241,62 +241,58 @@ TEST(FormatReadScene, RequiredKeysOfASphere) {
             "    [[sphere]]\n    ^~~~~~~~~~\n");
 }
 
-TEST(FormatReadScene, MaterialNamesOutsideTheScene) {
+TEST(FormatReadScene, UndefinedMaterials) {
   SceneFiles files;
   const std::string sphere = "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"chalk\"\n";
-  EXPECT_EQ(files.diagnostics(sphere),
-            "scene.toml:4:12: error: sphere[0].material is \"chalk\", and there is no such material; the scene has no "
-            "[material.NAME] at all\n"
-            "    material = \"chalk\"\n"
-            "               ^~~~~~~\n");
+  EXPECT_EQ(
+      files.diagnostics(sphere),
+      "scene.toml:4:12: error: sphere[0].material is \"chalk\", which is not defined; the scene defines no materials\n"
+      "    material = \"chalk\"\n"
+      "               ^~~~~~~\n");
   const std::string told =
       files.diagnostics("[material.ruby]\ntype=\"dielectric\"\n[material.gold]\ntype=\"dielectric\"\n" + sphere);
-  EXPECT_NE(told.find("no such material; there are ruby, gold\n"), std::string::npos) << told;
+  EXPECT_NE(told.find("which is not defined; defined are ruby, gold\n"), std::string::npos) << told;
 }
 
-TEST(FormatReadScene, ATableThatIsNone) {
+TEST(FormatReadScene, ValuesInPlaceOfTables) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("camera = 3\nsphere = 4\npoints = [1, 2]\nmaterial = 5\n"),
             "scene.toml:1:10: error: `camera` must be a table; write [camera]\n"
             "    camera = 3\n"
             "             ^\n"
-            "scene.toml:2:10: error: each sphere is a table of its own; write [[sphere]]\n"
+            "scene.toml:2:10: error: `sphere` must be an array of tables; write [[sphere]]\n"
             "    sphere = 4\n"
             "             ^\n"
-            "scene.toml:3:10: error: each points is a table of its own; write [[points]]\n"
+            "scene.toml:3:10: error: `points` must be an array of tables; write [[points]]\n"
             "    points = [1, 2]\n"
             "             ^~~~~~\n"
-            "scene.toml:4:12: error: `material` must hold tables; write [material.NAME]\n"
+            "scene.toml:4:12: error: `material` must contain tables; write [material.NAME]\n"
             "    material = 5\n"
             "               ^\n");
 }
 
-TEST(FormatReadScene, ProblemsOfTheWholeStandWhereTheirKeyStands) {
+TEST(FormatReadScene, SceneErrorsAreReportedAtTheirKey) {
   SceneFiles files;
-  EXPECT_EQ(
-      files.diagnostics("[camera]\nup = [0, 0, 2]\n"),
-      "scene.toml:2:6: error: camera.up: up is parallel to the view, so the picture has no upright; choose another "
-      "direction\n"
-      "    up = [0, 0, 2]\n"
-      "         ^~~~~~~~~\n");
-  // The key that makes the view parallel may be another one: then the place is the table.
-  EXPECT_EQ(
-      files.diagnostics("[camera]\nlook_at = [0, 1, 0]\n"),
-      "scene.toml:1:1: error: camera.up: up is parallel to the view, so the picture has no upright; choose another "
-      "direction\n"
-      "    [camera]\n"
-      "    ^~~~~~~~\n");
+  EXPECT_EQ(files.diagnostics("[camera]\nup = [0, 0, 2]\n"),
+            "scene.toml:2:6: error: camera.up: up is parallel to the view; choose another direction\n"
+            "    up = [0, 0, 2]\n"
+            "         ^~~~~~~~~\n");
+  // If another key makes the view parallel, the location is the table.
+  EXPECT_EQ(files.diagnostics("[camera]\nlook_at = [0, 1, 0]\n"),
+            "scene.toml:1:1: error: camera.up: up is parallel to the view; choose another direction\n"
+            "    [camera]\n"
+            "    ^~~~~~~~\n");
 }
 
-TEST(FormatReadScene, OneMistakeIsOneFinding) {
+TEST(FormatReadScene, OneMistakeIsReportedOnce) {
   SceneFiles files;
-  // look_at stays at its default, which here is look_from: that is no second mistake.
+  // look_at keeps its default, which equals look_from here: that is not a second mistake.
   const std::string told = files.diagnostics("[camera]\nlook_from = [0, 0, -1]\nlook_at = [0, nan, 0]\n");
   EXPECT_EQ(told,
             "scene.toml:3:15: error: camera.look_at[1] is nan; allowed is -1e+18..1e+18\n"
             "    look_at = [0, nan, 0]\n"
             "                  ^~~\n");
-  // Here the default makes a view that is parallel to up, which is another key than the wrong one.
+  // Here the default makes the view parallel to up, a different key than the invalid one.
   const std::string parallel = files.diagnostics("[camera]\nlook_from = [0, 5, -1]\nlook_at = [0, nan, 0]\n");
   EXPECT_EQ(parallel.find("parallel"), std::string::npos) << parallel;
   EXPECT_EQ(
@@ -314,14 +310,14 @@ TEST(FormatReadScene, CoincidentSpheresAreAWarning) {
   const std::string sphere = "[[sphere]]\ncenter = [1, 2, 3]\nradius = 1\nmaterial = \"a\"\n";
   const std::string told = files.diagnostics(material + sphere + sphere);
   EXPECT_EQ(told,
-            "scene.toml:7:1: warning: sphere[1]: has exactly the same place and size as sphere[0]; rays meet the "
-            "first of them only\n"
+            "scene.toml:7:1: warning: sphere[1]: has exactly the same centre and radius as sphere[0]; only the "
+            "first is rendered\n"
             "    [[sphere]]\n    ^~~~~~~~~~\n");
   const std::string wrong = files.diagnostics(material + sphere + sphere + "[image]\nwidth = 0\n");
-  EXPECT_EQ(wrong.find("warning"), std::string::npos) << "nobody is warned of a scene that is wrong";
+  EXPECT_EQ(wrong.find("warning"), std::string::npos) << "no warnings about a scene with errors";
 }
 
-TEST(FormatReadScene, SettingsSayWhereEachValueComesFrom) {
+TEST(FormatReadScene, SettingsHaveTheirOrigin) {
   SceneFiles files;
   const auto settings = files.read("[camera]\nvfov = 20\n", {"render.precision=fast"}).settings;
   const auto line = [&](const std::string& key) {
@@ -337,12 +333,12 @@ TEST(FormatReadScene, SettingsSayWhereEachValueComesFrom) {
   EXPECT_EQ(line("color.space"), "\"lin_rec709\" default");
 }
 
-TEST(FormatReadScene, PointsAreReadFromBesideTheScene) {
+TEST(FormatReadScene, PointsFilesAreRelativeToTheScene) {
   SceneFiles files;
   files.add("two.ply",
             "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
             "property float radius\nproperty int material\nend_header\n1 2 3 0.5 1\n4 5 6 0.25 0\n");
-  // By name b stands before a-b, in the file behind it: points count by the file.
+  // The order of the names differs from that in the file, which defines the indices.
   const auto read = files.read(
       "[material.b]\ntype = \"dielectric\"\n[material.a]\ntype = \"metal\"\nalbedo = [1,1,1]\n"
       "[[points]]\nfile = \"two.ply\"\nmaterial = \"b\"\n");
@@ -353,7 +349,7 @@ TEST(FormatReadScene, PointsAreReadFromBesideTheScene) {
   EXPECT_EQ(read.scene.materials[1].name, "a");
 }
 
-TEST(FormatReadScene, FindingsOfAPointsFileFollowThePlaceThatNamesIt) {
+TEST(FormatReadScene, ErrorsOfAPointsFileAreReportedWithItsKey) {
   SceneFiles files;
   files.add("bad.ply",
             "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
@@ -362,7 +358,7 @@ TEST(FormatReadScene, FindingsOfAPointsFileFollowThePlaceThatNamesIt) {
       "[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"bad.ply\"\nmaterial = \"a\"\n"
       "[[points]]\nfile = \"none.ply\"\nmaterial = \"a\"\n";
   EXPECT_EQ(files.diagnostics(scene),
-            "bad.ply:9: error: vertex 0 has a number that is not finite\n"
+            "bad.ply:9: error: vertex 0 has a non-finite value\n"
             "scene.toml:4:8: error: points[0].file: cannot use bad.ply\n"
             "    file = \"bad.ply\"\n"
             "           ^~~~~~~~~\n"
@@ -371,7 +367,7 @@ TEST(FormatReadScene, FindingsOfAPointsFileFollowThePlaceThatNamesIt) {
             "           ^~~~~~~~~~\n");
 }
 
-TEST(FormatReadScene, NothingButMissingPointsFilesIsMissingInput) {
+TEST(FormatReadScene, OnlyMissingPointsFilesAreMissingInput) {
   SceneFiles files;
   const auto kind = [&](const std::string& text) {
     files.add("scene.toml", text);
@@ -385,12 +381,12 @@ TEST(FormatReadScene, NothingButMissingPointsFilesIsMissingInput) {
   const std::string missing =
       "[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"none.ply\"\nmaterial = \"a\"\n";
   EXPECT_EQ(kind(missing), base::ErrorKind::kMissingInput);
-  EXPECT_EQ(kind(missing + "[image]\nwidth = 0\n"), base::ErrorKind::kBadData) << "the scene is wrong anyway";
+  EXPECT_EQ(kind(missing + "[image]\nwidth = 0\n"), base::ErrorKind::kBadData) << "the scene has another error";
   std::filesystem::create_directory(files.folder() / "none.ply");
   EXPECT_EQ(kind(missing), base::ErrorKind::kMissingInput);
 }
 
-TEST(FormatReadScene, AHundredErrorsAreShownAndTheOthersCounted) {
+TEST(FormatReadScene, AHundredErrorsAreReportedAndTheRestCounted) {
   SceneFiles files;
   std::string text;
   for (int i = 0; i < 50; ++i) text += "[[sphere]]\ncolor = 1\nradius = \"big\"\n";  // four errors each
@@ -401,13 +397,13 @@ TEST(FormatReadScene, AHundredErrorsAreShownAndTheOthersCounted) {
   } catch (const base::Error& error) {
     ASSERT_EQ(error.diagnostics().size(), kMostErrors + 1);
     EXPECT_EQ(error.diagnostics()[0].line, 1);
-    EXPECT_EQ(error.diagnostics()[99].line, 25 * 3) << "the first by place: 25 of 50 spheres";
+    EXPECT_EQ(error.diagnostics()[99].line, 25 * 3) << "the first by location: 25 of 50 spheres";
     EXPECT_EQ(error.diagnostics()[100].text, "and 100 more (200 in all)");
     EXPECT_NE(std::string(error.what()).find("scene.toml: 200 errors"), std::string::npos) << error.what();
   }
 }
 
-TEST(FormatReadScene, AnotherChecksProblemsAreFindings) {
+TEST(FormatReadScene, FurtherChecksAreReported) {
   SceneFiles files;
   files.add("scene.toml", "[color]\nspace = \"foo\"\n[image]\nwidth = 0\n");
   const SceneCheck also = [](const scene::Scene& s) {
@@ -423,7 +419,7 @@ TEST(FormatReadScene, AnotherChecksProblemsAreFindings) {
   }
 }
 
-TEST(FormatReadScene, RadiiOutsideTheDomainAreFoundInPointsToo) {
+TEST(FormatReadScene, RadiiOfPointsAreChecked) {
   SceneFiles files;
   files.add("zero.ply",
             "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
@@ -431,12 +427,12 @@ TEST(FormatReadScene, RadiiOutsideTheDomainAreFoundInPointsToo) {
   const std::string told =
       files.diagnostics("[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"zero.ply\"\nmaterial = \"a\"\n");
   EXPECT_EQ(told,
-            "scene.toml:3:1: error: points[0][1].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 "
-            "for an inward normal\n"
+            "scene.toml:3:1: error: points[0][1].radius: radius is 0; allowed is 1e-30..1e+18, or negative for "
+            "an inward normal\n"
             "    [[points]]\n    ^~~~~~~~~~\n");
 }
 
-TEST(FormatReadScene, ManyMistakesDoNotTakeForever) {
+TEST(FormatReadScene, ManyErrorsAreReportedQuickly) {
   SceneFiles files;
   std::string text;
   for (int i = 0; i < 3000; ++i) text += "[[sphere]]\ncenter = [0,0,0]\nradius = 0\nmaterial = \"x\"\n";
@@ -445,7 +441,7 @@ TEST(FormatReadScene, ManyMistakesDoNotTakeForever) {
   EXPECT_NE(told.find("and 5900 more (6000 in all)"), std::string::npos);
 }
 
-TEST(FormatReadScene, EveryPictureOfTheBookReadsWithoutAFinding) {
+TEST(FormatReadScene, BookScenesReadWithoutDiagnostics) {
   const auto folder = std::filesystem::path(ORRERY_ROOT) / "scenes" / "book";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -27,7 +27,7 @@ TEST(FormatSourceText, FindsEveryLine) {
   EXPECT_EQ(line_of(source, 100000), "");
 }
 
-TEST(FormatSourceText, AnOverrideIsShownAsItWasTyped) {
+TEST(FormatSourceText, OverridesAreQuotedAsTyped) {
   SourceText source;
   source.add_override({"render.samples=0", "--samples", "0"}, "render.samples=0", {});
   source.add_override("camera.vfov=wide", "camera.vfov=\"wide\"", {12, 17});
@@ -43,7 +43,7 @@ TEST(FormatSourceText, AnOverrideIsShownAsItWasTyped) {
   EXPECT_EQ(source.option_at(3), "--layers");
 }
 
-TEST(FormatSourceText, CharactersBecomeBytes) {
+TEST(FormatSourceText, ConvertsCharactersToBytes) {
   SourceText source;
   source.add("a", "\xC3\xBC = \xE2\x82\xAC\xE2\x82\xAC\n");
   const base::Diagnostic f = source.diagnostic(base::Severity::kWarning, {"a", 1, 5, 2}, "text", "remedy");
@@ -54,7 +54,7 @@ TEST(FormatSourceText, CharactersBecomeBytes) {
   EXPECT_EQ(f.remedy, "remedy");
 }
 
-TEST(FormatSourceText, APlaceBehindTheEndOfALine) {
+TEST(FormatSourceText, ALocationAfterTheEndOfALine) {
   SourceText source;
   source.add("a", "ab\n");
   const base::Diagnostic f = source.diagnostic(base::Severity::kError, {"a", 1, 3, 1}, "text");
@@ -62,21 +62,21 @@ TEST(FormatSourceText, APlaceBehindTheEndOfALine) {
   EXPECT_EQ(f.source_line, "ab");
 }
 
-TEST(FormatSourceText, TextsWithoutAPlaceHaveNoLine) {
+TEST(FormatSourceText, LocationsWithoutATextHaveNoLine) {
   SourceText source;
   source.add("a", "one");
   EXPECT_EQ(source.diagnostic(base::Severity::kError, {"a", 0, 0, 1}, "x").source_line, "");
   EXPECT_EQ(source.diagnostic(base::Severity::kError, {"none", 1, 1, 1}, "x").source_line, "");
 }
 
-TEST(FormatSourceText, AVeryLongLineIsNotShown) {
+TEST(FormatSourceText, VeryLongLinesAreNotQuoted) {
   SourceText source;
   source.add("a", std::string(401, 'x') + "\n" + std::string(400, 'y'));
   EXPECT_EQ(line_of(source, 1), "");
   EXPECT_EQ(line_of(source, 2), std::string(400, 'y'));
 }
 
-TEST(FormatSourceText, ReadsAFileWhole) {
+TEST(FormatSourceText, ReadsAWholeFile) {
   const support::TempDir folder;
   const std::string bytes("a\0\r\n\xff", 5);
   support::write_bytes(folder / "a", bytes);
@@ -85,7 +85,7 @@ TEST(FormatSourceText, ReadsAFileWhole) {
   EXPECT_EQ(read_file(folder / "empty", 5), "");
 }
 
-TEST(FormatSourceText, ALargerFileThanAllowedIsBadData) {
+TEST(FormatSourceText, AFileAboveTheLimitIsBadData) {
   const support::TempDir folder;
   support::write_bytes(folder / "a", std::string((1 << 20) + 1, 'x'));
   try {
@@ -93,11 +93,11 @@ TEST(FormatSourceText, ALargerFileThanAllowedIsBadData) {
     FAIL() << "no error";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-    EXPECT_NE(std::string(error.what()).find("larger than the 1 MiB"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("exceeds the limit of 1 MiB"), std::string::npos) << error.what();
   }
 }
 
-TEST(FormatSourceText, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
+TEST(FormatSourceText, OnlyRegularFilesAreRead) {
   const support::TempDir folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   const auto reason = [](const std::filesystem::path& file) -> std::string {

@@ -10,35 +10,35 @@ namespace {
 
 using support::SceneFiles;
 
-TEST(FormatTomlTree, AKeyThatStandsTwice) {
+TEST(FormatTomlTree, DuplicateKey) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[camera]\nvfov = 3\nvfov = 4\n"),
-            "scene.toml:3:8: error: this stands twice: cannot redefine existing integer 'vfov'; remove one of them\n"
+            "scene.toml:3:8: error: duplicate: cannot redefine existing integer 'vfov'; remove one of them\n"
             "    vfov = 4\n"
             "           ^\n");
 }
 
-TEST(FormatTomlTree, ATableThatStandsTwice) {
+TEST(FormatTomlTree, DuplicateTable) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[camera]\nvfov = 3\n[camera]\n"),
-            "scene.toml:3:1: error: this stands twice: cannot redefine existing table 'camera'; remove one of them\n"
+            "scene.toml:3:1: error: duplicate: cannot redefine existing table 'camera'; remove one of them\n"
             "    [camera]\n"
             "    ^\n");
 }
 
-TEST(FormatTomlTree, WhatIsNoTomlIsOneFindingAtItsPlace) {
+TEST(FormatTomlTree, InvalidTomlIsOneErrorAtItsLocation) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[camera]\nup = [0, 1, 0\n[image]\nwidth = 0\n").rfind("scene.toml:3:", 0), 0u);
   EXPECT_EQ(files.diagnostics("[camera\n").rfind("scene.toml:1:8: error: ", 0), 0u);
 }
 
-TEST(FormatTomlTree, BytesThatAreNotUtf8) {
+TEST(FormatTomlTree, InvalidUtf8) {
   SceneFiles files;
   const std::string told = files.diagnostics("[camera]\nvfov = \"\xff\"\n");
   EXPECT_EQ(told.substr(0, told.find('\n')), "scene.toml:2:8: error: Encountered invalid utf-8 sequence") << told;
 }
 
-TEST(FormatTomlTree, DeepNestingIsRefusedAndDoesNotOverflowTheStack) {
+TEST(FormatTomlTree, DeepNestingIsRefused) {
   SceneFiles files;
   std::string dotted = "a";
   for (int i = 0; i < 300000; ++i) dotted += ".a";
@@ -49,7 +49,7 @@ TEST(FormatTomlTree, DeepNestingIsRefusedAndDoesNotOverflowTheStack) {
   }
 }
 
-TEST(FormatTomlTree, LineEndsOfAnySystem) {
+TEST(FormatTomlTree, AcceptsCarriageReturns) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[camera]\r\nvfov = 0\r\n"),
             "scene.toml:2:8: error: camera.vfov is 0; allowed is above 0, below 180\n"
@@ -57,7 +57,7 @@ TEST(FormatTomlTree, LineEndsOfAnySystem) {
             "           ^\n");
 }
 
-TEST(FormatTomlTree, AByteOrderMarkIsPassedOver) {
+TEST(FormatTomlTree, SkipsAByteOrderMark) {
   SceneFiles files;
   EXPECT_EQ(files.read("\xEF\xBB\xBF[camera]\nvfov = 20\n").scene.camera.vfov, 20);
 }

@@ -52,7 +52,7 @@ TEST(FormatWritePly, FloatsAreRoundedAndTakeHalfTheSpace) {
   EXPECT_LT(std::filesystem::file_size(folder / "f.ply") + 1500, std::filesystem::file_size(folder / "d.ply"));
 }
 
-TEST(FormatWritePly, WhatAFloatCannotHoldIsRefused) {
+TEST(FormatWritePly, FloatOverflowIsRefused) {
   const support::TempDir folder;
   auto points = some_points(3, false);
   points.centers[1].z = 1e39;
@@ -62,18 +62,18 @@ TEST(FormatWritePly, WhatAFloatCannotHoldIsRefused) {
     FAIL() << "no error";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-    EXPECT_STREQ(error.what(), "sphere 1 has the number 1e+39, too large for a float; write doubles");
+    EXPECT_STREQ(error.what(), "sphere 1 has the value 1e+39, which overflows a float; write doubles");
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "b.ply"));
 }
 
-TEST(FormatWritePly, NoPointsAreAFileToo) {
+TEST(FormatWritePly, WritesAFileWithoutPoints) {
   const support::TempDir folder;
   write_ply({}, folder / "a.ply");
   EXPECT_TRUE(read_back(folder / "a.ply").centers.empty());
 }
 
-TEST(FormatWritePly, FolderThatIsNotThere) {
+TEST(FormatWritePly, MissingFolderIsCannotCreate) {
   const support::TempDir folder;
   try {
     write_ply({}, folder / "none" / "a.ply");

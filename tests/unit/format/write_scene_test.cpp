@@ -14,7 +14,7 @@ namespace {
 
 using support::SceneFiles;
 
-/// A scene in which nothing has its default, with numbers whose decimals are long.
+/// A scene without default values, with numbers of many decimals.
 scene::Scene odd_scene() {
   scene::Scene s;
   s.image = {17, 19};
@@ -53,7 +53,7 @@ TEST(FormatWriteScene, ReadsBackToTheSameScene) {
   EXPECT_TRUE(std::signbit(read.camera.look_from.y) && std::signbit(read.spheres[1].center.z)) << "-0 is not 0";
 }
 
-TEST(FormatWriteScene, ManyRandomNumbersReadBackToTheSameBits) {
+TEST(FormatWriteScene, RandomNumbersReadBackToTheSameBits) {
   SceneFiles files;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> mantissa(1, 2);
@@ -70,7 +70,7 @@ TEST(FormatWriteScene, ManyRandomNumbersReadBackToTheSameBits) {
   }
 }
 
-TEST(FormatWriteScene, WhatHasItsDefaultIsNotWritten) {
+TEST(FormatWriteScene, DefaultsAreNotWritten) {
   EXPECT_EQ(scene_text({}, ""), "");
   scene::Scene s;
   s.render.samples = 7;
@@ -79,12 +79,12 @@ TEST(FormatWriteScene, WhatHasItsDefaultIsNotWritten) {
             "# two\n#\n# lines\n\n[render]\nsamples = 7\n\n[material]\nglass = { type = \"dielectric\" }\n");
 }
 
-TEST(FormatWriteScene, CommentsTakeAnyBytesOfAFileName) {
+TEST(FormatWriteScene, CommentsAcceptAnyFileName) {
   SceneFiles files;
   files.read(scene_text({}, "made of a\rb\x1b[31m.toml \x7f"));
 }
 
-TEST(FormatWriteScene, PointsGoBesideTheScene) {
+TEST(FormatWriteScene, WritesPointsFilesBesideTheScene) {
   const support::TempDir folder;
   scene::Scene s;
   s.materials = {{"a", scene::Dielectric{}}, {"b", scene::Dielectric{2}}};
@@ -111,7 +111,7 @@ TEST(FormatWriteScene, PointsGoBesideTheScene) {
   }
 }
 
-TEST(FormatWriteScene, ASceneThatNoFileCanSayIsAnInternalError) {
+TEST(FormatWriteScene, AnUnwritableSceneIsAnInternalError) {
   const auto kind_of = [](const scene::Scene& s) {
     try {
       scene_text(s, "");
@@ -128,7 +128,7 @@ TEST(FormatWriteScene, ASceneThatNoFileCanSayIsAnInternalError) {
   EXPECT_EQ(kind_of(s), base::ErrorKind::kInternal);
 }
 
-TEST(FormatWriteScene, FolderThatIsNotThere) {
+TEST(FormatWriteScene, MissingFolderIsCannotCreate) {
   const support::TempDir folder;
   try {
     write_scene({}, "", folder / "none" / "s.toml");

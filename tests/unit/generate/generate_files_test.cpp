@@ -47,13 +47,13 @@ TEST_F(GenerateGenerateFiles, FinalReadsBackAsTheSameScene) {
   EXPECT_EQ(files(), 1u);
 }
 
-TEST_F(GenerateGenerateFiles, FinalNamesTheCommandThatMakesItAgain) {
+TEST_F(GenerateGenerateFiles, FinalNamesTheCommandThatReproducesIt) {
   generate_final({5, 3}, folder_ / "a.toml");
   EXPECT_NE(bytes_of(folder_ / "a.toml").find("orrery generate final --seed 5 --grid 3 -o a.toml\n"),
             std::string::npos);
 }
 
-TEST_F(GenerateGenerateFiles, LargeFinalHasItsSpheresBesideIt) {
+TEST_F(GenerateGenerateFiles, LargeFinalHasAPointsFile) {
   const auto file = folder_ / "wide.toml";
   generate_final({1, 40}, file);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "wide.ply"));
@@ -92,7 +92,7 @@ TEST_F(GenerateGenerateFiles, TwiceGivesTheSameBytes) {
 TEST_F(GenerateGenerateFiles, SceneNamedLikeItsPointsIsAUsageError) {
   try {
     generate_cloud({1, 10}, folder_ / "cloud.ply");
-    FAIL() << "wrote a scene over its own points";
+    FAIL() << "the scene replaced its own points file";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
     EXPECT_NE(std::string(error.what()).find("cloud.toml"), std::string::npos) << error.what();
@@ -100,7 +100,7 @@ TEST_F(GenerateGenerateFiles, SceneNamedLikeItsPointsIsAUsageError) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(GenerateGenerateFiles, FolderThatIsNotThereIsCannotCreate) {
+TEST_F(GenerateGenerateFiles, MissingFolderIsCannotCreate) {
   try {
     generate_final({}, folder_ / "none" / "a.toml");
     FAIL() << "no error";
@@ -109,13 +109,13 @@ TEST_F(GenerateGenerateFiles, FolderThatIsNotThereIsCannotCreate) {
   }
 }
 
-TEST_F(GenerateGenerateFiles, OptionsOutsideTheirRangeLeaveNothingBehind) {
+TEST_F(GenerateGenerateFiles, InvalidOptionsLeaveNoFiles) {
   EXPECT_THROW(generate_final({1, -1}, folder_ / "a.toml"), base::Error);
   EXPECT_THROW(generate_cloud({1, 0}, folder_ / "c.toml"), base::Error);
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(GenerateGenerateFiles, APointsFileOfOtherOriginStays) {
+TEST_F(GenerateGenerateFiles, AForeignPointsFileIsNotReplaced) {
   std::ofstream(folder_ / "c.ply") << "ply\nformat ascii 1.0\nmy own data\n";
   const std::string mine = bytes_of(folder_ / "c.ply");
   try {
@@ -127,19 +127,19 @@ TEST_F(GenerateGenerateFiles, APointsFileOfOtherOriginStays) {
   }
   EXPECT_THROW(generate_final({1, 40}, folder_ / "c.toml"), base::Error);
   EXPECT_EQ(bytes_of(folder_ / "c.ply"), mine);
-  EXPECT_EQ(files(), 1u) << "no scene either";
+  EXPECT_EQ(files(), 1u) << "no scene file either";
   generate_final({1, 3}, folder_ / "c.toml");  // has no points file
   EXPECT_EQ(bytes_of(folder_ / "c.ply"), mine);
 }
 
-TEST_F(GenerateGenerateFiles, APointsFileOfTheirOwnIsReplaced) {
+TEST_F(GenerateGenerateFiles, AGeneratedPointsFileIsReplaced) {
   generate_cloud({1, 50}, folder_ / "c.toml");
   const std::string first = bytes_of(folder_ / "c.ply");
   generate_cloud({2, 60}, folder_ / "c.toml");
   EXPECT_NE(bytes_of(folder_ / "c.ply"), first);
 }
 
-TEST_F(GenerateGenerateFiles, SceneAndPointsAreTwoFiles) {
+TEST_F(GenerateGenerateFiles, SceneAndPointsMustBeDifferentFiles) {
   generate_cloud({1, 50}, folder_ / "c.toml");
   std::filesystem::remove(folder_ / "c.toml");
   std::filesystem::create_symlink("c.ply", folder_ / "c.toml");

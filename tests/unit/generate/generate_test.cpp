@@ -19,7 +19,7 @@ namespace {
 
 using math::Vec3d;
 
-/// Five standard deviations: with fixed seeds a test that fails does so for a reason.
+/// Tolerance of five standard deviations: with fixed seeds, a failure is not chance.
 void expect_near_mean(double mean, double expected, double variance, double n, const char* what) {
   EXPECT_NEAR(mean, expected, 5 * std::sqrt(variance / n)) << what << " of " << n;
 }
@@ -41,8 +41,8 @@ std::vector<Model> small_models(const scene::Scene& s) {
   return out;
 }
 
-TEST(GenerateGenerateRandom, TheEngineIsTheStandards) {
-  // The 10000th number of this engine at its default seed is laid down by the C++ standard, [rand.predef].
+TEST(GenerateGenerateRandom, TheEngineIsStandard) {
+  // The C++ standard specifies the 10000th number of this engine at its default seed, [rand.predef].
   GenerateRandom random(5489);
   for (int i = 0; i < 9999; ++i) random.unit();
   EXPECT_EQ(random.unit(), static_cast<double>(9981545732273789042u >> 11) * 0x1p-53);
@@ -57,7 +57,7 @@ TEST(GenerateGenerateRandom, BallIsUniformByVolume) {
     const Vec3d p = random.in_ball();
     const double r = math::length(p);
     ASSERT_LE(r, 1.0);
-    sum_cube += r * r * r;  // uniform in 0..1 where points are uniform by volume
+    sum_cube += r * r * r;  // uniform in 0..1 if points are uniform by volume
     sum = sum + p;
   }
   expect_near_mean(sum_cube / kCount, 0.5, 1.0 / 12, kCount, "cube of the radius");
@@ -97,7 +97,7 @@ TEST(GenerateGenerateFinal, HasTheBooksLargeSpheresAndCamera) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(large[i].radius, 1);
 }
 
-TEST(GenerateGenerateFinal, SmallSpheresStandInTheirCellsClearOfTheMetalBall) {
+TEST(GenerateGenerateFinal, SmallSpheresAreInTheirCellsAndClearOfTheMetalSphere) {
   const scene::Scene s = make_final_scene({3, 11});
   std::set<std::pair<int, int>> cells;
   for (std::size_t i = 1; i + 3 < s.spheres.size(); ++i) {
@@ -108,16 +108,16 @@ TEST(GenerateGenerateFinal, SmallSpheresStandInTheirCellsClearOfTheMetalBall) {
     EXPECT_LE(sphere.center.x - a, 0.9 + 1e-12);
     EXPECT_LE(sphere.center.z - b, 0.9 + 1e-12);
     EXPECT_TRUE(a >= -11 && a < 11 && b >= -11 && b < 11);
-    EXPECT_TRUE(cells.emplace(static_cast<int>(a), static_cast<int>(b)).second) << "two in one cell";
+    EXPECT_TRUE(cells.emplace(static_cast<int>(a), static_cast<int>(b)).second) << "two spheres in one cell";
     EXPECT_GT(math::length(sphere.center - Vec3d{4, 0.2, 0}), 0.9);
   }
-  // 0.9 around (4, 0) reaches into four cells: no other may be empty.
+  // The disc of radius 0.9 around (4, 0) overlaps four cells; no other cell may be empty.
   EXPECT_LE(cells.size(), 22u * 22u);
   EXPECT_GE(cells.size(), 22u * 22u - 4u);
-  EXPECT_LT(cells.size(), 22u * 22u) << "seed 3 leaves some out; this test would see nothing otherwise";
+  EXPECT_LT(cells.size(), 22u * 22u) << "seed 3 must leave some out for this test to mean anything";
 }
 
-TEST(GenerateGenerateFinal, SmallMaterialsFollowTheBooksOdds) {
+TEST(GenerateGenerateFinal, SmallMaterialsHaveTheBooksProbabilities) {
   const scene::Scene s = make_final_scene({7, kLargestWrittenGrid});
   ASSERT_TRUE(s.points.empty());
   const double n = static_cast<double>(s.spheres.size()) - 4;
@@ -149,7 +149,7 @@ TEST(GenerateGenerateFinal, SmallMaterialsFollowTheBooksOdds) {
   for (const auto& m : glass) EXPECT_EQ(m.ior, 1.5);
 }
 
-TEST(GenerateGenerateFinal, LargeGridsGoToPointsWithTheSameOdds) {
+TEST(GenerateGenerateFinal, LargeGridsUsePointsWithTheSameProbabilities) {
   const scene::Scene s = make_final_scene({1, kLargestWrittenGrid + 68}, "far.ply");
   ASSERT_EQ(s.points.size(), 1u);
   EXPECT_EQ(s.points[0].file, "far.ply");
@@ -165,20 +165,20 @@ TEST(GenerateGenerateFinal, LargeGridsGoToPointsWithTheSameOdds) {
     glass += std::holds_alternative<scene::Dielectric>(s.materials[m].model);
     metal += std::holds_alternative<scene::Metal>(s.materials[m].model);
   }
-  // The palette is the smaller sample.
+  // The palette is the smaller sample, so it determines the tolerance.
   expect_near_mean(glass / n, 0.05, 0.05 * 0.95, kFinalPaletteSize, "glass");
   expect_near_mean(metal / n, 0.15, 0.15 * 0.85, kFinalPaletteSize, "metal");
   EXPECT_TRUE(scene::validate(s).empty());
 }
 
-TEST(GenerateGenerateFinal, GridZeroHasTheLargeSpheresOnly) { EXPECT_EQ(make_final_scene({1, 0}).spheres.size(), 4u); }
+TEST(GenerateGenerateFinal, GridZeroHasOnlyTheLargeSpheres) { EXPECT_EQ(make_final_scene({1, 0}).spheres.size(), 4u); }
 
-TEST(GenerateGenerateFinal, GridOutsideItsRangeIsAUsageError) {
+TEST(GenerateGenerateFinal, GridOutOfRangeIsAUsageError) {
   for (const int grid : {-1, kLargestFinalGrid + 1, std::numeric_limits<int>::max()})
     EXPECT_EQ(kind_of_error([&] { make_final_scene({1, grid}); }), base::ErrorKind::kUsage) << grid;
 }
 
-TEST(GenerateGenerateCloud, HasExactlyAsManySpheresAsAsked) {
+TEST(GenerateGenerateCloud, HasExactlyTheRequestedNumberOfSpheres) {
   for (const std::uint64_t count : {1u, 2u, 10u, 1000u, 12345u}) {
     const scene::Scene s = make_cloud({1, count});
     EXPECT_TRUE(s.spheres.empty());
@@ -190,24 +190,24 @@ TEST(GenerateGenerateCloud, HasExactlyAsManySpheresAsAsked) {
   }
 }
 
-TEST(GenerateGenerateCloud, SeedDecides) {
+TEST(GenerateGenerateCloud, SeedDeterminesTheCloud) {
   const auto centers = [](std::uint64_t seed) { return make_cloud({seed, 100}).points[0].centers; };
   EXPECT_EQ(centers(1), centers(1));
   EXPECT_NE(centers(1), centers(2));
 }
 
-TEST(GenerateGenerateCloud, CrossSectionsSumUpToTheSameAtAnyCount) {
+TEST(GenerateGenerateCloud, TotalCrossSectionDoesNotDependOnTheCount) {
   const auto cross_section = [](std::uint64_t count) {
     const scene::Scene s = make_cloud({1, count});
     double sum = 0;
     for (const double r : s.points[0].radii) sum += r * r;
     return sum;
   };
-  // The share of each sphere has a relative spread of about a half, so 1000 of them are good to some percent.
+  // The cross-section of a sphere has a relative spread of about one half, so that of 1000 is good to a few percent.
   EXPECT_NEAR(cross_section(1000) / cross_section(200'000), 1.0, 0.08);
 }
 
-TEST(GenerateGenerateCloud, GivenRadiusIsThatOfEverySphere) {
+TEST(GenerateGenerateCloud, AGivenRadiusAppliesToEverySphere) {
   const scene::Scene s = make_cloud({1, 100, 0.0625});
   for (const double r : s.points[0].radii) EXPECT_EQ(r, 0.0625);
 }
@@ -218,7 +218,7 @@ TEST(GenerateGenerateCloud, UsesAllItsMaterials) {
   EXPECT_EQ(used.size(), s.materials.size());
 }
 
-TEST(GenerateGenerateCloud, OptionsOutsideTheirRangeAreUsageErrors) {
+TEST(GenerateGenerateCloud, OptionsOutOfRangeAreUsageErrors) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const Cloud& options : {Cloud{1, 0}, Cloud{1, kLargestCloud + 1}, Cloud{1, 10, 0.0}, Cloud{1, 10, -1.0},
                                Cloud{1, 10, 2 * kLargestCloudRadius}, Cloud{1, 10, kNan}})

@@ -105,7 +105,7 @@ TEST(ImageWholeFile, APlaceThatTakesNoFileIsNamedWithTheReason) {
   const support::TempDir folder;
   std::filesystem::create_directory(folder / "b.exr");
   for (const Writer& writer : writers()) {
-    expect_error(base::ErrorKind::kCannotCreate, {writer.name, "there is no directory"},
+    expect_error(base::ErrorKind::kCannotCreate, {writer.name, "does not exist"},
                  [&] { writer.write(folder / "none" / writer.name); });
   }
   expect_error(base::ErrorKind::kCannotCreate, {"b.exr", "it is a directory"},

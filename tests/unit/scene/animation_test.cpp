@@ -12,7 +12,7 @@ Track track(Interpolation interpolation) {
   return {"camera.look_from", interpolation, {1, 3, 7}, {{0, 0, 0}, {2, 4, 0}, {2, 8, 4}}};
 }
 
-TEST(SceneAnimation, TracksGoThroughTheirKeysAndRestOutsideThem) {
+TEST(SceneAnimation, TracksPassThroughTheirKeysAndAreConstantOutside) {
   for (const auto how : {Interpolation::kLinear, Interpolation::kCubic, Interpolation::kHold}) {
     const Track t = track(how);
     for (std::size_t i = 0; i < t.frames.size(); ++i) EXPECT_EQ(value_at(t, t.frames[i]), t.values[i]);
@@ -21,11 +21,11 @@ TEST(SceneAnimation, TracksGoThroughTheirKeysAndRestOutsideThem) {
   }
 }
 
-TEST(SceneAnimation, BetweenKeys) {
+TEST(SceneAnimation, InterpolatesBetweenKeys) {
   EXPECT_EQ(value_at(track(Interpolation::kLinear), 2), (Vec3d{1, 2, 0}));
   EXPECT_EQ(value_at(track(Interpolation::kLinear), 6), (Vec3d{2, 7, 3}));
   EXPECT_EQ(value_at(track(Interpolation::kHold), 2.99), (Vec3d{0, 0, 0}));
-  // A cubic of evenly rising numbers is the line; it is smooth where the slope changes.
+  // A cubic track through linearly increasing values is linear. Its slope is continuous at the keys.
   const Track even{"", Interpolation::kCubic, {0, 1, 2, 3}, {{0, 0, 0}, {2, 1, 0}, {4, 1, 0}, {6, 5, 0}}};
   for (double f = 0; f <= 3; f += 0.25) EXPECT_NEAR(value_at(even, f).x, 2 * f, 1e-12);
   const double h = 1e-6;
@@ -36,7 +36,7 @@ TEST(SceneAnimation, BetweenKeys) {
   }
 }
 
-TEST(SceneAnimation, NumbersAreFoundByName) {
+TEST(SceneAnimation, FindsTargetsByName) {
   Scene scene = test::everything();
   scene.spheres[2].name = "a ball. of sorts";
   scene.materials[3].name = "dotted.name";
@@ -52,7 +52,7 @@ TEST(SceneAnimation, NumbersAreFoundByName) {
   for (const std::string& name : animated_names(scene)) EXPECT_TRUE(find_animated(scene, name)) << name;
 }
 
-TEST(SceneAnimation, PosedScenesHoldTheValues) {
+TEST(SceneAnimation, PosedScenesHaveTheValuesOfTheFrame) {
   Scene scene = test::everything();
   scene.tracks = {{"sphere[1].radius", Interpolation::kLinear, {0, 10}, {{0.5, 0, 0}, {1.5, 0, 0}}},
                   {"material.brushed.fuzz", Interpolation::kLinear, {0, 10}, {{0, 0, 0}, {1, 0, 0}}},
@@ -64,7 +64,7 @@ TEST(SceneAnimation, PosedScenesHoldTheValues) {
   EXPECT_EQ(scene.spheres[1].radius, 0.5);
 }
 
-TEST(SceneAnimation, TheTurntableTurnsAboutUpAndKeepsItsDistance) {
+TEST(SceneAnimation, TheTurntableRotatesAboutUpAtConstantDistance) {
   Scene scene;
   scene.camera.look_from = {0, 3, 4};
   scene.camera.look_at = {0, 1, 0};

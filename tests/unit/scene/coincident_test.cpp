@@ -11,7 +11,7 @@ namespace {
 
 Sphere sphere(Vec3d center, double radius) { return {center, radius, 0, ""}; }
 
-TEST(SceneCoincident, NamesBoth) {
+TEST(SceneCoincident, ReportsBothSpheres) {
   Scene scene;
   scene.spheres = {sphere({0, 0, 0}, 1), sphere({1, 0, 0}, 1), sphere({0, 0, 0}, 1)};
   const auto found = coincident_spheres(scene, 10);
@@ -20,7 +20,7 @@ TEST(SceneCoincident, NamesBoth) {
   EXPECT_EQ(found.told[0].first, "sphere[0]");
 }
 
-TEST(SceneCoincident, TheSignsOfRadiusAndZeroDoNotMatter) {
+TEST(SceneCoincident, IgnoresTheSignsOfRadiusAndZero) {
   Scene scene;
   scene.spheres = {sphere({0.0, 0, 0}, 1), sphere({-0.0, 0, 0}, -1)};
   EXPECT_EQ(coincident_spheres(scene, 10).count, 1u);
@@ -33,7 +33,7 @@ TEST(SceneCoincident, OneBitApartIsNotCoincident) {
   EXPECT_EQ(coincident_spheres(scene, 10).count, 0u);
 }
 
-TEST(SceneCoincident, InFastWhatSinglePrecisionCannotTellApartCoincides) {
+TEST(SceneCoincident, FastPrecisionComparesInSinglePrecision) {
   Scene scene;
   scene.spheres = {sphere({1, 2, 3}, 1), sphere({1 + 1e-9, 2, 3}, -1 - 1e-9)};
   EXPECT_EQ(coincident_spheres(scene, 10).count, 0u);
@@ -41,7 +41,7 @@ TEST(SceneCoincident, InFastWhatSinglePrecisionCannotTellApartCoincides) {
   EXPECT_EQ(coincident_spheres(scene, 10).count, 1u);
 }
 
-TEST(SceneCoincident, SpheresThatPartDoNotCoincide) {
+TEST(SceneCoincident, SpheresThatMoveApartDoNotCoincide) {
   Scene opening;
   opening.spheres = {sphere({0, 0, 0}, 1), sphere({0, 0, 0}, 1), sphere({0, 0, 0}, -1)};
   Scene closing = opening;
@@ -52,7 +52,7 @@ TEST(SceneCoincident, SpheresThatPartDoNotCoincide) {
   EXPECT_EQ(found.told[0].key, "sphere[2]");
 }
 
-TEST(SceneCoincident, FindsThemAcrossSpheresAndPointsFiles) {
+TEST(SceneCoincident, ComparesAcrossTablesAndPointsFiles) {
   Scene scene;
   scene.spheres = {sphere({1, 0, 0}, 2)};
   scene.points.resize(3);
@@ -68,7 +68,7 @@ TEST(SceneCoincident, FindsThemAcrossSpheresAndPointsFiles) {
   EXPECT_EQ(found.told[1].first, "points[0][0]");
 }
 
-TEST(SceneCoincident, CountsAllAndTellsTheFirst) {
+TEST(SceneCoincident, CountsAllAndListsTheFirst) {
   Scene scene;
   scene.points.resize(1);
   scene.points[0].centers.assign(200000, Vec3d{1, 2, 3});
@@ -78,13 +78,13 @@ TEST(SceneCoincident, CountsAllAndTellsTheFirst) {
   EXPECT_EQ(found.told.size(), 3u);
 }
 
-TEST(SceneCoincident, ThreeInOnePlaceAreTwoTooMany) {
+TEST(SceneCoincident, ThreeCoincidentSpheresAreTwoReports) {
   Scene scene;
   scene.spheres = {sphere({}, 1), sphere({}, 1), sphere({}, 1)};
   EXPECT_EQ(coincident_spheres(scene, 10).count, 2u);
 }
 
-TEST(SceneCoincident, NotANumberIsInNoPlace) {
+TEST(SceneCoincident, NaNCoincidesWithNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Scene scene;
   scene.spheres = {sphere({nan, 0, 0}, 1), sphere({nan, 0, 0}, 1)};

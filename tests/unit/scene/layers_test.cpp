@@ -14,7 +14,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// "key: text" of what is wrong with a scene of one sphere.
+/// "key: text" of the first diagnostic of a scene with one sphere.
 std::string problem_of(Scene scene) {
   scene.materials.resize(1);
   scene.spheres.resize(1);
@@ -22,27 +22,28 @@ std::string problem_of(Scene scene) {
   return diagnostics.empty() ? "" : diagnostics[0].key + ": " + diagnostics[0].text;
 }
 
-TEST(SceneLayers, LightBySurfaceNeedsLightPaths) {
+TEST(SceneLayers, RadianceLayersRequirePathShading) {
   Scene s;
   s.output.layers = {"N", "diffuse"};
   EXPECT_EQ(problem_of(s), "");
   s.render.shading = Shading::kNormal;
-  EXPECT_EQ(problem_of(s), "output.layers[1]: diffuse needs light paths; set render.shading to \"path\"");
+  EXPECT_EQ(problem_of(s), "output.layers[1]: diffuse requires render.shading = \"path\"");
   s.output.layers = {"N", "variance"};
   EXPECT_EQ(problem_of(s), "");
 }
 
-TEST(SceneLayers, ObjectNumbersMustBeExactInAFloat) {
+TEST(SceneLayers, ObjectIdsMustBeExactInAFloat) {
   Scene s;
   s.points.resize(1);
   s.points[0].centers.resize((std::size_t{1} << 24) - 1);
   EXPECT_EQ(layer_fault(s, "object_id"), "");
   s.points[0].centers.emplace_back();
-  EXPECT_EQ(layer_fault(s, "object_id"), "16777216 spheres are more than a float counts exactly; use CryptoObject");
+  EXPECT_EQ(layer_fault(s, "object_id"),
+            "a float cannot represent the ids of 16777216 spheres exactly; use CryptoObject");
   EXPECT_FALSE(contains(available_layers(s), "object_id"));
 }
 
-TEST(SceneLayers, AllIsWhatTheSceneCanHave) {
+TEST(SceneLayers, AllSelectsEveryAvailableLayer) {
   Scene s;
   s.output.layers = {"all"};
   EXPECT_EQ(requested_layers(s), available_layers(s));
@@ -55,10 +56,10 @@ TEST(SceneLayers, AllIsWhatTheSceneCanHave) {
   EXPECT_TRUE(contains(available_layers(s), "CryptoGroup"));
   s.render.shading = Shading::kFlat;
   EXPECT_FALSE(contains(requested_layers(s), "diffuse"));
-  EXPECT_EQ(problem_of(s), "") << "what a scene cannot have is left out";
+  EXPECT_EQ(problem_of(s), "") << "layers that the scene cannot have are left out";
 }
 
-TEST(SceneLayers, AllAndMoreIsAllAndMore) {
+TEST(SceneLayers, NamesBesideAllAreAdded) {
   Scene s;
   s.output.layers = {"Z", "all", "CryptoGroup"};
   EXPECT_EQ(requested_layers(s).size(), available_layers(s).size() + 1);

@@ -24,7 +24,7 @@ bool has_range(ValueType type) {
   return type == ValueType::kInteger || type == ValueType::kNumber || type == ValueType::kVector;
 }
 
-/// A value of a key's type inside its range that is not the default of any key.
+/// A value of the key's type, inside its range, that is no key's default.
 template <class Target>
 Value other_value(const Key<Target>& key) {
   switch (key.type) {
@@ -39,7 +39,7 @@ Value other_value(const Key<Target>& key) {
   return {};
 }
 
-// Two keys that share a member by a slip of the pen, or a setter that sets nothing, are found here.
+// Catches two keys that share a member by mistake, and setters that set nothing.
 TEST(SceneSchema, EachKeySetsItsOwnMemberAndNoOther) {
   for (const Table& table : tables()) {
     for (const auto& key : table.keys) {
@@ -65,7 +65,7 @@ TEST(SceneSchema, EachMaterialKeySetsItsOwnMember) {
   }
 }
 
-TEST(SceneSchema, MaterialTypesStandInTheOrderOfTheVariant) {
+TEST(SceneSchema, MaterialTypesAreInVariantOrder) {
   ASSERT_EQ(material_types().size(), std::variant_size_v<MaterialModel>);
   for (std::size_t i = 0; i < material_types().size(); ++i) EXPECT_EQ(material_types()[i].model.index(), i);
 }
@@ -88,12 +88,12 @@ TEST(SceneSchema, DefaultsAreInsideTheirOwnRange) {
       EXPECT_TRUE(!has_range(key.type) || inside(key.range, key.text(type.model))) << type.name << "." << key.name;
 }
 
-TEST(SceneSchema, EachKeyIsExplained) {
+TEST(SceneSchema, EachKeyIsDocumented) {
   for (const Table& table : tables())
     for (const auto& key : table.keys) EXPECT_FALSE(key.doc.empty()) << table.name << "." << key.name;
 }
 
-TEST(SceneSchema, RangesOfTheIssue) {
+TEST(SceneSchema, RangesAreAsSpecified) {
   EXPECT_FALSE(key_of("camera", "vfov").range.contains(0));
   EXPECT_FALSE(key_of("camera", "vfov").range.contains(180));
   EXPECT_TRUE(key_of("camera", "vfov").range.contains(179.99));
@@ -112,29 +112,29 @@ TEST(SceneSchema, RangesOfTheIssue) {
   EXPECT_FALSE(key_of("background", "top").range.contains(-1e-9));
 }
 
-TEST(SceneSchema, NotANumberIsInNoRange) {
+TEST(SceneSchema, NaNIsInNoRange) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Table& table : tables())
     for (const auto& key : table.keys) EXPECT_FALSE(has_range(key.type) && key.range.contains(nan)) << key.name;
 }
 
-TEST(SceneSchema, RangesAsText) {
+TEST(SceneSchema, FormatsRanges) {
   EXPECT_EQ((Range{0, 1}).text(), "0..1");
   EXPECT_EQ((Range{0, 180, true, true}).text(), "above 0, below 180");
   EXPECT_EQ((Range{0, 180, false, true}).text(), "from 0, below 180");
   EXPECT_EQ((Range{0, 5, true, false}).text(), "above 0, up to 5");
 }
 
-TEST(SceneSchema, FocusDistanceIsTheDistanceUntilItIsSet) {
+TEST(SceneSchema, FocusDistanceDefaultsToTheDistanceToLookAt) {
   Scene scene;
   const auto& key = key_of("camera", "focus_distance");
   EXPECT_EQ(key.text(scene), "distance to look_at");
-  EXPECT_FALSE(scene.camera.focus_distance.has_value()) << "asking must not set it";
+  EXPECT_FALSE(scene.camera.focus_distance.has_value()) << "reading must not set it";
   key.set(scene, Value(10.0));
   EXPECT_EQ(scene.camera.focus_distance, 10.0);
 }
 
-TEST(SceneSchema, ChoicesAreTheEnumeratorsInTheirOrder) {
+TEST(SceneSchema, ChoicesAreInEnumeratorOrder) {
   Scene scene;
   key_of("render", "precision").set(scene, Value(std::string("book")));
   key_of("render", "shading").set(scene, Value(std::string("normal")));

@@ -18,7 +18,7 @@ Scene with_sphere(Vec3d center, double radius) {
   return scene;
 }
 
-/// "key: text" of each problem, warnings in brackets.
+/// "key: text" of each diagnostic, warnings in parentheses.
 std::vector<std::string> told(const Scene& scene) {
   std::vector<std::string> out;
   for (const SceneDiagnostic& p : validate(scene)) {
@@ -29,9 +29,9 @@ std::vector<std::string> told(const Scene& scene) {
 }
 using Told = std::vector<std::string>;
 
-TEST(SceneValidate, ASceneWithoutAnythingIsAllRight) { EXPECT_EQ(told({}), Told{}); }
+TEST(SceneValidate, AnEmptySceneIsValid) { EXPECT_EQ(told({}), Told{}); }
 
-TEST(SceneValidate, ACropIsAPartOfTheFrame) {
+TEST(SceneValidate, CropMustBeInsideTheFrame) {
   Scene scene;
   scene.image = {100, 50};
   for (const Window& good : {Window{0, 0, 100, 50}, {99, 49, 1, 1}}) {
@@ -41,28 +41,27 @@ TEST(SceneValidate, ACropIsAPartOfTheFrame) {
   for (const Window& bad :
        {Window{0, 0, 101, 50}, {1, 0, 100, 50}, {0, 0, 0, 5}, {0, 50, 1, 1}, {65536, 0, 65536, 1}}) {
     scene.image.crop = bad;
-    EXPECT_EQ(told(scene),
-              Told{"image.crop: is not a part of the frame, which is 100 x 50; it is [x, y, width, height]"});
+    EXPECT_EQ(told(scene), Told{"image.crop: must be a non-empty [x, y, width, height] inside the 100 x 50 frame"});
   }
   scene.image.crop = Window{0, 0, 10, 10};
   scene.image.overscan = 1;
-  EXPECT_EQ(told(scene), Told{"image.overscan: there is a crop already; leave one of them out"});
+  EXPECT_EQ(told(scene), Told{"image.overscan: cannot be combined with crop; remove one of them"});
 }
 
-TEST(SceneValidate, AFrameAndItsOverscanHaveRoomForTheirPixels) {
+TEST(SceneValidate, FramePlusOverscanIsLimited) {
   Scene scene;
   scene.image = {65536, 10};
   EXPECT_EQ(told(scene), Told{});
   scene.image.overscan = 1;
-  EXPECT_EQ(told(scene), Told{"image.overscan: the frame and its overscan have more than 65536 pixels along a side"});
+  EXPECT_EQ(told(scene), Told{"image.overscan: frame plus overscan exceeds the limit of 65536 pixels per side"});
 }
 
-TEST(SceneValidate, CameraThatLooksNowhere) {
+TEST(SceneValidate, CameraMustHaveADirection) {
   Scene scene;
   scene.camera.look_at = scene.camera.look_from;
   EXPECT_EQ(told(scene),
             Told{"camera.look_at: look_at is the same point as look_from, so the camera has no direction"});
-  // Its length would be 0, or its square would: both end in a direction that is not a number.
+  // The length, or its square, would be 0: in both cases the direction would be NaN.
   scene.camera.look_at = scene.camera.look_from + Vec3d{0, 0, 1e-200};
   EXPECT_EQ(told(scene),
             Told{"camera.look_at: look_at is closer to look_from than 1e-30, so the camera has no direction"});
@@ -70,13 +69,14 @@ TEST(SceneValidate, CameraThatLooksNowhere) {
   EXPECT_EQ(told(scene), Told{});
 }
 
-TEST(SceneValidate, UpThatIsZeroTinyOrParallel) {
+TEST(SceneValidate, UpMustNotBeZeroTinyOrParallel) {
   Scene scene;
   scene.camera.up = {0, 0, 0};
-  EXPECT_EQ(told(scene), Told{"camera.up: up is zero; any direction that is not the view's will do"});
+  EXPECT_EQ(told(scene), Told{"camera.up: up is zero; use any direction that is not parallel to the view"});
   scene.camera.up = {0, 1e-200, 0};
-  EXPECT_EQ(told(scene), Told{"camera.up: up is shorter than 1e-30; any direction that is not the view's will do"});
-  const Told parallel{"camera.up: up is parallel to the view, so the picture has no upright; choose another direction"};
+  EXPECT_EQ(told(scene),
+            Told{"camera.up: up is shorter than 1e-30; use any direction that is not parallel to the view"});
+  const Told parallel{"camera.up: up is parallel to the view; choose another direction"};
   scene.camera.up = {0, 0, -5};
   EXPECT_EQ(told(scene), parallel);
   scene.camera.up = {0, 0, 1e18};
@@ -87,50 +87,52 @@ TEST(SceneValidate, UpThatIsZeroTinyOrParallel) {
   EXPECT_EQ(told(scene), Told{});
 }
 
-TEST(SceneValidate, CameraPointsThatAreNotFinite) {
+TEST(SceneValidate, CameraVectorsMustBeFinite) {
   Scene scene;
   scene.camera.look_from = {kNan, 0, 0};
   scene.camera.up = {0, kInfinity, 0};
-  EXPECT_EQ(told(scene), (Told{"camera.look_from: [nan, 0, 0] is not finite or beyond 1e+18",
-                               "camera.up: [0, inf, 0] is not finite or beyond 1e+18"}));
+  EXPECT_EQ(told(scene), (Told{"camera.look_from: [nan, 0, 0] is not finite or exceeds 1e+18",
+                               "camera.up: [0, inf, 0] is not finite or exceeds 1e+18"}));
 }
 
-TEST(SceneValidate, LensLargerThanTheDomain) {
+TEST(SceneValidate, LensMustBeInTheDomain) {
   Scene scene;
   scene.camera.defocus_angle = 179;
   scene.camera.focus_distance = 1e18;
   ASSERT_EQ(told(scene).size(), 1u);
-  EXPECT_EQ(told(scene)[0].rfind("camera.defocus_angle: the lens would have a radius of 1.14", 0), 0u)
-      << told(scene)[0];
+  EXPECT_EQ(told(scene)[0].rfind("camera.defocus_angle: the lens radius would be 1.14", 0), 0u) << told(scene)[0];
   scene.camera.focus_distance = 1e10;
   EXPECT_EQ(told(scene), Told{});
   scene.camera.defocus_angle = kInfinity;
   EXPECT_EQ(told(scene).size(), 1u);
 }
 
-TEST(SceneValidate, RadiusOutsideTheDomain) {
+TEST(SceneValidate, RadiusMustBeInTheDomain) {
   EXPECT_EQ(told(with_sphere({}, 0)),
-            Told{"sphere[0].radius: radius is 0; allowed is 1e-30..1e+18, or the same below 0 for an inward normal"});
-  EXPECT_EQ(told(with_sphere({}, 1e-31)), Told{"sphere[0].radius: radius 1e-31 is outside of 1e-30..1e+18"});
-  EXPECT_EQ(told(with_sphere({}, -2e18)), Told{"sphere[0].radius: radius -2e+18 is outside of 1e-30..1e+18"});
+            Told{"sphere[0].radius: radius is 0; allowed is 1e-30..1e+18, or negative for an inward normal"});
+  EXPECT_EQ(told(with_sphere({}, 1e-31)),
+            Told{"sphere[0].radius: radius is 1e-31; its magnitude must be in 1e-30..1e+18"});
+  EXPECT_EQ(told(with_sphere({}, -2e18)),
+            Told{"sphere[0].radius: radius is -2e+18; its magnitude must be in 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, kNan)), Told{"sphere[0].radius: radius is not finite; allowed is 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, -kInfinity)), Told{"sphere[0].radius: radius is not finite; allowed is 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, 1e-30)), Told{});
   EXPECT_EQ(told(with_sphere({}, -1e18)), Told{});
 }
 
-TEST(SceneValidate, CenterOutsideTheDomain) {
+TEST(SceneValidate, CenterMustBeInTheDomain) {
   EXPECT_EQ(told(with_sphere({0, 2e18, 0}, 1)),
-            Told{"sphere[0].center: center [0, 2e+18, 0] is not finite or beyond 1e+18"});
+            Told{"sphere[0].center: center [0, 2e+18, 0] is not finite or exceeds 1e+18"});
   EXPECT_EQ(told(with_sphere({0, 0, kNan}, 1)),
-            Told{"sphere[0].center: center [0, 0, nan] is not finite or beyond 1e+18"});
+            Told{"sphere[0].center: center [0, 0, nan] is not finite or exceeds 1e+18"});
   EXPECT_EQ(told(with_sphere({-1e18, 1e18, 1e18}, 1)), Told{});
 }
 
-TEST(SceneValidate, MaterialThatIsNotThere) {
+TEST(SceneValidate, MaterialMustExist) {
   Scene scene = with_sphere({}, 1);
   scene.spheres[0].material = 1;
-  EXPECT_EQ(told(scene), Told{"sphere[0].material: there is no material number 1; the scene has 1, counted from 0"});
+  EXPECT_EQ(told(scene),
+            Told{"sphere[0].material: there is no material with index 1; the scene has 1, counted from 0"});
   scene = with_sphere({}, 1);
   scene.points.resize(2);
   scene.points[0].material = 9;
@@ -140,25 +142,26 @@ TEST(SceneValidate, MaterialThatIsNotThere) {
   scene.points[1].centers = {{7, 0, 0}, {8, 0, 0}};
   scene.points[1].materials = {0, 3};
   EXPECT_EQ(told(scene),
-            (Told{"points[0].material: there is no material number 9; the scene has 1, counted from 0",
-                  "points[1][1].material: there is no material number 3; the scene has 1, counted from 0"}));
+            (Told{"points[0].material: there is no material with index 9; the scene has 1, counted from 0",
+                  "points[1][1].material: there is no material with index 3; the scene has 1, counted from 0"}));
 }
 
-TEST(SceneValidate, MaterialOfAWholePointsFileIsToldOnce) {
+TEST(SceneValidate, MissingMaterialOfAPointsFileIsReportedOnce) {
   Scene scene;
   scene.points.resize(1);
   scene.points[0].centers = {{5, 0, 0}, {6, 0, 0}};
   scene.points[0].radii = {1, 1};
-  EXPECT_EQ(told(scene), Told{"points[0].material: there is no material number 0; the scene has 0, counted from 0"});
+  EXPECT_EQ(told(scene),
+            Told{"points[0].material: there is no material with index 0; the scene has 0, counted from 0"});
 }
 
-TEST(SceneValidate, EverySphereOfItsOwnIsTold) {
+TEST(SceneValidate, EveryInvalidSphereTableIsReported) {
   Scene scene = with_sphere({}, 0);
   for (int i = 1; i < 25; ++i) scene.spheres.push_back({{0.0 + i, 0, 0}, 0, 0, ""});
   EXPECT_EQ(validate(scene).size(), 25u);
 }
 
-TEST(SceneValidate, OfBulkPointsTenAreToldAndAllAreCounted) {
+TEST(SceneValidate, OfInvalidPointsTenAreReportedAndAllCounted) {
   Scene scene;
   scene.materials = {{"grey", Lambertian{}}};
   scene.points.resize(2);
@@ -173,28 +176,28 @@ TEST(SceneValidate, OfBulkPointsTenAreToldAndAllAreCounted) {
   EXPECT_EQ(lines[10], "points[1]: and 20 more (30 in all)");
 }
 
-TEST(SceneValidate, ArraysOfDifferentLengthAreNotWalkedThrough) {
+TEST(SceneValidate, ArraysOfDifferentLengthsAreNotIndexed) {
   Scene scene;
   scene.materials = {{"grey", Lambertian{}}};
   scene.points.resize(1);
-  scene.points[0].centers.resize(3);  // all in one place: whoever walks through them warns of it
+  scene.points[0].centers.resize(3);  // all equal: indexing them would warn of coincident spheres
   scene.points[0].radii = {1, 1};
   EXPECT_EQ(told(scene), Told{"points[0]: has 3 centres, 2 radii and 0 materials"});
 }
 
-TEST(SceneValidate, SpheresInTheSamePlaceAreAWarningThatNamesBoth) {
+TEST(SceneValidate, CoincidentSpheresAreAWarningThatNamesBoth) {
   Scene scene = with_sphere({1, 2, 3}, 2);
   scene.spheres.push_back({{1, 2, 3}, -2, 0, ""});
   EXPECT_EQ(told(scene),
-            Told{"(sphere[1]: has exactly the same place and size as sphere[0]; rays meet the first of them only)"});
+            Told{"(sphere[1]: has exactly the same centre and radius as sphere[0]; only the first is rendered)"});
 }
 
-TEST(SceneValidate, OfManyInOnePlaceTenAreTold) {
+TEST(SceneValidate, OfCoincidentSpheresTenAreReported) {
   Scene scene = with_sphere({1, 2, 3}, 2);
   scene.spheres.assign(32, scene.spheres[0]);
   const Told lines = told(scene);
   ASSERT_EQ(lines.size(), 11u);
-  EXPECT_EQ(lines[10], "(: and 21 more spheres in the place of another (31 in all))");
+  EXPECT_EQ(lines[10], "(: and 21 more coincident spheres (31 in all))");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(SceneValueText, NumbersAreShort) {
   EXPECT_EQ(number_text(1e18), "1e+18");
 }
 
-TEST(SceneValueText, LargeNumbersAreNoWholeNumbersOf64Bits) {
+TEST(SceneValueText, LargeNumbersUseScientificNotation) {
   EXPECT_EQ(number_text(114588650129310105600.0), "1.145886501293101e+20");
   EXPECT_EQ(number_text(123456789012345.0), "123456789012345");
 }
@@ -45,7 +45,7 @@ TEST(SceneValueText, StringsAreEscaped) {
   EXPECT_EQ(string_text("\xC3\xBC"), "\"\xC3\xBC\"");
 }
 
-TEST(SceneValueText, UnquotedGivesTheWord) {
+TEST(SceneValueText, UnquotedRemovesTheQuotes) {
   EXPECT_EQ(unquoted("\"exact\""), "exact");
   EXPECT_EQ(unquoted("7"), "7");
 }
