@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether --noise keeps its word: true errors by target, the samples that they took by those of uniform sampling, and
-// the bias. docs/trade.md quotes what it prints.
+// Verifies the error guarantee of --noise: the ratio of true error to target, the efficiency relative to uniform
+// sampling, and the bias. docs/trade.md describes it.
 //
-//   bench_noise_guarantee [--seeds 20] [--noise 0.3,0.1,0.03] [--width 64] [--most 4000] [--scene NAME] [--sampler
-//   NAME] bench_noise_guarantee --bias [--seeds 1000] [--noise 0.1] [--width 96] [--scene NAME] [--sampler NAME]
+//   bench_noise_guarantee [--seeds 20] [--noise 0.3,0.1,0.03] [--width 64] [--most 4000]
+//                         [--scene NAME] [--sampler NAME]
+//   bench_noise_guarantee --bias [--seeds 1000] [--noise 0.1] [--width 96] [--scene NAME] [--sampler NAME]
 //
-// --scene and --sampler can be repeated. Every target is rendered with each seed, and uniformly with as many samples.
-// The reference is the mean of all uniform pictures of a scene; its own error is taken off. A target that takes more
-// than --most samples a pixel is named and left out. Exit status 1 where fewer than 95 of 100 true errors are within
-// 1.1 of the target, one is above 1.3, or a bias is three standard errors or more.
+// --scene and --sampler can be repeated. Each target is rendered with every seed, and again with uniform sampling and
+// the same mean sample count. The reference is the mean of all uniform images of a scene; its error is subtracted. A
+// target that needs more than --most samples per pixel is reported and skipped. Exit status 1 if fewer than 95 % of the
+// true errors are within 1.1 times the target, if one exceeds 1.3 times the target, or if a bias is at least three
+// standard errors.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -98,7 +100,7 @@ Options parse(int argc, char** argv) {
       o.bias = true;
       continue;
     }
-    if (i + 1 == argc) throw std::runtime_error("no value, or not understood: " + word);
+    if (i + 1 == argc) throw std::runtime_error("unknown option, or its value is missing: " + word);
     const std::string value = argv[++i];
     if (word == "--seeds") {
       o.seeds = std::atoi(value.c_str());
@@ -113,7 +115,7 @@ Options parse(int argc, char** argv) {
     } else if (word == "--sampler") {
       o.samplers.push_back(value);
     } else {
-      throw std::runtime_error("not understood: " + word);
+      throw std::runtime_error("unknown option: " + word);
     }
   }
   if (o.seeds == 0) o.seeds = o.bias ? 1000 : 20;
@@ -124,7 +126,7 @@ Options parse(int argc, char** argv) {
   return o;
 }
 
-/// A scene that is ready to be rendered with any seed.
+/// A compiled scene with its BVH, to be rendered with different seeds.
 class Subject {
  public:
   Subject(scene::Scene s, const Options& o, const std::string& sampler) {
@@ -158,7 +160,7 @@ class Subject {
   std::unique_ptr<accel::Accel> accel_;
 };
 
-using Values = std::vector<double>;  // three planes
+using Values = std::vector<double>;  // the planes R, G, B, one after another
 
 Values values_of(const film::Picture& picture) {
   Values out;
@@ -198,7 +200,7 @@ struct Score {
   int runs = 0, above = 0, far_above = 0;
 };
 
-/// One scene with one sampler: all targets.
+/// Measures and prints the errors of all targets for one scene and sampler.
 void measure_errors(const Case& c, const std::string& sampler, const Options& o, Score& score) {
   struct Target {
     double noise = 0, samples = 0;
@@ -220,7 +222,7 @@ void measure_errors(const Case& c, const std::string& sampler, const Options& o,
       t.told.push_back(*r.statistics.noise);
     }
     if (!is_within) {
-      std::printf("%-26s %-11s %5g   takes more than %d samples a pixel\n", c.name.c_str(), sampler.c_str(), noise,
+      std::printf("%-26s %-11s %5g   needs more than %d samples per pixel\n", c.name.c_str(), sampler.c_str(), noise,
                   o.most);
       continue;
     }
@@ -242,7 +244,7 @@ void measure_errors(const Case& c, const std::string& sampler, const Options& o,
   for (double& v : truth) v /= weights;
 
   for (const Target& t : targets) {
-    // The truth is made of these very pictures, in part: they are nearer to it than they should be.
+    // These images are part of the reference, which reduces their measured error by a known factor.
     const double part = t.uniform_samples / weights;
     std::vector<double> uniform, ratios;
     for (const Values& picture : t.uniform) uniform.push_back(squared_error(picture, truth) / (1 - part));
@@ -266,7 +268,9 @@ void measure_errors(const Case& c, const std::string& sampler, const Options& o,
   }
 }
 
-/// Light of the whole picture over many seeds, adaptive by uniform. Result: how many standard errors lie between.
+/// Compares the mean radiance of the image over many seeds between adaptive and uniform sampling.
+///
+/// Result     the difference in standard errors
 double measure_bias(const Case& c, const std::string& sampler, double noise, const Options& o) {
   Subject subject(c.scene(), o, sampler);
   const auto light = [](const render::Result& r) { return mean(values_of(r.picture)); };
@@ -276,7 +280,7 @@ double measure_bias(const Case& c, const std::string& sampler, double noise, con
     const render::Result r = subject.adaptive(static_cast<std::uint32_t>(seed), noise, 1 << 24);
     samples += static_cast<double>(r.statistics.paths) / static_cast<double>(subject.pixels()) / o.seeds;
     adaptive.push_back(light(r));
-    // Twice the samples of the adaptive picture, so that this mean is not what limits the comparison.
+    // Twice the samples of the adaptive image, so that the uniform mean does not limit the comparison.
     uniform.push_back(light(
         subject.uniform(static_cast<std::uint32_t>(100000 + seed), static_cast<int>(2 * samples * o.seeds / seed))));
   }
@@ -296,8 +300,9 @@ int run(int argc, char** argv) {
   if (o.bias) {
     std::printf("%-26s %-11s %5s %8s   %8s   %7s   sigma\n", "scene", "sampler", "noise", "samples", "bias", "+-");
   } else {
-    std::printf("%-26s %-11s %5s   true error by target: median [5 - 95 %%] worst; above 1.1; samples; by uniform's\n",
-                "scene", "sampler", "noise");
+    std::printf(
+        "%-26s %-11s %5s   true error / target: median [5 - 95 %%] maximum; above 1.1; samples; MSE / uniform MSE\n",
+        "scene", "sampler", "noise");
   }
   Score score;
   double largest_bias = 0;
@@ -313,7 +318,7 @@ int run(int argc, char** argv) {
     }
   }
   if (o.bias) return largest_bias < 3 ? 0 : 1;
-  std::printf("%d runs: %d above 1.1, %d above 1.3\n", score.runs, score.above, score.far_above);
+  std::printf("%d runs: %d above 1.1, %d above 1.3 times the target\n", score.runs, score.above, score.far_above);
   return score.above * 20 <= score.runs && score.far_above == 0 ? 0 : 1;
 }
 

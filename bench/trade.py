@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What sampler, roulette and adaptive sampling are worth: time for the same error, error in the same time.
+"""Measures the benefit of samplers, Russian roulette and adaptive sampling: the time for the same error, and the error
+in the same time.
 
     bench/trade.py build/src/orrery [--runs 5] [--width 320] [--noise 0.01] [--scene NAME]
 
-Five scenes; the error is that of `orrery compare`, "display", against a reference made with --noise at a quarter of the
-asked one. Every way is rendered with each seed in turn, on all threads; times are medians, errors roots of mean squares.
-The baseline is what the book does: independent numbers, the same samples everywhere, no roulette. Its time for an error
-is what it took, by the square of the errors: that is its law.
+Uses five scenes. The error is the display error of `orrery compare` against a reference rendered with a quarter of the
+target noise. All methods are rendered with each seed in turn, on all threads; times are medians, errors root mean
+squares. The baseline is the book's method: independent samples, uniform over the image, without Russian roulette. Times
+are scaled to equal error by the square of the error.
 """
 import argparse
 import json
@@ -56,15 +57,15 @@ def scenes(program, work):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("program")
-    parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--width", type=int, default=320)
-    parser.add_argument("--noise", type=float, default=0.01)
-    parser.add_argument("--scene", action="append", help="only this one; can be repeated")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", help="the orrery executable")
+    parser.add_argument("--runs", type=int, default=5, help="number of seeds")
+    parser.add_argument("--width", type=int, default=320, help="image width, px")
+    parser.add_argument("--noise", type=float, default=0.01, help="target noise")
+    parser.add_argument("--scene", action="append", help="measure only this scene; can be repeated")
     options = parser.parse_args()
     size = ["--width", options.width, "--height", options.width * 9 // 16]
-    print(f"{'scene':14} {'way':12} {'samples':>8} {'seconds':>8} {'error':>8} {'time for the same error':>24} "
+    print(f"{'scene':14} {'method':12} {'samples':>8} {'seconds':>8} {'error':>8} {'time for the same error':>24} "
           f"{'error in the same time':>23}")
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
@@ -73,7 +74,7 @@ def main():
                 continue
             reference, _ = render(options.program, scene, work, size, ["--noise", options.noise / 4, "--seed", 999])
             reference = reference.rename(work / "reference.exr")
-            # All ways get about the samples that adaptive sampling takes, so that their errors are alike.
+            # All methods get about as many samples as adaptive sampling, so that their errors are similar.
             _, told = render(options.program, scene, work, size, ["--noise", options.noise, "--seed", 998])
             samples = 1 << max(4, round(told["samples"]).bit_length() - 1)
             found = {way: ([], [], []) for way in WAYS}

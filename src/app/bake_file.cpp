@@ -11,7 +11,7 @@ void bake_file(const display::Settings& display, int cube_size, const std::files
   const std::string extension = file.extension().string();
   if (extension != ".cube" && extension != ".clf")
     throw base::Error(base::ErrorKind::kUsage,
-                      file.string() + " has no extension of a display transform; known are .cube and .clf");
+                      file.string() + " is not a display transform file; use the extension .cube or .clf");
   base::FileSet files;
   job::add_ocio_configs(display.config, files);
   files.add_output(file, "-o");

@@ -50,7 +50,7 @@ void count_differing(const film::Picture& picture, const film::Picture& referenc
     if (picture.find(plane.name) == nullptr) out.only_in_reference.push_back(plane.name);
 }
 
-/// Codes of an sRGB screen that shows light without exposure, for metrics that ask for codes.
+/// sRGB-encoded values of an image without exposure, for metrics that need display-encoded input.
 struct Codes {
   std::vector<float> values[3];
   ColorView view;
@@ -67,7 +67,7 @@ struct Codes {
   }
 };
 
-/// The same light without what is no number, which would spread over its surroundings.
+/// The image with non-finite values replaced by 0, since filters would spread them.
 struct Finite {
   std::vector<float> values[3];
   ColorView view;
@@ -94,13 +94,13 @@ film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
       const float d = is_left_out ? 0 : c.picture.channel[k][i] - c.reference.channel[k][i];
       plane.values[i] = for_display ? 0.5f + d / 2 : d;
     }
-    plane.kind = film::PlaneKind::kVector;  // below 0 is as good as above
+    plane.kind = film::PlaneKind::kVector;  // negative values are valid
     out.planes.push_back(std::move(plane));
   }
   return out;
 }
 
-/// Calls work from this many threads of the task scheduler.
+/// A ForEach that runs on this many threads of the task scheduler.
 metrics::ForEach on_threads(int threads) {
   return [threads](std::size_t count, const std::function<void(std::size_t)>& work) {
     render::TilePool(threads > 0 ? threads : job::default_threads())
@@ -115,7 +115,7 @@ void write_codes(const std::filesystem::path& file, const film::Picture& codes) 
 
 void write_numbers(const std::filesystem::path& file, const film::Picture& numbers) {
   if (image::format_of(file) == image::Format::kHdr)
-    throw base::Error(base::ErrorKind::kUsage, file.string() + " cannot hold numbers below 0; write an EXR");
+    throw base::Error(base::ErrorKind::kUsage, file.string() + " cannot hold negative values; use EXR");
   image::ExrOptions options;
   options.as_float = true;
   image::write_exr(file, numbers, {}, options);
@@ -130,12 +130,12 @@ void write_map(const std::filesystem::path& file, const metrics::Map& map, doubl
   }
 }
 
-/// Checks the pictures to write before work begins: known extensions, no input and no two the same, creatable.
+/// Checks the output files before work begins: known formats, creatable, distinct from the inputs and each other.
 void check_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
                  const ComparisonPictures& pictures) {
   base::FileSet files;
-  files.add_input(picture, "picture");
-  files.add_input(reference, "picture");
+  files.add_input(picture, "image");
+  files.add_input(reference, "image");
   const std::pair<const std::filesystem::path&, const char*> outputs[] = {
       {pictures.difference, "--difference"}, {pictures.heat, "--heat"}, {pictures.flip, "--flip"}};
   for (const auto& [file, role] : outputs) {
@@ -163,14 +163,14 @@ double Comparison::metric(const std::string& name) const {
   if (name == "flip" && flip) return *flip;
   if (name == "z" && z_test) return std::abs(z_test->largest_z);
   throw base::Error(base::ErrorKind::kUsage,
-                    "--fail-above " + name + ": these pictures have none" +
-                        (name == "z" ? "; render with --layers variance" : "; it is of colours only"));
+                    "--fail-above " + name + ": not available for these images; " +
+                        (name == "z" ? "render with --layers variance" : "it covers colours only"));
 }
 
 Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
                    const std::string& layer, int threads) {
   if (picture.width != reference.width || picture.height != reference.height)
-    throw bad_data("pictures of different sizes cannot be compared: " + size_text(picture) + " and " +
+    throw bad_data("images of different sizes cannot be compared: " + size_text(picture) + " and " +
                    size_text(reference));
   Comparison out;
   out.width = picture.width;
@@ -183,8 +183,7 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
   out.no_hit_in_one = c.no_hit_in_one;
   out.errors = metrics::pixel_errors(c.picture, c.reference, c.left_out);
   if (out.errors.values == 0 && out.errors.not_finite + out.no_hit_in_one > 0)
-    throw bad_data("there is nothing to compare: no value of " + base::joined(c.names) +
-                   " is a finite number, and a hit, in both pictures");
+    throw bad_data("nothing to compare: no value of " + base::joined(c.names) + " is finite and a hit in both images");
   out.display_map = metrics::display_error_map(c.picture, c.reference, c.left_out);
   if (!layer.empty() || c.names.size() < 3) return out;
   const Codes code_a(c.picture, encoding), code_b(c.reference, encoding);
@@ -204,12 +203,12 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
   if (developed != image::is_display_format(image::format_of(reference))) {
     const auto& linear = developed ? reference : picture;
     throw base::Error(base::ErrorKind::kUsage,
-                      linear.string() + " holds scene-linear light and the other picture what " +
-                          "a display shows; develop it first: orrery develop " + linear.string() + " -o developed.png");
+                      linear.string() + " is scene-linear, but the other image is display-encoded; develop it first: " +
+                          "orrery develop " + linear.string() + " -o developed.png");
   }
   check_files(picture, reference, pictures);
   if (!layer.empty() && !pictures.flip.empty())
-    throw base::Error(base::ErrorKind::kUsage, "--flip is of colours; leave --layer out");
+    throw base::Error(base::ErrorKind::kUsage, "--flip covers colours only; remove --layer");
   const film::Picture a = image::read(picture), b = image::read(reference);
   for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
     if (!file.empty()) image::check_size(file, a.width, a.height);
@@ -230,9 +229,10 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
 std::string comparison_text(const Comparison& c) {
   std::string out;
   const metrics::PixelErrors& e = c.errors;
-  base::append(out, "pictures    %d x %d, channels %s\n", c.width, c.height, base::joined(c.channels).c_str());
+  base::append(out, "images      %d x %d, channels %s\n", c.width, c.height, base::joined(c.channels).c_str());
   if (c.is_matte)
-    base::append(out, "matte       %.6g of the coverage belongs to other things; errors are of that share\n", e.mae);
+    base::append(out, "matte       %.6g of the coverage belongs to different objects; errors are of this fraction\n",
+                 e.mae);
   base::append(out, "rmse        %.6g\n", e.rmse);
   base::append(out, "relmse      %.6g\n", e.relative_mse);
   base::append(out, "mae         %.6g\n", e.mae);
@@ -246,26 +246,26 @@ std::string comparison_text(const Comparison& c) {
   } else {
     out += "\npsnr        infinite\n";
   }
-  base::append(out, "display     %.6g relative, as --noise means it\n", e.display);
+  base::append(out, "display     %.6g relative display error, as in --noise\n", e.display);
   base::append(out, "bias        %+.3g of the mean\n", e.bias);
   if (c.ssim) base::append(out, "ssim        %.6g\n", *c.ssim);
   if (c.flip) base::append(out, "flip        %.6g\n", *c.flip);
   if (c.z_test) {
     const metrics::ZTest& z = *c.z_test;
-    base::append(out, "noise       rmse %.6g explained by the variances; %.6g beyond it\n", z.noise, z.bias);
-    base::append(out, "mean        %+.3g of it, standard error %.2g\n", z.mean_bias, z.mean_bias_error);
-    base::append(out, "z-test      %s: %d of %d squares of %d px beyond |z| = %.2f; largest %+.2f in %s at %d, %d\n",
-                 z.differ() ? "the pictures differ by more than noise" : "no difference but noise", z.rejected, z.tests,
+    base::append(out, "noise       rmse %.6g explained by the variances, %.6g unexplained\n", z.noise, z.bias);
+    base::append(out, "mean bias   %+.3g relative, standard error %.2g\n", z.mean_bias, z.mean_bias_error);
+    base::append(out, "z-test      %s: %d of %d blocks of %d px exceed |z| = %.2f; maximum %+.2f in %s at %d, %d\n",
+                 z.differ() ? "the images differ by more than noise" : "no difference but noise", z.rejected, z.tests,
                  metrics::kTestedSide, z.critical_z, z.largest_z,
                  c.channels[static_cast<std::size_t>(z.channel)].c_str(), z.x, z.y);
   }
   base::append(out, "differing   %llu of %llu values\n", static_cast<unsigned long long>(c.differing),
                static_cast<unsigned long long>(c.values));
   if (c.no_hit > 0)
-    base::append(out, "left out    %llu pixels without a hit, %llu of them in one of the pictures only\n",
+    base::append(out, "left out    %llu pixels without a hit, %llu of them in one image only\n",
                  static_cast<unsigned long long>(c.no_hit), static_cast<unsigned long long>(c.no_hit_in_one));
   if (e.not_finite > 0)
-    base::append(out, "left out    %llu values that are not finite\n", static_cast<unsigned long long>(e.not_finite));
+    base::append(out, "left out    %llu non-finite values\n", static_cast<unsigned long long>(e.not_finite));
   return out;
 }
 

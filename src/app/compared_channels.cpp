@@ -13,10 +13,10 @@
 namespace orrery::app {
 namespace {
 
-/// Layers that channels_text names one by one.
+/// Maximum number of layers that channels_text() lists by name.
 constexpr std::size_t kMostNamed = 8;
 
-/// A channel's layer, or its own name where it has none; of a Cryptomatte's rank without the two digits.
+/// The layer of a channel, or the channel's name if it has none. Cryptomatte layers lose their two digits.
 std::string layer_name(const std::string& channel) {
   std::string name = film::Plane{channel, {}}.layer();
   if (name.empty()) return channel;
@@ -27,7 +27,7 @@ std::string layer_name(const std::string& channel) {
   return name;
 }
 
-/// Layers in the order of their first channels, with the number of these.
+/// The layers in the order of their first channels, with their channel counts.
 std::vector<std::pair<std::string, int>> layers_of(const std::vector<std::string>& channels) {
   std::vector<std::pair<std::string, int>> out;
   for (const std::string& channel : channels) {
@@ -42,10 +42,11 @@ std::vector<std::pair<std::string, int>> layers_of(const std::vector<std::string
   return out;
 }
 
-/// The ranks of a Cryptomatte: an id and the coverage of each.
+/// The planes of a Cryptomatte rank.
 struct Rank {
   const std::vector<float>*id, *coverage;
 };
+/// All ranks of a Cryptomatte; empty if the image does not have it.
 std::vector<Rank> ranks_of(const film::Picture& picture, const std::string& layer) {
   std::vector<Rank> ranks;
   for (int pair = 0; pair < 100; ++pair) {
@@ -59,7 +60,7 @@ std::vector<Rank> ranks_of(const film::Picture& picture, const std::string& laye
   return ranks;
 }
 
-/// The share of a pixel that belongs to other things: half of all differences in coverage.
+/// The fraction of a pixel that belongs to different objects: half the sum of absolute differences in coverage.
 float differing_share(const std::vector<Rank>& a, const std::vector<Rank>& b, std::size_t pixel) {
   std::vector<std::pair<float, double>> things = {{0.0f, 0.0}};  // id 0: the background
   const auto add = [&](const std::vector<Rank>& ranks, double sign) {
@@ -130,13 +131,13 @@ ComparedChannels compared_channels(const film::Picture& picture, const film::Pic
     }
   }
   if (out.names.empty() && layer.empty())
-    throw base::Error(base::ErrorKind::kBadData, "the pictures have no channel of the same name");
+    throw base::Error(base::ErrorKind::kBadData, "the images have no channel in common");
   if (out.names.empty()) {
     std::vector<std::string> channels, names;
     for (const film::Plane& plane : picture.planes) channels.push_back(plane.name);
     for (const auto& known : layers_of(channels)) names.push_back(known.first);
     throw base::Error(base::ErrorKind::kBadData,
-                      "layer " + layer + " is not in both pictures; the first has " + base::joined(names));
+                      "layer " + layer + " is not in both images; the first has " + base::joined(names));
   }
   for (std::size_t c = out.names.size(); c < 3; ++c) {
     out.picture.channel[c] = out.picture.channel[c - 1];

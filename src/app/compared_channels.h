@@ -10,29 +10,28 @@
 
 namespace orrery::app {
 
-/// The channels of two pictures that a comparison is of: up to three; one alone stands for all.
+/// The channels of two images that a comparison covers. With fewer than three, the views repeat the last one.
 struct ComparedChannels {
   std::vector<std::string> names;
   metrics::ColorView picture, reference;
-  /// Pixels that are left out, since one of the pictures has no hit there (film::kNothingHit); empty: none.
+  /// Flags of pixels that are skipped because an image has no hit there (film::kNothingHit); empty: none.
   std::vector<bool> left_out;
-  std::uint64_t no_hit = 0;         ///< how many these are
-  std::uint64_t no_hit_in_one = 0;  ///< in which the other picture has a hit
-  /// A Cryptomatte is compared by coverage: `picture` is the share of each pixel that belongs to other things than in
-  /// the reference, and `reference` is 0. The background counts as a thing.
+  std::uint64_t no_hit = 0;         ///< number of skipped pixels
+  std::uint64_t no_hit_in_one = 0;  ///< number of skipped pixels with a hit in the other image
+  /// A Cryptomatte is compared by coverage: `picture` is the fraction of each pixel that belongs to different objects
+  /// than in the reference, and `reference` is 0. The background counts as an object.
   bool is_matte = false;
-  std::vector<float> shares, zeros;  ///< of a matte
+  std::vector<float> shares, zeros;  ///< the pixels of `picture` and `reference` for a matte
 };
 
-/// The colours R, G, B, or the channels of another layer, by its name or by that of a Cryptomatte.
+/// Selects the channels to compare: R, G, B for an empty `layer`, else those of the layer or Cryptomatte of this name.
 ///
-/// `layer`    empty: the beauty
-/// Domain     pictures of the same size, which outlive the result
-/// Errors     base::Error(kBadData) if they are not in both pictures; lists the layers of the first
+/// Domain     images of the same size, which outlive the result
+/// Errors     base::Error(kBadData) if they are not in both images; lists the layers of the first
 ComparedChannels compared_channels(const film::Picture& picture, const film::Picture& reference,
                                    const std::string& layer);
 
-/// Channels by layer and their number, "Z, N (3), CryptoObject (12) and 2 more layers".
+/// Summarizes channels by layer with their counts: "Z, N (3), CryptoObject (12) and 2 more layers".
 std::string channels_text(const std::vector<std::string>& channels);
 
 }  // namespace orrery::app

@@ -17,11 +17,11 @@ namespace {
 void check_kinds(const Development& development) {
   for (const auto& output : development.outputs)
     if (!image::is_display_format(image::format_of(output)))
-      throw base::Error(base::ErrorKind::kUsage, output.string() + " would hold scene-linear light; a developed " +
-                                                     "picture is for png, tiff, jpg or ppm");
+      throw base::Error(base::ErrorKind::kUsage,
+                        output.string() + " has a scene-linear format; write png, tiff, jpg or ppm");
   if (image::is_display_format(image::format_of(development.input)))
     throw base::Error(base::ErrorKind::kUsage,
-                      development.input.string() + " is developed already; scene-linear light is in exr and hdr");
+                      development.input.string() + " is already display-encoded; the input must be exr or hdr");
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ DevelopReport develop_file(const Development& development) {
   check_kinds(development);
   job::check_bits(job::image_files(development.outputs), development.bits);
   base::FileSet files;
-  files.add_input(development.input, "picture");
+  files.add_input(development.input, "image");
   job::add_ocio_configs(development.display.config, files);
   for (const auto& output : development.outputs) {
     files.add_output(output, "-o");

@@ -9,22 +9,23 @@
 
 namespace orrery::app {
 
-/// What `orrery develop` was asked for.
+/// Arguments of `orrery develop`.
 struct Development {
-  std::filesystem::path input;                 ///< scene-linear light
-  std::vector<std::filesystem::path> outputs;  ///< display formats
-  display::Settings display;                   ///< working space empty: what the picture says, else lin_rec709
-  int bits = 0;                                ///< 0: 8
+  std::filesystem::path input;                 ///< scene-linear image
+  std::vector<std::filesystem::path> outputs;  ///< files of display formats
+  display::Settings display;                   ///< working space empty: that of the image, else lin_rec709
+  int bits = 0;                                ///< 0: the display's default
 };
 
+/// Result of develop_file().
 struct DevelopReport {
-  film::BadValues bad_values;  ///< of the input's colours, before any display transform
+  film::BadValues bad_values;  ///< invalid values of the input's colours
   display::Choice display;
 };
 
-/// Develops a picture on disk for a display, into every output.
+/// Develops an image file for a display and writes all outputs.
 ///
-/// Errors     base::Error of every kind; kUsage for an output that is no display format, and for an input that is one
+/// Errors     base::Error of every kind; kUsage if an output is not in a display format, or the input is
 DevelopReport develop_file(const Development& development);
 
 }  // namespace orrery::app

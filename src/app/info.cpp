@@ -32,25 +32,25 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
   const auto feature = [](const char* name, bool required, const char* why_not, const char* why = "") {
     return Feature{name, required, required ? why : why_not};
   };
-  return {
-      feature("thin lens", compiled.features.lens, "pinhole: no lens is sampled", "camera.defocus_angle is above 0"),
-      feature("lambertian", of(kernel::MaterialKind::kLambertian), "no such sphere"),
-      feature("hemisphere", of(kernel::MaterialKind::kHemisphere), "no such sphere"),
-      feature("metal", of(kernel::MaterialKind::kMetal), "no such sphere"),
-      feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "mirrors are sharp"),
-      feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
-      feature("gradient sky", compiled.features.sky, "one colour: no direction is looked at"),
-      feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
-              "camera or spheres move while the shutter is open"),
-      feature("layers", has_layers, "[output] asks for none: no path is written down"),
-      feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading asks for the first hit only")};
+  return {feature("thin lens", compiled.features.lens, "pinhole camera: no lens sampling",
+                  "camera.defocus_angle is above 0"),
+          feature("lambertian", of(kernel::MaterialKind::kLambertian), "not used by any sphere"),
+          feature("hemisphere", of(kernel::MaterialKind::kHemisphere), "not used by any sphere"),
+          feature("metal", of(kernel::MaterialKind::kMetal), "not used by any sphere"),
+          feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no metal has fuzz above 0"),
+          feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
+          feature("gradient sky", compiled.features.sky, "constant colour: independent of direction"),
+          feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
+                  "camera or spheres move while the shutter is open"),
+          feature("layers", has_layers, "none requested: paths are not recorded"),
+          feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading uses the first hit only")};
 }
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Names of red, green and blue in the files of scanners and point cloud tools.
+/// Whether the properties include colours under the names used by scanners and point cloud tools.
 bool has_colors(const std::vector<std::string>& properties) {
   static const std::vector<std::vector<std::string>> known = {
       {"red", "green", "blue"}, {"r", "g", "b"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}};
@@ -65,7 +65,7 @@ std::string points_text(const std::vector<PointsInfo>& points) {
     base::append(out, "%s %s: %llu %s", out.empty() ? "points     " : "           ", p.file.c_str(),
                  static_cast<unsigned long long>(p.spheres), p.spheres == 1 ? "sphere" : "spheres");
     if (!p.unused.empty()) base::append(out, "; unused: %s", base::joined(p.unused).c_str());
-    if (has_colors(p.unused)) out += "; colours of points are not used, those of materials are";
+    if (has_colors(p.unused)) out += "; point colours are ignored, materials set the colours";
     out += '\n';
   }
   return out;
@@ -142,7 +142,7 @@ std::string info_text(const SceneInfo& info) {
   std::string out;
   base::append(out, "scene       %s\n", info.scene_hash.c_str());
   base::append(out, "frame       %d\n", info.frame);
-  base::append(out, "picture     %d x %d, %d samples per pixel, max depth %d\n", info.width, info.height, info.samples,
+  base::append(out, "image       %d x %d, %d samples per pixel, max depth %d\n", info.width, info.height, info.samples,
                info.max_depth);
   base::append(out, "spheres     %llu", static_cast<unsigned long long>(info.spheres));
   if (info.spheres > 0)
@@ -172,7 +172,7 @@ std::string info_text(const SceneInfo& info) {
       if (!required && !f.note.empty()) out += ')';
       first = false;
     }
-    out += first ? " nothing\n" : "\n";
+    out += first ? " none\n" : "\n";
   }
   return out;
 }

@@ -13,35 +13,35 @@
 
 namespace orrery::app {
 
-/// One thing that a scene may ask of the renderer.
+/// A renderer feature, and whether the scene requires it.
 struct Feature {
   std::string name;  ///< "thin lens"
   bool required;
-  std::string note;                  ///< what requires it, or what is not computed without it
-  std::optional<double> saves = {};  ///< of the time, by leaving it out; where it was measured
+  std::string note;                  ///< what requires it, or what is skipped without it
+  std::optional<double> saves = {};  ///< fraction of the time that omitting it saves, if measured
 };
 
-/// A data file of a scene.
+/// A points file of a scene.
 struct PointsInfo {
-  std::string file;  ///< as the scene names it, with the frame's number
+  std::string file;  ///< file name as in the scene, with the frame number
   std::uint64_t spheres = 0;
-  std::vector<std::string> unused;  ///< properties of its vertices that nothing uses
+  std::vector<std::string> unused;  ///< vertex properties that are not used
 };
 
-/// What a scene is, before it is rendered.
+/// Properties of a scene that are known before rendering.
 struct SceneInfo {
   std::string scene_hash;
   int frame = format::kFirstFrame;
   int width = 0, height = 0, samples = 0, max_depth = 0;
   std::uint64_t spheres = 0;
-  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; mean something where spheres > 0
+  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; valid if spheres > 0
   double smallest_radius = 0, largest_radius = 0;
-  std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< compiled materials by type
+  std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< number of compiled materials by type
   std::vector<PointsInfo> points;
-  std::vector<std::string> layers, available_layers;  ///< requested in [output], and all that the scene can have
+  std::vector<std::string> layers, available_layers;  ///< layers requested in [output], and all that the scene supports
   std::vector<Feature> features;
   std::string precision, accelerator, isa;
-  std::string traversal;  ///< how rays will go through the hierarchy, as far as that is known before a render
+  std::string traversal;  ///< BVH traversal, as far as it is known before rendering
   job::MemoryEstimate memory;
   struct Setting {
     std::string key, value, origin;
@@ -50,21 +50,21 @@ struct SceneInfo {
   std::vector<base::Diagnostic> warnings;
 };
 
-/// Loads a scene and finds out what it requires; renders nothing.
+/// Loads a scene and determines its properties without rendering.
 ///
 /// Errors     as load_scene
 SceneInfo scene_info(const job::SceneRequest& request);
 
-/// Measures what is saved by leaving out what this scene does not ask for, as far as the kernel has it as a feature.
+/// Measures the time saved by omitting the kernel features that the scene does not require, and sets Feature::saves.
 ///
 /// Errors     as bench_features
 void measure_savings(const job::SceneRequest& request, SceneInfo& info);
 
-/// The same as text for people.
+/// The properties as text.
 std::string info_text(const SceneInfo& info);
-/// As JSON, "orrery.info/1"; without spheres, bounds and radius are null.
+/// The properties as JSON, schema "orrery.info/1"; bounds and radius are null without spheres.
 std::string info_json(const SceneInfo& info);
-/// Key, value and origin of each setting, in columns.
+/// Key, value and origin of every setting, in columns.
 std::string settings_text(const SceneInfo& info);
 
 }  // namespace orrery::app

@@ -11,13 +11,13 @@
 namespace orrery::app {
 namespace {
 
-/// A hit point that is off by this share of its sphere's radius can be seen in a close-up.
+/// Hit point error, relative to the sphere's radius, that is visible in a close-up.
 constexpr double kVisible = 1e-3;
 
 struct Proportions {
-  double smallest = std::numeric_limits<double>::infinity();  ///< radius, scene units
-  double farthest = 0;    ///< camera to a sphere's centre, in radii of that sphere: the worst of all
-  double coordinate = 0;  ///< largest absolute coordinate of a centre or the camera, in radii of the smallest sphere
+  double smallest = std::numeric_limits<double>::infinity();  ///< minimum radius, scene units
+  double farthest = 0;    ///< maximum distance from the camera to a sphere's centre, in radii of that sphere
+  double coordinate = 0;  ///< maximum absolute coordinate of a centre or the camera, in radii of the smallest sphere
 };
 
 Proportions proportions_of(const compile::CompiledScene& compiled) {
@@ -49,25 +49,25 @@ std::vector<std::string> precision_advice(const compile::CompiledScene& compiled
   const Proportions p = proportions_of(compiled);
   std::vector<std::string> advice;
   if (compiled.precision == compile::Precision::kFast) {
-    // Origins and centres are rounded to floats before they are subtracted.
+    // Ray origins and centres are rounded to float before the subtraction.
     const double error = 0x1p-23 * p.coordinate;
     if (error > kVisible)
       advice.push_back(
-          text("precision fast: hits on the smallest sphere (radius %g) are off by about %.1g of its radius, since "
-               "coordinates reach %.1g radii; exact is not",
+          text("precision fast: hit points on the smallest sphere (radius %g) have an error of about %.1g of its "
+               "radius, since coordinates reach %.1g radii; use exact",
                p.smallest, error, p.coordinate));
     return advice;
   }
-  // The quadratic squares the distance and takes the radius from it: the ratio's square eats the digits.
+  // The quadratic subtracts the squared radius from the squared distance: cancellation grows with their ratio.
   const double error = 0x1p-52 * p.farthest * p.farthest;
   if (error > kVisible)
     advice.push_back(
-        text("precision book: a sphere is %.1g radii from the camera; the quadratic's discriminant is off by about "
-             "%.1g of its largest value there, so hits are lost and invented; exact does neither",
+        text("precision book: a sphere is %.1g radii from the camera; the error of the quadratic's discriminant is "
+             "about %.1g of its maximum there, so hits are missed or invented; use exact",
              p.farthest, error));
   if (p.smallest < 20 * kernel::kBookShortestDistance)
     advice.push_back(
-        text("precision book: radius %g is near t_min, %g: light leaks where spheres touch; exact has no t_min",
+        text("precision book: radius %g is close to t_min %g, so light leaks where spheres touch; use exact",
              p.smallest, kernel::kBookShortestDistance));
   return advice;
 }

@@ -8,9 +8,9 @@
 
 namespace orrery::app {
 
-/// Where the chosen precision is not good enough for the scene's proportions: what will be wrong, and by how much.
+/// Warnings about visible errors of the chosen precision, from the scene's ratios of distance and radius.
 ///
-/// Result     a sentence each; empty for precision exact
+/// Result     one sentence per error with its size; empty for precision exact
 /// Precision  orders of magnitude, from the error terms of docs/numerics.md
 std::vector<std::string> precision_advice(const compile::CompiledScene& compiled);
 

@@ -14,21 +14,20 @@ namespace {
 
 namespace ocio = OCIO_NAMESPACE;
 
-/// Light that the shaper tells apart: from black on in even stops around mid grey, so that highlights keep their
-/// colour.
+/// Range of the shaper: stops below and above mid grey, evenly spaced so that highlights keep their colour.
 constexpr double kMidGrey = 0.18;
 constexpr double kStopsBelow = 7, kStopsAbove = 7;
 constexpr int kShaperSize = 65536;
 
-/// What stands at the share `x` of the cube's edge. Near black it is linear, so that 0 is 0.
+/// The radiance at position `x` (0..1) along an edge of the cube. Linear near black, so that 0 maps to 0.
 double light_at(double x) {
   const double darkest = std::exp2(-kStopsBelow), brightest = std::exp2(kStopsAbove);
-  // a (b^x - 1) reaches from 0 to `brightest` and begins as steep as `darkest` a stop would have it.
+  // a (b^x - 1) rises from 0 to `brightest`. At 0 its slope is that of a curve with `darkest` per stop.
   const double base = brightest / darkest;
   return kMidGrey * darkest * (std::pow(base, x) - 1) * brightest / (brightest - darkest);
 }
 
-/// The share of the cube's edge where light stands; the inverse of light_at.
+/// The position of a radiance along an edge of the cube; the inverse of light_at.
 double place_of(double light) {
   const double darkest = std::exp2(-kStopsBelow), brightest = std::exp2(kStopsAbove);
   const double scaled = light * (brightest - darkest) / (kMidGrey * darkest * brightest);
@@ -54,12 +53,12 @@ std::string title(const View& view, const Settings& settings) {
   return settings.working_space + " to " + view.choice.display + ", " + view.choice.view;
 }
 
-/// A view as tables: light times `scale` goes through the shaper into the cube.
+/// A view as LUTs: scale, one-dimensional shaper, cube.
 struct Tables {
   double scale;
   std::vector<double> shaper;
   int size;                 ///< points along each edge of the cube
-  std::vector<float> cube;  ///< R G B, red changes first
+  std::vector<float> cube;  ///< R G B, red varies fastest
 };
 
 Tables tabulated(const View& view, const Settings& settings, int size) {
@@ -76,7 +75,7 @@ Tables tabulated(const View& view, const Settings& settings, int size) {
   return out;
 }
 
-/// The steps as they are; where a step has no words in the format, as tables.
+/// The transforms of a view including the exposure.
 ocio::GroupTransformRcPtr steps(const View& view, const Settings& settings) {
   auto group = view.transform->getOptimizedProcessor(ocio::OPTIMIZATION_LOSSLESS)->createGroupTransform();
   const double gain = std::exp2(settings.stops());

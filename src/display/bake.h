@@ -7,18 +7,18 @@
 
 namespace orrery::display {
 
-/// Points along each edge of a baked cube: 65 is what most programs take, 33 what monitors do.
+/// Points along each edge of a baked cube. Most programs accept 65, monitors 33.
 inline constexpr int kDefaultCubeSize = 65;
 
-/// A display transform with exposure, look and view as a table for other programs: the text of a Resolve .cube file. A
-/// shaper of one dimension takes light from 0 to 2^kBakedStops times that of mid grey, logarithmically, to the cube.
+/// Bakes a display transform (exposure, look and view) to the text of a Resolve .cube file. A one-dimensional shaper
+/// maps radiance from 0 to 7 stops above mid grey logarithmically to the cube.
 ///
-/// Precision  test DisplayBake.ACubeDoesWhatTheViewDoes
+/// Precision  test DisplayBake.ACubeMatchesTheView
 /// Errors     as choose
 std::string bake_cube(const Settings& settings, int size);
 
-/// The same as the text of a Common LUT Format file: OCIO's own steps, without any loss, where the format has words for
-/// all of them; tables as in bake_cube where it lacks one, as for the ACES views.
+/// The same as the text of a Common LUT Format file. The transforms are stored exactly if the format supports all of
+/// them; otherwise, as for the ACES views, LUTs as in bake_cube().
 ///
 /// Errors     as choose
 std::string bake_clf(const Settings& settings, int size);

@@ -12,7 +12,7 @@ namespace {
 
 namespace ocio = OCIO_NAMESPACE;
 
-/// A space, and what it is called: here, and in the configs of the ACES project from the first to the last.
+/// A space with its names in orrery's config and in all generations of the ACES configs.
 struct Entry {
   Names names;
   KnownSpace space;
@@ -61,7 +61,7 @@ std::string find_scene_linear(const Config& config, const std::string& name) {
   const std::string encoding = space->getEncoding();
   if (space->isData() || (!encoding.empty() && encoding != "scene-linear"))
     throw base::Error(base::ErrorKind::kUsage, "colour space `" + name + "` of the OCIO config (" + config.source +
-                                                   ") is not scene-linear, so light cannot be computed in it");
+                                                   ") is not scene-linear; rendering needs a scene-linear space");
   return found;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 namespace ocio = OCIO_NAMESPACE;
 
-/// Collects what OCIO would print while this lives.
+/// Collects OCIO's log messages during its lifetime.
 class LogCapture {
  public:
   explicit LogCapture(std::vector<std::string>& lines) : lock_(mutex()) {
@@ -31,13 +31,13 @@ class LogCapture {
 
  private:
   static std::mutex& mutex() {
-    static std::mutex one;  // OCIO has one logging function a process
+    static std::mutex one;  // OCIO has one logging function per process
     return one;
   }
   std::lock_guard<std::mutex> lock_;
 };
 
-/// Where newer versions of OCIO keep configs of their own: no file, the name says which.
+/// Whether a name denotes a config built into newer versions of OCIO, which is not a file.
 bool is_library_config(const std::string& name) { return name.rfind("ocio://", 0) == 0; }
 
 ocio::ConstConfigRcPtr load(const std::string& file) {
@@ -55,7 +55,7 @@ ocio::ConstConfigRcPtr load(const std::string& file) {
   }
 }
 
-/// The config of the environment; empty: none.
+/// The value of $OCIO; empty if unset.
 std::string config_of_environment() {
   const char* const name = std::getenv("OCIO");
   return name != nullptr ? name : "";

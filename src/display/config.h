@@ -11,14 +11,14 @@ namespace orrery::display {
 /// An OCIO config and where it came from.
 struct Config {
   OCIO_NAMESPACE::ConstConfigRcPtr config;
-  std::string source;                 ///< "built-in", or the config's file
-  std::vector<std::string> warnings;  ///< what OCIO had to say about it and would have printed
+  std::string source;                 ///< "built-in", or the config file
+  std::vector<std::string> warnings;  ///< OCIO's log messages while loading
 };
 
-/// Loads a config: the file, else $OCIO, else the built-in one. OCIO's own fallback, a config without any display but
-/// a message on the console, is never reached.
+/// Loads a config: the file, else $OCIO, else the built-in one. Never uses OCIO's own fallback, a config without
+/// displays.
 ///
-/// Domain     an empty file or an empty $OCIO counts as none
+/// Domain     an empty `file` or $OCIO counts as unset
 /// Errors     base::Error: kMissingInput, kBadData with OCIO's reason
 Config load_config(const std::string& file);
 

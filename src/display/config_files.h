@@ -7,7 +7,7 @@
 
 namespace orrery::display {
 
-/// The files that load_config may open: the named config and that of $OCIO, where these are files.
+/// The files that load_config() may open: the given config and that of $OCIO, if these are files.
 std::vector<std::filesystem::path> config_files(const std::string& config);
 
 }  // namespace orrery::display

@@ -13,30 +13,30 @@ namespace {
 
 namespace ocio = OCIO_NAMESPACE;
 
-/// Pixels transformed at a time: they stay in the second-level cache, and a large picture needs no second copy.
+/// Pixels transformed at a time: they fit into the L2 cache, and large images are not copied as a whole.
 constexpr std::size_t kPixelsAtATime = std::size_t{1} << 14;
 
-/// More stops than this show every half as black or white; the factor stays a number that a float holds.
+/// Limit of the exposure: beyond it every half is black or white. Keeps the gain within the range of float.
 constexpr double kMaxStops = 120;
 
 const std::vector<float>& plane(const film::Picture& picture, const char* name) {
   const film::Plane* found = picture.find(name);
-  if (found == nullptr) throw base::Error(base::ErrorKind::kBadData, std::string("the picture has no channel ") + name);
+  if (found == nullptr) throw base::Error(base::ErrorKind::kBadData, std::string("the image has no channel ") + name);
   if (found->values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))
-    throw base::Error(base::ErrorKind::kInternal, std::string("plane ") + name + " is not of the picture's size");
+    throw base::Error(base::ErrorKind::kInternal, std::string("plane ") + name + " does not have the image's size");
   return found->values;
 }
 
-/// A view's curves are made for halves: beyond them products overflow, and infinity less infinity is no colour.
+/// Applies the gain and clamps to the range of half, since beyond it a view's curves can overflow to NaN.
 float fit(float v, float gain) {
   if (!std::isfinite(v)) return 0;
   return std::clamp(v * gain, -film::kLargestHalf, film::kLargestHalf);
 }
 
-/// The light of what covers a pixel in part; none where nothing covers it.
+/// Divides a premultiplied value by alpha; 0 if alpha is 0.
 float unmultiplied(float v, float alpha) { return alpha > 0 ? v / alpha : 0.0f; }
 
-/// Evenly spread over -0.5 .. 0.5; consecutive numbers look unrelated.
+/// Dither noise: a hash of `number`, uniform in -0.5 .. 0.5.
 double noise(std::uint64_t number) {
   std::uint64_t x = number + 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93u;
@@ -56,7 +56,7 @@ Choice choose(const Settings& settings) { return find_view(settings).choice; }
 
 film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither,
                              Alpha alpha) {
-  if (bits != 8 && bits != 16) throw base::Error(base::ErrorKind::kInternal, "a developed picture has 8 or 16 bits");
+  if (bits != 8 && bits != 16) throw base::Error(base::ErrorKind::kInternal, "a developed image has 8 or 16 bits");
   const std::vector<float>* const planes[3] = {&plane(picture, "R"), &plane(picture, "G"), &plane(picture, "B")};
   const View view = find_view(settings);
   const std::size_t pixels = planes[0]->size();

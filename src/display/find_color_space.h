@@ -7,13 +7,13 @@
 
 namespace orrery::display {
 
-/// The config's own name of a colour space: by its name, an alias or a role; and of the spaces that orrery knows, by
-/// what other configs call them.
+/// Resolves a colour space given by name, alias or role to the config's canonical name. Spaces that orrery knows are
+/// also found by the names that other configs use for them.
 ///
-/// Errors     base::Error(kUsage) with all that was tried, and near names
+/// Errors     base::Error(kUsage) with all names tried, and similar names
 std::string find_color_space(const Config& config, const std::string& name);
 
-/// The same of a space in which light can be added up: not of data, of a camera's logarithm or of a display.
+/// The same for a scene-linear space; data, log and display spaces are refused.
 ///
 /// Errors     as find_color_space; base::Error(kUsage) for a space that is not scene-linear
 std::string find_scene_linear(const Config& config, const std::string& name);

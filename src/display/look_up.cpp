@@ -9,7 +9,7 @@
 namespace orrery::display {
 namespace {
 
-/// What `find` cannot find becomes a fault; false then.
+/// Runs `find`; stores its error as a fault and returns false if it throws.
 template <class Find>
 bool found(LookUp& out, Name name, Find find) {
   try {
@@ -35,7 +35,7 @@ LookUp look_up(const Settings& settings, const std::string& space) {
     found(out, Name::kView, [&] { choose_view(config, settings, choice); });
   found(out, Name::kLook, [&] { check_look(config, settings); });
   if (!out.faults.empty()) return out;
-  View view;  // the transform itself may name a file that is missing
+  View view;  // building the transform fails if a LUT file is missing
   if (found(out, Name::kConfig, [&] { view = find_view(config, settings); })) out.choice = std::move(view.choice);
   return out;
 }

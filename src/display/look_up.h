@@ -10,24 +10,25 @@
 
 namespace orrery::display {
 
-/// What a scene, an option or the environment gives a name of.
+/// The settings that refer to the OCIO config by name.
 enum class Name { kConfig, kSpace, kWorkingSpace, kDisplay, kView, kLook };
 
+/// A setting that could not be resolved, and why.
 struct NameFault {
   Name name;
   base::Error error;
 };
 
+/// Result of look_up().
 struct LookUp {
   std::vector<NameFault> faults;
-  std::optional<Choice> choice;  ///< where there is no fault
+  std::optional<Choice> choice;  ///< set if there are no faults
 };
 
-/// Looks up all names in a config, where choose() ends at the first that it lacks.
+/// Resolves the settings as choose() does, but reports all unknown names instead of only the first.
 ///
-/// `space` is that of the scene's colours. It and the working space must be scene-linear.
-///
-/// Errors     of the config and its names are faults; base::Error(kUsage) for an exposure that is not finite
+/// Domain     `space` is the space of the scene's colours; it and the working space must be scene-linear
+/// Errors     base::Error(kUsage) for an exposure that is not finite; errors of the config and its names become faults
 LookUp look_up(const Settings& settings, const std::string& space);
 
 }  // namespace orrery::display

@@ -12,7 +12,7 @@ namespace orrery::display {
 
 using Names = std::vector<std::string>;
 
-/// Names handed out one by one by OCIO.
+/// Collects names from an OCIO getter that takes an index.
 template <class Get>
 Names names(int count, Get get) {
   Names out;
@@ -20,7 +20,7 @@ Names names(int count, Get get) {
   return out;
 }
 
-/// Refuses a name that a config does not have, and tells those that it has.
+/// Throws the error for a name that is not in a config, with the known names.
 [[noreturn]] inline void unknown(const Config& config, const std::string& what, const std::string& name,
                                  const Names& known, const std::string& tried = {}) {
   const std::string near = base::did_you_mean(name, known);

@@ -19,14 +19,13 @@ void require(const Config& config, const std::string& what, const std::string& n
   if (std::find(known.begin(), known.end(), name) == known.end()) unknown(config, what, name, known);
 }
 
-/// The colour space that the view ends in.
+/// The output colour space of the view.
 std::string final_space(const ocio::Config& config, const Choice& choice) {
   const std::string space = config.getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str());
   return space == "<USE_DISPLAY_NAME>" ? choice.display : space;
 }
 
-/// Whether a space is for displays of high dynamic range: by what the config says of it, and by name where it says
-/// nothing.
+/// Whether a space is for high dynamic range displays, by its encoding in the config, or else by its name.
 bool is_hdr(const ocio::Config& config, const std::string& space) {
   const ocio::ConstColorSpaceRcPtr found = config.getColorSpace(space.c_str());
   const std::string encoding = found ? found->getEncoding() : "";
@@ -87,7 +86,7 @@ View find_view(const Config& source, const Settings& settings) {
     check_look(source, settings);
     out.choice.working_space = find_color_space(source, settings.working_space);
     out.transform = transform(*source.config, settings, out.choice);
-    // Lossless: the default trades accuracy for tables.
+    // Lossless, since the default optimization replaces curves by LUTs.
     const ocio::ConstProcessorMetadataRcPtr metadata = out.transform->getProcessorMetadata();
     for (int i = 0; i < metadata->getNumFiles(); ++i) out.choice.files.emplace_back(metadata->getFile(i));
     out.processor = out.transform->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
@@ -96,7 +95,7 @@ View find_view(const Config& source, const Settings& settings) {
     out.choice.is_hdr = is_hdr(*source.config, space);
   } catch (const ocio::ExceptionMissingFile& error) {
     throw base::Error(base::ErrorKind::kMissingInput,
-                      "the OCIO config " + source.source + " names a file that is not there: " + error.what());
+                      "the OCIO config " + source.source + " refers to a missing file: " + error.what());
   } catch (const ocio::Exception& error) {
     throw base::Error(base::ErrorKind::kBadData,
                       "the OCIO config " + source.source + " cannot be used: " + error.what());

@@ -8,29 +8,33 @@
 
 namespace orrery::display {
 
-/// A display's view, ready to be applied to scene-linear pixels.
+/// A view of a display, ready to be applied to scene-linear pixels.
 struct View {
   Choice choice;
-  OCIO_NAMESPACE::ConstCPUProcessorRcPtr processor;  ///< look and view; exposure is not in it
-  OCIO_NAMESPACE::ConstProcessorRcPtr transform;     ///< the same, as OCIO's own steps
-  bool is_srgb = false;                              ///< what comes out is encoded for an sRGB display
+  OCIO_NAMESPACE::ConstCPUProcessorRcPtr processor;  ///< look and view, without exposure
+  OCIO_NAMESPACE::ConstProcessorRcPtr transform;     ///< the same as OCIO transforms
+  bool is_srgb = false;                              ///< the output is encoded for an sRGB display
 };
 
-/// Looks everything up in the config that `settings` come to.
+/// Loads the config and resolves the settings.
 ///
 /// Errors     as choose
 View find_view(const Settings& settings);
 
-/// The same in a config that is loaded already.
+/// The same with a config that is already loaded.
 View find_view(const Config& config, const Settings& settings);
 
-// Its steps. Errors: base::Error(kUsage) for a name that the config lacks.
+// The steps of find_view(). Each throws base::Error(kUsage) for a name that is not in the config.
 
+/// Sets the display: that of the settings, or the config's default.
 void choose_display(const Config& config, const Settings& settings, Choice& choice);
 
-/// Domain     the display is chosen
+/// Sets the view: that of the settings, or the display's default.
+///
+/// Domain     the display is set
 void choose_view(const Config& config, const Settings& settings, Choice& choice);
 
+/// Checks that the config has the look.
 void check_look(const Config& config, const Settings& settings);
 
 }  // namespace orrery::display

@@ -5,14 +5,14 @@
 
 namespace orrery::film {
 
-/// What one sphere, or the background, gives to a pixel: light and coverage from `front` to `back`.
+/// Radiance and coverage of one sphere, or of the background, in a pixel.
 struct DeepSample {
-  float front, back;  ///< distance along the view, scene units
+  float front, back;  ///< range along the view axis, scene units
   float rgb[3];       ///< premultiplied by alpha
-  float alpha;        ///< of this sample alone: what stands behind it is seen through 1 - alpha
+  float alpha;        ///< opacity of this sample alone
 };
 
-/// A picture whose pixels hold samples in depth, nearest first. Laid over each other they are the flat picture.
+/// A deep image: each pixel holds its samples, nearest first. Compositing them gives the flat image.
 struct DeepPicture {
   int width = 0, height = 0;                    ///< px
   std::vector<std::vector<DeepSample>> pixels;  ///< rows from the top

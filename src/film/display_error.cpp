@@ -9,7 +9,7 @@ HalvesEstimate compare_halves(const kernel::PixelSum& a, const kernel::PixelSum&
   for (int c = 0; c < 3; ++c) {
     const double x = kernel::from_fixed_point(a.rgb[c]) / static_cast<double>(a.weight);
     const double y = kernel::from_fixed_point(b.rgb[c]) / static_cast<double>(b.weight);
-    out.variance += (x - y) * (x - y) / 4 / 3;  // their mean is off by half as much as they differ
+    out.variance += (x - y) * (x - y) / 4 / 3;  // the mean's expected error is half the difference of the halves
     out.light += (x + y) / 2 / 3;
   }
   return out;

@@ -5,25 +5,26 @@
 
 namespace orrery::film {
 
-/// Light below this, a sixty-fourth of display white, counts as this much where errors are relative: an eighth of white
-/// on a display, below which eyes forgive more.
+/// Lower bound of the radiance in the denominator of relative errors: 1/64 of display white, which a display shows as
+/// 1/8 of white. Errors are less visible below it.
 inline constexpr double kDarkestLight = 1.0 / 64;
 
-/// The squared error of a pixel as a display shows it, relative to its own brightness there.
+/// The squared relative error of a pixel's display value.
 ///
-/// A display value goes about as the square root of light, so its relative error is half of that of light. Colours are
-/// taken together: the mean square of the three channels' errors, by the square of the mean of their light.
+/// A display value is roughly the square root of radiance, so its relative error is half that of radiance. The three
+/// channels are combined: the mean of their squared errors over the square of their mean radiance.
 ///
-/// Domain     `squares` is the sum of the three channels' squared errors of light, `light` the sum of their light
+/// Domain     `squares` is the sum of the three channels' squared radiance errors, `light` the sum of their radiance
 inline double display_error_squared(double squares, double light) noexcept {
   const double mean = light / 3 > kDarkestLight ? light / 3 : kDarkestLight;
   return squares / 3 / (4 * mean * mean);
 }
 
-/// What two independent halves of a pixel's samples tell of their mean; means of the three channels.
+/// Mean radiance of a pixel and its variance, estimated from two independent halves of its samples. Both values are
+/// means over the three channels.
 struct HalvesEstimate {
   double light = 0;
-  double variance = 0;  ///< its expected squared error; 0 where a half has no samples
+  double variance = 0;  ///< expected squared error of `light`; 0 if a half has no samples
 };
 
 HalvesEstimate compare_halves(const kernel::PixelSum& a, const kernel::PixelSum& b) noexcept;

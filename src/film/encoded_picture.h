@@ -6,14 +6,14 @@
 
 namespace orrery::film {
 
-/// A picture for a display: channels of whole numbers, as a viewer of PNG or JPEG expects.
+/// A display-encoded image with integer channels, ready for PNG, TIFF, JPEG or PPM.
 struct EncodedPicture {
   int width = 0;                      ///< px
   int height = 0;                     ///< px
   int bits = 8;                       ///< 8 or 16; the largest value is 2^bits - 1
-  bool is_srgb = false;               ///< encoded for the display that files without a profile are taken to be for
-  std::vector<std::uint16_t> values;  ///< width * height * channels, rows from the top, R G B, or R G B A
-  int channels = 3;                   ///< 4: with alpha, which is not multiplied into R G B
+  bool is_srgb = false;               ///< the values are sRGB codes
+  std::vector<std::uint16_t> values;  ///< width * height * channels, row by row from the top, R G B or R G B A
+  int channels = 3;                   ///< 3, or 4 with straight (unpremultiplied) alpha
 };
 
 }  // namespace orrery::film

@@ -9,7 +9,7 @@
 
 namespace orrery::film {
 
-/// The sums of all samples of a picture, exact, in whatever order they came.
+/// Exact sample sums of all pixels, independent of the order of addition.
 class Film {
  public:
   Film(int width_px, int height_px);
@@ -18,17 +18,17 @@ class Film {
   int height() const noexcept { return height_; }
   std::size_t pixel_count() const noexcept { return sums_.size(); }
 
-  /// The sum of a pixel; the one to the right is next, the one below is width() further on.
+  /// Pointer to the sum of a pixel. Rows are contiguous and width() apart.
   kernel::PixelSum* at(int x, int y) noexcept;
 
-  /// All of them, row by row.
+  /// The sums of all pixels, row by row from the top.
   const std::vector<kernel::PixelSum>& sums() const noexcept { return sums_; }
   std::vector<kernel::PixelSum>& sums() noexcept { return sums_; }
 
   /// Adds the samples of another film of the same size.
   void add(const Film& other);
 
-  /// The mean of every pixel's samples as planes R, G, B, and A = 1; 0 where there is no sample.
+  /// The mean of every pixel's samples as planes R, G, B, and A = 1. Pixels without samples are black.
   film::Picture picture() const;
 
  private:

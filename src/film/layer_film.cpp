@@ -16,8 +16,10 @@ double mean(Int128 sum, std::int64_t weight) {
   return weight > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(weight) : 0.0;
 }
 
-/// The groups of light as floats that add up to the very beauty, in single precision and in any order: each is a
-/// multiple of the beauty's last bit, which no sum of them exceeds. (Negative lobes of a filter may exceed it.)
+/// The light groups of a pixel as floats whose single-precision sum equals the beauty bit for bit in any order.
+///
+/// Each group is rounded to a multiple of the beauty's last bit, and no partial sum exceeds the beauty, so that all
+/// sums are exact. With a filter that has negative lobes a partial sum can exceed it.
 struct Lights {
   float rgb[kLightGroups][3] = {};
 
@@ -39,20 +41,20 @@ struct Lights {
   }
 };
 
-/// A spread below this part of the light squared is rounding: the beauty's floats do not hold it either.
+/// A relative spread below this is rounding error; the beauty's floats cannot represent it either.
 constexpr double kLeastSpread = 0x1p-48;
 
-/// Of one path: the variance of the light of `n` of them, by their sums of light and of its squares.
+/// The sample variance of the radiance of `n` paths, from the sum and the sum of squares.
 double variance_of_one(Int128 sum, Int128 squares, double n) {
   const double light = kernel::from_fixed_point(sum), of_squares = static_cast<double>(squares) * kSquareUnit;
   const double spread = of_squares - light * light / n;
   return spread > kLeastSpread * of_squares ? spread / (n - 1) : 0;
 }
 
-/// Of the mean of the light: the squared standard error of the pixel.
+/// The squared standard error of the pixel's mean radiance.
 ///
-/// How many paths have a negative weight is no matter of chance (kernel/pixel_filter.h), so the two signs are two
-/// samples, each with a variance of its own. One path alone tells none; it counts as those of the other sign.
+/// The number of paths with negative weight is deterministic (kernel/pixel_filter.h), so the paths of each sign are a
+/// separate stratum with its own variance. A single negative path has no sample variance and uses the positive one.
 float variance(const LayerPixel& p, int c, Int128 sum) {
   const std::int64_t negative = (p.paths - p.lit) / 2, positive = p.paths - negative;
   if (positive < 2 || p.lit <= 0) return 0;
@@ -63,13 +65,13 @@ float variance(const LayerPixel& p, int c, Int128 sum) {
   return static_cast<float>((n * of_positive + m * of_negative) / (w * w));
 }
 
-/// A thing and its share of a pixel.
+/// A Cryptomatte id and its weight in a pixel.
 struct RankedCoverage {
   std::uint32_t id;
   std::int64_t weight;
 };
 
-/// The things of a matte, the largest first; of two as large that with the smaller id.
+/// The ids of a matte in a pixel by descending coverage; ties by ascending id.
 std::vector<RankedCoverage> ranked(const Matte& matte, const LayerPixel& p) {
   std::vector<RankedCoverage> shares;
   for (const SphereCoverage& s : p.shares) {
@@ -97,8 +99,7 @@ float as_float(std::uint32_t bits) {
   return f;
 }
 
-/// Calls `f(layer, channel, kind, value)` for every channel that was asked for, in the order in which they stand in
-/// files.
+/// Calls `f(layer, channel, kind, value)` for every requested channel, in file order.
 template <class F>
 void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::SceneView& view, F f) {
   const bool hit = p.sphere != kernel::kNoSphere;
@@ -136,7 +137,7 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Scen
     });
   }
   if (r.samples) f("samples", 'X', kData, static_cast<float>(p.paths));
-  // Counted from 1, so that 0 is nothing.
+  // Ids start at 1; 0 means no hit.
   if (r.object_id) f("object_id", 'X', kData, hit ? static_cast<float>(p.sphere) + 1 : 0.0F);
   if (r.material_id)
     f("material_id", 'X', kData, hit ? static_cast<float>(r.material_numbers[view.sphere_materials[p.sphere]]) : 0.0F);
@@ -144,7 +145,7 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Scen
   if (r.guide_normal) means("denoise.normal", "XYZ", kVector, p.guide_normal);
   for (const Matte& matte : r.mattes) {
     const std::vector<RankedCoverage> shares = ranked(matte, p);
-    // Two ranks in a layer of four channels: id, share, id, share.
+    // A layer of four channels holds two ranks: id, coverage, id, coverage.
     for (int rank = 0; rank < r.matte_ranks + r.matte_ranks % 2; ++rank) {
       const char name[] = {static_cast<char>('0' + rank / 20), static_cast<char>('0' + rank / 2 % 10), 0};
       const bool there = rank < r.matte_ranks && static_cast<std::size_t>(rank) < shares.size() && p.weight > 0;
@@ -156,14 +157,14 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Scen
   }
 }
 
-/// The shares of a pixel as samples that hide each other in the way in which the paths were shared out.
+/// The deep samples of a pixel, nearest first, with alphas that composite to each sphere's coverage.
 std::vector<DeepSample> deep_samples(const LayerPixel& p, bool background_visible) {
   std::vector<DeepSample> out;
   if (p.weight <= 0) return out;
   std::vector<SphereCoverage> shares = p.shares;
   std::stable_sort(shares.begin(), shares.end(),
                    [](const SphereCoverage& a, const SphereCoverage& b) { return a.front < b.front; });
-  std::int64_t left = p.weight;  // of the paths, those that went past all samples so far
+  std::int64_t left = p.weight;  // weight of the paths that no sample so far covers
   for (const SphereCoverage& share : shares) {
     if (left <= 0 || share.weight <= 0 || (share.sphere == kernel::kNoSphere && !background_visible)) continue;
     const auto seen = static_cast<double>(left);

@@ -12,24 +12,24 @@
 
 namespace orrery::film {
 
-/// The planes that a request comes to, in their order, without values.
+/// The planes of the requested layers in file order, without values.
 std::vector<Plane> planes_of(const LayerRequest& request);
 
-/// The layers of a picture, pixel by pixel, as they become known.
+/// The layer planes of an image, filled pixel by pixel.
 class LayerFilm {
  public:
   /// Domain     request and view outlive this
   LayerFilm(const LayerRequest& request, const kernel::SceneView& view, int width_px, int height_px);
 
-  /// Writes down what the paths of a pixel came to. Different pixels may be set at the same time.
+  /// Sets all layers of a pixel from its sums. Threads may set different pixels concurrently.
   ///
-  /// `pixel` counts from the upper left one, row by row.
+  /// Domain     `pixel` is an index into the rows from the top left
   void set(std::size_t pixel, const LayerPixel& sums);
 
-  /// Appends the layers to a picture of R, G, B, A; A becomes the coverage where that was asked for.
+  /// Appends the layers to an image of R, G, B, A, and replaces A by the coverage if that was requested.
   void move_to(Picture& picture);
 
-  /// The deep picture, where that was asked for.
+  /// Moves the deep image out; empty unless it was requested.
   DeepPicture take_deep();
 
  private:

@@ -16,7 +16,7 @@ bool is_good(const double (&light)[3]) {
 
 kernel::Int128 square(double v) {
   const double units = std::min(v * v, kLargestSquare) * (1 / kSquareUnit);
-  // In two steps: a double of up to 2^96 does not fit into 64 bits.
+  // Converted in two steps, since values of up to 2^96 do not fit into 64 bits.
   const double high = std::floor(units * 0x1p-48);
   return (static_cast<kernel::Int128>(high) << 48) + static_cast<std::int64_t>(units - high * 0x1p48);
 }
@@ -26,7 +26,7 @@ void add3(kernel::Int128 (&sum)[3], const T& value, std::int64_t weight) {
   for (int k = 0; k < 3; ++k) sum[k] += kernel::to_fixed_point(static_cast<double>(value[k])) * weight;
 }
 
-/// The share of a sphere, which is made if need be.
+/// The coverage entry of a sphere, inserted if there is none.
 SphereCoverage& share_of(std::vector<SphereCoverage>& shares, std::uint32_t sphere) {
   const auto at = std::lower_bound(shares.begin(), shares.end(), sphere,
                                    [](const SphereCoverage& share, std::uint32_t id) { return share.sphere < id; });
@@ -36,14 +36,14 @@ SphereCoverage& share_of(std::vector<SphereCoverage>& shares, std::uint32_t sphe
   return *shares.insert(at, fresh);
 }
 
-/// Where a path's first hit is.
+/// Position of a path's first hit.
 struct Hit {
   double distance;  ///< from the camera, scene units
-  double z;         ///< along the view
-  double exit_z;    ///< where the ray leaves the sphere again
+  double z;         ///< distance along the view axis, scene units
+  double exit_z;    ///< the same of the point where the ray leaves the sphere
 };
 
-/// Place and view of the camera at a time within the shutter.
+/// Origin and viewing direction of the camera at a shutter time.
 void camera_at(const kernel::SceneView& scene, double time, double (&origin)[3], double (&forward)[3]) {
   for (int k = 0; k < 3; ++k) {
     origin[k] = scene.camera.origin[k];
@@ -72,7 +72,7 @@ Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
   length = std::sqrt(length);
   hit.distance = std::sqrt(far);
   hit.z /= length;
-  // The chord's other end; a camera within the sphere meets it where it leaves.
+  // The far end of the chord. From inside the sphere the first hit is the exit.
   hit.exit_z = hit.z + std::max(0.0, -2 * through) * along / length;
   return hit;
 }
@@ -114,7 +114,7 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
   const double center[3] = {s.x, s.y, s.z};
   if (request.normal) {
-    // Whether a ray comes from inside is its own affair: a lens may be on both sides of a surface.
+    // Decided per ray, since the lens can straddle the surface.
     double along = 0;
     for (int k = 0; k < 3; ++k) along += path.direction[k] * path.offset[k];
     const double outward = along > 0 ? -1 / s.radius : 1 / s.radius;

@@ -12,43 +12,43 @@
 
 namespace orrery::film {
 
-/// Paths of a pixel that met one sphere first.
+/// The paths of a pixel whose first hit is a given sphere.
 struct SphereCoverage {
   std::uint32_t sphere = kernel::kNoSphere;
   std::int64_t weight = 0;
-  // What follows is kept for deep pictures only.
+  // The members below are filled for deep images only.
   kernel::Int128 light[3] = {0, 0, 0};
-  double front = std::numeric_limits<double>::infinity();  ///< nearest entry of a path, along the view
-  double back = 0;                                         ///< farthest exit
+  double front = std::numeric_limits<double>::infinity();  ///< nearest entry of a path along the view axis
+  double back = 0;                                         ///< farthest exit of a path along the view axis
 };
 
-/// What the paths of one pixel say about its layers, in whole numbers, so that no order of adding changes a bit.
+/// Layer sums of one pixel. They are integers, so that the order of addition does not change a bit.
 struct LayerPixel {
-  /// Adds a path; light that is no number enters no sum.
+  /// Adds a path. Radiance that is not finite or exceeds kernel::kLargestSample is invalid and left out of all sums.
   void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path,
            std::int64_t weight);
 
-  /// Adds the paths of another part of the same pixel. Of two that met spheres equally near the first stays.
+  /// Adds further paths of the same pixel. If both nearest hits are equally distant, the first is kept.
   void add(const LayerPixel& other);
 
   using Int128 = kernel::Int128;
   Int128 light[kernel::kLightGroups][3] = {};
-  Int128 squares[3] = {};  ///< of the light, in units of kSquareUnit
-  /// Light, without its sign, and squares of the paths whose weight is negative; for the variance only.
+  Int128 squares[3] = {};  ///< sums of squared radiance, in units of kSquareUnit
+  /// Sums of the radiance and of its square over the paths with negative weight; for the variance only.
   Int128 negative_light[3] = {}, negative_squares[3] = {};
   Int128 normal[3] = {}, albedo[3] = {}, guide_albedo[3] = {}, guide_normal[3] = {};
-  std::int64_t weight = 0;   ///< of all paths; 1 each unless the pixel filter has negative lobes
-  std::int64_t lit = 0;      ///< of those whose light is a number
-  std::int64_t paths = 0;    ///< whose light is a number, whatever their weight
-  std::int64_t covered = 0;  ///< of those that met a sphere
-  /// The path that met a sphere nearest to the camera.
+  std::int64_t weight = 0;   ///< total weight; each path has 1 unless the pixel filter has negative lobes
+  std::int64_t lit = 0;      ///< weight of the paths with valid radiance
+  std::int64_t paths = 0;    ///< number of paths with valid radiance
+  std::int64_t covered = 0;  ///< weight of the paths that hit a sphere
+  /// The first hit nearest to the camera: distance, depth along the view axis, position and sphere.
   double depth = std::numeric_limits<double>::infinity(), z = 0;
   double position[3] = {0, 0, 0};
   std::uint32_t sphere = kernel::kNoSphere;
-  std::vector<SphereCoverage> shares;  ///< by ascending sphere, the background last; only for mattes and deep pictures
+  std::vector<SphereCoverage> shares;  ///< by ascending sphere, the background last; only for mattes and deep images
 };
 
-/// Squares above 2^48 are cut to it: a variance that large is told by its light.
+/// Upper bound to which squared radiance is clamped. The radiance itself already reveals a variance that large.
 inline constexpr double kLargestSquare = 0x1p48;
 inline constexpr double kSquareUnit = 0x1p-48;
 

@@ -8,22 +8,22 @@
 
 namespace orrery::film {
 
-/// A Cryptomatte layer: which spheres are one thing, by the hash of its name.
+/// A Cryptomatte layer: maps every sphere to the hash of its object, material or group name.
 struct Matte {
   std::string name;                                                 ///< "CryptoObject"
-  std::function<std::uint32_t(std::uint32_t sphere)> id_of_sphere;  ///< 0: of a sphere that is none of its things
+  std::function<std::uint32_t(std::uint32_t sphere)> id_of_sphere;  ///< 0: the sphere is not in this matte
 };
 
-/// The layers that a picture shall have beside its beauty; docs/output.md says what each holds.
+/// The layers (AOVs) to render in addition to the beauty; docs/output.md defines each.
 struct LayerRequest {
   bool z = false, depth = false, normal = false, position = false, albedo = false;
   bool diffuse = false, specular = false, transmission = false, background = false;
   bool variance = false, samples = false, object_id = false, material_id = false;
   bool guide_albedo = false, guide_normal = false;
-  bool coverage = false;                        ///< A is the share of the pixel that spheres cover, not 1
-  bool deep = false;                            ///< a picture of samples in depth, beside the flat one
-  int matte_ranks = 6;                          ///< things in a pixel that a matte tells apart
-  std::vector<std::uint32_t> material_numbers;  ///< what material_id tells, by the compiled scene's materials
+  bool coverage = false;                        ///< A is the fraction of the pixel that spheres cover, not 1
+  bool deep = false;                            ///< also render a deep image
+  int matte_ranks = 6;                          ///< maximum number of ids per pixel in a matte
+  std::vector<std::uint32_t> material_numbers;  ///< material_id of each material of the compiled scene
   std::vector<Matte> mattes;
 
   bool lights() const { return diffuse || specular || transmission || background; }
@@ -36,7 +36,7 @@ struct LayerRequest {
   }
 };
 
-/// What stands in Z and depth where nothing was hit: beyond every scene, and finite, so that filters survive it.
+/// Z and depth of a pixel without a hit: beyond every scene, and finite so that image filters do not produce NaN.
 inline constexpr float kNothingHit = 1e30f;
 
 }  // namespace orrery::film

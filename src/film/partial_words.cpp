@@ -21,10 +21,10 @@ std::uint64_t bits(std::uint64_t v) { return v; }
 std::uint64_t bits(std::int64_t v) { return static_cast<std::uint64_t>(v); }
 std::uint64_t bits(double v) { return std::bit_cast<std::uint64_t>(v); }
 
-/// What stands before the words of a plane: one word for all pixels, or one for each.
+/// Header word of a plane: kConstant is followed by one word for all pixels, kPlane by one word per pixel.
 constexpr std::uint32_t kConstant = 0, kPlane = 1;
 
-/// Appends numbers as words, the low one first.
+/// Appends numbers as 32-bit words, least significant first.
 class Writer {
  public:
   explicit Writer(std::vector<std::uint32_t>& out) : out_(out) {}
@@ -38,7 +38,7 @@ class Writer {
       for (int w = 0; w < 2; ++w) out_.push_back(static_cast<std::uint32_t>(bits(v) >> 32 * w));
     }
   }
-  /// One number of each of many things: a plane for each of its words.
+  /// Appends one number of every element of `things`, as one plane per word of the number.
   template <class Things, class At>
   void numbers(Things& things, At at) {
     using T = std::remove_reference_t<decltype(at(things[0]))>;
@@ -70,7 +70,7 @@ class Writer {
   std::vector<std::uint32_t>& out_;
 };
 
-/// Takes the same numbers out of words again.
+/// Reads numbers that Writer appended.
 class Reader {
  public:
   explicit Reader(const std::vector<std::uint32_t>& in) : in_(in) {}
@@ -92,7 +92,7 @@ class Reader {
     for (std::size_t w = 0; w < kWords; ++w) {
       std::uint32_t kind = 0;
       number(kind);
-      if (kind > kPlane) throw base::Error(base::ErrorKind::kBadData, "its samples are mixed up");
+      if (kind > kPlane) throw base::Error(base::ErrorKind::kBadData, "its sample data are inconsistent");
       steps[w] = kind == kPlane ? 1 : 0;
       const std::size_t size = kind == kPlane ? things.size() : 1;
       need(size);
@@ -110,7 +110,7 @@ class Reader {
   }
 
   void need(std::size_t words) const {
-    if (in_.size() - at_ < words) throw base::Error(base::ErrorKind::kBadData, "its samples end too early");
+    if (in_.size() - at_ < words) throw base::Error(base::ErrorKind::kBadData, "its sample data are truncated");
   }
 
  private:
@@ -210,7 +210,7 @@ void each_effort(Io& io, EffortType& work) {
 
 const auto itself = [](auto& v) -> auto& { return v; };
 
-/// What all pixels of both kinds hold, in the order of the file; shares are apart, since pixels have some or none.
+/// Reads or writes all per-pixel numbers in file order, except sphere coverage, whose count varies by pixel.
 template <class Io, class P>
 void each_pixel_number(Io& io, P& partial) {
   each_sum(io, partial.film.sums());
@@ -236,7 +236,7 @@ void read_shares(Reader& in, Partial& partial) {
   in.numbers(counts, itself);
   std::size_t total = 0;
   for (const std::uint32_t n : counts) total += n;
-  // Spheres of a pixel differ, so that their plane is full: no memory for what a damaged count promises.
+  // The spheres of a pixel are distinct, so their plane is not constant: a damaged count fails here, before allocation.
   if (total > partial.layers.size()) in.need(total);
   std::vector<SphereCoverage> shares(total);
   each_share_number(in, shares);
@@ -246,7 +246,7 @@ void read_shares(Reader& in, Partial& partial) {
     partial.layers[i].shares.assign(next, end);
     for (auto s = next; s != end; ++s)
       if (s != next && (s - 1)->sphere >= s->sphere)
-        throw base::Error(base::ErrorKind::kBadData, "its spheres are out of order");
+        throw base::Error(base::ErrorKind::kBadData, "its sphere numbers are not in ascending order");
     next = end;
   }
 }
@@ -272,7 +272,7 @@ Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int he
   std::uint32_t format = 0, width = 0, height = 0, flags = 0;
   for (std::uint32_t* v : {&format, &width, &height, &flags}) in.number(*v);
   if (format != kFormat || flags > kAllFlags)
-    throw base::Error(base::ErrorKind::kBadData, "its samples are written in another way than this program knows");
+    throw base::Error(base::ErrorKind::kBadData, "this version of orrery does not know the format of its sample data");
   if (width != static_cast<std::uint32_t>(width_px) || height != static_cast<std::uint32_t>(height_px))
     throw base::Error(base::ErrorKind::kBadData, "it is " + std::to_string(width) + " x " + std::to_string(height) +
                                                      " pixels, not " + std::to_string(width_px) + " x " +

@@ -8,14 +8,14 @@
 
 namespace orrery::film {
 
-/// A partial as 32-bit words, for files: a head, then a plane of each word of each number over all pixels, or
-/// its one value where all pixels have the same.
+/// Serializes a partial render to 32-bit words: a header, then for each word of each per-pixel number a plane over all
+/// pixels, or a single value if all pixels have the same.
 std::vector<std::uint32_t> to_words(const Partial& partial);
 
-/// The same backwards; words after the end are padding.
+/// Deserializes the result of to_words(). Words after the end are ignored as padding.
 ///
-/// Domain     any words; spheres of layers are not compared with a scene
-/// Errors     base::Error(kBadData) where they are no partial of this size
+/// Domain     any words; sphere indices in layers are not checked against a scene
+/// Errors     base::Error(kBadData) if the words are not a partial render of this size
 Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int height_px);
 
 }  // namespace orrery::film

@@ -7,33 +7,33 @@
 
 namespace orrery::film {
 
-/// What the numbers of a plane are good for.
+/// What a plane holds, which decides its storage type and which values are invalid.
 enum class PlaneKind : std::uint8_t {
-  kLight,   ///< colours: half is enough, below 0 is wrong
-  kVector,  ///< half is enough, any sign
-  kData,    ///< distances, ids, counts: every bit counts
+  kLight,   ///< colours: half precision, negative values are invalid
+  kVector,  ///< vectors: half precision, any sign
+  kData,    ///< distances, ids, counts: single precision, stored losslessly
 };
 
-/// One channel of a picture.
+/// One channel of an image.
 struct Plane {
-  std::string name;           ///< as in the EXR header: "R", "G", "B", "A", "variance.R"
-  std::vector<float> values;  ///< width * height, rows from the top, left to right
+  std::string name;           ///< EXR channel name: "R", "G", "B", "A", "variance.R"
+  std::vector<float> values;  ///< width * height, row by row from the top left
   PlaneKind kind = PlaneKind::kLight;
 
-  /// What stands before the last dot of its name; empty for R, G, B, A and Z.
+  /// The layer name: the part of `name` before the last dot; empty for R, G, B, A and Z.
   std::string layer() const { return name.substr(0, name.rfind('.') == std::string::npos ? 0 : name.rfind('.')); }
 };
 
-/// A finished picture: scene-linear planes of one size.
+/// A finished image: scene-linear planes of one size.
 struct Picture {
   int width = 0;   ///< px
   int height = 0;  ///< px
   std::vector<Plane> planes;
-  int x = 0, y = 0;                       ///< px, where its upper left pixel stands within the frame
-  int frame_width = 0, frame_height = 0;  ///< px; 0: the picture is the frame
-  std::string color_interop_id = {};      ///< the space of its light, "lin_rec709_scene"; empty: not told
-  bool is_transparent = false;            ///< A is coverage, also where it is 1 in all pixels
-  double pixel_aspect = 1;                ///< a pixel's width by its height
+  int x = 0, y = 0;                       ///< px, position of the upper left pixel in the frame
+  int frame_width = 0, frame_height = 0;  ///< px; 0: the image is the whole frame
+  std::string color_interop_id = {};      ///< colour space, "lin_rec709_scene"; empty: unknown
+  bool is_transparent = false;            ///< A is coverage, even if it is 1 in all pixels
+  double pixel_aspect = 1;                ///< pixel width / height
 
   const Plane* find(const std::string& name) const {
     for (const Plane& plane : planes)
@@ -45,18 +45,18 @@ struct Picture {
 /// The largest finite half.
 inline constexpr float kLargestHalf = 65504.0f;
 
-/// Values that a display or a file cannot show as they are; counted before any display transform.
+/// Numbers of invalid values, counted before any display transform.
 struct BadValues {
   std::uint64_t nan = 0;
   std::uint64_t infinite = 0;
   std::uint64_t negative = 0;
-  std::uint64_t above_half = 0;  ///< finite but beyond the largest half
+  std::uint64_t above_half = 0;  ///< finite, but larger in magnitude than kLargestHalf
 
   bool any() const { return nan + infinite + negative + above_half > 0; }
   BadValues& operator+=(const BadValues& other);
 };
 
-/// Counts what is not fit to be shown in a plane: of data only what is no finite number, of vectors no sign.
+/// Counts the invalid values of a plane. Data planes are checked for NaN and infinity only; vectors may be negative.
 BadValues count_bad_values(const Plane& plane);
 
 }  // namespace orrery::film

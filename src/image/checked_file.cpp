@@ -10,7 +10,7 @@
 namespace orrery::image {
 namespace {
 
-/// Radiance files come in pieces of a few bytes: a system call for each would cost more than the picture.
+/// Write buffer size. Radiance files are written a few bytes at a time; a system call for each would be too slow.
 constexpr std::size_t kLargestPending = std::size_t{1} << 16;
 
 }  // namespace

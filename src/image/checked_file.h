@@ -9,10 +9,10 @@
 
 namespace orrery::image {
 
-/// The file that OpenImageIO writes into, so that no failed write goes unseen.
+/// An OpenImageIO output proxy that records the first failed write.
 ///
-/// The libraries behind it do not all look at what a write returns, and what they keep in a buffer is lost in silence
-/// when the disk is full at the end. Here every byte passes one place, and the first failure is kept.
+/// Some libraries behind OpenImageIO ignore the result of a write, and lose their buffered data silently if the disk is
+/// full at the end.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
  public:
   /// Domain     the file exists; it is emptied
@@ -21,9 +21,9 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
   CheckedFile(const CheckedFile&) = delete;
   CheckedFile& operator=(const CheckedFile&) = delete;
 
-  /// Writes what is held back and closes.
+  /// Flushes the buffer and closes the file.
   ///
-  /// Result     0, or the errno of the first call that failed since the file was opened
+  /// Result     0, or the errno of the first failed call since the file was opened
   int finish();
 
   const char* proxytype() const override { return "orrery"; }
@@ -42,9 +42,9 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
 
   int descriptor_ = -1;
   int error_ = 0;
-  int64_t end_ = 0;                     ///< of what was given to this object, in the file already or held back
-  int64_t pending_offset_ = 0;          ///< in the file, of the first byte held back
-  std::vector<unsigned char> pending_;  ///< small writes in a row are gathered here
+  int64_t end_ = 0;                     ///< file size including the buffer
+  int64_t pending_offset_ = 0;          ///< file offset of the first buffered byte
+  std::vector<unsigned char> pending_;  ///< buffer of consecutive small writes
 };
 
 }  // namespace orrery::image

@@ -11,7 +11,7 @@
 
 #include <jpeglib.h>
 
-// As OpenImageIO/tiffutils.h declares them, which includes a header of libtiff that its package does not bring along.
+// Declared in OpenImageIO/tiffutils.h, which includes a libtiff header that the OpenImageIO package does not depend on.
 OIIO_NAMESPACE_BEGIN
 OIIO_API void encode_exif(const ImageSpec& spec, std::vector<char>& blob);
 OIIO_API void encode_iptc_iim(const ImageSpec& spec, std::vector<char>& iptc);
@@ -21,9 +21,9 @@ OIIO_NAMESPACE_END
 namespace orrery::image {
 namespace {
 
-/// Errors jump out of libjpeg, over C frames and frames without destructors only.
+/// libjpeg error handler that leaves libjpeg by longjmp. It skips only C frames and frames without destructors.
 struct ErrorManager {
-  jpeg_error_mgr base;  // first: libjpeg knows this much of it
+  jpeg_error_mgr base;  // must be the first member: libjpeg holds a pointer to it
   std::jmp_buf jump;
   char text[JMSG_LENGTH_MAX];
 };
@@ -34,11 +34,11 @@ struct ErrorManager {
   std::longjmp(errors->jump, 1);
 }
 
-void on_message(j_common_ptr) {}  // warnings; libjpeg would print them
+void on_message(j_common_ptr) {}  // libjpeg would print warnings
 
-/// Hands libjpeg's output to a CheckedFile.
+/// libjpeg destination that writes to a CheckedFile.
 struct Destination {
-  jpeg_destination_mgr base;  // first, as above
+  jpeg_destination_mgr base;  // must be the first member, as above
   CheckedFile* file;
   std::array<JOCTET, std::size_t{1} << 16> buffer;
 };
@@ -51,7 +51,7 @@ void begin_buffer(j_compress_ptr info) {
   out.base.free_in_buffer = out.buffer.size();
 }
 
-/// Result     FALSE where the file could not be written, which libjpeg reports as an error
+/// Result     FALSE if writing failed, which libjpeg reports as an error
 boolean empty_buffer(j_compress_ptr info) {
   Destination& out = destination_of(info);
   if (out.file->write(out.buffer.data(), out.buffer.size()) != out.buffer.size()) return FALSE;
@@ -61,7 +61,7 @@ boolean empty_buffer(j_compress_ptr info) {
 
 void end_buffer(j_compress_ptr info) {
   Destination& out = destination_of(info);
-  // A failure stays in the file, which whoever finishes it looks at.
+  // CheckedFile keeps a failure until finish().
   out.file->write(out.buffer.data(), out.buffer.size() - out.base.free_in_buffer);
 }
 
@@ -71,7 +71,7 @@ struct Encoder {
   Destination destination{};
 };
 
-/// A marker's number and bytes.
+/// A JPEG marker segment.
 struct Marker {
   int number;
   std::vector<char> bytes;
@@ -79,7 +79,7 @@ struct Marker {
 
 std::vector<char> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
 
-/// Comment, EXIF, IPTC and XMP as OpenImageIO writes them.
+/// The comment, EXIF, IPTC and XMP markers as OpenImageIO writes them.
 std::vector<Marker> markers_of(const OIIO::ImageSpec& spec) {
   constexpr int kComment = 0xFE, kExif = 0xE1, kPhotoshop = 0xED;
   std::vector<Marker> out;
@@ -107,7 +107,7 @@ std::vector<Marker> markers_of(const OIIO::ImageSpec& spec) {
   return out;
 }
 
-/// All that libjpeg does. No object with a destructor lives here: errors jump over this frame.
+/// Runs libjpeg. Must not have local objects with destructors, since errors longjmp over this frame.
 void compress(jpeg_compress_struct& info, const OIIO::ImageSpec& spec, const std::uint8_t* pixels,
               const std::vector<Marker>& markers) {
   info.image_width = static_cast<JDIMENSION>(spec.width);
@@ -135,7 +135,7 @@ std::string encode_jpeg(const OIIO::ImageSpec& spec, const std::uint8_t* pixels,
   OIIO::ImageSpec described = spec;
   if (spec.get_string_attribute("oiio:ColorSpace") == "sRGB") described.attribute("Exif:ColorSpace", 1);
   const std::vector<Marker> markers = markers_of(described);
-  // Not on the stack: what changes between setjmp and a jump back must not be a variable of this function.
+  // On the heap: local variables modified between setjmp and longjmp would be indeterminate.
   const auto state = std::make_unique<Encoder>();
   state->info.err = jpeg_std_error(&state->errors.base);
   state->errors.base.error_exit = on_error;

@@ -10,14 +10,14 @@
 
 namespace orrery::image {
 
-/// Quality of JPEG files: what OpenImageIO calls "jpeg:95", without chroma subsampling.
+/// JPEG quality: OpenImageIO's "jpeg:95", without chroma subsampling.
 inline constexpr int kJpegQuality = 95;
 
-/// Encodes a picture as JPEG, byte for byte as OpenImageIO does, which ends the process at any error of libjpeg, such
-/// as too little memory.
+/// Encodes an image as JPEG with the same bytes as OpenImageIO, which exits the process on any libjpeg error, such as
+/// lack of memory.
 ///
 /// Domain     three channels of eight bits; a side of up to 65,500 px
-/// Result     libjpeg's complaint, or nothing
+/// Result     libjpeg's error message, or empty
 std::string encode_jpeg(const OIIO::ImageSpec& spec, const std::uint8_t* pixels, CheckedFile& file);
 
 }  // namespace orrery::image

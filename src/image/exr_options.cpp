@@ -30,19 +30,19 @@ void check_compression(const std::string& name) {
   if ((word == "dwaa" || word == "dwab") && is_level(std::string_view(name).substr(colon + 1))) return;
   const std::string near = base::did_you_mean(word, plain);
   throw base::Error(base::ErrorKind::kUsage, "unknown EXR compression " + name + "; " +
-                                                 (near.empty() ? "" : near + " ") + "known are " + base::joined(plain) +
-                                                 ", the last two also with a level, as in dwaa:45");
+                                                 (near.empty() ? "" : near + " ") + "known names are " +
+                                                 base::joined(plain) + "; dwaa and dwab take a level, e.g. dwaa:45");
 }
 
 void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& options) {
   if (options.multipart || !is_lossy(options.compression)) return;
   for (const film::Plane& plane : planes) {
-    // These are the channels that the compression takes for colours, by the last part of their names.
+    // The compression takes these channels for colours, by the last component of their names.
     const char last = plane.name.back();
     if (plane.kind == film::PlaneKind::kData && (last == 'R' || last == 'G' || last == 'B'))
       throw base::Error(base::ErrorKind::kUsage,
                         "compression " + options.compression + " would damage layer " + plane.layer() +
-                            "; take zip, zips or piz, or --multipart, where data have parts without loss");
+                            "; use zip, zips or piz, or --multipart, which stores data layers without loss");
   }
 }
 

@@ -9,24 +9,24 @@
 namespace orrery::image {
 
 struct ExrOptions {
-  bool as_float = false;             ///< half otherwise
-  std::string compression = "zips";  ///< as check_compression takes it
-  bool multipart = false;            ///< a part for each layer, instead of one with all channels
+  bool as_float = false;             ///< store colours and vectors as float instead of half
+  std::string compression = "zips";  ///< a name that check_compression() accepts
+  bool multipart = false;            ///< write one part per layer instead of a single part
 };
 
-/// Whether a compression changes values.
+/// Whether a compression is lossy.
 ///
 /// Domain     a name that check_compression accepts
 bool is_lossy(const std::string& compression);
 
-/// Finds out whether a name is a compression of EXR, before there is anything to write.
+/// Checks the name of an EXR compression before rendering: none, rle, zip, zips, piz, dwaa or dwab. The last two accept
+/// a level, e.g. dwaa:45.
 ///
-/// Domain     none, rle, zip, zips, piz, dwaa or dwab, the last two with ":LEVEL" if wanted, as in dwaa:45
-/// Errors     base::Error(kUsage) listing the known ones
+/// Errors     base::Error(kUsage) with the known names
 void check_compression(const std::string& name);
 
-/// Refuses to store mattes and other data by a compression that keeps only what eyes see. With a part for each layer
-/// there is no need to: those of data are then compressed without loss.
+/// Refuses a lossy compression of mattes and other data layers. Multi-part files are accepted, since their data parts
+/// are compressed without loss.
 ///
 /// Errors     base::Error(kUsage) with the remedy
 void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& options);

@@ -18,7 +18,7 @@ std::vector<float> interleaved(const film::Picture& picture, const std::vector<c
   std::vector<float> out(pixels * planes.size());
   for (std::size_t c = 0; c < planes.size(); ++c) {
     if (planes[c]->values.size() != pixels)
-      throw base::Error(base::ErrorKind::kInternal, "plane " + planes[c]->name + " is not of the picture's size");
+      throw base::Error(base::ErrorKind::kInternal, "plane " + planes[c]->name + " does not have the image's size");
     for (std::size_t i = 0; i < pixels; ++i) {
       float v = planes[c]->values[i];
       if (!std::isfinite(v)) {
@@ -49,10 +49,10 @@ void add_header(ImageSpec& spec, const Header& header) {
   if (header.capture_date.empty()) {
     leave_out_date(spec);
   } else {
-    spec.attribute("DateTime", header.capture_date);  // capDate, once it is in the file
+    spec.attribute("DateTime", header.capture_date);  // written as capDate
   }
   if (header.frames_per_second) spec.attribute("framesPerSecond", rational, header.frames_per_second->data());
-  // OpenImageIO translates some lower-case names into OpenEXR's own, but not that of the second.
+  // OpenImageIO translates the lower-case name worldtocamera into OpenEXR's spelling, but not that of worldToNDC.
   if (header.world_to_camera) spec.attribute("worldtocamera", matrix, header.world_to_camera->data());
   if (header.world_to_ndc) spec.attribute("worldToNDC", matrix, header.world_to_ndc->data());
   if (header.focus) spec.attribute("focus", *header.focus);

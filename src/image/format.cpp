@@ -18,7 +18,7 @@ constexpr Extension kExtensions[] = {{"exr", Format::kExr},   {"hdr", Format::kH
                                      {"tif", Format::kTiff},  {"tiff", Format::kTiff}, {"jpg", Format::kJpeg},
                                      {"jpeg", Format::kJpeg}, {"ppm", Format::kPpm}};
 
-/// The longest side that an encoder accepts, px. OpenImageIO 2.5 limits PNG, Radiance and PPM to 65535; earlier
+/// The maximum side that an encoder accepts, px. OpenImageIO 2.5 limits PNG, Radiance and PPM to 65535; earlier
 /// releases accept more. A TIFF of more than 4 GB becomes a BigTIFF.
 int largest_side(Format format) {
   switch (format) {
@@ -27,7 +27,7 @@ int largest_side(Format format) {
     case Format::kHdr:
     case Format::kPpm: return 65535;
     case Format::kTiff: return 1 << 20;
-    case Format::kExr: return (1 << 30) - 1;  // so that no window's edge leaves 32 bits
+    case Format::kExr: return (1 << 30) - 1;  // keeps window coordinates within 32 bits
   }
   return 0;
 }
@@ -45,10 +45,9 @@ Format format_of(const std::filesystem::path& file) {
     known.emplace_back(e.name);
   }
   const std::string near = base::did_you_mean(extension, known);
-  throw base::Error(
-      base::ErrorKind::kUsage,
-      (extension.empty() ? file.string() + " has no extension" : "." + extension + " is no picture format known here") +
-          "; " + (near.empty() ? "" : near + " ") + "known are " + base::joined(known));
+  throw base::Error(base::ErrorKind::kUsage,
+                    (extension.empty() ? file.string() + " has no extension" : "unknown image format ." + extension) +
+                        "; " + (near.empty() ? "" : near + " ") + "known formats are " + base::joined(known));
 }
 
 bool is_display_format(Format format) { return format != Format::kExr && format != Format::kHdr; }
@@ -60,8 +59,8 @@ void check_size(const std::filesystem::path& file, int width_px, int height_px) 
   if (width_px <= largest && height_px <= largest) return;
   throw base::Error(base::ErrorKind::kUsage, file.string() + " cannot hold " + std::to_string(width_px) + " x " +
                                                  std::to_string(height_px) +
-                                                 " pixels: a side of its format has up to " + std::to_string(largest) +
-                                                 "; TIFF and EXR hold larger ones");
+                                                 " pixels: the maximum side of its format is " +
+                                                 std::to_string(largest) + "; use TIFF or EXR for larger images");
 }
 
 int most_bits(Format format) { return format == Format::kPng || format == Format::kTiff ? 16 : 8; }

@@ -7,7 +7,7 @@
 
 namespace orrery::image {
 
-/// What a file's extension asks for.
+/// An image file format.
 enum class Format {
   kExr,   ///< scene-linear, half or float
   kHdr,   ///< Radiance, scene-linear
@@ -17,25 +17,23 @@ enum class Format {
   kPpm,   ///< display, 8 bit
 };
 
-/// The format of a file name.
+/// The format of a file by its extension, regardless of case.
 ///
 /// Errors     base::Error(kUsage) listing the known extensions
 Format format_of(const std::filesystem::path& file);
 
-/// Whether a format shows colours as a display does; the others hold scene-linear light and never see a display
-/// transform.
+/// Whether a format holds display-encoded colours. The others hold scene-linear values without a display transform.
 bool is_display_format(Format format);
 
 /// Whether a display format has a channel for alpha.
 bool holds_alpha(Format format);
 
-/// Checks that the format of a file takes a picture of this size, before there is one: an encoder that finds out later
-/// costs a render, or the process.
+/// Checks before rendering that the format of a file supports this image size.
 ///
 /// Errors     base::Error(kUsage) with the limit
 void check_size(const std::filesystem::path& file, int width_px, int height_px);
 
-/// The most bits that a display format holds in a channel.
+/// The maximum number of bits per channel of a display format.
 int most_bits(Format format);
 
 }  // namespace orrery::image

@@ -10,7 +10,7 @@ namespace {
 
 void use_threads(int count) {
   OIIO::attribute("threads", count);
-  // OpenEXR counts helpers beside the calling thread, and 0 would mean as many as there are processors.
+  // OpenEXR counts threads in addition to the calling one; 0 means one per processor, -1 none.
   OIIO::attribute("exr_threads", count > 1 ? count : -1);
 }
 
@@ -20,8 +20,8 @@ void prepare_library() {
   static std::once_flag once;
   std::call_once(once, [] {
     use_threads(1);
-    OIIO::attribute("limits:imagesize_MB", 0);  // it would refuse to read back what it has just written
-    OIIO::attribute("debug", 0);                // distributions build it with messages to the console
+    OIIO::attribute("limits:imagesize_MB", 0);  // else OpenImageIO refuses to read back its own large files
+    OIIO::attribute("debug", 0);                // distributions enable debug messages on the console
   });
 }
 

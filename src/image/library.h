@@ -5,18 +5,17 @@
 
 namespace orrery::image {
 
-/// Makes OpenImageIO a quiet guest: no threads of its own, nothing on the console. Every function of this room calls
-/// it.
+/// Configures OpenImageIO: one thread, no image size limit, no console output. Every function of this room calls it.
 ///
-/// Cost       once a process
+/// Cost       runs once per process
 void prepare_library();
 
-/// Lets OpenImageIO encode and decode with more than one thread.
+/// Sets the number of threads that OpenImageIO encodes and decodes with; the default is 1.
 ///
-/// Domain     count >= 1; 1 is what stands until this is called
+/// Domain     count >= 1
 void set_threads(int count);
 
-/// The version of OpenImageIO that is loaded.
+/// The version of the loaded OpenImageIO library.
 std::string oiio_version();
 
 }  // namespace orrery::image

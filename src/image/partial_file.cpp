@@ -28,12 +28,11 @@ using OIIO::TypeDesc;
 constexpr const char* kPrefix = "orrery/partial/";
 constexpr const char* kSumsName = "orrery.sums";
 
-/// Words in a row of the part of sums: those of one word of all pixels are some whole rows.
+/// Maximum number of words in a row of the part with the sums.
 constexpr int kMostWordsInRow = 4096;
 
 [[noreturn]] void damaged(const std::filesystem::path& file, const std::string& why) {
-  throw base::Error(base::ErrorKind::kBadData,
-                    file.string() + " is no partial picture that can be gone on from: " + why);
+  throw base::Error(base::ErrorKind::kBadData, file.string() + " is not a usable checkpoint or shard: " + why);
 }
 
 std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
@@ -67,7 +66,7 @@ void write_partial(const std::filesystem::path& file, const film::Picture& previ
   words.resize((words.size() + row - 1) / row * row);
   ImageSpec sums(static_cast<int>(row), static_cast<int>(words.size() / row), 1, TypeDesc::UINT32);
   sums.channelnames = {"words"};
-  sums.attribute("compression", "rle");  // rows of zeros go, the others are noise that nothing makes smaller
+  sums.attribute("compression", "rle");  // removes rows of zeros; the other rows are incompressible noise
   sums.attribute("oiio:subimagename", kSumsName);
   sums.full_width = preview.frame_width;
   sums.full_height = preview.frame_height;
@@ -85,7 +84,7 @@ void write_partial(const std::filesystem::path& file, const film::Picture& previ
   shown.alpha_channel = 3;
   shown.attribute("compression", "zips");
   shown.attribute("oiio:subimagename", "rgba");
-  WriteReport ignored;  // of the final picture it will be told
+  WriteReport ignored;  // the final image gets its own report
   const std::vector<float> pixels = interleaved(preview, planes, {4, kHalfRange}, ignored);
   WholePart shown_part{shown, pixels.data()}, sums_part{sums, words.data()};
   sums_part.type = TypeDesc::UINT32;
@@ -101,7 +100,7 @@ PartialFile read_partial(const std::filesystem::path& file, int width_px, int he
   const ImageSpec spec = in->spec();
   if (spec.nchannels != 1 || spec.format != TypeDesc::UINT32 || spec.width < 1 || spec.height < 1 ||
       spec.width > kMostWordsInRow)
-    damaged(file, "its sums are of another kind");
+    damaged(file, "its sums have an unexpected type or size");
   try {
     std::vector<std::uint32_t> words(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
     if (!in->read_scanlines(1, 0, spec.y, spec.y + spec.height, 0, 0, 1, TypeDesc::UINT32, words.data()))

@@ -11,31 +11,32 @@
 
 namespace orrery::image {
 
-/// What a partial's file says of where it comes from, by name: "sceneHash" as "0123456789abcdef".
+/// Origin of a checkpoint or shard as name-value pairs, e.g. "sceneHash" = "0123456789abcdef".
 using Provenance = std::map<std::string, std::string>;
 
-/// Writes a partial as a sealed EXR of two parts: what can be seen of the picture so far, which any program opens, and
-/// the exact sums.
+/// Writes a checkpoint or shard as a sealed two-part EXR: a preview image that any program opens, and the exact sums.
+/// `provenance` is stored in the header as "orrery/partial/NAME".
 ///
-/// `provenance` stands in the header as "orrery/partial/NAME"
-/// Result     the file stands under its name whole and synced, or an error is thrown and nothing has changed
+/// Result     the file is complete and synced, or an error is thrown and an existing file is unchanged
 /// Errors     base::Error: kCannotCreate, kIo
 void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
                    const Provenance& provenance, const film::Partial& partial);
 
-/// What a partial's file says of itself. The seal is checked, the sums are not read.
+/// Reads the provenance of a checkpoint or shard. Checks the seal, but does not read the sums.
 ///
 /// Errors     as read_partial
 Provenance read_provenance(const std::filesystem::path& file);
 
-/// Both.
+/// Content of a checkpoint or shard.
 struct PartialFile {
   Provenance provenance;
   film::Partial partial;
 };
 
-/// Errors     base::Error: kMissingInput where it cannot be opened, kBadData where it is no whole, undamaged partial of
-///            this size
+/// Reads a checkpoint or shard.
+///
+/// Errors     base::Error: kMissingInput if it cannot be opened, kBadData if it is not a complete, undamaged checkpoint
+///            or shard of this size
 PartialFile read_partial(const std::filesystem::path& file, int width_px, int height_px);
 
 }  // namespace orrery::image

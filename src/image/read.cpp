@@ -19,13 +19,13 @@ using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-/// The largest side that a scene can ask for; a header that claims more is taken to be damaged.
+/// Maximum side of an image, as in scenes, px. A header with a larger one is rejected as damaged.
 constexpr int kLargestSide = 65536;
 
-/// Rows decoded at a time: a multiple of what one block of any EXR compression holds but the rarest.
+/// Rows decoded at a time: a multiple of the block height of every EXR compression except dwab.
 constexpr int kRowsAtATime = 64;
 
-/// The line of orrery/settings that makes A coverage.
+/// The line in orrery/settings by which A is coverage.
 constexpr const char* kTransparent = "background.alpha = 0\n";
 
 const char* library_name(Format format) {
@@ -41,10 +41,10 @@ const char* library_name(Format format) {
 }
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-  throw base::Error(base::ErrorKind::kBadData, file.string() + " cannot be read as a picture: " + reason);
+  throw base::Error(base::ErrorKind::kBadData, "cannot read image " + file.string() + ": " + reason);
 }
 
-/// Decodes rows begin..end of some channels.
+/// Decodes rows begin..end of a channel range; false if that fails.
 bool decode(ImageInput& in, const ImageSpec& spec, int begin, int end, int first_channel, int end_channel,
             TypeDesc type, void* out) {
   if (spec.tile_width == 0) return in.read_scanlines(0, 0, begin, end, 0, first_channel, end_channel, type, out);
@@ -53,7 +53,7 @@ bool decode(ImageInput& in, const ImageSpec& spec, int begin, int end, int first
 
 /// Decodes rows begin..end of all channels, pixel by pixel.
 ///
-/// Result     what is wrong, or nothing
+/// Result     what is wrong, or empty
 std::string decode_rows(ImageInput& in, const ImageSpec& spec, int begin, int end, std::vector<float>& out) {
   const auto complaint = [&] {
     const std::string text = in.geterror();
@@ -63,7 +63,7 @@ std::string decode_rows(ImageInput& in, const ImageSpec& spec, int begin, int en
   const std::size_t pixels = static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(spec.width);
   out.resize(pixels * channels);
   if (!decode(in, spec, begin, end, 0, spec.nchannels, TypeDesc::FLOAT, out.data())) return complaint();
-  // Conversion to float takes the largest whole number for 1, which a count or an identifier does not mean.
+  // Conversion to float would scale the maximum integer to 1, which is wrong for counts and ids.
   for (int c = 0; c < spec.nchannels; ++c) {
     if (spec.channelformat(c) != TypeDesc::UINT) continue;
     std::vector<std::uint32_t> whole(pixels);
@@ -74,7 +74,7 @@ std::string decode_rows(ImageInput& in, const ImageSpec& spec, int begin, int en
   return {};
 }
 
-/// The part of one row that the display window shows, at the end of every plane.
+/// Appends a row of the display window to every plane.
 void append_row(const ImageSpec& spec, const float* row, film::Picture& picture) {
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   const int begin = std::max(spec.x, spec.full_x);
@@ -92,18 +92,18 @@ void append_row(const ImageSpec& spec, const float* row, film::Picture& picture)
 void check_spec(const std::filesystem::path& file, const ImageSpec& spec) {
   const auto too_large = [](int side) { return side < 1 || side > kLargestSide; };
   if (too_large(spec.width) || too_large(spec.height) || too_large(spec.full_width) || too_large(spec.full_height))
-    fail(file, "it says that it is " + std::to_string(spec.full_width) + " x " + std::to_string(spec.full_height) +
-                   " pixels; a side is 1 to " + std::to_string(kLargestSide));
+    fail(file, "its header says " + std::to_string(spec.full_width) + " x " + std::to_string(spec.full_height) +
+                   " pixels; a side must be 1 to " + std::to_string(kLargestSide));
   if (spec.deep) fail(file, "its pixels are deep; flatten them first");
 }
 
-/// Whether alpha is anything but 1 somewhere.
+/// Whether alpha differs from 1 in any pixel.
 bool has_holes(const film::Picture& picture) {
   const film::Plane* const alpha = picture.find("A");
   return alpha != nullptr && std::any_of(alpha->values.begin(), alpha->values.end(), [](float a) { return a != 1.0f; });
 }
 
-/// Memory grows with what is decoded, so that a damaged header cannot ask for all there is.
+/// Decodes all rows. Memory grows with the decoded rows, so that a damaged header cannot exhaust it.
 film::Picture decode_all(const std::filesystem::path& file, ImageInput& in, const ImageSpec& spec) {
   film::Picture picture;
   picture.width = spec.full_width;
@@ -146,7 +146,7 @@ film::Picture read(const std::filesystem::path& file) {
   try {
     film::Picture picture = decode_all(file, *in, spec);
     picture.is_transparent = picture.is_transparent || has_holes(picture);
-    in->geterror();  // a remark that nobody asks for ends on the console
+    in->geterror();  // OpenImageIO prints messages that are not fetched
     return picture;
   } catch (const std::bad_alloc&) {
     fail(file, "there is not enough memory for its pixels");

@@ -7,14 +7,14 @@
 
 namespace orrery::image {
 
-/// Reads all channels of a picture as float planes, of any format that this room writes.
+/// Reads all channels of an image file as float planes, in any format that this room writes.
 ///
-/// Of an EXR with several parts it is the first. The picture is the display window: a smaller data window stands in
-/// zeros, a larger one is cut. Whole numbers of display formats become 0..1, still encoded for their display; whole
-/// numbers of EXR stay as they are.
+/// Only the first part of a multi-part EXR is read. The result covers the display window: a smaller data window is
+/// padded with zeros, a larger one is cropped. Integers of display formats are scaled to 0..1 and stay
+/// display-encoded; integers of EXR keep their values.
 ///
-/// Errors     base::Error: kUsage for an unknown extension, kMissingInput where it cannot be opened, kBadData where it
-///            is no picture of its extension, is cut off or too large
+/// Errors     base::Error: kUsage for an unknown extension, kMissingInput if the file cannot be opened, kBadData if it
+///            is not of the format of its extension, truncated or too large
 film::Picture read(const std::filesystem::path& file);
 
 }  // namespace orrery::image

@@ -22,9 +22,9 @@ constexpr char kMark[] = "\norrery seal sha1 ";
 constexpr std::size_t kMarkSize = sizeof(kMark) - 1;
 constexpr std::size_t kSealSize = kMarkSize + 40 + 1;  // digits, newline
 
-/// The seal that the first `size` bytes of an open file shall have.
+/// Computes the seal of the first `size` bytes of an open file.
 ///
-/// Result     empty where they cannot be read
+/// Result     empty if they cannot be read
 std::string seal_of(std::FILE* in, std::uint64_t size) {
   OIIO::SHA1 digest;
   std::vector<char> bytes(std::size_t{1} << 20);
@@ -70,14 +70,14 @@ void require_seal(const std::filesystem::path& file) {
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);
   constexpr const char* kNoPartial =
-      " is no partial picture of orrery, or it is cut off; --resume, --samples A:B and --shard write such files";
+      " is not a checkpoint or shard, or it is truncated; --resume, --samples A:B and --shard write such files";
   if (failed || size < kSealSize) damaged(kNoPartial);
   const std::string expected = seal_of(in.get(), size - kSealSize);
   char found[kSealSize];
   if (std::fread(found, 1, kSealSize, in.get()) != kSealSize || std::memcmp(found, kMark, kMarkSize) != 0)
     damaged(kNoPartial);
   if (std::memcmp(found, expected.data(), kSealSize) != 0)
-    damaged(" is damaged: its bytes are not those that were written; delete it and render that part again");
+    damaged(" is damaged: its checksum does not match; delete it and render it again");
 }
 
 }  // namespace orrery::image

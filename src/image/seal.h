@@ -5,15 +5,16 @@
 
 namespace orrery::image {
 
-/// Appends a digest of all bytes of a file, behind the end at which picture programs stop reading: a change of any bit
-/// is noticed, also of one that no decoder looks at. It protects from accidents, not from forgers.
+/// Appends a digest of all bytes of a file, after the end of the image data. It detects any changed bit, including bits
+/// that no decoder reads. It protects against accidents, not against forgery.
 ///
-/// Source     SHA-1, FIPS 180-4
-/// Errors     base::Error(kIo); `name` is what the file is called in the message
+/// Errors     base::Error(kIo); the message uses `name` for the file
+/// Reference  SHA-1, FIPS 180-4
 void seal(const std::filesystem::path& file, const std::filesystem::path& name);
 
-/// Errors     base::Error: kMissingInput where it cannot be opened, kBadData where it has no seal, or one that does not
-///            fit
+/// Checks the seal of a file.
+///
+/// Errors     base::Error: kMissingInput if the file cannot be opened, kBadData if it has no seal or a wrong one
 void require_seal(const std::filesystem::path& file);
 
 }  // namespace orrery::image

@@ -35,7 +35,7 @@ bool decodes(ImageInput& in, int part, const ImageSpec& spec) {
   return true;
 }
 
-/// Formats without attributes of our own have it in their description.
+/// The stamp in a file's attributes; formats without custom attributes have it in their description.
 std::string stamp_in(const ImageSpec& spec) {
   const std::string own = spec.get_string_attribute(kStampName);
   if (!own.empty()) return own;
@@ -51,7 +51,7 @@ std::string verified_stamp(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
   const auto in = ImageInput::open(file.string());
   if (!in) {
-    OIIO::geterror();  // what nobody asks for ends on the console
+    OIIO::geterror();  // OpenImageIO prints messages that are not fetched
     return {};
   }
   std::string stamp = stamp_in(in->spec());

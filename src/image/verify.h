@@ -6,9 +6,9 @@
 
 namespace orrery::image {
 
-/// Decodes all pixels of all parts of a picture, and tells the stamp that Header::stamp has left in it.
+/// Decodes all pixels of all parts of an image file and returns its stamp (Header::stamp).
 ///
-/// Result     the stamp; empty where the file is missing, is no whole picture, or has none
+/// Result     empty if the file is missing, incomplete or has no stamp
 std::string verified_stamp(const std::filesystem::path& file);
 
 }  // namespace orrery::image

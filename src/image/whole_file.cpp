@@ -22,9 +22,9 @@ namespace {
   throw base::Error(base::ErrorKind::kIo, "writing " + file.string() + " failed: " + reason);
 }
 
-/// Hands all pixels to OpenImageIO.
+/// Encodes all parts with OpenImageIO.
 ///
-/// Result     what it complained of, or nothing. Asked for always: what nobody asks for it prints.
+/// Result     OpenImageIO's error message, or empty. Errors are always fetched, since OpenImageIO prints pending ones.
 std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDesc type,
                    const std::vector<WholePart>& parts) {
   const auto complaint = [&](const char* step) {
@@ -48,7 +48,7 @@ std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDe
   return first_complaint;
 }
 
-/// Decodes the last row of a part.
+/// Decodes the last row of a part; false if that fails.
 bool read_end(OIIO::ImageInput& in, int part, const OIIO::ImageSpec& spec) {
   const int end = spec.y + spec.height;
   if (spec.deep) {
@@ -59,9 +59,9 @@ bool read_end(OIIO::ImageInput& in, int part, const OIIO::ImageSpec& spec) {
   return in.read_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data());
 }
 
-/// Opens what was written and decodes the end of every part.
+/// Opens the file again and decodes the last row of every part.
 ///
-/// Result     what is wrong with it, or nothing
+/// Result     what is wrong, or empty
 std::string read_back(const std::string& name, const std::string& format, const std::vector<WholePart>& parts) {
   const auto in = OIIO::ImageInput::create(format);
   if (!in) return OIIO::geterror();
@@ -75,9 +75,9 @@ std::string read_back(const std::string& name, const std::string& format, const 
       wrong = "a part cannot be read back";
     } else if (spec = in->spec();
                spec.width != written.width || spec.height != written.height || spec.nchannels != written.nchannels) {
-      wrong = "it reads back as another picture";
+      wrong = "it reads back as a different image";
     } else if (!read_end(*in, part, spec)) {
-      wrong = "its end cannot be read back";
+      wrong = "its last row cannot be read back";
     }
     const std::string reason = in->geterror();
     if (!wrong.empty()) return reason.empty() ? wrong : wrong + ": " + reason;
@@ -92,7 +92,7 @@ void write_whole(const std::filesystem::path& file, const std::string& format, O
   prepare_library();
   base::AtomicFile target(file);
   const std::string name = target.temporary().string();
-  // Declared before its user: an encoder that failed may still write while it is destroyed.
+  // Declared before its user: a failed encoder may still write in its destructor.
   CheckedFile bytes(target.temporary());
   std::string complaint;
   std::unique_ptr<OIIO::ImageOutput> out;
@@ -114,7 +114,7 @@ void write_whole(const std::filesystem::path& file, const std::string& format, O
 }
 
 void leave_out_date(OIIO::ImageSpec& spec) {
-  // It adds the date where there is no attribute of this name, and drops one that is no text.
+  // OpenImageIO adds the date if there is no such attribute, and drops an attribute that is not a string.
   const std::uint8_t no_text = 0;
   spec.attribute("DateTime", OIIO::TypeDesc::UINT8, &no_text);
 }

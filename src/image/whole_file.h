@@ -10,23 +10,23 @@
 
 namespace orrery::image {
 
-/// One picture of a file, which may hold several of one size.
+/// One part of an image file. All parts of a file have the same size.
 struct WholePart {
   OIIO::ImageSpec spec;
   const void* pixels = nullptr;             ///< spec's width x height x channels values, rows from the top
-  const OIIO::DeepData* deep = nullptr;     ///< in place of pixels, where the spec says so
-  std::optional<OIIO::TypeDesc> type = {};  ///< of the pixels, where it is not that of the other parts
+  const OIIO::DeepData* deep = nullptr;     ///< replaces `pixels` if spec.deep is set
+  std::optional<OIIO::TypeDesc> type = {};  ///< type of `pixels` if it differs from that of the other parts
 };
 
-/// Writes pictures through OpenImageIO: under a temporary name, every byte checked, read back, synced, renamed.
+/// Writes an image file with OpenImageIO: to a temporary file with every write checked, read back, synced and renamed.
 ///
-/// `sealed`   with a digest behind its end, as image/seal.h has it
-/// Domain     format is OpenImageIO's own name of it; `type` is that of the pixels; one part, or a format that has more
-/// Errors     base::Error: kCannotCreate, kIo; what stood under the name before stands there still
+/// Domain     `format` is OpenImageIO's format name; `type` is the type of the pixels; more than one part only if the
+///            format supports it; `sealed` appends a seal (image/seal.h)
+/// Errors     base::Error: kCannotCreate, kIo; an existing file is then unchanged
 void write_whole(const std::filesystem::path& file, const std::string& format, OIIO::TypeDesc type,
                  const std::vector<WholePart>& parts, bool sealed = false);
 
-/// Keeps OpenImageIO from writing the time of day into a file.
+/// Keeps OpenImageIO from writing the current date and time into the file.
 void leave_out_date(OIIO::ImageSpec& spec);
 
 }  // namespace orrery::image

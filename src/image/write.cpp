@@ -19,13 +19,13 @@ using OIIO::TypeDesc;
 
 bool is_matte(const std::string& layer) { return layer.rfind("Crypto", 0) == 0; }
 
-/// The channels of one part.
+/// Name and channels of one part.
 struct Part {
   std::string name;
   std::vector<const film::Plane*> planes;
 };
 
-/// All planes in one part, or a part for each layer. The layers of one matte stay together.
+/// Groups the planes into one part, or into one part per layer. The layers of a matte share a part.
 std::vector<Part> make_parts(const film::Picture& picture, bool multipart) {
   std::vector<Part> parts;
   for (const film::Plane& plane : picture.planes) {
@@ -114,7 +114,7 @@ WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& pi
   for (const char* name : {"R", "G", "B"}) {
     planes.push_back(picture.find(name));
     if (planes.back() == nullptr)
-      throw base::Error(base::ErrorKind::kBadData, std::string("the picture has no channel ") + name);
+      throw base::Error(base::ErrorKind::kBadData, std::string("the image has no channel ") + name);
   }
   WriteReport report;
   const ImageSpec spec(picture.width, picture.height, 3, TypeDesc::FLOAT);

@@ -12,7 +12,7 @@ namespace {
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-/// Sets what is particular to a format.
+/// Sets the attributes of a format.
 ///
 /// Result     OpenImageIO's name of the format
 const char* add_format(Format format, ImageSpec& spec) {
@@ -20,7 +20,7 @@ const char* add_format(Format format, ImageSpec& spec) {
     case Format::kPng: return "png";
     case Format::kTiff:
       spec.attribute("compression", "zip");
-      // For a table of EXIF values OpenImageIO reads what it has written, cannot, and loses the picture's own table.
+      // To write EXIF data OpenImageIO reads back the unfinished file. That fails and loses the image's own directory.
       spec.attribute("tiff:write_exif", 0);
       leave_out_date(spec);
       return "tiff";
@@ -38,18 +38,18 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
                    const std::string& stamp) {
   const Format format = format_of(file);
   if (picture.bits > most_bits(format))
-    throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits in a channel; PNG and TIFF hold 16");
+    throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits per channel; PNG and TIFF hold 16");
   check_size(file, picture.width, picture.height);
   if (picture.channels > 3 && !holds_alpha(format))
     throw base::Error(base::ErrorKind::kInternal, file.string() + " cannot hold alpha");
   if (picture.values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
                                    static_cast<std::size_t>(picture.channels))
-    throw base::Error(base::ErrorKind::kInternal, "the values of " + file.string() + " are not of the picture's size");
+    throw base::Error(base::ErrorKind::kInternal, "the values of " + file.string() + " do not have the image's size");
   ImageSpec spec(picture.width, picture.height, picture.channels,
                  picture.bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
   if (!software.empty()) spec.attribute("Software", software);
   if (!stamp.empty()) spec.attribute("ImageDescription", std::string(kStampName) + " " + stamp);
-  if (picture.channels > 3) spec.attribute("oiio:UnassociatedAlpha", 1);  // else the library would divide by it
+  if (picture.channels > 3) spec.attribute("oiio:UnassociatedAlpha", 1);  // else OpenImageIO divides by alpha
   if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
   const char* const name = add_format(format, spec);
   if (picture.bits == 8) {

@@ -10,12 +10,12 @@ namespace {
 
 using compile::CompiledScene;
 
-/// Samples of choices that are compared with each other.
+/// Samples per pixel of choices whose errors are compared.
 constexpr int kCompared = 64;
-/// Of those whose pictures are the same and whose time alone is of interest.
+/// Samples per pixel of choices with identical images, of which only the time is measured.
 constexpr int kTimed = 16;
 
-/// A list of more spheres takes longer than anybody waits.
+/// Maximum number of spheres for which the list is measured.
 constexpr std::size_t kLongestList = 5000;
 
 class Planner {
@@ -90,7 +90,7 @@ class Planner {
 
   void roulette() {
     if (world_.spheres.empty() || everything_is_white()) {
-      out_.left_out.push_back("nothing darkens light: no roulette axis");
+      out_.left_out.push_back("no absorption: no roulette axis");
       return;
     }
     for (const int from : {0, 1, 3}) {
@@ -153,13 +153,13 @@ class Planner {
     add("accelerator", "embree, single rays", flag(kTimed) + " --traversal single", kTimed).traversal =
         accel::Traversal::kSingle;
     if (world_.spheres.size() > kLongestList) {
-      out_.left_out.push_back("more than 5000 spheres: the list would take too long");
+      out_.left_out.push_back("more than 5000 spheres: the list is too slow");
       return;
     }
     Choice& list = add("accelerator", "list", flag(kTimed) + " --accelerator list", kTimed);
     list.apply = [](CompiledScene& w) { w.accelerator = compile::Accelerator::kList; };
     list.slowness = 1 + static_cast<double>(world_.spheres.size()) / 12;
-    out_.left_out.push_back("Embree's build qualities: all of them were as fast, see docs/benchmarks.md");
+    out_.left_out.push_back("Embree's build qualities: equally fast, see docs/benchmarks.md");
   }
 
   const scene::Scene& scene_;

@@ -11,23 +11,24 @@
 
 namespace orrery::measure {
 
-/// One way to render, to be measured.
+/// One setting to measure.
 struct Choice {
   std::string axis, name, flags;
   int samples = 1;
-  double noise = 0;                                    ///< above 0: --noise, instead of samples
-  std::function<void(compile::CompiledScene&)> apply;  ///< empty: nothing else
-  bool is_shortcut = false;                            ///< gives another picture, however many samples
-  double slowness = 1;  ///< about how much longer a sample takes than in the scene as it is
-  std::optional<accel::Traversal> traversal;
+  double noise = 0;                                    ///< if above 0, render with --noise instead of `samples`
+  std::function<void(compile::CompiledScene&)> apply;  ///< further changes; may be empty
+  bool is_shortcut = false;                            ///< converges to a different image
+  double slowness = 1;                                 ///< estimated time per sample, relative to the scene's settings
+  std::optional<accel::Traversal> traversal;           ///< as render::Settings
 };
 
+/// The choices of a study, and the axes without effect on the scene.
 struct AxisPlan {
   std::vector<Choice> choices;
   std::vector<std::string> left_out;  ///< "no glass: no Fresnel axis"
 };
 
-/// The choices that this scene can feel, the most telling first; `noise` is what a recommendation shall reach.
+/// Plans the choices that affect this scene, the most important first; `noise` is the target of the recommendation.
 AxisPlan plan_axes(const scene::Scene& scene, const compile::CompiledScene& compiled, double noise);
 
 }  // namespace orrery::measure

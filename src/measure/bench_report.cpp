@@ -7,7 +7,7 @@
 namespace orrery::measure {
 namespace {
 
-/// "1.35 (1.31 .. 1.38)".
+/// Median and quartiles, "1.35 (1.31 .. 1.38)".
 std::string with_quartiles(const char* format, const Quartiles& q) {
   std::string out;
   base::append(out, format, q.median);
@@ -31,9 +31,9 @@ nlohmann::json case_json(const BenchCase& c) {
 
 std::string benchmark_text(const Benchmark& b) {
   std::string out;
-  base::append(out, "scene       %s, %llu spheres, %.2f rays a path\n", b.scene_hash.c_str(),
+  base::append(out, "scene       %s, %llu spheres, %.2f rays per path\n", b.scene_hash.c_str(),
                static_cast<unsigned long long>(b.spheres), b.rays_per_path);
-  base::append(out, "measured    %d x %d px, %d thread%s, %s, %s; %d rounds, median (middle half)\n\n", b.width,
+  base::append(out, "measured    %d x %d px, %d thread%s, %s, %s; %d rounds, median (interquartile range)\n\n", b.width,
                b.height, b.threads, b.threads == 1 ? "" : "s", b.isa.c_str(), b.accelerator.c_str(), b.rounds);
   base::append(out, "%-16s %10s  %-24s %s\n", "", "M paths/s", "ratio to embree exact", "tracing alone");
   for (const BenchCase& c : b.cases) {
@@ -49,7 +49,7 @@ std::string benchmark_text(const Benchmark& b) {
   for (const BenchTracing& t : b.tracing)
     base::append(out, "%-16s %10.3g  %s\n", t.name.c_str(), t.rays_per_s.median / 1e6,
                  with_quartiles("%.3g", t.ratio).c_str());
-  if (!b.features.empty()) out += "\nembree exact, as if the scene also had\n";
+  if (!b.features.empty()) out += "\nembree exact with one feature added\n";
   for (const BenchCase& c : b.features)
     base::append(out, "%-16s %10.3g  %s\n", c.name.c_str(), c.paths_per_s.median / 1e6,
                  with_quartiles("%.3g", c.ratio).c_str());

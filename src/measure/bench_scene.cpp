@@ -24,16 +24,15 @@ namespace {
 
 using compile::Precision;
 
-/// Pixels of the picture that is rendered: few, so that a list can render all of them, and with many samples each,
-/// which is how pictures are rendered in earnest.
+/// Number of pixels of the rendered image: small enough for the list, with many samples per pixel as in final renders.
 constexpr double kPixels = 96 * 54;
 
-/// Every so many rows are recorded: some ten thousand paths, so that the record does not crowd out the caches.
+/// Every kRecordedRows-th row is recorded: about ten thousand paths, so that the recorded rays fit into the caches.
 constexpr int kRecordedRows = 4;
 
-/// Lists are left out where the naive one would take longer for a sample a pixel.
+/// Lists are skipped if the naive one would take longer than this for one sample per pixel.
 constexpr double kLongestList = 10;  // seconds
-/// Rays against spheres a second, of one lane.
+/// Ray-sphere tests per second of the one-lane kernel.
 constexpr double kListTests = 1e8;
 
 constexpr double kMostSamples = 1 << 20;
@@ -58,7 +57,7 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
   return known;
 }
 
-/// The scene's picture, small.
+/// The compiled scene at the reduced image size.
 compile::CompiledScene small_world(const BenchRequest& request) {
   job::SceneRequest load;
   load.source = request.scene;
@@ -67,17 +66,17 @@ compile::CompiledScene small_world(const BenchRequest& request) {
   return compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
 }
 
-/// One scene, to be rendered in many ways.
+/// The scene under test with its accelerators and recorded rays.
 class Subject {
  public:
   explicit Subject(const BenchRequest& request)
       : request_(request), world_(small_world(request)), required_(world_.features) {}
 
   const compile::CompiledScene& compiled() const { return world_; }
-  /// The scene's own features; the world has those of the case that was rendered last.
+  /// The features that the scene requires; compiled() has those of the last case.
   const kernel::Features& required() const { return required_; }
 
-  /// Paths a second of one render.
+  /// Renders a case once.
   render::Statistics run(const Case& c) {
     prepare(c);
     world_.samples = c.samples;
@@ -90,7 +89,7 @@ class Subject {
     return result.statistics;
   }
 
-  /// Seconds a path when nothing but tracing is done.
+  /// Seconds per path for tracing its recorded rays without camera, shading and accumulation.
   double trace_alone(const Case& c) {
     prepare(c);
     const accel::Accel& with = accel(c);
@@ -100,7 +99,7 @@ class Subject {
     return seconds_a_path(with, rays);
   }
 
-  /// The ways to find hits in `fast`, lists where they are bearable.
+  /// The benchmark of closest-hit queries in `fast`.
   TracingBench tracing_bench(bool with_lists) {
     Case fast;
     fast.precision = Precision::kFast;
@@ -174,8 +173,8 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
        {std::pair{"exact packet", accel::Traversal::kPacket}, std::pair{"exact single", accel::Traversal::kSingle}})
     cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, traversal, 1, {}, {}});
   if (!lists_are_bearable(compiled)) {
-    out.left_out.push_back("lists: of so many spheres one would take more than " +
-                           std::to_string(static_cast<int>(kLongestList)) + " s for a sample a pixel");
+    out.left_out.push_back("lists: with this many spheres one sample per pixel would take more than " +
+                           std::to_string(static_cast<int>(kLongestList)) + " s");
     return cases;
   }
   for (const auto& [name, accelerator] :
@@ -196,22 +195,22 @@ std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
   return cases;
 }
 
-/// Finds the number of samples with which a render takes long enough.
+/// Increases the sample count of a case until a render takes at least half of `seconds`.
 void calibrate(Subject& subject, Case& c, double seconds) {
   for (;;) {
     const double took = std::max(subject.run(c).render_s, 1e-6);
     if (took >= seconds / 2 || c.samples >= kMostSamples) return;
-    // Not too far in one step: the first render also warms up.
+    // The step is limited, since the first render includes warm-up.
     const double factor = std::clamp(seconds / took, 2.0, 64.0);
     c.samples = static_cast<int>(std::min(c.samples * factor, kMostSamples));
   }
 }
 
-/// Renders every case once, and calls `then` with it and what was done.
+/// Renders every case once, records its speed, and calls `then` with the case and its statistics.
 template <class Then>
 void measure_all(Subject& subject, std::vector<Case>& cases, int round, Then then) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    // Each round begins elsewhere, so that no case always follows the same one.
+    // Each round starts with a different case.
     Case& c = cases[(i + static_cast<std::size_t>(round)) % cases.size()];
     const render::Statistics did = subject.run(c);
     c.paths_per_s.push_back(static_cast<double>(did.paths) / did.render_s);

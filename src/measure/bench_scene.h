@@ -14,66 +14,67 @@
 
 namespace orrery::measure {
 
+/// Scene and protocol of a benchmark.
 struct BenchRequest {
   job::SceneSource scene;
-  std::string isa;  ///< empty: the best
+  std::string isa;  ///< instruction set; empty: the best available
   int threads = 1;
-  int rounds = 7;         ///< each round measures every case once
-  double seconds = 0.25;  ///< of one measurement, at least
+  int rounds = 7;         ///< number of rounds; each measures every case once
+  double seconds = 0.25;  ///< minimum duration of one measurement
   const std::atomic<bool>* cancel = nullptr;
-  std::function<void(int done, int total)> on_progress;  ///< measurements
+  std::function<void(int done, int total)> on_progress;  ///< called after each measurement
 };
 
-/// One way to render the scene.
+/// Result of one render configuration.
 struct BenchCase {
   std::string name;  ///< "embree fast"
   Quartiles paths_per_s;
-  Quartiles ratio;  ///< of paths a second to those of "embree exact" in the same round
-  /// Part of its time that tracing its rays alone needs; with one thread and a hierarchy only.
+  Quartiles ratio;  ///< speed relative to "embree exact" in the same round
+  /// Fraction of the render time that tracing the same rays takes on its own; only with one thread and a BVH.
   std::optional<Quartiles> tracing;
 };
 
-/// One way to find the hits of the rays that a render in `fast` has traced.
+/// Result of one traversal method on the recorded rays of a render in `fast`.
 struct BenchTracing {
-  std::string name;  ///< "sphere points, single rays"
+  std::string name;  ///< "sphere points"
   Quartiles rays_per_s;
-  Quartiles ratio;  ///< of rays a second to those of the first way in the same round
+  Quartiles ratio;  ///< speed relative to the first method in the same round
 };
 
-/// What was measured, in one run whose rounds alternate between all cases.
+/// Results of a benchmark whose rounds alternate between all cases.
 struct Benchmark {
   std::string scene_hash, isa, accelerator;
   std::uint64_t spheres = 0;
   double rays_per_path = 0;
-  int width = 0, height = 0;  ///< px; of the small picture that is rendered
+  int width = 0, height = 0;  ///< reduced image size, px
   int threads = 0, rounds = 0;
-  std::vector<BenchCase> cases;       ///< first "embree exact"
+  std::vector<BenchCase> cases;       ///< "embree exact" is the first
   std::vector<BenchTracing> tracing;  ///< with one thread only
-  std::vector<BenchCase> features;    ///< exact, as if the scene had one feature more; named by it
+  std::vector<BenchCase> features;    ///< embree exact with one feature added that the scene lacks; named after it
   std::vector<std::string> left_out;  ///< what was not measured, and why
 };
 
-/// Renders the scene, at a small size, in every precision by Embree and by the list, and measures how fast that is.
+/// Measures the render speed of a scene at a reduced size, in every precision, with Embree and with the list.
 ///
-/// Errors     as format::read_scene; base::Error(kStopped) where `cancel` stopped it, kUsage for an unknown `isa`
+/// Errors     as format::read_scene; base::Error(kStopped) after `cancel`, kUsage for an unknown `isa`
 Benchmark bench_scene(const BenchRequest& request);
 
-/// A feature of the kernel.
+/// The cost of an optional kernel feature.
 struct FeatureCost {
   std::string name;       ///< "thin lens"
-  bool required = false;  ///< by the scene
-  double saves = 0;       ///< if it is not required: of the time that a render with it would take, median
+  bool required = false;  ///< the scene needs it
+  double saves = 0;       ///< if not required: fraction of the time with the feature that omitting it saves, median
 };
 
-/// Renders the scene, small and exact, as it is and as if it had each feature more, in turn.
+/// Measures the cost of each kernel feature that the scene lacks, in embree exact at a reduced size.
 ///
 /// Result     all features; those that the scene requires are not measured
 /// Errors     as bench_scene
 std::vector<FeatureCost> bench_features(const BenchRequest& request);
 
-/// For people.
+/// A benchmark as a text table.
 std::string benchmark_text(const Benchmark& benchmark);
-/// As JSON, "orrery.bench/1".
+/// A benchmark as JSON, schema "orrery.bench/1".
 std::string benchmark_json(const Benchmark& benchmark);
 
 }  // namespace orrery::measure

@@ -11,15 +11,15 @@
 
 namespace orrery::measure {
 
-/// Finds the hits of the same rays in several ways, and does nothing else: packets and single rays through our user
-/// geometry, single rays through Embree's own sphere points, and a list in all lanes.
+/// Benchmark of closest-hit queries on the same rays: packets and single rays with our user geometry, single rays with
+/// Embree's own sphere points, and a SIMD list.
 class TracingBench {
  public:
-  /// Domain     view, `fast`, its hierarchy for that precision, and rays outlive this; one sphere or more
+  /// Domain     `fast` is built for precision fast; it, the view and the rays outlive this; at least one sphere
   TracingBench(const kernel::SceneView& view, accel::Accel& fast, render::RecordedRays<kernel::RayPacketFast>& rays,
                bool with_list);
 
-  /// Measures every way once; each round begins with another one.
+  /// Measures every method once. Each round starts with a different one.
   void measure(int round);
 
   std::vector<BenchTracing> results() const;

@@ -8,8 +8,7 @@
 
 namespace orrery::measure {
 
-/// Writes a picture as EXR in half and float and with each compression, in a folder for temporary files, and reads it
-/// back.
+/// Measures size, write time and error of an image as EXR, in half and float with each compression.
 ///
 /// Errors     base::Error: kCannotCreate, kIo
 std::vector<FilePoint> measure_file_axis(const film::Picture& picture);

@@ -5,18 +5,18 @@
 
 namespace orrery::measure {
 
-/// Two renders of the same picture that share no random number.
+/// Two renders of the same image with independent random numbers.
 struct Pair {
   film::Picture first, second;
 };
 
-/// The mean of both.
+/// The mean of both images.
 film::Picture mean_of(const Pair& pair);
 
-/// Display error of that mean, from how much the two differ.
+/// The display error of that mean, estimated from the difference of the two images.
 double noise_of_mean(const Pair& pair);
 
-/// Errors of the pictures of a pair, as in Point.
+/// Error estimates of a pair; the members are those of Point.
 struct Errors {
   double noise = 0;
   double bias_squared = 0;
@@ -24,15 +24,15 @@ struct Errors {
   double energy = 0;
 };
 
-/// Compares a choice with the reference.
+/// Estimates noise and bias of a choice against the reference.
 ///
 /// With x, y the choice and r, s the reference, the mean over pixels of (x - r)(y - s) estimates the squared bias
-/// without any contribution of noise, since the four are independent. Without a bias its terms are symmetric around
-/// zero, or skewed to the right, so that their sum, divided by the root of the sum of their squares, exceeds t with a
-/// probability of at most exp(-t^2 / 2), however much the noise differs between pixels. A bias of less than some 20
-/// pixels is not found.
+/// without any contribution of noise, since the four images are independent. Without bias its terms are symmetric
+/// around zero or skewed to the right. Their sum divided by the root of the sum of their squares then exceeds t with a
+/// probability of at most exp(-t^2 / 2), however much the noise varies between pixels. A bias confined to fewer than
+/// about 20 pixels is not detected.
 ///
-/// Domain     pictures of one size with planes R, G, B
+/// Domain     images of one size with planes R, G, B
 /// Reference  efron1969
 Errors errors_of(const Pair& choice, const Pair& reference);
 

@@ -7,19 +7,18 @@
 
 namespace orrery::measure {
 
-/// Chance that a study of unbiased choices finds a bias in any of them.
+/// Family-wise error rate: the probability that a study of unbiased choices reports a bias in any of them.
 inline constexpr double kFalseAlarm = 0.01;
 
-/// Decides which choices are biased, all together, and sets bias, error and efficiency of every point.
+/// Tests all points for bias together, and sets bias, error and efficiency of every point.
 ///
 /// Reference  holm1979
 void judge_bias(std::vector<Point>& points);
 
-/// How steeply the error of each sampler falls, by least squares on logarithmic axes, where it has two points or more.
+/// The convergence rate of each sampler with at least two points, by a least-squares fit on logarithmic axes.
 std::vector<Slope> slopes_of(const std::vector<Point>& points);
 
-/// Marks the points that nothing else is both quicker and better than. Accelerators, whose pictures are all the same,
-/// stay out of it.
+/// Marks the points on the Pareto front of time and error. Accelerators are excluded, since their images are identical.
 void mark_front(std::vector<Point>& points);
 
 }  // namespace orrery::measure

@@ -5,14 +5,14 @@
 
 namespace orrery::measure {
 
-/// The middle half of some measurements.
+/// Lower quartile, median and upper quartile.
 struct Quartiles {
   double low = 0, median = 0, high = 0;
 };
 
-/// Linear between the two nearest values.
+/// The quartiles of measurements, linearly interpolated between the two nearest values.
 ///
-/// Domain     one value or more
+/// Domain     at least one value
 Quartiles quartiles(std::vector<double> values);
 
 }  // namespace orrery::measure

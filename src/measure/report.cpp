@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A study in words, as JSON and as a page that needs nothing beside it.
+// Output of a study: text, JSON and a self-contained HTML page.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -23,7 +23,7 @@ namespace {
 using base::append;
 using nlohmann::json;
 
-/// The largest width of pictures on the page: of twenty of them the file shall stay a few megabytes.
+/// Maximum width of the images on the page, px; keeps a page with twenty images within a few megabytes.
 constexpr int kShownWidth = 480;
 
 json number(double v) { return std::isfinite(v) ? json(v) : json(nullptr); }
@@ -94,7 +94,7 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
-/// The mean of each square of pixels, where the picture is too wide for the page.
+/// Downsamples an image to at most kShownWidth by averaging square blocks of pixels.
 film::Picture shrunk(const film::Picture& from) {
   const int step = (from.width + kShownWidth - 1) / kShownWidth;
   if (step <= 1) return from;
@@ -117,7 +117,7 @@ film::Picture shrunk(const film::Picture& from) {
   return out;
 }
 
-/// Pictures as data addresses.
+/// Encodes images as data URLs.
 class Encoder {
  public:
   std::string shown(const film::Picture& picture) const {
@@ -125,9 +125,9 @@ class Encoder {
     settings.exposure = exposure_;
     return address(display::develop(shrunk(picture), settings, 8));
   }
-  /// False colours are codes already.
+  /// For images that are already display-encoded, such as false colours.
   std::string codes(const film::Picture& picture) const { return address(metrics::encoded(picture)); }
-  /// Brings the mean of the light to a fifth of white, as a photographer would, where it is above that.
+  /// Sets the exposure for bright images: if the mean of green is above 1, brings it to 0.4.
   void expose(const film::Picture& picture) {
     double sum = 0;
     for (const float v : picture.planes[1].values) sum += static_cast<double>(v);
@@ -165,9 +165,9 @@ std::string study_text(const Study& s) {
     base::append(out, "%-12s %-22s %9.1f %9.3f %9.3f %9.3f %9.3f %+9.3f %10.4g%s\n", p.axis.c_str(), p.name.c_str(),
                  p.samples, p.seconds, p.error * 100, p.bias * 100, p.noise * 100, p.energy * 100, p.efficiency,
                  p.on_front ? " *" : "");
-  out += "* nothing measured is both quicker and better\n\n";
+  out += "* Pareto front: no other choice is both faster and more accurate\n\n";
   for (const Slope& l : s.slopes)
-    base::append(out, "error of %s falls as samples to the %.2f\n", l.name.c_str(), l.slope);
+    base::append(out, "error of %s is proportional to samples^%.2f\n", l.name.c_str(), l.slope);
   base::append(out, "\n%-14s %12s %9s %9s\n", "file", "size", "write s", "error %");
   for (const FilePoint& f : s.files)
     base::append(out, "%-14s %12s %9.3f %9.4f\n", f.name.c_str(), base::bytes_text(f.bytes).c_str(), f.write_s,
@@ -177,7 +177,8 @@ std::string study_text(const Study& s) {
     if (f.required) {
       base::append(out, "feature     %s: required by this scene\n", f.name.c_str());
     } else {
-      base::append(out, "feature     %s: left out, saves %.1f %% of the time\n", f.name.c_str(), f.saves * 100);
+      base::append(out, "feature     %s: not required, omitting it saves %.1f %% of the time\n", f.name.c_str(),
+                   f.saves * 100);
     }
   }
   for (const std::string& text : s.left_out) base::append(out, "left out    %s\n", text.c_str());
@@ -197,7 +198,7 @@ std::string study_html(const Study& study) {
     const metrics::Map map = metrics::display_error_map(metrics::color_of(p.picture), truth);
     data["points"][i]["heat"] = encode.codes(shrunk(metrics::false_color(map, app::kHottest)));
   }
-  // Within a script the text must not look like its end.
+  // The text must not contain the end tag of its script element.
   std::string text = data.dump(-1, ' ', true, json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos;) text.replace(at, 2, "<\\/");
   std::string page = kReportPage;

@@ -3,7 +3,7 @@
 
 namespace orrery::measure {
 
-/// The page of a report, from page/report.html; {{DATA}} stands where a study goes.
+/// The HTML template of the report, page/report.html. {{DATA}} marks the place of the study's JSON.
 extern const char* const kReportPage;
 
 }  // namespace orrery::measure

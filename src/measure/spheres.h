@@ -8,15 +8,16 @@
 
 namespace orrery::measure {
 
-/// The spheres of a scene, lent to one world at a time: there may be ten million.
+/// The spheres of a scene, lent to one CompiledScene at a time instead of copied, since there may be ten million.
 class Spheres {
  public:
-  /// Takes a world's.
+  /// Exchanges the spheres with those of a compiled scene.
   void take_from(compile::CompiledScene& compiled) {
     spheres_.swap(compiled.spheres);
     materials_.swap(compiled.sphere_materials);
   }
 
+  /// Lends the spheres to a compiled scene during its lifetime.
   class Loan {
    public:
     Loan(Spheres& from, compile::CompiledScene& to) : from_(from), to_(to) { from_.take_from(to_); }

@@ -39,23 +39,23 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using compile::CompiledScene;
 
-/// Parts of the budget.
+/// Fractions of the budget.
 constexpr double kReferenceShare = 0.3;
-constexpr double kPilotShare = 0.2;  ///< the recommendation, at the scene's own size
+constexpr double kPilotShare = 0.2;  ///< testing the recommendation at full resolution
 constexpr double kFeatureShare = 0.05;
 
-/// Samples of a pixel that the reference and all points together should be able to have; the study's picture is reduced
-/// until they can.
+/// Samples per pixel that the budget should allow for the reference and all points together. The study's image is
+/// reduced until it does.
 constexpr double kSamplesWanted = 6000;
 constexpr double kFewestPixels = 64 * 36;
 
-/// Samples of a pixel in each of the two renders of the reference.
+/// Limits of the samples per pixel in each of the two reference renders.
 constexpr double kFewestReferenceSamples = 64, kMostReferenceSamples = 1 << 20;
 
-/// Choices that are measured whatever the budget: without two points there is nothing to compare.
+/// Number of choices that are measured regardless of the budget; a comparison needs two points.
 constexpr std::size_t kFewestChoices = 2;
 
-/// Samples of a pixel that a render with --noise takes at least.
+/// Minimum samples per pixel of a render with --noise.
 constexpr double kFewestAdaptiveSamples = 16;
 
 class Runner {
@@ -110,7 +110,7 @@ class Runner {
     job::add_scene_files(request_.scene.file, scene, files);
     if (scene.render.shading != scene::Shading::kPath)
       throw base::Error(base::ErrorKind::kUsage,
-                        "render.shading shows no light, so there is nothing to trade; set it to \"path\"");
+                        "a study needs render.shading = \"path\"; the other modes trace no light paths");
     full_ = compile::compile(scene, closing());
     const film::LayerRequest layers = job::choose_layers(scene, full_).request;
     memory_needs_ = job::memory_needs(full_, layers);
@@ -127,11 +127,11 @@ class Runner {
     world_ = full_;
   }
 
-  /// What the shutter closes on; null if it is never open.
+  /// The scene at shutter close; null without motion.
   const scene::Scene* closing() const { return read_.closing ? &*read_.closing : nullptr; }
 
   accel::Accel& accel_of(const CompiledScene& compiled) {
-    // It depends on the spheres alone, and these stay where they are, whoever holds them.
+    // The accelerator depends on the spheres alone, whose storage does not move when it is lent.
     std::unique_ptr<accel::Accel>& accel = accels_[{compiled.precision, compiled.accelerator}];
     if (!accel) {
       const double begin = elapsed();
@@ -141,7 +141,7 @@ class Runner {
     return *accel;
   }
 
-  /// What a render took, by the clock or by its work.
+  /// The duration of a render, measured or derived from its paths (Request::paths_per_s).
   double seconds_of(const render::Statistics& did) const {
     return request_.paths_per_s > 0 ? static_cast<double>(did.paths) / request_.paths_per_s : did.render_s;
   }
@@ -155,20 +155,20 @@ class Runner {
     settings.traversal = traversal_;
     settings.cancel = request_.cancel;
     render::Result result = render::render(compiled, accel_of(compiled), settings);
-    if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; the study is not complete");
+    if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; the study is incomplete");
     result.picture.planes.resize(3);
     out_.isa = result.statistics.isa;
     paths_ += static_cast<double>(result.statistics.paths);
     return result;
   }
 
-  /// Paths a second of this scene.
+  /// Measures the paths per second of this scene.
   double measured_speed() {
     CompiledScene pilot = full_;
     pilot.samples = 1;
-    // A small picture, for a large one may take longer than the budget for a single sample.
+    // At a small size, since a single sample of a large image may exceed the budget.
     resize(pilot, kFewestPixels);
-    render(pilot);  // builds, and warms up
+    render(pilot);  // builds the BVH and warms up
     if (request_.paths_per_s > 0) return request_.paths_per_s;
     const double begin = elapsed();
     double paths = 0;
@@ -179,10 +179,10 @@ class Runner {
     return paths / (elapsed() - begin);
   }
 
-  /// Measures how fast this scene is, and reduces the picture until everything fits into the budget, but not below
-  /// kFewestPixels: then choices are left out.
+  /// Measures the speed and reduces the image until the study fits into the budget, but not below kFewestPixels. Beyond
+  /// that, choices are skipped.
   void choose_size() {
-    tell("measuring the speed");
+    tell("measuring speed");
     paths_per_s_ = measured_speed();
     const double most = static_cast<double>(full_.width) * full_.height;
     const double least = std::min(kFewestPixels, most);
@@ -192,7 +192,7 @@ class Runner {
     const double needed = least * samples / paths_per_s_;
     if (needed > left()) {
       std::string text;
-      base::append(text, "--budget is too small for this scene: reading it, a reference and two choices take %.3g s",
+      base::append(text, "--budget is too small: loading this scene, a reference and two choices take %.3g s",
                    1.2 * (elapsed() + needed));
       throw base::Error(base::ErrorKind::kUsage, text);
     }
@@ -201,7 +201,7 @@ class Runner {
     out_.height = world_.height;
   }
 
-  /// The same view in at most so many pixels.
+  /// Reduces an image to at most `pixels` pixels, with the same view.
   void resize(CompiledScene& compiled, double pixels) const {
     format::ReadResult small;
     small.scene = read_.scene;
@@ -217,11 +217,11 @@ class Runner {
     compiled.frame_height = view.height;
   }
 
-  /// Seeds of a study: of the two renders of each choice, 0 and 1, and of the reference, 2 and 3. Another seed of the
-  /// scene gives a study that shares no random number with this one.
+  /// Seeds of the study: 0 and 1 for the two renders of each choice, 2 and 3 for those of the reference. Studies with
+  /// different scene seeds share no random numbers.
   std::uint32_t seed(std::uint32_t i) const { return 4 * full_.sampler.seed + i; }
 
-  /// All pixels get the same samples: where samples are chosen by their values, halves are not independent.
+  /// Renders the reference twice, without adaptive sampling, which would make the two halves of the samples dependent.
   void render_reference() {
     tell("rendering the reference");
     CompiledScene compiled = world_;
@@ -245,10 +245,10 @@ class Runner {
 
   void measure_axes() {
     out_.left_out = plan_.left_out;
-    std::map<std::string, std::string> too_expensive;  // names by axis
+    std::map<std::string, std::string> too_expensive;  // choice names by axis
     for (std::size_t i = 0; i < plan_.choices.size(); ++i) {
       const Choice& choice = plan_.choices[i];
-      // The first choices matter most; what does not fit into the time is named.
+      // Choices are ordered by importance. Those that exceed the budget are listed.
       const double reserve = request_.budget_s * (kPilotShare + kFeatureShare);
       if (i >= kFewestChoices && expected_seconds(choice) > left() - reserve) {
         std::string& names = too_expensive[choice.axis];
@@ -259,19 +259,19 @@ class Runner {
       measure(choice);
     }
     for (const auto& [axis, names] : too_expensive)
-      out_.left_out.push_back(axis + " (" + names + "): the budget does not allow it");
+      out_.left_out.push_back(axis + " (" + names + "): exceeds the budget");
   }
 
   CompiledScene world_of(const Choice& choice) const {
     CompiledScene compiled = world_;
     compiled.samples = choice.samples;
     if (choice.apply) choice.apply(compiled);
-    // Noise of neighbours is told apart by the samples that each has.
+    // The blue-noise sampler depends on the sample count.
     compiled.sampler.blue_noise_bits = compile::blue_noise_bits(choice.samples);
     return compiled;
   }
 
-  /// Of both renders, and of the accelerator that they need.
+  /// Expected duration of both renders of a choice, including the build of a new accelerator.
   double expected_seconds(const Choice& choice) const {
     const CompiledScene compiled = world_of(choice);
     const double build_s = accels_.count({compiled.precision, compiled.accelerator}) == 0 ? build_s_ : 0;
@@ -280,7 +280,7 @@ class Runner {
     return build_s + 2 * render_s * choice.slowness;
   }
 
-  /// From the points with --noise so far: time goes as the inverse square of the error.
+  /// Expected duration of a render with --noise, extrapolated from the last such point as 1 / error^2.
   double expected_seconds(double noise) const {
     double seconds = 64 * pixels() / paths_per_s_ * std::pow(0.02 / noise, 2);
     for (const Point& p : out_.points)
@@ -327,7 +327,7 @@ class Runner {
   void measure_features() {
     // bench_features reads the scene and builds its accelerator once more.
     if (read_s_ + build_s_ + 2 * request_.budget_s * kFeatureShare > left()) {
-      out_.left_out.push_back("features: the budget does not allow it");
+      out_.left_out.push_back("features: exceeds the budget");
       return;
     }
     tell("features");
@@ -346,7 +346,7 @@ class Runner {
     return nullptr;
   }
 
-  /// The options that the study was given for the scene. The number of samples would limit --noise, and is left out.
+  /// The scene options of the study as text, without --samples, which would limit --noise.
   std::string scene_flags() const {
     std::string flags;
     for (const format::Override& override : request_.scene.overrides)
@@ -355,9 +355,9 @@ class Runner {
     return flags;
   }
 
-  /// What to use for the noise that was asked for, tried at the scene's own size.
+  /// Chooses settings for the target noise and tests them at full resolution.
   void recommend() {
-    tell("trying the recommendation");
+    tell("testing the recommendation");
     CompiledScene compiled = full_;
     std::string flags;
     base::append(flags, "--noise %g", request_.noise);
@@ -394,19 +394,19 @@ class Runner {
     if (takes_fast) base::append(r.words, ", bias %.2g %%", r.bias * 100);
   }
 
-  /// A try at the scene's own size.
+  /// Result of a test render at full resolution.
   struct Pilot {
     double noise, seconds, samples;  ///< samples per pixel
   };
   using Pilots = std::vector<Pilot>;
 
-  /// Renders with half the noise again and again, until what was asked for is reached or the next would take too long.
-  /// Where even the first would, a point of the study's small pictures stands for it.
+  /// Renders at full resolution with half the noise each time, until the target is reached or the next render would
+  /// exceed the budget. If the first one would, scales a point of the study instead.
   Pilots pilot(CompiledScene& compiled) {
     const double full_pixels = static_cast<double>(compiled.width) * compiled.height;
     Pilots out;
     if (kFewestAdaptiveSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
-      out_.left_out.push_back("trying the recommendation at the scene's own size: the budget does not allow it");
+      out_.left_out.push_back("test of the recommendation at full resolution: exceeds the budget");
       const Point& p = point_near(request_.noise);
       out.push_back({p.error, p.seconds * full_pixels / pixels(), p.samples});
       return out;
@@ -420,7 +420,7 @@ class Runner {
     }
   }
 
-  /// The point whose error is nearest to a noise, of those with as many samples as --noise takes.
+  /// The point whose error is nearest to a noise, among those with the minimum samples of --noise.
   const Point& point_near(double noise) const {
     const Point* nearest = nullptr;
     const auto distance = [noise](const Point& p) { return std::abs(std::log(p.error / noise)); };
@@ -428,18 +428,18 @@ class Runner {
       if ((p.axis == "samples" || p.axis == "noise") && p.samples >= kFewestAdaptiveSamples &&
           (nearest == nullptr || distance(p) < distance(*nearest)))
         nearest = &p;
-    return *nearest;  // the second choice of all has 16 samples
+    return *nearest;  // never null: the second choice has 16 samples
   }
 
-  /// How many times as much of something than in the last try it takes to get down to a noise: as the study's small
-  /// pictures do from the one noise to the other.
+  /// The factor by which `what` grows from the last test render to a given noise, interpolated from the study's points
+  /// with --noise.
   double growth(const Pilots& pilots, double noise, double Point::*what) const {
     const double reached = pilots.back().noise;
     if (reached <= noise) return 1;
     std::vector<const Point*> line;
     for (const Point& p : out_.points)
       if (p.axis == "noise" && p.error > 0) line.push_back(&p);
-    // Straight lines between points, on logarithmic axes; beyond the last ones these go on.
+    // Linear interpolation on logarithmic axes, extrapolated beyond the last points.
     const auto at = [&](double error) {
       std::size_t k = 1;
       while (k + 1 < line.size() && error < line[k]->error) ++k;
@@ -447,11 +447,11 @@ class Runner {
       const double power = std::clamp(std::log(b.*what / a.*what) / std::log(a.error / b.error), 1.0, 2.5);
       return std::log(b.*what) + power * std::log(b.error / error);
     };
-    constexpr double kUsual = 1.75;  // between the law of chance, 2, and that of points spread evenly
+    constexpr double kUsual = 1.75;  // between independent sampling, 2, and quasi-Monte Carlo
     return line.size() < 2 ? std::pow(reached / noise, kUsual) : std::exp(at(noise) - at(reached));
   }
 
-  /// At the scene's size, with independent samples, the same for all pixels, and exact: what the book does.
+  /// Time for the target noise at full resolution with the book's method: independent samples, uniform over the image.
   double baseline_seconds() const {
     const Point* best = nullptr;
     for (const Point& p : out_.points)
@@ -464,15 +464,15 @@ class Runner {
   const Request& request_;
   Clock::time_point start_ = Clock::now();
   format::ReadResult read_;     ///< without spheres
-  CompiledScene world_, full_;  ///< of the study's size and of the scene's, both without spheres
+  CompiledScene world_, full_;  ///< at the study's size and at full resolution, both without spheres
   job::MemoryNeeds memory_needs_;
   Pair reference_;
   Spheres spheres_;
   AxisPlan plan_;
   std::map<std::pair<compile::Precision, compile::Accelerator>, std::unique_ptr<accel::Accel>> accels_;
   std::optional<accel::Traversal> traversal_;
-  double read_s_ = 0, build_s_ = 0;  ///< of the scene, and of its slowest accelerator
-  double paths_ = 0;                 ///< all that were traced
+  double read_s_ = 0, build_s_ = 0;  ///< time to load the scene, and to build its slowest accelerator
+  double paths_ = 0;                 ///< paths traced so far
   double paths_per_s_ = 0;
   Study out_;
 };

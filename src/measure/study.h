@@ -15,68 +15,71 @@
 
 namespace orrery::measure {
 
+/// Scene and limits of a study.
 struct Request {
   job::SceneSource scene;
-  std::filesystem::path report;  ///< file that the caller will write; refused where it is read
-  std::string isa;               ///< empty: the processor's best
+  std::filesystem::path report;  ///< file that the caller will write; checked for conflicts with input files
+  std::string isa;               ///< instruction set; empty: the best available
   int threads = 0;               ///< 0: as many as this process may use
-  double budget_s = 120;         ///< for everything
-  double noise = 0.01;           ///< that the recommendation shall reach
-  /// Above 0: seconds are counted in paths, so many a second, and not by the clock; then the same is measured on every
-  /// machine. For tests.
+  double budget_s = 120;         ///< time for the whole study
+  double noise = 0.01;           ///< target noise of the recommendation
+  /// If above 0, time is the number of paths divided by this rate instead of clock time, so that results do not depend
+  /// on the machine. For tests.
   double paths_per_s = 0;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const std::string& what, double fraction)> on_progress;
 };
 
-/// What a choice comes to. Errors are those of film::display_error_squared, roots of means over pixels.
+/// Result of one choice. Errors are root mean film::display_error_squared over the pixels.
 struct Point {
   std::string axis;          ///< "samples", "sampler", "precision" ...
   std::string name;          ///< "64 independent"
-  std::string flags;         ///< that choose it on the command line
-  double samples = 0;        ///< per pixel, mean
-  double seconds = 0;        ///< to render one picture of the study's size
-  double error = 0;          ///< root of noise^2 + bias^2
-  double bias = 0;           ///< part of it that more samples would not take away; 0 if none was found
-  double noise = 0;          ///< the rest
-  double bias_squared = 0;   ///< unbiased estimate, also below 0
-  double bias_chance = 1;    ///< bound on the probability that an unbiased choice gives as large an estimate
-  double energy = 0;         ///< excess light, relative to all light
+  std::string flags;         ///< command-line options that select it
+  double samples = 0;        ///< mean samples per pixel
+  double seconds = 0;        ///< time to render one image of the study's size
+  double error = 0;          ///< sqrt(noise^2 + bias^2)
+  double bias = 0;           ///< error that more samples do not reduce; 0 if not significant
+  double noise = 0;          ///< error that more samples reduce
+  double bias_squared = 0;   ///< unbiased estimate of the squared bias; can be negative
+  double bias_chance = 1;    ///< upper bound of the p-value: probability of such an estimate without bias
+  double energy = 0;         ///< mean radiance error, relative to the mean radiance
   double efficiency = 0;     ///< 1 / (error^2 seconds)
-  std::uint64_t memory = 0;  ///< bytes, estimated
-  bool is_shortcut = false;  ///< gives another picture than the scene asks for, however many samples
-  bool on_front = false;     ///< nothing else is both quicker and better
+  std::uint64_t memory = 0;  ///< estimated bytes
+  bool is_shortcut = false;  ///< converges to a different image than the scene's settings
+  bool on_front = false;     ///< on the Pareto front of time and error
   film::Picture picture;     ///< planes R, G, B
 };
 
-/// What a way of writing the picture comes to.
+/// Result of one EXR pixel type and compression.
 struct FilePoint {
   std::string name;  ///< "half zips"
   std::string flags;
   std::uint64_t bytes = 0;
   double write_s = 0;
-  double error = 0;  ///< display error that writing brings in
+  double error = 0;  ///< display error caused by storage
 };
 
-/// A line of points by rising samples, and how steep it falls.
+/// Convergence rate of a sampler.
 struct Slope {
   std::string name;
-  double slope = 0;  ///< of log error by log samples
+  double slope = 0;  ///< slope of log error over log samples
 };
 
+/// Recommended settings for the target noise, with the forecast of a render.
 struct Recommendation {
   std::string words;
   std::string command;
-  double noise = 0, bias = 0;   ///< that the picture will have
-  double seconds = 0;           ///< of rendering, at the scene's size
-  double samples = 0;           ///< per pixel
-  double baseline_seconds = 0;  ///< for the same error with the scene's own settings, the same samples in all pixels
+  double noise = 0, bias = 0;   ///< expected errors of the image
+  double seconds = 0;           ///< render time at full resolution
+  double samples = 0;           ///< mean samples per pixel
+  double baseline_seconds = 0;  ///< render time for the same error with independent samples, uniform over the image
 };
 
+/// Results of a study.
 struct Study {
   std::string scene_hash, scene, version;
-  int width = 0, height = 0;              ///< px, of the study
-  int scene_width = 0, scene_height = 0;  ///< px
+  int width = 0, height = 0;              ///< image size of the study, px
+  int scene_width = 0, scene_height = 0;  ///< image size of the scene, px
   std::uint64_t spheres = 0;
   int threads = 0;
   std::string isa;
@@ -86,26 +89,25 @@ struct Study {
   std::vector<Point> points;
   std::vector<FilePoint> files;
   std::vector<Slope> slopes;
-  std::vector<std::string> left_out;  ///< axes that this scene cannot feel, and points that the budget did not allow
+  std::vector<std::string> left_out;  ///< axes without effect on this scene, and choices that exceed the budget
   std::vector<measure::FeatureCost> features;
   Recommendation recommendation;
 };
 
-/// Measures what this scene's shortcuts cost and bring.
+/// Measures time and error of the render settings for a scene, and recommends settings for the target noise.
 ///
-/// Renders a reference and each choice twice, with different seeds: errors that all of them have in common are bias,
-/// the rest is noise. Finds a recommendation, and tries it at the scene's own size. What the budget does not allow is
-/// left out and named.
+/// Renders a reference and each choice twice, with different seeds: an error common to both renders is bias, the rest
+/// is noise. Tests the recommendation at full resolution. Choices that exceed the budget are skipped and listed.
 ///
-/// Errors     as job::run_job; base::Error(kUsage) if the budget does not allow a reference and two choices, with what
-///            these need; kStopped
+/// Errors     as job::run_job; base::Error(kUsage) with the time needed if the budget is too small for a reference and
+///            two choices; kStopped
 Study run_study(const Request& request);
 
-/// For people.
+/// A study as a text table.
 std::string study_text(const Study& study);
-/// As JSON, "orrery.study/1"; pictures are left out.
+/// A study as JSON, schema "orrery.study/1", without images.
 std::string study_json(const Study& study);
-/// One file with everything in it; see report.cpp.
+/// A study as a self-contained HTML page.
 std::string study_html(const Study& study);
 
 }  // namespace orrery::measure

@@ -17,12 +17,12 @@ TempDir::TempDir() {
   std::string name = ((failed ? std::filesystem::path("/tmp") : parent) / "orrery-study-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
     throw base::Error(base::ErrorKind::kCannotCreate,
-                      name + ": " + std::strerror(errno) + "; $TMPDIR names another place for temporary files");
+                      name + ": " + std::strerror(errno) + "; set $TMPDIR to another folder for temporary files");
   path_ = name;
 }
 
 TempDir::~TempDir() {
-  std::error_code ignored;  // what cannot be removed stays behind; there is nobody to tell
+  std::error_code ignored;  // destructors cannot report errors
   std::filesystem::remove_all(path_, ignored);
 }
 

@@ -5,7 +5,7 @@
 
 namespace orrery::measure {
 
-/// A folder of its own for temporary files, gone with everything in it when this goes.
+/// A new temporary folder, removed with its content on destruction.
 class TempDir {
  public:
   /// Errors     base::Error(kCannotCreate)

@@ -9,7 +9,7 @@
 
 namespace orrery::metrics {
 
-/// Three planes of a picture that are a colour, rows from the top.
+/// A view of three planes of an image as a colour, row by row from the top.
 struct ColorView {
   int width = 0, height = 0;  ///< px
   const float* channel[3] = {nullptr, nullptr, nullptr};
@@ -17,7 +17,7 @@ struct ColorView {
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
-/// A map of one number for each pixel.
+/// One value per pixel, row by row from the top.
 struct Map {
   int width = 0, height = 0;  ///< px
   std::vector<float> values;
@@ -25,9 +25,10 @@ struct Map {
   double mean() const;
 };
 
-/// The planes PREFIX.R, .G, .B of a picture, or R, G, B for an empty prefix.
+/// The planes PREFIX.R, PREFIX.G and PREFIX.B of an image, or R, G, B for an empty prefix.
 ///
-/// Result     channels are null where the picture has none
+/// Domain     the image outlives the view
+/// Result     null channels if any of the planes is missing
 ColorView color_of(const film::Picture& picture, const std::string& prefix = "");
 
 }  // namespace orrery::metrics

@@ -28,7 +28,7 @@ Map convolved(const Map& map, const Taps& along_x, const Taps& along_y) {
     const float* const from = row(map.values, y);
     for (int x = -rx; x < w + rx; ++x) padded[static_cast<std::size_t>(x + rx)] = from[std::clamp(x, 0, w - 1)];
     float* const to = row(between.values, y);
-    // Tap by tap over a whole row: the compiler makes vectors of it.
+    // One tap over a whole row at a time, which the compiler vectorizes.
     for (std::size_t k = 0; k < along_x.size(); ++k)
       for (int x = 0; x < w; ++x) to[x] += along_x[k] * padded[static_cast<std::size_t>(x) + k];
   }

@@ -8,16 +8,18 @@
 
 namespace orrery::metrics {
 
-/// A kernel of 2 * radius + 1 taps along one axis.
+/// A one-dimensional kernel of 2 * radius + 1 taps.
 using Taps = std::vector<float>;
 
-/// `shape` at -radius .. radius, scaled so that all add up to 1.
+/// Samples `shape` at -radius .. radius and normalizes the taps to a sum of 1.
 Taps taps_of(int radius, const std::function<double(double)>& shape);
 
-/// exp(-x^2 / (2 sigma^2)), adding up to 1.
+/// A Gaussian kernel, normalized to a sum of 1.
+///
+/// Units      `radius` and `sigma` in pixels
 Taps gaussian_taps(int radius, double sigma);
 
-/// A map filtered by the product of two kernels; beyond the edge its outermost value goes on.
+/// Convolves a map with a separable kernel. The edge pixels are extended beyond the border.
 Map convolved(const Map& map, const Taps& along_x, const Taps& along_y);
 
 }  // namespace orrery::metrics

@@ -7,17 +7,18 @@
 
 namespace orrery::metrics {
 
-/// A map as colours from black over violet and orange to pale yellow, 0 .. `full` of it; codes 0..1 of an sRGB screen.
+/// Maps the values 0 .. `full` to the colour map magma, from black through violet and orange to pale yellow.
 ///
-/// Reference  the colour map "magma" of matplotlib, at every sixteenth step
+/// Result     sRGB-encoded values 0..1
+/// Reference  matplotlib's "magma", sampled at every sixteenth entry
 film::Picture false_color(const Map& map, double full);
 
-/// Codes 0..1 in 8 bits.
+/// Quantizes an sRGB-encoded image to 8 bits.
 ///
-/// Domain     planes R, G, B
+/// Domain     planes R, G, B; values are clamped to 0..1
 film::EncodedPicture encoded(const film::Picture& codes);
 
-/// A map as a grey picture of its own numbers.
+/// A map as a grey image with the same values in R, G and B.
 film::Picture grey(const Map& map);
 
 }  // namespace orrery::metrics

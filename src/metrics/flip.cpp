@@ -16,15 +16,15 @@ namespace {
 using Color = std::array<float, 3>;
 using Maps = std::array<Map, 3>;
 
-// The letters of the papers stand for their quantities.
+// The symbols used in the papers are given in the comments.
 constexpr float kColorExponent = 0.7f;    // q_c
 constexpr float kFeatureExponent = 0.5f;  // q_f
 constexpr float kColorKnee = 0.4f;        // p_c
 constexpr float kErrorAtKnee = 0.95f;     // p_t
 constexpr double kFeatureWidth = 0.082;   // w, degrees
-constexpr double kShown = 0.85;           // t, of the tone curve, where the range of exposures ends
+constexpr double kShown = 0.85;           // t, the tone-mapped value that sets both ends of the exposure range
 
-// Between light of Rec. 709 primaries and CIE XYZ relative to the white D65, which is (1, 1, 1).
+// Conversion between linear Rec. 709 and CIE XYZ relative to the D65 white, which maps to (1, 1, 1).
 constexpr double kWhite[3] = {0.950428545, 1, 1.088900371};
 constexpr double kToXyz[3][3] = {{10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794},
                                  {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
@@ -52,7 +52,8 @@ Color light_of(const Color& relative) {
   return out;
 }
 
-/// Brightness, red against green, yellow against blue; without the cube root, so that filters mean something.
+/// Opponent colour: brightness, red-green, yellow-blue. Linear, without the cube root of L*a*b*, so that it can be
+/// filtered.
 Color opponent(const Color& light) {
   const Color n = white_relative(light);
   return {116 * n[1] - 16, 500 * (n[0] - n[1]), 200 * (n[1] - n[2])};
@@ -62,7 +63,7 @@ Color light_of_opponent(const Color& o) {
   return light_of({y + o[1] / 500, y, y - o[2] / 200});
 }
 
-/// CIE L*a*b*, its colours fainter where it is dark, as Hunt found.
+/// CIE L*a*b* with chroma scaled by lightness (Hunt effect).
 Color hunt_lab(const Color& light) {
   constexpr float kDelta = 6.0f / 29;
   Color n = white_relative(light);
@@ -73,7 +74,7 @@ Color hunt_lab(const Color& light) {
 
 float hyab(const Color& a, const Color& b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
 
-/// What blurs the eye's three channels. That of yellow and blue is the sum of two.
+/// Contrast sensitivity filters of the three opponent channels. The yellow-blue filter is a sum of two Gaussians.
 struct EyeFilters {
   Taps brightness, red_green, blue_yellow[2];
   float share[2];
@@ -98,11 +99,11 @@ struct EyeFilters {
   }
 };
 
-/// A picture as the metric looks at it.
+/// An image after the perceptual filters.
 struct Seen {
-  Maps lab;      ///< blurred by the eye
-  Map features;  ///< strength of edges and points, whichever; two maps below
-  Map points;
+  Maps lab;      ///< colour after the contrast sensitivity filters
+  Map features;  ///< edge strength
+  Map points;    ///< point strength
 };
 
 template <class F>
@@ -115,7 +116,7 @@ Maps each_pixel(const Maps& from, F f) {
   return out;
 }
 
-/// How strong the feature is that the kernel across finds, in either direction.
+/// Feature strength: magnitude of the responses to a separable kernel applied along x and along y.
 Map feature_strength(const Map& brightness, const Taps& across, const Taps& along) {
   Map x = convolved(brightness, across, along);
   const Map y = convolved(brightness, along, across);
@@ -123,7 +124,7 @@ Map feature_strength(const Map& brightness, const Taps& across, const Taps& alon
   return x;
 }
 
-/// A kernel whose positive taps add up to 1, and the negative ones to -1.
+/// A kernel whose positive taps sum to 1 and whose negative taps sum to -1.
 Taps balanced(int radius, const std::function<double(double)>& shape) {
   double positive = 0, negative = 0;
   for (int x = -radius; x <= radius; ++x) (shape(x) > 0 ? positive : negative) += std::abs(shape(x));
@@ -180,7 +181,7 @@ Map flip(const Seen& a, const Seen& b) {
   return out;
 }
 
-// The tone curve, a fit to that of the Academy's reference: (a x^2 + b x) / (c x^2 + d x + e).
+// The tone curve, a fit to the ACES reference rendering: (a x^2 + b x) / (c x^2 + d x + e).
 constexpr double kTone[5] = {0.36 * 2.51, 0.6 * 0.03, 0.36 * 2.43, 0.6 * 0.59, 0.14};
 
 float tone(float light) {
@@ -190,7 +191,7 @@ float tone(float light) {
   return static_cast<float>(std::clamp(y, 0.0, 1.0));
 }
 
-/// The light that the curve shows as `t`.
+/// The inverse of the tone curve: the radiance that it maps to `t`.
 double light_shown_as(double t) {
   const double a = kTone[0] - t * kTone[2], b = (kTone[1] - t * kTone[3]) / a, c = -t * kTone[4] / a;
   return -b / 2 + std::sqrt(b * b / 4 - c);
@@ -214,7 +215,8 @@ Maps codes_of(const ColorView& v) {
   return out;
 }
 
-/// Stops, from that which shows the brightest light to that which shows the median.
+/// The exposures in stops: from the one that maps the maximum luminance to kShown to the one that does so for the
+/// median.
 std::vector<double> exposures_for(const ColorView& reference) {
   std::vector<double> luminance(reference.pixels());
   for (std::size_t i = 0; i < luminance.size(); ++i)
@@ -223,13 +225,13 @@ std::vector<double> exposures_for(const ColorView& reference) {
                    0.0722 * static_cast<double>(reference.channel[2][i]);
   const double brightest = *std::max_element(luminance.begin(), luminance.end());
   if (!(brightest > 0)) return {0.0};
-  // The mean of the two in the middle where there are two.
+  // For an even count the median is the mean of the two middle values.
   const auto middle = luminance.begin() + static_cast<std::ptrdiff_t>(luminance.size() / 2);
   std::nth_element(luminance.begin(), middle, luminance.end());
   double median = *middle;
   if (luminance.size() % 2 == 0) median = (median + *std::max_element(luminance.begin(), middle)) / 2;
   const double start = std::log2(light_shown_as(kShown) / brightest);
-  // A picture that is mostly black would ask for endless exposures; thirty stops below white is as good as black.
+  // Limits the number of exposures of a mostly black image: thirty stops below the maximum counts as black.
   const double stop = std::log2(light_shown_as(kShown) / std::max(median, brightest * 0x1p-30));
   const int count = std::max(2, static_cast<int>(std::ceil(stop - start)));
   std::vector<double> out;

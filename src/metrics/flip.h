@@ -8,23 +8,23 @@
 
 namespace orrery::metrics {
 
-/// Pixels that an eye sees in a degree: a screen of 3840 pixels and 0.7 m across, seen from 0.7 m.
+/// Pixels per degree of visual angle for a display 3840 pixels and 0.7 m wide, viewed from 0.7 m.
 inline constexpr double kPixelsPerDegree = 67.0206433;
 
-/// Calls work(i) for i = 0 .. count - 1, in any order and from any threads, and passes on what it throws.
+/// Calls work(i) for i = 0 .. count - 1 in any order, from any threads, and rethrows its exceptions.
 using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t i)>& work)>;
 
-/// How much a viewer who flips between two pictures notices at each pixel, 0..1.
+/// The FLIP error map: the difference per pixel that a viewer perceives when alternating between two images.
 ///
-/// Domain     codes 0..1 of an sRGB screen; views of the same size
+/// Domain     sRGB-encoded values 0..1; views of the same size
+/// Result     0..1
 /// Reference  andersson2020
 Map flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree = kPixelsPerDegree);
 
-/// The same for scene-linear light: the most that is noticed at any exposure, from that which shows the brightest to
-/// that which shows the darker half, through the tone curve of the paper.
+/// The HDR-FLIP error map of scene-linear images: the maximum of flip() over a range of exposures, tone-mapped with the
+/// curve of the paper. The range extends from the exposure for the brightest pixel to that for the median.
 ///
-/// `for_each` computes the exposures; by default one after the other
-/// Domain     light in the primaries of Rec. 709; what is below 0 counts as 0
+/// Domain     linear Rec. 709; negative values count as 0. `for_each` runs the exposures; default: one after another
 /// Reference  andersson2021
 Map hdr_flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree = kPixelsPerDegree,
              const ForEach& for_each = {});

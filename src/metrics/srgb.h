@@ -3,7 +3,7 @@
 
 namespace orrery::metrics {
 
-/// The curve of sRGB screens, IEC 61966-2-1: from light 0..1 to code 0..1 and back.
+/// The sRGB transfer function, IEC 61966-2-1, from linear 0..1 to encoded 0..1, and its inverse.
 float srgb_encoded(float light);
 float srgb_decoded(float code);
 

@@ -5,10 +5,11 @@
 
 namespace orrery::metrics {
 
-/// The mean structural similarity of the luma of two pictures of codes 0..1; 1: the same.
+/// The mean structural similarity (SSIM) of the luma of two display-encoded images.
 ///
-/// Domain     views of the same size, with channels
-/// Reference  wang2004: windows of 11 x 11, sigma 1.5, K1 = 0.01, K2 = 0.03; beyond edges the outermost values go on
+/// Domain     values 0..1; views of the same size, with channels
+/// Result     1 for identical images
+/// Reference  wang2004: 11 x 11 Gaussian window, sigma 1.5, K1 = 0.01, K2 = 0.03; edge pixels extended past the border
 double ssim(const ColorView& picture, const ColorView& reference);
 
 }  // namespace orrery::metrics

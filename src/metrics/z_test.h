@@ -7,35 +7,36 @@
 
 namespace orrery::metrics {
 
-/// The chance of a false alarm in a whole comparison, whatever the number of its tests.
+/// Family-wise error rate: the probability of any false positive among all tests of a comparison.
 inline constexpr double kFamilyWiseError = 0.01;
 
-/// Sides of the squares whose means are tested: large enough for means of samples to be nearly normal.
+/// Side of the square blocks whose means are tested; large enough for the block means to be nearly normal.
 inline constexpr int kTestedSide = 16;  // px
 
-/// Whether two noisy pictures can be of the same scene, and how much of their difference is noise.
+/// Result of a z-test of whether two noisy images show the same scene, and the split of their difference into noise and
+/// bias.
 struct ZTest {
-  int tests = 0;                  ///< squares of kTestedSide, each channel apart, that have any variance
-  int rejected = 0;               ///< those beyond the critical value
-  double largest_z = 0;           ///< with its sign: picture less reference
-  int channel = 0, x = 0, y = 0;  ///< where that is, px, upper left corner of the square
-  double critical_z = 0;          ///< Bonferroni's, for kFamilyWiseError over all tests, two-sided
-  double noise = 0;               ///< root mean square error that the variances explain
-  double bias = 0;                ///< root mean square of what they don't; 0 where they explain all
-  double mean_bias = 0;           ///< relative: mean of a - b by mean of b
-  double mean_bias_error = 0;     ///< its standard error
+  int tests = 0;                  ///< number of blocks with non-zero variance, counted per channel
+  int rejected = 0;               ///< number of tests with |z| above critical_z
+  double largest_z = 0;           ///< z of the largest magnitude; positive if the image is brighter than the reference
+  int channel = 0, x = 0, y = 0;  ///< channel of largest_z, and upper left corner of its block, px
+  double critical_z = 0;          ///< two-sided critical value, Bonferroni-corrected to kFamilyWiseError
+  double noise = 0;               ///< root mean square error explained by the variances
+  double bias = 0;                ///< root mean square error not explained by them; 0 if they explain all
+  double mean_bias = 0;           ///< mean of image - reference, relative to the mean of the reference
+  double mean_bias_error = 0;     ///< standard error of mean_bias
 
   bool differ() const { return rejected > 0; }
 };
 
-/// Variances are those of the means of pixels; a reference that has none counts as exact.
+/// Compares the means of blocks of kTestedSide px in each channel.
 ///
-/// Domain     views of the same size
-/// Result     nothing where the picture has no variance
+/// Domain     views of the same size; variances are those of the pixel means; a reference without variance is exact
+/// Result     empty if the image has no variance
 std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance, const ColorView& reference,
                             const ColorView& reference_variance);
 
-/// The z that a normal variable exceeds in absolute value with this chance.
+/// The z whose absolute value a standard normal variable exceeds with probability `chance`.
 double two_sided_quantile(double chance);
 
 }  // namespace orrery::metrics

@@ -89,9 +89,10 @@ TEST_F(BatchParts, WhatDoesNotBelongTogetherIsNamed) {
   expect_refused(run("merge a.exr b1.exr -o merged.exr"), 65, {"b1.exr: error: has samples that a.exr has, too"});
   render("foreign.exr", "--samples 10:35 --seed 8");
   render("other.exr", "--samples 10:35 --layers Z");
-  expect_refused(run("merge a.exr foreign.exr other.exr nothing.exr whole.exr -o merged.exr"), 65,
-                 {"foreign.exr: error: is of scene hash", "other.exr: error: is of layers",
-                  "nothing.exr: error: cannot open", "whole.exr: error: whole.exr is no partial picture", "4 errors"});
+  expect_refused(
+      run("merge a.exr foreign.exr other.exr nothing.exr whole.exr -o merged.exr"), 65,
+      {"foreign.exr: error: is of scene hash", "other.exr: error: is of layers", "nothing.exr: error: cannot open",
+       "whole.exr: error: whole.exr is not a checkpoint or shard", "4 errors"});
   expect_refused(run("merge a.exr nothing.exr -o merged.exr"), 66, {"nothing.exr"});
   const std::string bytes = text_of(folder_ / "b.exr");
   for (const std::size_t share : {1u, 2u, 9u}) {

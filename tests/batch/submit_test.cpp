@@ -146,7 +146,7 @@ TEST_F(BatchSubmit, WhatWouldFailOnTheFarmFailsHere) {
   expect("good.toml -o s.exr", 2, "one of --slurm");
   expect("good.toml -o s.exr --slurm --openjd", 2, "one of --slurm");
   expect("good.toml -o s.exr --frames 1-3 --slurm", 2, "one name for 3 frames");
-  expect("good.toml -o s.xyz --slurm", 2, ".xyz is no picture format");
+  expect("good.toml -o s.xyz --slurm", 2, "unknown image format .xyz");
   expect("nothing.toml -o s.exr --slurm", 66, "nothing.toml");
   expect("good.toml -o s.exr --slurm --set camera.vfow=3", 65, "vfow");
   expect("good.toml -o s.exr --slurm --shards 2 --noise 0.1", 2, "--shards");

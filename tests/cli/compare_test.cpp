@@ -18,7 +18,7 @@ class CliCompare : public ProgramTest {
 TEST_F(CliCompare, APictureIsAsItIs) {
   const Outcome r = run("compare a.exr a.exr --fail-above rmse=0 --fail-above relmse=0 --fail-above max=0");
   EXPECT_EQ(r.status, 0) << r.err;
-  for (const char* line : {"pictures    32 x 18, channels R, G, B\n", "rmse        0\n", "psnr        infinite\n",
+  for (const char* line : {"images      32 x 18, channels R, G, B\n", "rmse        0\n", "psnr        infinite\n",
                            "ssim        1\n", "flip        0\n", "differing   0 of 2304 values\n"})
     EXPECT_NE(r.out.find(line), std::string::npos) << line << r.out;
 }
@@ -44,7 +44,7 @@ TEST_F(CliCompare, OtherLayersAreNamedAndTheRestIsCompared) {
   EXPECT_NE(r.out.find("z-test      no difference but noise"), std::string::npos) << r.out;
   const Outcome z = run("compare z.exr a.exr --layer Z");
   EXPECT_EQ(z.status, 65);
-  EXPECT_NE(z.err.find("layer Z is not in both pictures"), std::string::npos) << z.err;
+  EXPECT_NE(z.err.find("layer Z is not in both images"), std::string::npos) << z.err;
   EXPECT_EQ(run("compare a.exr b.exr --fail-above z=1").status, 2);
 }
 
@@ -77,7 +77,7 @@ TEST_F(CliCompare, OtherSizesAndDamagedFilesAreBadData) {
   ASSERT_EQ(run("render good.toml -o c.exr -q --width 16").status, 0);
   const Outcome r = run("compare a.exr c.exr");
   EXPECT_EQ(r.status, 65);
-  EXPECT_EQ(r.err, "orrery: pictures of different sizes cannot be compared: 32 x 18 and 16 x 18\n");
+  EXPECT_EQ(r.err, "orrery: images of different sizes cannot be compared: 32 x 18 and 16 x 18\n");
   write("noise.exr", "noise");
   EXPECT_EQ(run("compare a.exr noise.exr").status, 65);
 }

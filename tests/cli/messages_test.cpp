@@ -49,9 +49,8 @@ const Case kCases[] = {
      "orrery: --quiet takes no value\n"
      "Try orrery render --help.\n"},
     {"render good.toml -o a.exr --compression zipp", 2,
-     "orrery: unknown EXR compression zipp; did you mean `zip`? known are none, rle, zip, zips, piz, dwaa, dwab, the "
-     "last two also with a "
-     "level, as in dwaa:45\n"},
+     "orrery: unknown EXR compression zipp; did you mean `zip`? known names are none, rle, zip, zips, piz, dwaa, dwab; "
+     "dwaa and dwab take a level, e.g. dwaa:45\n"},
     {"render good.toml -o a.jpg --bits 16", 2, "orrery: a.jpg holds 8 bits in a channel; PNG and TIFF hold 16\n"},
     {"render good.toml -o a.png -o ./a.png", 2,
      "orrery: ./a.png (-o) and a.png (-o) are the same file; choose another name\n"},
@@ -74,12 +73,12 @@ const Case kCases[] = {
     {"generate final -o a.toml --grid -3", 2,
      "orrery: --grid: must be a whole number from 0 to 1000, not `-3`\n"
      "Try orrery generate final --help.\n"},
-    {"develop a.png -o b.png", 2, "orrery: a.png is developed already; scene-linear light is in exr and hdr\n"},
+    {"develop a.png -o b.png", 2, "orrery: a.png is already display-encoded; the input must be exr or hdr\n"},
     {"develop none.exr -o b.png", 66, "orrery: cannot open none.exr: No such file or directory\n"},
     {"compare none.exr none.exr", 66, "orrery: cannot open none.exr: No such file or directory\n"},
     {"compare a.png b.exr", 2,
-     "orrery: b.exr holds scene-linear light and the other picture what a display shows; develop it first: orrery "
-     "develop b.exr -o developed.png\n"},
+     "orrery: b.exr is scene-linear, but the other image is display-encoded; develop it first: orrery develop b.exr "
+     "-o developed.png\n"},
     {"compare a.exr b.exr --fail-above rsme=1", 2,
      "orrery: --fail-above rsme=1: there is no such metric; did you mean `rmse`?\n"},
     {"compare a.exr b.exr --fail-above rmse", 2, "orrery: --fail-above rmse: write METRIC=VALUE, as in rmse=0.001\n"},

@@ -90,7 +90,7 @@ TEST_F(CliTrade, AStudyWritesItsReport) {
   }
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(nlohmann::json::parse(r.out)["schema"], "orrery.study/1");
-  EXPECT_NE(text_of(folder_ / "report.html").find("<title>What time buys</title>"), std::string::npos);
+  EXPECT_NE(text_of(folder_ / "report.html").find("<title>Render time and image error</title>"), std::string::npos);
   EXPECT_EQ(run("study good.toml --budget 0.0001s -q").status, 2);
   EXPECT_EQ(run("study nothing.toml --budget 5s -q").status, 66);
   EXPECT_EQ(run("study good.toml --budget 5s -q -o no/such/place.html").status, 73);

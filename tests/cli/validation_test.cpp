@@ -249,8 +249,8 @@ TEST_F(CliValidation, UnusedColoursAreTold) {
         "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n0 0 -3 255 0 0\n");
   write("c.toml", std::string(kGoodScene) + "[[points]]\nfile = \"c.ply\"\nradius = 1\nmaterial = \"grey\"\n");
   EXPECT_TRUE(contains(run("info c.toml").out,
-                       "points      c.ply: 1 sphere; unused: red, green, blue; colours of points are not used, "
-                       "those of materials are\n"));
+                       "points      c.ply: 1 sphere; unused: red, green, blue; point colours are ignored, "
+                       "materials set the colours\n"));
   EXPECT_TRUE(contains(run("info c.toml --json").out, "\"unused_colors\": true"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module's side: compiled into it beside the room.
+// The module's side: compiled into the module together with the room.
 #include "image/module/functions.h"
 
 namespace orrery::image {

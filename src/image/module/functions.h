@@ -9,8 +9,8 @@
 
 namespace orrery::image {
 
-/// The functions of this room that need OpenImageIO and that other rooms call. The program finds them in a module,
-/// which it loads when the first of them is called.
+/// The public functions of this room that need OpenImageIO. They are in a module that the program loads at the first
+/// call.
 struct Functions {
   decltype(&image::set_threads) set_threads;
   decltype(&image::oiio_version) oiio_version;
@@ -25,7 +25,7 @@ struct Functions {
   decltype(&image::verified_stamp) verified_stamp;
 };
 
-/// The only name that the module is asked for.
+/// The only symbol that the program looks up in the module.
 inline constexpr const char* kFunctionsName = "orrery_image_functions";
 using GetFunctions = const Functions* (*)();
 

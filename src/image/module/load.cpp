@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's side: the room's functions, which load the module and call its own. Loading OpenImageIO's 260 libraries
-// takes longer than most commands; those that read or write no picture do without.
+// The program's side of the module: forwards the room's functions to the module and loads it at the first call. Loading
+// OpenImageIO's 260 libraries takes longer than most commands, so commands without image I/O do not load them.
 #include <dlfcn.h>
 
 #include <atomic>
@@ -13,9 +13,9 @@
 namespace orrery::image {
 namespace {
 
-std::atomic<int> threads{0};  ///< 0: as the room begins
+std::atomic<int> threads{0};  ///< 0: set_threads() was not called
 
-/// From the folder of the program's file, in the build folder as where it is installed.
+/// Loads the module from the folder of the executable, in the build tree and in the installation.
 const Functions& load() {
   const std::filesystem::path file =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / ORRERY_IMAGE_MODULE;
@@ -36,8 +36,8 @@ const Functions& module() {
 
 void set_threads(int count) {
   threads = count;
-  // A job calls this before it renders, and will write a picture: the module is loaded meanwhile. An error is reported
-  // by the first call that needs the module, since that tries again.
+  // A job calls this before rendering and later writes an image, so the module is loaded in the background. The first
+  // call that needs the module retries the loading and reports its error.
   static const std::future<void> loading = std::async(std::launch::async, [] { module(); });
   if (loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready) module().set_threads(count);
 }

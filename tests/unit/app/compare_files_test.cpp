@@ -26,7 +26,7 @@ film::Picture grey(int width, int height, float value) {
 
 Comparison of_light(const film::Picture& a, const film::Picture& b) { return compare(a, b, Encoding::kLight); }
 
-TEST(AppCompareFiles, EqualPicturesDoNotDiffer) {
+TEST(AppCompareFiles, EqualImagesHaveNoError) {
   const Comparison c = of_light(grey(4, 3, 0.5f), grey(4, 3, 0.5f));
   EXPECT_EQ(c.errors.rmse, 0);
   EXPECT_EQ(c.errors.max_channel, -1);
@@ -37,7 +37,7 @@ TEST(AppCompareFiles, EqualPicturesDoNotDiffer) {
   EXPECT_TRUE(std::isinf(c.errors.psnr_db()));
 }
 
-TEST(AppCompareFiles, OnlyColoursCountAndOtherChannelsAreNamed) {
+TEST(AppCompareFiles, ErrorsCoverColoursAndOtherChannelsAreListed) {
   film::Picture a = grey(2, 1, 0.5f), b = a;
   a.planes.push_back({"A", {0, 0}});
   a.planes.push_back({"Z", {1, 7}});
@@ -52,7 +52,7 @@ TEST(AppCompareFiles, OnlyColoursCountAndOtherChannelsAreNamed) {
   EXPECT_EQ(c.only_in_reference, (std::vector<std::string>{"N.X"}));
 }
 
-TEST(AppCompareFiles, ALayerIsComparedByItself) {
+TEST(AppCompareFiles, ComparesASingleLayer) {
   film::Picture a = grey(2, 1, 0.5f), b = a;
   a.planes.push_back({"Z", {1, 7}});
   b.planes.push_back({"Z", {1, 2}});
@@ -65,7 +65,7 @@ TEST(AppCompareFiles, ALayerIsComparedByItself) {
     compare(a, b, Encoding::kLight, "depth");
     FAIL();
   } catch (const base::Error& error) {
-    EXPECT_STREQ(error.what(), "layer depth is not in both pictures; the first has R, G, B, Z");
+    EXPECT_STREQ(error.what(), "layer depth is not in both images; the first has R, G, B, Z");
   }
 }
 
@@ -78,32 +78,31 @@ TEST(AppCompareFiles, PixelsWithoutAHitAreLeftOut) {
   EXPECT_DOUBLE_EQ(c.errors.rmse, std::sqrt(2));
   EXPECT_EQ(c.no_hit, 2u);
   EXPECT_EQ(c.no_hit_in_one, 1u);
-  EXPECT_NE(comparison_text(c).find("left out    2 pixels without a hit, 1 of them in one of the pictures only\n"),
+  EXPECT_NE(comparison_text(c).find("left out    2 pixels without a hit, 1 of them in one image only\n"),
             std::string::npos);
   EXPECT_EQ(nlohmann::json::parse(comparison_json(c))["no_hit_in_one"], 1);
-  // Where neither picture has a hit anywhere, they are equal; where only one has none, nothing can be said.
+  // Two images without any hit are equal. If only one of them has no hit, there is nothing to compare.
   a.planes.back().values = b.planes.back().values = std::vector<float>(4, 1e30f);
   EXPECT_EQ(compare(a, b, Encoding::kLight, "Z").errors.rmse, 0);
   b.planes.back().values = {1, 2, 3, 4};
   EXPECT_THROW(compare(a, b, Encoding::kLight, "Z"), base::Error);
 }
 
-TEST(AppCompareFiles, PicturesWithoutAnyFiniteValueCannotBeCompared) {
+TEST(AppCompareFiles, ImagesWithoutFiniteValuesAreRefused) {
   const film::Picture bad = grey(2, 2, std::nanf(""));
   try {
     of_light(bad, bad);
     FAIL();
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-    EXPECT_STREQ(error.what(),
-                 "there is nothing to compare: no value of R, G, B is a finite number, and a hit, in both pictures");
+    EXPECT_STREQ(error.what(), "nothing to compare: no value of R, G, B is finite and a hit in both images");
   }
   film::Picture half_bad = grey(2, 2, 0.5f);
   half_bad.planes[0].values[0] = std::nanf("");
   EXPECT_EQ(of_light(half_bad, grey(2, 2, 0.5f)).errors.not_finite, 1u);
 }
 
-/// Known: by hand. Ids are in any order, and the background is a thing.
+/// Known: computed by hand. The order of the ids does not matter, and the background counts as an object.
 TEST(AppCompareFiles, ACryptomatteIsComparedByCoverage) {
   film::Picture a = grey(3, 1, 0.5f), b = a;
   const auto add = [](film::Picture& p, const std::vector<std::vector<float>>& planes) {
@@ -114,9 +113,10 @@ TEST(AppCompareFiles, ACryptomatteIsComparedByCoverage) {
   add(b, {{8, 7, 0}, {0.5f, 1, 0}, {7, 0, 0}, {0.5f, 0, 0}});
   const Comparison c = compare(a, b, Encoding::kLight, "CryptoObject");
   EXPECT_EQ(c.channels, (std::vector<std::string>{"CryptoObject"}));
-  EXPECT_EQ(c.errors.max, 1) << "a sphere in one picture, nothing in the other";
+  EXPECT_EQ(c.errors.max, 1) << "a sphere in one image, background in the other";
   EXPECT_DOUBLE_EQ(c.errors.mae, 1.25 / 3);
-  EXPECT_NE(comparison_text(c).find("matte       0.416667 of the coverage belongs to other things"), std::string::npos);
+  EXPECT_NE(comparison_text(c).find("matte       0.416667 of the coverage belongs to different objects"),
+            std::string::npos);
   EXPECT_EQ(compare(a, a, Encoding::kLight, "CryptoObject").errors.max, 0);
   EXPECT_THROW(compare(a, grey(3, 1, 0.5f), Encoding::kLight, "CryptoObject"), base::Error);
 }
@@ -130,7 +130,7 @@ TEST(AppCompareFiles, ChannelsAreSummarisedByLayer) {
   EXPECT_EQ(channels_text(many), "layer0, layer1, layer2, layer3, layer4, layer5, layer6, layer7 and 2 more layers");
 }
 
-TEST(AppCompareFiles, ThreadsChangeNothing) {
+TEST(AppCompareFiles, TheResultDoesNotDependOnThreads) {
   film::Picture a = grey(40, 30, 0.5f);
   for (std::size_t i = 0; i < a.planes[0].values.size(); ++i)
     a.planes[i % 3].values[i] = 100.0f / static_cast<float>(i + 1);
@@ -139,7 +139,7 @@ TEST(AppCompareFiles, ThreadsChangeNothing) {
             compare(a, b, Encoding::kLight, "", 3).flip_map.values);
 }
 
-TEST(AppCompareFiles, AMetricThatIsNotThereCannotBeLimited) {
+TEST(AppCompareFiles, AnUnavailableMetricIsAnError) {
   const Comparison c = of_light(grey(2, 1, 0.5f), grey(2, 1, 0.25f));
   EXPECT_DOUBLE_EQ(c.metric("mae"), 0.25);
   EXPECT_DOUBLE_EQ(c.metric("bias"), 1);
@@ -147,14 +147,14 @@ TEST(AppCompareFiles, AMetricThatIsNotThereCannotBeLimited) {
   EXPECT_THROW(c.metric("z"), base::Error);
 }
 
-TEST(AppCompareFiles, WhatCannotBeComparedIsRefused) {
+TEST(AppCompareFiles, DifferentSizesAndChannelsAreRefused) {
   EXPECT_THROW(of_light(grey(2, 1, 0), grey(1, 2, 0)), base::Error);
   film::Picture other = grey(2, 1, 0);
   for (auto& plane : other.planes) plane.name += "2";
   EXPECT_THROW(of_light(grey(2, 1, 0), other), base::Error);
 }
 
-TEST(AppCompareFiles, LightIsNotComparedToWhatADisplayShows) {
+TEST(AppCompareFiles, SceneLinearIsNotComparedToDisplayEncoded) {
   const support::TempDir folder;
   image::write_exr(folder / "a.exr", grey(4, 4, 0.5f), {}, {});
   image::write_encoded(folder / "a.png", {4, 4, 8, true, std::vector<std::uint16_t>(48, 128)}, "");
@@ -168,17 +168,17 @@ TEST(AppCompareFiles, LightIsNotComparedToWhatADisplayShows) {
   EXPECT_EQ(compare_files(folder / "a.exr", folder / "a.exr", "", {}).differing, 0u);
 }
 
-TEST(AppCompareFiles, TextNamesTheWorstPixel) {
+TEST(AppCompareFiles, TextShowsTheLocationOfTheMaximum) {
   film::Picture a = grey(2, 1, 0.5f);
   a.planes[2].values[1] = 0.75f;
   const std::string text = comparison_text(of_light(a, grey(2, 1, 0.5f)));
-  for (const char* line : {"pictures    2 x 1, channels R, G, B\n", "rmse        0.102062\n", "relmse      0.0400641\n",
+  for (const char* line : {"images      2 x 1, channels R, G, B\n", "rmse        0.102062\n", "relmse      0.0400641\n",
                            "mae         0.0416667\n", "max         0.25 in B at 1, 0\n", "psnr        19.82 dB\n",
                            "bias        +0.0833 of the mean\n", "differing   1 of 6 values\n"})
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
 }
 
-TEST(AppCompareFiles, JsonHasNoInfinity) {
+TEST(AppCompareFiles, JsonHasNullForInfinity) {
   const auto json = nlohmann::json::parse(comparison_json(of_light(grey(2, 1, 0.5f), grey(2, 1, 0.5f))));
   EXPECT_EQ(json["schema"], "orrery.compare/2");
   EXPECT_TRUE(json["psnr_db"].is_null());
@@ -186,7 +186,7 @@ TEST(AppCompareFiles, JsonHasNoInfinity) {
   EXPECT_EQ(json["rmse"], 0);
 }
 
-TEST(AppCompareFiles, DifferencesAreWrittenAsPictures) {
+TEST(AppCompareFiles, WritesDifferenceImages) {
   const support::TempDir folder;
   film::Picture a = grey(2, 1, 0.5f);
   a.planes[2].values[1] = 0.25f;

@@ -30,7 +30,7 @@ class AppDevelopFile : public testing::Test {
     } catch (const base::Error& error) {
       return error.kind();
     }
-    ADD_FAILURE() << "nothing is found wrong";
+    ADD_FAILURE() << "no error";
     return base::ErrorKind::kInternal;
   }
 
@@ -38,7 +38,7 @@ class AppDevelopFile : public testing::Test {
   Development development_;
 };
 
-TEST_F(AppDevelopFile, WritesEveryOutputThroughTheDisplay) {
+TEST_F(AppDevelopFile, AppliesTheDisplayTransformToEveryOutput) {
   development_.outputs = {folder_ / "out.png", folder_ / "out.ppm"};
   const DevelopReport report = develop_file(development_);
   EXPECT_EQ(report.display.display, "Gamma 2.0 Rec.709");
@@ -53,7 +53,7 @@ TEST_F(AppDevelopFile, SixteenBitsAreFiner) {
   EXPECT_NEAR(image::read(folder_ / "out.png").planes.at(0).values.at(0), 0.5, 0.6 / 65535);
 }
 
-TEST_F(AppDevelopFile, OnlyLightIsDevelopedAndOnlyIntoDisplayFormats) {
+TEST_F(AppDevelopFile, RequiresSceneLinearInputAndDisplayFormatOutputs) {
   development_.outputs = {folder_ / "out.exr"};
   EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);
   development_.outputs = {folder_ / "out.png"};
@@ -63,7 +63,7 @@ TEST_F(AppDevelopFile, OnlyLightIsDevelopedAndOnlyIntoDisplayFormats) {
   EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);
 }
 
-TEST_F(AppDevelopFile, WhatIsMissingIsFoundBeforeAnythingIsWritten) {
+TEST_F(AppDevelopFile, ErrorsAreFoundBeforeAnythingIsWritten) {
   development_.outputs = {folder_ / "out.png", folder_.path() / "none/out.png"};
   EXPECT_EQ(kind_of_error(), base::ErrorKind::kCannotCreate);
   development_.outputs = {folder_ / "out.png"};
@@ -75,8 +75,8 @@ TEST_F(AppDevelopFile, WhatIsMissingIsFoundBeforeAnythingIsWritten) {
   EXPECT_EQ(folder_.count(), 1u);
 }
 
-TEST_F(AppDevelopFile, CountsWhatTheDisplayWouldHide) {
-  // The writer of this program lets no NaN into a file; a negative value passes, and shows the way of the count.
+TEST_F(AppDevelopFile, CountsInvalidValuesBeforeTheDisplayTransform) {
+  // write_exr() never writes NaN, so the test uses negative and large values.
   film::Picture picture{2, 1, {}};
   for (const char* name : {"R", "G", "B"}) picture.planes.push_back({name, {-1.0f, 70000.0f}});
   image::write_exr(folder_ / "odd.exr", picture, {}, {true, "zips"});
@@ -87,8 +87,8 @@ TEST_F(AppDevelopFile, CountsWhatTheDisplayWouldHide) {
   EXPECT_EQ(bad.above_half, 3u);
 }
 
-/// ACEScg's red is redder than any sRGB screen's; what the header says decides unless somebody says otherwise.
-TEST_F(AppDevelopFile, ThePictureSaysWhatItsColoursAre) {
+/// ACEScg red is more saturated than Rec.709 red. The space in the header is the default.
+TEST_F(AppDevelopFile, TheHeaderSetsTheDefaultWorkingSpace) {
   film::Picture red{1, 1, {{"R", {0.5f}}, {"G", {0.1f}}, {"B", {0.1f}}}};
   image::Header header;
   header.color_interop_id = "lin_ap1_scene";

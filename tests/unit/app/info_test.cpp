@@ -53,14 +53,14 @@ class AppInfo : public testing::Test {
   bool requires_(const SceneInfo& info, const std::string& name) {
     for (const Feature& feature : info.features)
       if (feature.name == name) return feature.required;
-    ADD_FAILURE() << "nothing is said of " << name;
+    ADD_FAILURE() << "no feature " << name;
     return false;
   }
 
   support::TempDir folder_;
 };
 
-TEST_F(AppInfo, TellsWhatTheSceneIs) {
+TEST_F(AppInfo, ReportsTheScenesProperties) {
   const SceneInfo found = info(kScene);
   EXPECT_EQ(found.width, 24);
   EXPECT_EQ(found.spheres, 3u);
@@ -72,34 +72,34 @@ TEST_F(AppInfo, TellsWhatTheSceneIs) {
   EXPECT_EQ(found.accelerator, "embree");
 }
 
-TEST_F(AppInfo, TellsWhatIsRequiredAndWhatIsLeftOut) {
+TEST_F(AppInfo, ReportsRequiredAndOmittedFeatures) {
   const SceneInfo found = info(kScene);
   EXPECT_TRUE(requires_(found, "thin lens"));
   EXPECT_TRUE(requires_(found, "lambertian"));
   EXPECT_TRUE(requires_(found, "metal"));
   EXPECT_TRUE(requires_(found, "gradient sky"));
   EXPECT_FALSE(requires_(found, "fuzz"));
-  EXPECT_FALSE(requires_(found, "dielectric")) << "a material that no sphere has";
+  EXPECT_FALSE(requires_(found, "dielectric")) << "a material that no sphere uses";
   const SceneInfo pinhole = info(kScene, {"camera.defocus_angle=0", "background.type=constant"});
   EXPECT_FALSE(requires_(pinhole, "thin lens"));
   EXPECT_FALSE(requires_(pinhole, "gradient sky"));
   const std::string text = info_text(pinhole);
-  EXPECT_NE(text.find("left out    thin lens (pinhole: no lens is sampled);"), std::string::npos) << text;
+  EXPECT_NE(text.find("left out    thin lens (pinhole camera: no lens sampling);"), std::string::npos) << text;
 }
 
-TEST_F(AppInfo, ListNeedsNoMemoryForATree) {
+TEST_F(AppInfo, TheListNeedsNoMemoryForABvh) {
   EXPECT_GT(info(kScene).memory.accelerator, 0u);
   EXPECT_EQ(info(kScene, {"render.accelerator=list"}).memory.accelerator, 0u);
 }
 
-TEST_F(AppInfo, TellsHowRaysWillTraverse) {
+TEST_F(AppInfo, ReportsTheTraversal) {
   EXPECT_EQ(info(kScene).traversal, "packet") << "too few paths for a trial";
   EXPECT_EQ(info(kScene, {"render.samples=100000"}).traversal,
             "packet or single, chosen by a trial of the scene's rays");
   EXPECT_EQ(info(kScene, {"render.accelerator=list"}).traversal, "list");
 }
 
-TEST_F(AppInfo, SettingsTellWhereTheyCameFrom) {
+TEST_F(AppInfo, SettingsShowTheirOrigin) {
   const std::string text = settings_text(info(kScene, {"render.samples=9"}));
   EXPECT_NE(
       text.find("image.width                24                       " + (folder_ / "scene.toml").string() + ":3\n"),
@@ -118,17 +118,17 @@ TEST_F(AppInfo, AnEmptySceneHasNoBounds) {
   EXPECT_TRUE(json["radius"].is_null());
 }
 
-TEST_F(AppInfo, JsonSaysTheSame) {
+TEST_F(AppInfo, JsonHoldsTheSameValues) {
   const auto json = nlohmann::json::parse(info_json(info(kScene)));
   EXPECT_EQ(json["schema"], "orrery.info/1");
   EXPECT_EQ(json["spheres"], 3);
   EXPECT_EQ(json["bounds"]["lower"][0], -0.5);
   EXPECT_EQ(json["radius"]["largest"], 0.5);
-  EXPECT_EQ(json["memory_bytes"]["film"], 24 * 16 * (80 + 8));  // sums and picture, counts and goals
+  EXPECT_EQ(json["memory_bytes"]["film"], 24 * 16 * (80 + 8));  // sums and image, counts and goals
   EXPECT_EQ(json["settings"][0]["key"], "image.width");
 }
 
-TEST_F(AppInfo, WarningsAreTold) {
+TEST_F(AppInfo, WarningsAreReported) {
   const std::string twice = "[[sphere]]\ncenter = [0, 0, -1]\nradius = 0.5\nmaterial = \"grey\"\n";
   const SceneInfo found = info(kScene + twice);
   EXPECT_EQ(found.warnings.size(), 1u);

@@ -18,13 +18,13 @@ std::size_t advice_for(scene::Precision precision, double camera_distance, doubl
   return precision_advice(compile::compile(s)).size();
 }
 
-TEST(AppPrecisionAdvice, IsSilentWherePrecisionIsGoodEnough) {
+TEST(AppPrecisionAdvice, IsEmptyIfThePrecisionIsSufficient) {
   EXPECT_EQ(advice_for(scene::Precision::kExact, 1e12, 1e-3, 1e9), 0u);
   EXPECT_EQ(advice_for(scene::Precision::kFast, 10, 1, 0), 0u);
   EXPECT_EQ(advice_for(scene::Precision::kBook, 10, 1, 0), 0u);
 }
 
-TEST(AppPrecisionAdvice, WarnsOfOffsetInFastAndOfDistanceAndSmallnessInBook) {
+TEST(AppPrecisionAdvice, WarnsOfOffsetsInFastAndOfDistanceAndSmallRadiiInBook) {
   EXPECT_EQ(advice_for(scene::Precision::kFast, 10, 1, 1e6), 1u);
   EXPECT_EQ(advice_for(scene::Precision::kBook, 1e8, 1, 0), 1u);
   EXPECT_EQ(advice_for(scene::Precision::kBook, 0.1, 0.01, 0), 1u);

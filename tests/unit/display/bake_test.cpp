@@ -20,10 +20,10 @@ class DisplayBake : public testing::Test {
  protected:
   void SetUp() override { ::unsetenv("OCIO"); }
 
-  /// The largest difference between a view and what OCIO makes of the baked file, over colours up to white and beyond.
+  /// The maximum difference between a view and the baked file applied by OCIO, over colours from black to beyond white.
   double largest_error(const Settings& settings, const std::string& name, const std::string& text) const {
     support::write_bytes(folder_ / name, text);
-    ocio::ClearAllCaches();  // it remembers files by their names
+    ocio::ClearAllCaches();  // OCIO caches files by name
     auto transform = ocio::FileTransform::Create();
     transform->setSrc((folder_ / name).c_str());
     transform->setInterpolation(ocio::INTERP_TETRAHEDRAL);
@@ -53,7 +53,7 @@ class DisplayBake : public testing::Test {
   support::TempDir folder_;
 };
 
-TEST_F(DisplayBake, ACubeDoesWhatTheViewDoes) {
+TEST_F(DisplayBake, ACubeMatchesTheView) {
   Settings settings;
   EXPECT_LT(largest_error(settings, "a.cube", bake_cube(settings, 33)), 0.02);
   EXPECT_LT(largest_error(settings, "a.cube", bake_cube(settings, 65)), 0.004);
@@ -63,7 +63,7 @@ TEST_F(DisplayBake, ACubeDoesWhatTheViewDoes) {
   EXPECT_LT(largest_error(settings, "c.cube", bake_cube(settings, 65)), 0.02);
 }
 
-TEST_F(DisplayBake, AClfOfPlainStepsIsExact) {
+TEST_F(DisplayBake, AClfOfSupportedTransformsIsExact) {
   Settings settings;
   settings.exposure = 1;
   for (const char* display : {"sRGB", "Gamma 2.0 Rec.709", "Display P3"}) {
@@ -74,7 +74,7 @@ TEST_F(DisplayBake, AClfOfPlainStepsIsExact) {
   }
 }
 
-TEST_F(DisplayBake, AClfOfAnAcesViewHoldsTables) {
+TEST_F(DisplayBake, AClfOfAnAcesViewHoldsLuts) {
   Settings settings;
   settings.view = "ACES 1.0 SDR Video";
   const std::string text = bake_clf(settings, 33);

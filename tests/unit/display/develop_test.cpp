@@ -39,7 +39,7 @@ Settings on(const std::string& display, const std::string& view = "Un-tone-mappe
   return settings;
 }
 
-/// Every test looks at the built-in config, whatever the user's environment names.
+/// The tests use the built-in config, whatever $OCIO is.
 class DisplayDevelop : public testing::Test {
  protected:
   void SetUp() override { ::unsetenv("OCIO"); }
@@ -56,10 +56,10 @@ class DisplayDevelopCurve : public testing::TestWithParam<Level> {
   void SetUp() override { ::unsetenv("OCIO"); }
 };
 
-TEST_P(DisplayDevelopCurve, EncodesGreyByTheDisplaysStandard) {
+TEST_P(DisplayDevelopCurve, EncodesGreyAsTheDisplayStandardDefines) {
   const auto [display, linear, encoded] = GetParam();
   const auto values = shown({linear, linear, linear}, on(display), 16);
-  // The way there is through float matrices: a part in a million, times the slope of the curve.
+  // The float matrices have an error of 1e-6, times the slope of the curve.
   for (const std::uint16_t v : values) EXPECT_NEAR(v, encoded * 65535, 1.5) << display << " " << linear;
 }
 
@@ -77,33 +77,33 @@ INSTANTIATE_TEST_SUITE_P(Displays, DisplayDevelopCurve,
                                          Level{"P3-D65 Cinema", 1, 1}, Level{"Gamma 2.0 Rec.709", 0.25f, 0.5},
                                          Level{"Gamma 2.0 Rec.709", 0.04f, 0.2}, Level{"Gamma 2.0 Rec.709", 1, 1}));
 
-TEST_F(DisplayDevelop, GivesTheLevelsThatPeopleKnowByHeart) {
+TEST_F(DisplayDevelop, EncodesGreyToWellKnownLevels) {
   EXPECT_EQ(shown({0.5f, 0.5f, 0.5f}, on("sRGB")), grey(188));
   EXPECT_EQ(shown({0.18f, 0.18f, 0.18f}, on("sRGB")), grey(118));
   EXPECT_EQ(shown({0.36f, 0.36f, 0.36f}, on("Gamma 2.0 Rec.709")), grey(153));
 }
 
-TEST_F(DisplayDevelop, ShowsRec709RedInsideOfTheWiderP3) {
+TEST_F(DisplayDevelop, ConvertsRec709RedToP3) {
   // Rec.709 red in P3 is 0.82246, 0.03319, 0.01708.
   EXPECT_EQ(shown({1, 0, 0}, on("sRGB")), (std::vector<std::uint16_t>{255, 0, 0}));
   EXPECT_EQ(shown({1, 0, 0}, on("Display P3")), (std::vector<std::uint16_t>{234, 51, 35}));
   EXPECT_EQ(shown({1, 0, 0}, on("P3-D65 Cinema")), (std::vector<std::uint16_t>{237, 69, 53}));
 }
 
-TEST_F(DisplayDevelop, AcesPutsMiddleGreyAtATenthOfWhite) {
-  // The output transform's own anchor: 18 % grey goes to 4.8 of 48 cd/m2 in a dark cinema, and for video in a dim room
-  // luminance is raised to 0.9811.
+TEST_F(DisplayDevelop, AcesMapsMiddleGreyToATenthOfWhite) {
+  // The output transform maps 18 % grey to 4.8 of 48 cd/m2 in a dark cinema. For video in a dim surround, luminance is
+  // raised to the power 0.9811.
   const auto values = shown({0.18f, 0.18f, 0.18f}, on("sRGB", "ACES 1.0 SDR Video"), 16);
   for (const std::uint16_t v : values) EXPECT_NEAR(v, srgb(std::pow(0.1, 0.9811)) * 65535, 65535 * 0.001);
   const auto bright = shown({8, 8, 8}, on("sRGB", "ACES 1.0 SDR Video"), 16);
-  for (const std::uint16_t v : bright) EXPECT_TRUE(v > 62000 && v < 65535) << v;  // rolls off, where a clamp is white
+  for (const std::uint16_t v : bright) EXPECT_TRUE(v > 62000 && v < 65535) << v;  // rolls off instead of clipping
 }
 
 TEST_F(DisplayDevelop, RawChangesNothing) {
   EXPECT_EQ(shown({0.2f, 0.4f, 0.6f}, on("sRGB", "Raw")), (std::vector<std::uint16_t>{51, 102, 153}));
 }
 
-TEST_F(DisplayDevelop, TakesTheConfigsFirstDisplayAndViewWhereNoneIsNamed) {
+TEST_F(DisplayDevelop, UsesTheConfigsDefaultDisplayAndView) {
   const Choice choice = choose({});
   EXPECT_EQ(choice.config, "built-in");
   EXPECT_EQ(choice.display, "sRGB");
@@ -115,11 +115,11 @@ TEST_F(DisplayDevelop, ExposureIsInStops) {
   Settings brighter = on("sRGB");
   brighter.exposure = 2;
   EXPECT_EQ(shown({0.1f, 0.02f, 0.2f}, brighter, 16), shown({0.4f, 0.08f, 0.8f}, on("sRGB"), 16));
-  brighter.exposure = 1000;  // overflows, and black is still black
+  brighter.exposure = 1000;  // overflows, but black stays black
   EXPECT_EQ(shown({0.1f, 0, 0.1f}, brighter), (std::vector<std::uint16_t>{255, 0, 255}));
   brighter.exposure = -1000;
   EXPECT_EQ(shown({1000, 1000, 1000}, brighter), grey(0));
-  brighter.exposure = -20;  // light beyond half that a float picture holds is not lost before it is dimmed
+  brighter.exposure = -20;  // values beyond half are not clamped before the exposure
   EXPECT_EQ(shown({0x1p19f, 0x1p19f, 0x1p19f}, brighter), grey(188));
 }
 
@@ -130,11 +130,11 @@ TEST_F(DisplayDevelop, ALookActsOnSaturatedColoursOnly) {
   const auto plain = shown(saturated, settings), plain_grey = shown(neutral, settings);
   settings.look = "ACES 1.3 gamut compress";
   EXPECT_EQ(plain[2], 0);
-  EXPECT_GT(shown(saturated, settings)[2], 0);  // brought back into the gamut
+  EXPECT_GT(shown(saturated, settings)[2], 0);  // compressed into the gamut
   EXPECT_EQ(shown(neutral, settings), plain_grey);
 }
 
-TEST_F(DisplayDevelop, ReadsTheWorkingSpaceByNameRoleAndAlias) {
+TEST_F(DisplayDevelop, ResolvesTheWorkingSpaceByNameRoleAndAlias) {
   for (const char* space : {"lin_rec709", "scene_linear", "linear"}) {
     Settings settings = on("sRGB");
     settings.working_space = space;
@@ -143,24 +143,24 @@ TEST_F(DisplayDevelop, ReadsTheWorkingSpaceByNameRoleAndAlias) {
   Settings wide = on("sRGB");
   wide.working_space = "acescg";
   const auto red = shown({0.5f, 0, 0}, wide);
-  EXPECT_GT(red[0], 200);  // more red than Rec.709's own
+  EXPECT_GT(red[0], 200);  // more saturated than Rec.709 red
   EXPECT_EQ(red[1], 0);
 }
 
-TEST_F(DisplayDevelop, ClampsAtTheEndAndMakesNoColourOfBadValues) {
+TEST_F(DisplayDevelop, ClampsTheResultAndMapsNonFiniteValuesToBlack) {
   const Settings settings = on("sRGB");
   EXPECT_EQ(shown({-1, -1, -1}, settings), grey(0));
   EXPECT_EQ(shown({2, 2, 2}, settings), grey(255));
   EXPECT_EQ(shown({3e38f, 3e38f, 3e38f}, settings), grey(255));
   EXPECT_EQ(shown({kNan, kNan, kNan}, settings), grey(0));
   EXPECT_EQ(shown({kInfinity, kInfinity, kInfinity}, settings), grey(0));
-  // One bad channel does not spoil its neighbours.
+  // An invalid channel does not affect the others.
   EXPECT_EQ(shown({kNan, 0.5f, kInfinity}, settings), shown({0, 0.5f, 0}, settings));
   EXPECT_EQ(shown({kNan, 0.5f, -kInfinity}, on("sRGB", "ACES 1.0 SDR Video")),
             shown({0, 0.5f, 0}, on("sRGB", "ACES 1.0 SDR Video")));
 }
 
-TEST_F(DisplayDevelop, FindsPlanesByNameAndLeavesAlphaOut) {
+TEST_F(DisplayDevelop, FindsPlanesByNameAndIgnoresAlpha) {
   film::Picture picture = flat(2, 1, {0.2f, 0.4f, 0.6f});
   const auto expected = develop(picture, {}, 8).values;
   picture.planes.push_back({"A", {0, 0.5f}});
@@ -169,8 +169,8 @@ TEST_F(DisplayDevelop, FindsPlanesByNameAndLeavesAlphaOut) {
   EXPECT_EQ(develop(picture, {}, 8).values, expected);
 }
 
-TEST_F(DisplayDevelop, PutsEveryPixelInItsPlace) {
-  // More pixels than are transformed at a time, and no multiple of it.
+TEST_F(DisplayDevelop, KeepsPixelPositions) {
+  // More pixels than are transformed at a time, and not a multiple of that number.
   film::Picture picture{301, 107, {}};
   const std::size_t pixels = 301 * 107;
   std::vector<float> ramp(pixels);
@@ -187,7 +187,7 @@ TEST_F(DisplayDevelop, PutsEveryPixelInItsPlace) {
   }
 }
 
-TEST_F(DisplayDevelop, StraightAlphaShowsWhatCoversThePixel) {
+TEST_F(DisplayDevelop, StraightAlphaUnpremultipliesColours) {
   film::Picture picture{4, 1, {}};
   const std::vector<float> alpha = {0, 0.25f, 1, -0.5f};
   const std::vector<float> light = {0, 0.1f, 0.4f, 0.3f};
@@ -195,7 +195,7 @@ TEST_F(DisplayDevelop, StraightAlphaShowsWhatCoversThePixel) {
   const film::EncodedPicture out = develop(picture, on("sRGB", "Raw"), 8, false, Alpha::kStraight);
   EXPECT_EQ(out.channels, 4);
   EXPECT_EQ(out.values, (std::vector<std::uint16_t>{0, 0, 0, 0, 102, 102, 102, 64, 102, 102, 102, 255, 0, 0, 0, 0}));
-  EXPECT_EQ(develop(picture, on("sRGB", "Raw"), 8).channels, 3) << "over black, as ever";
+  EXPECT_EQ(develop(picture, on("sRGB", "Raw"), 8).channels, 3) << "over black";
   picture.planes.pop_back();
   EXPECT_THROW(develop(picture, on("sRGB"), 8, false, Alpha::kStraight), base::Error);
 }
@@ -208,7 +208,7 @@ TEST_F(DisplayDevelop, RoundsToTheNearestLevel) {
   }
 }
 
-TEST_F(DisplayDevelop, DitherKeepsTheMeanOfWhatRoundingLoses) {
+TEST_F(DisplayDevelop, DitherPreservesTheMean) {
   const float level = 100.25f / 255;
   const film::Picture picture = flat(200, 200, {level, level, level});
   const film::EncodedPicture out = develop(picture, on("sRGB", "Raw"), 8, true);
@@ -217,19 +217,19 @@ TEST_F(DisplayDevelop, DitherKeepsTheMeanOfWhatRoundingLoses) {
     ASSERT_TRUE(v == 100 || v == 101) << v;
     sum += v;
   }
-  // 120000 values, each 1 higher with probability 1/4: the mean's standard deviation is 0.00125; six of them.
+  // 120000 values, each 1 higher with probability 1/4: the standard deviation of the mean is 0.00125; limit: 6 of it.
   EXPECT_NEAR(sum / static_cast<double>(out.values.size()), 100.25, 0.0075);
   EXPECT_EQ(develop(picture, on("sRGB", "Raw"), 8, true).values, out.values);
 }
 
-TEST_F(DisplayDevelop, DitherLeavesBlackAndWhiteAlone) {
+TEST_F(DisplayDevelop, DitherKeepsBlackAndWhite) {
   for (const float v : {0.0f, 1.0f, 7.0f, -1.0f}) {
     const film::EncodedPicture out = develop(flat(100, 100, {v, v, v}), on("sRGB", "Raw"), 8, true);
     for (const std::uint16_t level : out.values) ASSERT_EQ(level, v > 0 ? 255 : 0);
   }
 }
 
-TEST_F(DisplayDevelop, SaysWhetherTheResultIsEncodedAsSrgb) {
+TEST_F(DisplayDevelop, ReportsWhetherTheResultIsSrgb) {
   const film::Picture picture = flat(1, 1, {1, 1, 1});
   EXPECT_TRUE(develop(picture, on("sRGB"), 8).is_srgb);
   EXPECT_TRUE(develop(picture, on("sRGB", "ACES 1.0 SDR Video"), 8).is_srgb);
@@ -238,14 +238,14 @@ TEST_F(DisplayDevelop, SaysWhetherTheResultIsEncodedAsSrgb) {
   EXPECT_FALSE(develop(picture, on("Display P3"), 8).is_srgb);
 }
 
-TEST_F(DisplayDevelop, RefusesAPictureWithoutColour) {
+TEST_F(DisplayDevelop, RefusesAnImageWithoutColour) {
   const film::Picture picture{1, 1, {{"R", {1}}, {"B", {1}}}};
   try {
     develop(picture, {}, 8);
     FAIL();
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-    EXPECT_STREQ(error.what(), "the picture has no channel G");
+    EXPECT_STREQ(error.what(), "the image has no channel G");
   }
 }
 

@@ -16,7 +16,7 @@
 namespace orrery::display {
 namespace {
 
-/// A small config with one display of that name.
+/// A small config with one display of the given name.
 std::string config_text(const std::string& display, const std::string& more = "") {
   return "ocio_profile_version: 2\nenvironment: {}\nsearch_path: tables\nstrictparsing: true\n"
          "roles: {default: lin_rec709, scene_linear: lin_rec709}\n"
@@ -54,7 +54,7 @@ class DisplayView : public testing::Test {
   support::TempDir folder_;
 };
 
-TEST_F(DisplayView, TheNamedConfigBeatsTheEnvironmentWhichBeatsTheBuiltIn) {
+TEST_F(DisplayView, TheNamedConfigOverridesTheEnvironmentAndTheBuiltIn) {
   EXPECT_EQ(choose({}).display, "sRGB");
   const std::string from_environment = file("a.ocio", config_text("Environment"));
   const std::string named = file("b.ocio", config_text("Named"));
@@ -69,7 +69,7 @@ TEST_F(DisplayView, TheNamedConfigBeatsTheEnvironmentWhichBeatsTheBuiltIn) {
   EXPECT_EQ(choose({}).config, "built-in");
 }
 
-TEST_F(DisplayView, AConfigsOwnTransformIsUsed) {
+TEST_F(DisplayView, UsesTheTransformsOfAConfig) {
   Settings settings;
   settings.config = file("a.ocio", config_text("Root"));
   const film::Picture picture{1, 1, {{"R", {0.04f}}, {"G", {0.36f}}, {"B", {1}}}};
@@ -89,7 +89,7 @@ TEST_F(DisplayView, PrintsNothing) {
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
 
-TEST_F(DisplayView, HandsOnWhatOcioRemarks) {
+TEST_F(DisplayView, ReportsWarningsOfOcio) {
   Settings settings;
   settings.config = file("a.ocio", config_text("Root", "no_such_key: 3\n"));
   testing::internal::CaptureStderr();
@@ -99,7 +99,7 @@ TEST_F(DisplayView, HandsOnWhatOcioRemarks) {
   EXPECT_NE(choice.warnings[0].find("no_such_key"), std::string::npos) << choice.warnings[0];
 }
 
-TEST_F(DisplayView, TheConfigsIdTellsConfigsApart) {
+TEST_F(DisplayView, DifferentConfigsHaveDifferentIds) {
   Settings a, b;
   a.config = file("a.ocio", config_text("One"));
   b.config = file("b.ocio", config_text("Two"));
@@ -107,7 +107,7 @@ TEST_F(DisplayView, TheConfigsIdTellsConfigsApart) {
   EXPECT_EQ(choose(a).config_id, choose(a).config_id);
 }
 
-TEST_F(DisplayView, UnknownNamesAreUsageErrorsThatListWhatThereIs) {
+TEST_F(DisplayView, UnknownNamesAreUsageErrorsWithTheKnownNames) {
   Settings settings;
   settings.display = "sRBG";
   expect_error(settings, base::ErrorKind::kUsage,
@@ -118,7 +118,7 @@ TEST_F(DisplayView, UnknownNamesAreUsageErrorsThatListWhatThereIs) {
                {"did you mean `Un-tone-mapped`?", "ACES 1.0 SDR Video", "on display `sRGB`"});
   settings = {};
   settings.display = "Gamma 2.0 Rec.709";
-  settings.view = "ACES 1.0 SDR Video";  // the config has it, this display has not
+  settings.view = "ACES 1.0 SDR Video";  // in the config, but not for this display
   expect_error(settings, base::ErrorKind::kUsage, {"it has Un-tone-mapped, Raw"});
   settings = {};
   settings.look = "ACES 1.3 gamut compres";
@@ -132,7 +132,7 @@ TEST_F(DisplayView, UnknownNamesAreUsageErrorsThatListWhatThereIs) {
   expect_error(settings, base::ErrorKind::kUsage, {"it has none"});
 }
 
-TEST_F(DisplayView, AnExposureMustBeANumber) {
+TEST_F(DisplayView, AnExposureMustBeFinite) {
   Settings settings;
   settings.exposure = std::numeric_limits<double>::quiet_NaN();
   expect_error(settings, base::ErrorKind::kUsage, {"exposure"});
@@ -150,7 +150,7 @@ TEST_F(DisplayView, AMissingConfigIsAMissingInput) {
   expect_error({}, base::ErrorKind::kMissingInput, {"gone.ocio", "$OCIO"});
 }
 
-TEST_F(DisplayView, AConfigThatMakesNoSenseIsBadData) {
+TEST_F(DisplayView, AnInvalidConfigIsBadData) {
   Settings settings;
   for (const std::string text : {"", "\x01\x02\xff", "not a config", "ocio_profile_version: 99\n", "a: [1, 2\n"}) {
     settings.config = file("bad.ocio", text);
@@ -161,17 +161,17 @@ TEST_F(DisplayView, AConfigThatMakesNoSenseIsBadData) {
   expect_error(settings, base::ErrorKind::kBadData, {settings.config});
 }
 
-TEST_F(DisplayView, AConfigIsCheckedWhole) {
+TEST_F(DisplayView, TheWholeConfigIsValidated) {
   Settings settings;
   std::string text = config_text("Root");
   const std::string plain = "    - !<View> {name: Plain, colorspace: out}\n";
   text.insert(text.find(plain) + plain.size(), "    - !<View> {name: Other, colorspace: nowhere}\n");
   settings.config = file("a.ocio", text);
-  settings.view = "Plain";  // would do, but the file is not to be trusted
+  settings.view = "Plain";  // valid itself
   expect_error(settings, base::ErrorKind::kBadData, {"nowhere"});
 }
 
-TEST_F(DisplayView, ATableThatAConfigNamesAndLacksIsAMissingInput) {
+TEST_F(DisplayView, AMissingLutFileIsAMissingInput) {
   Settings settings;
   std::string text = config_text("Root");
   const std::string power = "!<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}";
@@ -180,7 +180,7 @@ TEST_F(DisplayView, ATableThatAConfigNamesAndLacksIsAMissingInput) {
   expect_error(settings, base::ErrorKind::kMissingInput, {"curve.spi1d"});
 }
 
-TEST_F(DisplayView, TheWorkingSpaceIsFoundByNameAliasRoleAndByWhatOtherConfigsCallIt) {
+TEST_F(DisplayView, TheWorkingSpaceIsFoundByNameAliasRoleAndForeignNames) {
   Settings settings;
   for (const char* name : {"lin_rec709", "lin_srgb", "scene_linear", "lin_rec709_scene", "Utility - Linear - sRGB"}) {
     settings.working_space = name;
@@ -190,21 +190,21 @@ TEST_F(DisplayView, TheWorkingSpaceIsFoundByNameAliasRoleAndByWhatOtherConfigsCa
   EXPECT_EQ(choose(settings).working_space, "acescg");
 }
 
-TEST_F(DisplayView, AWorkingSpaceThatIsNotThereIsToldWithAllThatWasTried) {
+TEST_F(DisplayView, AnUnknownWorkingSpaceListsAllNamesTried) {
   Settings settings;
   settings.working_space = "lin_p3d65";
   expect_error(settings, base::ErrorKind::kUsage, {"`lin_p3d65`, nor under the names", "Linear P3-D65", "it has "});
 }
 
-TEST_F(DisplayView, KnowsADisplayOfHighDynamicRange) {
+TEST_F(DisplayView, DetectsAnHdrDisplay) {
   Settings settings;
   EXPECT_FALSE(choose(settings).is_hdr);
   settings.display = "Rec.2100-PQ";
   EXPECT_TRUE(choose(settings).is_hdr);
 }
 
-/// 1.0 is 100 cd/m2, which PQ puts at 0.508.
-TEST_F(DisplayView, PqIsPq) {
+/// 1.0 is 100 cd/m2, which PQ encodes as 0.508.
+TEST_F(DisplayView, PqMatchesItsStandard) {
   Settings settings;
   settings.display = "Rec.2100-PQ";
   film::Picture picture{1, 1, {{"R", {1}}, {"G", {1}}, {"B", {1}}}};
@@ -212,17 +212,17 @@ TEST_F(DisplayView, PqIsPq) {
   for (const std::uint16_t v : shown.values) EXPECT_NEAR(v / 65535.0, 0.5081, 2e-4);
 }
 
-TEST_F(DisplayView, TheAcesProjectsConfigsLoad) {
+TEST_F(DisplayView, LoadsTheConfigsOfTheAcesProject) {
   Settings settings;
   settings.config = "ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1";
-  if (ocio_version() < "2.2") GTEST_SKIP() << "OpenColorIO " << ocio_version() << " brings no configs of its own";
+  if (ocio_version() < "2.2") GTEST_SKIP() << "OpenColorIO " << ocio_version() << " has no built-in configs";
   EXPECT_EQ(choose(settings).working_space, "Linear Rec.709 (sRGB)");
   EXPECT_EQ(choose(settings).display, "sRGB - Display");
   settings.working_space = "acescg";
   EXPECT_EQ(choose(settings).working_space, "ACEScg");
 }
 
-/// The table of displays in docs/output.md: each with its views.
+/// The displays and their views in the table of docs/output.md.
 std::vector<std::pair<std::string, std::vector<std::string>>> documented_displays() {
   std::istringstream in(support::file_bytes(std::filesystem::path(ORRERY_ROOT) / "docs" / "output.md"));
   const auto quoted = [](const std::string& text) {
@@ -246,7 +246,7 @@ std::vector<std::pair<std::string, std::vector<std::string>>> documented_display
   return out;
 }
 
-TEST_F(DisplayView, TheBuiltInDisplaysAreThoseOfTheDocumentation) {
+TEST_F(DisplayView, TheBuiltInDisplaysMatchTheDocumentation) {
   std::vector<std::string> displays;
   for (const auto& [display, views] : documented_displays()) {
     displays.push_back(display);

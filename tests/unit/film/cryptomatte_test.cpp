@@ -7,7 +7,7 @@ namespace orrery::film {
 namespace {
 
 /// Published vectors of the hash, all lengths of its last block.
-TEST(FilmCryptomatte, HashesAsMurmurHash3Does) {
+TEST(FilmCryptomatte, MatchesMurmurHash3) {
   EXPECT_EQ(murmur3(""), 0u);
   EXPECT_EQ(murmur3("", 1), 0x514e28b7u);
   EXPECT_EQ(murmur3("", 0xffffffffu), 0x81f16f39u);
@@ -18,14 +18,14 @@ TEST(FilmCryptomatte, HashesAsMurmurHash3Does) {
   EXPECT_EQ(murmur3("\xff\xff\xff\xff"), 0x76293b50u);
 }
 
-TEST(FilmCryptomatte, KnowsTheNamesOfTheSpecification) {
+TEST(FilmCryptomatte, MatchesTheIdsOfTheSpecification) {
   EXPECT_EQ(matte_id_text(matte_id("bunny")), "13851a76");
   EXPECT_EQ(matte_id_text(matte_id("default")), "42c9679f");
   EXPECT_EQ(matte_id_text(matte_id("CryptoObject")).substr(0, 7), "3ae39a5");
   EXPECT_EQ(matte_id_text(0xau), "0000000a");
 }
 
-TEST(FilmCryptomatte, NoIdIsInfiniteOrNoNumberOrSubnormal) {
+TEST(FilmCryptomatte, NoIdIsInfiniteNanOrSubnormal) {
   int moved = 0;
   for (int i = 0; i < 20000; ++i) {
     const std::string name = "sphere." + std::to_string(i);

@@ -6,7 +6,7 @@
 namespace orrery::film {
 namespace {
 
-TEST(FilmFilm, GivesTheMeanOfWhatWasAdded) {
+TEST(FilmFilm, PictureIsTheMeanOfTheSamples) {
   Film film(3, 2);
   kernel::PixelSum& sum = *film.at(2, 1);
   for (const double v : {0.25, 0.5, 3.0}) {

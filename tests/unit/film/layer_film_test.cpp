@@ -12,7 +12,7 @@
 namespace orrery::film {
 namespace {
 
-/// Two spheres before a camera at the origin that looks along -z, and what a pixel knows of its paths.
+/// Two spheres in front of a camera at the origin that looks along -z, and the sums of one pixel.
 class FilmLayerFilm : public testing::Test {
  protected:
   FilmLayerFilm() {
@@ -23,7 +23,7 @@ class FilmLayerFilm : public testing::Test {
     materials_[1].albedo[0] = 0.25;
   }
 
-  /// A path along the axis that hit the front of a sphere.
+  /// A path along the view axis that hits the front of a sphere.
   static kernel::PathRecord path_to(std::uint32_t sphere, double light = 0) {
     kernel::PathRecord path;
     path.sphere = sphere;
@@ -36,7 +36,7 @@ class FilmLayerFilm : public testing::Test {
 
   void add(const kernel::PathRecord& path, std::int64_t weight = 1) { pixel_.add(request_, view_, path, weight); }
 
-  /// A picture of one pixel made of the paths so far.
+  /// An image of one pixel from the paths added so far.
   Picture picture() {
     LayerFilm film(request_, view_, 1, 1);
     film.set(0, pixel_);
@@ -61,12 +61,12 @@ class FilmLayerFilm : public testing::Test {
   DeepPicture deep_;
 };
 
-TEST_F(FilmLayerFilm, NothingAskedIsNothingThere) {
+TEST_F(FilmLayerFilm, NoRequestGivesNoPlanes) {
   EXPECT_FALSE(request_.any());
   EXPECT_TRUE(planes_of(request_).empty());
 }
 
-TEST_F(FilmLayerFilm, DistancesAreThoseOfTheNearestPath) {
+TEST_F(FilmLayerFilm, DistancesAndIdsComeFromTheNearestHit) {
   request_.z = request_.depth = request_.position = request_.object_id = request_.material_id = true;
   request_.material_numbers = {7, 9};
   view_.camera.origin[0] = 3;  // the axis is still along -z, so z and distance differ
@@ -82,7 +82,7 @@ TEST_F(FilmLayerFilm, DistancesAreThoseOfTheNearestPath) {
   EXPECT_EQ(value(p, "material_id.X"), 7);
 }
 
-TEST_F(FilmLayerFilm, WhereNothingWasHitDistancesAreFarAndIdsZero) {
+TEST_F(FilmLayerFilm, WithoutAHitDistancesAreFarAndIdsZero) {
   request_.z = request_.depth = request_.normal = request_.object_id = request_.samples = true;
   add(kernel::PathRecord{});
   const Picture p = picture();
@@ -104,7 +104,7 @@ TEST_F(FilmLayerFilm, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
   EXPECT_EQ(value(p, "albedo.R"), (1 + 0.25F) / 4);
   EXPECT_EQ(value(p, "albedo.G"), 0.5F);
 
-  view_.camera.origin[2] = -5;  // inside of the first sphere
+  view_.camera.origin[2] = -5;  // inside the first sphere
   pixel_ = {};
   kernel::PathRecord back = path_to(0);
   back.offset[2] = -1;
@@ -112,7 +112,7 @@ TEST_F(FilmLayerFilm, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
   EXPECT_EQ(value(picture(), "N.Z"), 1);
 }
 
-/// The property that makes light groups useful: no order of adding them in single precision misses the beauty by a bit.
+/// The sum of the light groups in single precision equals the beauty bit for bit in any order.
 TEST_F(FilmLayerFilm, LightGroupsAddUpToTheBeautyInAnyOrder) {
   request_.diffuse = request_.specular = request_.transmission = request_.background = true;
   std::mt19937 random(1);
@@ -146,7 +146,7 @@ TEST_F(FilmLayerFilm, LightGroupsAddUpToTheBeautyInAnyOrder) {
   }
 }
 
-TEST_F(FilmLayerFilm, LightThatIsNoNumberIsLeftOut) {
+TEST_F(FilmLayerFilm, InvalidRadianceIsIgnored) {
   request_.diffuse = request_.samples = request_.albedo = true;
   add(path_to(0, 0.5));
   add(path_to(0, std::numeric_limits<double>::quiet_NaN()));
@@ -154,22 +154,22 @@ TEST_F(FilmLayerFilm, LightThatIsNoNumberIsLeftOut) {
   const Picture p = picture();
   EXPECT_EQ(value(p, "diffuse_direct.R"), 0.5F);
   EXPECT_EQ(value(p, "samples.X"), 1);
-  EXPECT_EQ(value(p, "albedo.R"), 1);  // the surface was hit nevertheless
+  EXPECT_EQ(value(p, "albedo.R"), 1);  // the hits count nevertheless
 }
 
-/// Of 1, 2, 3, 6 the mean is 3, the variance 14/3, that of the mean a fourth of it.
+/// The values 1, 2, 3, 6 have mean 3 and variance 14/3; the variance of the mean is a fourth of that.
 TEST_F(FilmLayerFilm, VarianceIsThatOfTheMean) {
   request_.variance = true;
   for (const double light : {1.0, 2.0, 3.0, 6.0}) add(path_to(0, light));
   EXPECT_FLOAT_EQ(value(picture(), "variance.R"), 14.0F / 12);
   pixel_ = {};
   add(path_to(0, 4));
-  EXPECT_EQ(value(picture(), "variance.R"), 0);  // one path knows nothing of its spread
+  EXPECT_EQ(value(picture(), "variance.R"), 0);  // one path has no sample variance
 }
 
-/// Positive paths of 1, 2, 3, 6 (variance 14/3), negative ones of 1, 3 (variance 2); weights come to 2. All together
-/// in two parts, as shards have them.
-TEST_F(FilmLayerFilm, VarianceTakesEachSignOfWeightsForItself) {
+/// Paths with positive weight have radiance 1, 2, 3, 6 (variance 14/3), those with negative weight 1, 3 (variance 2).
+/// The total weight is 2. The paths are added in two parts, as for shards.
+TEST_F(FilmLayerFilm, VarianceTreatsPositiveAndNegativeWeightsSeparately) {
   request_.variance = true;
   for (const double light : {1.0, 2.0, 3.0}) add(path_to(0, light));
   add(path_to(0, 1), -1);
@@ -179,11 +179,11 @@ TEST_F(FilmLayerFilm, VarianceTakesEachSignOfWeightsForItself) {
   add(path_to(0, 3), -1);
   pixel_.add(part);
   EXPECT_FLOAT_EQ(value(picture(), "variance.R"), (4 * 14.0F / 3 + 2 * 2) / 4);
-  pixel_ = part;  // one negative path: its variance is taken for that of the others, which is 1
+  pixel_ = part;  // one negative path: uses the variance of the positive ones, which is 1
   EXPECT_FLOAT_EQ(value(picture(), "variance.R"), 4.0F / 4);
 }
 
-TEST_F(FilmLayerFilm, WhatIsFlatHasNoVariance) {
+TEST_F(FilmLayerFilm, ConstantRadianceHasNoVariance) {
   request_.variance = true;
   for (const double light : {0.3, 1.0 / 3, 7.7, 1e-3, 123456.7}) {
     pixel_ = {};
@@ -192,26 +192,26 @@ TEST_F(FilmLayerFilm, WhatIsFlatHasNoVariance) {
   }
 }
 
-/// A lens larger than a sphere: some rays start inside of it, whatever its centre does.
+/// A lens larger than a sphere: some rays start inside the sphere.
 TEST_F(FilmLayerFilm, NormalsPointAgainstTheRay) {
   request_.normal = true;
   kernel::PathRecord path = path_to(0);
-  path.direction[0] = 0.6, path.direction[2] = 0.8;  // leaves through the side that looks at the camera
+  path.direction[0] = 0.6, path.direction[2] = 0.8;  // leaves through the side that faces the camera
   add(path);
   EXPECT_FLOAT_EQ(value(picture(), "N.Z"), -1);
   add(path_to(0));
   EXPECT_FLOAT_EQ(value(picture(), "N.Z"), 0);
 }
 
-TEST_F(FilmLayerFilm, VarianceSurvivesTheLargestLight) {
+TEST_F(FilmLayerFilm, VarianceIsFiniteForTheLargestRadiance) {
   request_.variance = true;
   for (const double light : {0.0, 0x1p34}) add(path_to(0, light));
-  // Squares are cut at 2^48 there; what matters is that it is finite and not negative.
+  // Squares are clamped to 2^48; the variance must be finite and not negative.
   EXPECT_GE(value(picture(), "variance.R"), 0);
   EXPECT_TRUE(std::isfinite(value(picture(), "variance.R")));
 }
 
-TEST_F(FilmLayerFilm, MattesRankThingsByTheirShareOfThePixel) {
+TEST_F(FilmLayerFilm, MattesRankIdsByCoverage) {
   request_.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return sphere == 0 ? 0x3f000000u : 0x40000000u; }}};
   for (int i = 0; i < 3; ++i) add(path_to(1));
   for (int i = 0; i < 2; ++i) add(path_to(0));
@@ -226,7 +226,7 @@ TEST_F(FilmLayerFilm, MattesRankThingsByTheirShareOfThePixel) {
   EXPECT_EQ(p.find("CryptoObject03.R"), nullptr);
 }
 
-TEST_F(FilmLayerFilm, SpheresOfOneThingShareARankAndThoseOfNoneHaveNone) {
+TEST_F(FilmLayerFilm, SpheresWithOneIdShareARankAndIdZeroHasNone) {
   request_.mattes = {{"A", [](std::uint32_t) { return 0x3f000000u; }}, {"B", [](std::uint32_t) { return 0u; }}};
   add(path_to(1));
   add(path_to(0));
@@ -236,7 +236,7 @@ TEST_F(FilmLayerFilm, SpheresOfOneThingShareARankAndThoseOfNoneHaveNone) {
   EXPECT_EQ(value(p, "B00.G"), 0);
 }
 
-TEST_F(FilmLayerFilm, EqualSharesRankBySmallerId) {
+TEST_F(FilmLayerFilm, EqualCoverageRanksBySmallerId) {
   request_.mattes = {{"A", [](std::uint32_t sphere) { return sphere == 0 ? 0x40000000u : 0x3f000000u; }}};
   add(path_to(0));
   add(path_to(1));
@@ -250,8 +250,8 @@ TEST_F(FilmLayerFilm, CoverageBecomesAlpha) {
   EXPECT_EQ(value(picture(), "A"), 0.25F);
 }
 
-/// A filter's negative samples take away what the others have too much.
-TEST_F(FilmLayerFilm, NegativeWeightsCount) {
+/// Samples of a filter's negative lobes have negative weight.
+TEST_F(FilmLayerFilm, NegativeWeightsAreSubtracted) {
   request_.diffuse = request_.albedo = request_.coverage = true;
   for (int i = 0; i < 3; ++i) add(path_to(0, 0.5));
   add(path_to(0, 0.5), -1);
@@ -261,7 +261,7 @@ TEST_F(FilmLayerFilm, NegativeWeightsCount) {
   EXPECT_EQ(value(p, "A"), 1);
 }
 
-TEST_F(FilmLayerFilm, DeepSamplesHideEachOtherAsThePathsDid) {
+TEST_F(FilmLayerFilm, DeepSamplesCompositeToTheFlatPixel) {
   request_.deep = true;
   kernel::PathRecord sky;
   std::fill_n(sky.light, 3, 1.0);
@@ -287,14 +287,14 @@ TEST_F(FilmLayerFilm, DeepSamplesHideEachOtherAsThePathsDid) {
   EXPECT_FLOAT_EQ(color, (0.25F + 2 * 0.5F + 1) / 4);
 }
 
-TEST_F(FilmLayerFilm, AnEmptyBackgroundIsNoDeepSample) {
+TEST_F(FilmLayerFilm, ATransparentBackgroundHasNoDeepSample) {
   request_.deep = request_.coverage = true;
   add(kernel::PathRecord{});
   picture();
   EXPECT_TRUE(deep_.pixels[0].empty());
 }
 
-TEST_F(FilmLayerFilm, EveryLayerHasItsNameAndKind) {
+TEST_F(FilmLayerFilm, LayersHaveTheirChannelNamesAndKinds) {
   request_.z = request_.depth = request_.normal = request_.position = request_.albedo = true;
   request_.diffuse = request_.specular = request_.transmission = request_.background = true;
   request_.variance = request_.samples = request_.object_id = request_.material_id = true;

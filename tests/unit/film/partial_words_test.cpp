@@ -11,7 +11,7 @@
 namespace orrery::film {
 namespace {
 
-/// A partial with something else in every number.
+/// A partial render with a different value in every number.
 Partial full_partial(bool halves, bool goals, bool layers) {
   Partial p(5, 3);
   std::mt19937_64 random(3);
@@ -45,7 +45,7 @@ Partial full_partial(bool halves, bool goals, bool layers) {
   return p;
 }
 
-TEST(FilmPartialWords, ComeBackAsTheyWere) {
+TEST(FilmPartialWords, RoundTrip) {
   for (int kind = 0; kind < 8; ++kind) {
     const Partial p = full_partial((kind & 1) != 0, (kind & 2) != 0, (kind & 4) != 0);
     const std::vector<std::uint32_t> words = to_words(p);
@@ -67,19 +67,19 @@ TEST(FilmPartialWords, ComeBackAsTheyWere) {
   }
 }
 
-TEST(FilmPartialWords, WhatIsCutOffIsRefused) {
+TEST(FilmPartialWords, TruncatedWordsAreRefused) {
   const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true));
   for (std::size_t length = 0; length < words.size(); length += 7)
     EXPECT_THROW(from_words({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)}, 5, 3), base::Error)
         << length;
 }
 
-TEST(FilmPartialWords, AnotherSizeIsRefused) {
+TEST(FilmPartialWords, TheWrongSizeIsRefused) {
   const std::vector<std::uint32_t> words = to_words(full_partial(false, false, false));
   EXPECT_THROW(from_words(words, 3, 5), base::Error);
 }
 
-TEST(FilmPartialWords, WhatAllPixelsHaveInCommonTakesNoRoom) {
+TEST(FilmPartialWords, ConstantPlanesAreStoredAsOneWord) {
   Partial empty(500, 400);
   empty.layers.resize(empty.pixel_count());
   EXPECT_LT(to_words(empty).size(), 1000u);

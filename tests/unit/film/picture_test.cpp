@@ -18,7 +18,7 @@ TEST(FilmPicture, FindsAPlaneByItsName) {
   EXPECT_EQ(picture.find("G"), nullptr);
 }
 
-TEST(FilmPicture, CountsEachKindOfBadValueOnce) {
+TEST(FilmPicture, CountsEachKindOfBadValue) {
   const BadValues bad = count_bad_values(Plane{"R", {kNan, kInfinity, -kInfinity, -1, 65505, -70000, -0.0f, 65504}});
   EXPECT_EQ(bad.nan, 1u);
   EXPECT_EQ(bad.infinite, 2u);
@@ -27,11 +27,11 @@ TEST(FilmPicture, CountsEachKindOfBadValueOnce) {
   EXPECT_TRUE(bad.any());
 }
 
-TEST(FilmPicture, FindsNothingBadInLightThatAFileHolds) {
+TEST(FilmPicture, AcceptsValuesThatAFileCanHold) {
   EXPECT_FALSE(count_bad_values(Plane{"R", {0, kLargestHalf, 1}}).any());
 }
 
-TEST(FilmPicture, LetsVectorsBeNegativeAndDataBeLarge) {
+TEST(FilmPicture, AcceptsNegativeVectorsAndLargeData) {
   EXPECT_FALSE(count_bad_values(Plane{"N.X", {-1, 0.5f}, PlaneKind::kVector}).any());
   EXPECT_EQ(count_bad_values(Plane{"N.X", {70000}, PlaneKind::kVector}).above_half, 1u);
   EXPECT_FALSE(count_bad_values(Plane{"Z", {1e30f, -5}, PlaneKind::kData}).any());
@@ -45,7 +45,7 @@ TEST(FilmPicture, AddsCounts) {
   EXPECT_EQ(sum.nan, 11u);
 }
 
-TEST(FilmPicture, TellsTheLayerOfAPlane) {
+TEST(FilmPicture, ReturnsTheLayerOfAPlane) {
   EXPECT_EQ((Plane{"R", {}}.layer()), "");
   EXPECT_EQ((Plane{"denoise.albedo.R", {}}.layer()), "denoise.albedo");
 }

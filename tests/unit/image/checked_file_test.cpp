@@ -13,7 +13,7 @@
 namespace orrery::image {
 namespace {
 
-TEST(ImageCheckedFile, HoldsWhatWasWrittenInWhateverOrder) {
+TEST(ImageCheckedFile, HoldsTheBytesWrittenInAnyOrder) {
   const support::TempDir folder;
   support::write_bytes(folder / "a", "old content");
   CheckedFile file(folder / "a");
@@ -40,7 +40,7 @@ TEST(ImageCheckedFile, HoldsWhatWasWrittenInWhateverOrder) {
   EXPECT_TRUE(support::file_bytes(folder / "a") == expected);
 }
 
-TEST(ImageCheckedFile, SaysWhyItCouldNotBeOpened) {
+TEST(ImageCheckedFile, ReportsWhyItCouldNotBeOpened) {
   const support::TempDir folder;
   CheckedFile file(folder / "none");
   EXPECT_FALSE(file.opened());
@@ -48,14 +48,14 @@ TEST(ImageCheckedFile, SaysWhyItCouldNotBeOpened) {
   EXPECT_EQ(file.finish(), ENOENT);
 }
 
-TEST(ImageCheckedFile, KeepsTheFailureOfAWriteThatWasHeldBack) {
+TEST(ImageCheckedFile, KeepsTheFailureOfABufferedWrite) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
   CheckedFile file("/dev/full");
-  EXPECT_EQ(file.write("x", 1), 1u);  // held back: nobody knows yet
+  EXPECT_EQ(file.write("x", 1), 1u);  // buffered
   EXPECT_EQ(file.finish(), ENOSPC);
 }
 
-TEST(ImageCheckedFile, TakesNothingMoreAfterAFailure) {
+TEST(ImageCheckedFile, RefusesWritesAfterAFailure) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
   CheckedFile file("/dev/full");
   const std::string large(100000, 'x');

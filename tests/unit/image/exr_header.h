@@ -9,12 +9,12 @@
 
 namespace orrery::image {
 
-/// One attribute as it stands in an EXR file.
+/// One raw attribute of an EXR file.
 struct ExrAttribute {
   std::string type;
   std::string bytes;
 
-  /// The value as numbers of one type.
+  /// The value as an array of numbers.
   template <class Number>
   std::vector<Number> numbers() const {
     std::vector<Number> out(bytes.size() / sizeof(Number));
@@ -23,8 +23,7 @@ struct ExrAttribute {
   }
 };
 
-/// The header of a single-part EXR file, read by the format's own definition: the library that wrote it would translate
-/// the names back.
+/// Parses the header of a single-part EXR file by the file format itself. OpenImageIO would translate the names back.
 inline std::map<std::string, ExrAttribute> exr_header(const std::string& file) {
   std::map<std::string, ExrAttribute> out;
   std::size_t at = 8;  // magic number, version and flags

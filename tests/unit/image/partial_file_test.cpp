@@ -53,14 +53,14 @@ class ImagePartialFile : public testing::Test {
   const film::Partial partial_ = some_partial();
 };
 
-TEST_F(ImagePartialFile, ComesBackAsItWas) {
+TEST_F(ImagePartialFile, RoundTrips) {
   const PartialFile read = read_partial(file_, kWidth, kHeight);
   EXPECT_EQ(film::to_words(read.partial), film::to_words(partial_));
   EXPECT_EQ(read.provenance, (Provenance{{"samples", "0:3"}, {"host", "b\nc"}}));
   EXPECT_EQ(read_provenance(file_), read.provenance);
 }
 
-TEST_F(ImagePartialFile, AnyProgramSeesThePicture) {
+TEST_F(ImagePartialFile, ThePreviewIsAnOrdinaryExr) {
   const film::Picture seen = image::read(file_);
   ASSERT_NE(seen.find("R"), nullptr);
   EXPECT_EQ(seen.planes.size(), 4u);
@@ -70,12 +70,12 @@ TEST_F(ImagePartialFile, AnyProgramSeesThePicture) {
   EXPECT_NEAR(seen.find("R")->values[(5 + 2) * 40 + 4 + 3], there, there / 1024);
 }
 
-TEST_F(ImagePartialFile, TheSamePartialIsTheSameBytes) {
+TEST_F(ImagePartialFile, TheSamePartialGivesTheSameBytes) {
   write(folder_ / "b.exr");
   EXPECT_EQ(support::file_bytes(file_), support::file_bytes(folder_ / "b.exr"));
 }
 
-TEST_F(ImagePartialFile, AFlippedBitIsRefusedWhereverItIs) {
+TEST_F(ImagePartialFile, AFlippedBitIsRefused) {
   const std::string bytes = support::file_bytes(file_);
   for (std::size_t i = 0; i < 300; ++i) {
     const std::size_t at = i < 70 ? bytes.size() - 1 - i : (i * 2654435761u) % bytes.size();
@@ -86,22 +86,22 @@ TEST_F(ImagePartialFile, AFlippedBitIsRefusedWhereverItIs) {
   }
 }
 
-TEST_F(ImagePartialFile, WhatIsCutOffOrGrownIsRefused) {
+TEST_F(ImagePartialFile, TruncatedAndExtendedFilesAreRefused) {
   const std::string bytes = support::file_bytes(file_);
   for (std::size_t i = 0; i < 50; ++i) {
     support::write_bytes(file_, bytes.substr(0, bytes.size() * i / 50));
-    expect_refused("a part of the file");
+    expect_refused("a truncated file");
   }
   support::write_bytes(file_, bytes.substr(0, bytes.size() - 1));
   expect_refused("a missing byte");
   support::write_bytes(file_, bytes + " ");
-  expect_refused("one byte more");
+  expect_refused("an extra byte");
 }
 
-TEST_F(ImagePartialFile, AnotherPictureIsNone) {
+TEST_F(ImagePartialFile, OrdinaryAndMissingFilesAreRefused) {
   film::Picture picture = partial_.film.picture();
   write_exr(file_, picture, {}, {});
-  expect_refused("a plain picture");
+  expect_refused("an ordinary image");
   std::filesystem::remove(file_);
   try {
     read_partial(file_, kWidth, kHeight);

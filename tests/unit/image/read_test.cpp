@@ -17,7 +17,7 @@ namespace {
 
 using base::ErrorKind;
 
-/// Writes a picture that this program does not write, with values 0, 1, 2, ... in reading order.
+/// Writes an EXR that orrery itself would not write, with values 0, 1, 2, ... row by row.
 void write_foreign(const std::filesystem::path& file, OIIO::ImageSpec spec) {
   const auto out = OIIO::ImageOutput::create("openexr");
   ASSERT_TRUE(out->open(file.string(), spec)) << out->geterror();
@@ -49,10 +49,10 @@ TEST_F(ImageRead, AMissingFileIsAMissingInput) {
   expect_error(ErrorKind::kMissingInput, {"d.exr", "it is a directory"}, [&] { read(folder_ / "d.exr"); });
   ASSERT_EQ(::mkfifo((folder_ / "p.exr").c_str(), 0600), 0);
   expect_error(ErrorKind::kMissingInput, {"p.exr", "not a regular file"}, [&] { read(folder_ / "p.exr"); });
-  expect_error(ErrorKind::kUsage, {"known are"}, [&] { read(folder_ / "none.txt"); });
+  expect_error(ErrorKind::kUsage, {"known formats are"}, [&] { read(folder_ / "none.txt"); });
 }
 
-TEST_F(ImageRead, ADataWindowInsideOfTheFrameStandsInZeros) {
+TEST_F(ImageRead, ASmallerDataWindowIsPaddedWithZeros) {
   OIIO::ImageSpec spec = grey(2, 2);
   spec.x = 11, spec.y = 21;
   spec.full_x = 10, spec.full_y = 20, spec.full_width = 4, spec.full_height = 5;
@@ -67,7 +67,7 @@ TEST_F(ImageRead, ADataWindowInsideOfTheFrameStandsInZeros) {
                                                           0, 0, 0, 0}));
 }
 
-TEST_F(ImageRead, ADataWindowBeyondTheFrameIsCut) {
+TEST_F(ImageRead, ALargerDataWindowIsCropped) {
   OIIO::ImageSpec spec = grey(4, 3);
   spec.x = -1, spec.y = -1;
   spec.full_x = 0, spec.full_y = 0, spec.full_width = 2, spec.full_height = 1;
@@ -75,7 +75,7 @@ TEST_F(ImageRead, ADataWindowBeyondTheFrameIsCut) {
   EXPECT_EQ(read(folder_ / "a.exr").planes[0].values, (std::vector<float>{5, 6}));
 }
 
-TEST_F(ImageRead, ADataWindowThatMissesTheFrameGivesAnEmptyOne) {
+TEST_F(ImageRead, ADataWindowOutsideTheDisplayWindowGivesZeros) {
   for (const int y : {-50, 50}) {
     OIIO::ImageSpec spec = grey(4, 3);
     spec.y = y;
@@ -85,7 +85,7 @@ TEST_F(ImageRead, ADataWindowThatMissesTheFrameGivesAnEmptyOne) {
   }
 }
 
-TEST_F(ImageRead, TilesGiveTheSamePicture) {
+TEST_F(ImageRead, TiledFilesReadLikeScanlines) {
   OIIO::ImageSpec spec = grey(75, 150);
   write_foreign(folder_ / "rows.exr", spec);
   spec.tile_width = 32, spec.tile_height = 16;
@@ -95,13 +95,13 @@ TEST_F(ImageRead, TilesGiveTheSamePicture) {
   EXPECT_EQ(read(folder_ / "tiles.exr").planes[0].values, rows.planes[0].values);
 }
 
-TEST_F(ImageRead, WholeNumbersStayWhatTheyAre) {
+TEST_F(ImageRead, IntegersKeepTheirValues) {
   write_foreign(folder_ / "a.exr", grey(150, 2, OIIO::TypeDesc::UINT));
   const film::Picture picture = read(folder_ / "a.exr");
   for (std::size_t i = 0; i < 300; ++i) ASSERT_EQ(picture.planes[0].values[i], static_cast<float>(i));
 }
 
-TEST_F(ImageRead, ValuesThatAreNotFiniteArriveForTheCallerToCount) {
+TEST_F(ImageRead, NonFiniteValuesAreReturned) {
   film::Picture picture = test_picture(3, 1, {"R"});
   ExrOptions options;
   options.as_float = true;
@@ -116,7 +116,7 @@ TEST_F(ImageRead, ValuesThatAreNotFiniteArriveForTheCallerToCount) {
   EXPECT_EQ(bad.infinite, 1u);
 }
 
-/// One file of every format that is written here.
+/// Writes one file of every supported format.
 std::vector<std::filesystem::path> write_all(const support::TempDir& folder, int width, int height) {
   std::vector<std::filesystem::path> out;
   for (const char* compression : {"zips", "zip", "piz", "none", "dwaa"}) {
@@ -136,7 +136,7 @@ std::vector<std::filesystem::path> write_all(const support::TempDir& folder, int
 
 TEST_F(ImageRead, ATruncatedFileIsBadData) {
   for (const auto& file : write_all(folder_, 100, 80)) {
-    if (file.extension() == ".jpg") continue;  // its decoder fills the rest with grey and calls that a picture
+    if (file.extension() == ".jpg") continue;  // the decoder fills the rest with grey and reports no error
     const std::string bytes = support::file_bytes(file);
     for (const std::size_t size :
          {std::size_t{0}, std::size_t{3}, std::size_t{40}, bytes.size() / 2, bytes.size() - 50}) {
@@ -148,14 +148,14 @@ TEST_F(ImageRead, ATruncatedFileIsBadData) {
   }
 }
 
-TEST_F(ImageRead, AFileOfAnotherKindIsBadData) {
+TEST_F(ImageRead, AFileOfAnotherFormatIsBadData) {
   for (const char* name : {"a.exr", "a.hdr", "a.png", "a.tif", "a.jpg", "a.ppm"}) {
     support::write_bytes(folder_ / name, "[image]\nwidth = 1200\n" + std::string(2000, '#'));
     expect_error(ErrorKind::kBadData, {name}, [&] { read(folder_ / name); });
   }
 }
 
-TEST_F(ImageRead, AHeaderThatClaimsTooMuchIsBadData) {
+TEST_F(ImageRead, AHeaderWithAnExcessiveSizeIsBadData) {
   write_exr(folder_ / "a.exr", test_picture(4, 4), {}, {});
   std::string bytes = support::file_bytes(folder_ / "a.exr");
   for (const char* window : {"dataWindow", "displayWindow"}) {
@@ -196,7 +196,7 @@ TEST_F(ImageRead, DamagedBytesNeverCrashAndPrintNothing) {
   }
   std::string printed = testing::internal::GetCapturedStdout(), line;
   std::istringstream lines(testing::internal::GetCapturedStderr());
-  // libpng's own last words, which OpenImageIO does not catch.
+  // libpng prints some messages that OpenImageIO does not catch.
   while (std::getline(lines, line))
     if (line.rfind("libpng ", 0) != 0) printed += line + "\n";
   EXPECT_EQ(printed, "");

@@ -14,7 +14,7 @@
 
 namespace orrery::image {
 
-/// Scene-linear light that differs from pixel to pixel and compresses badly; every value is exact as half.
+/// A scene-linear image of noise, which compresses badly; all values are exact in half.
 inline film::Picture test_picture(int width, int height, const std::vector<std::string>& names = {"R", "G", "B", "A"}) {
   film::Picture picture{width, height, {}};
   std::uint32_t state = 1;
@@ -29,7 +29,7 @@ inline film::Picture test_picture(int width, int height, const std::vector<std::
   return picture;
 }
 
-/// The same for a display. `smooth` leaves out what JPEG cannot keep.
+/// A display-encoded image of noise, or of ramps that survive JPEG if `smooth`.
 inline film::EncodedPicture test_encoded(int width, int height, int bits, bool smooth = false) {
   film::EncodedPicture picture;
   picture.width = width;
@@ -52,7 +52,7 @@ inline film::EncodedPicture test_encoded(int width, int height, int bits, bool s
   return picture;
 }
 
-/// Expects an error of this kind, with these words in its text.
+/// Expects an error of this kind whose message contains all `parts`.
 template <class Function>
 void expect_error(base::ErrorKind kind, const std::vector<std::string>& parts, Function function) {
   try {

@@ -13,7 +13,7 @@
 namespace orrery::image {
 namespace {
 
-/// While this lives no file of the process grows beyond so many bytes: a full disk that needs no disk.
+/// Simulates a full disk: during its lifetime no file of the process can exceed `bytes`.
 class FullDisk {
  public:
   explicit FullDisk(std::uintmax_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -54,7 +54,7 @@ std::vector<Writer> writers() {
   return out;
 }
 
-TEST(ImageWholeFile, AFullDiskIsAnErrorWhereverItFillsUpAndLeavesNothing) {
+TEST(ImageWholeFile, AFullDiskIsAnErrorAndLeavesNoFile) {
   for (const Writer& writer : writers()) {
     const support::TempDir folder;
     writer.write(folder / writer.name);
@@ -72,7 +72,7 @@ TEST(ImageWholeFile, AFullDiskIsAnErrorWhereverItFillsUpAndLeavesNothing) {
   }
 }
 
-TEST(ImageWholeFile, AFailedWriteLeavesTheOldPicture) {
+TEST(ImageWholeFile, AFailedWriteKeepsTheOldFile) {
   for (const Writer& writer : writers()) {
     const support::TempDir folder;
     support::write_bytes(folder / writer.name, "the old picture");
@@ -88,7 +88,7 @@ TEST(ImageWholeFile, AFailedWriteLeavesTheOldPicture) {
   }
 }
 
-TEST(ImageWholeFile, AFailureIsSilentOnTheConsole) {
+TEST(ImageWholeFile, AFailurePrintsNothing) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   for (const Writer& writer : writers()) {
@@ -101,7 +101,7 @@ TEST(ImageWholeFile, AFailureIsSilentOnTheConsole) {
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
 
-TEST(ImageWholeFile, APlaceThatTakesNoFileIsNamedWithTheReason) {
+TEST(ImageWholeFile, AnUnwritablePathIsReportedWithTheReason) {
   const support::TempDir folder;
   std::filesystem::create_directory(folder / "b.exr");
   for (const Writer& writer : writers()) {
@@ -117,7 +117,7 @@ TEST(ImageWholeFile, APlaceThatTakesNoFileIsNamedWithTheReason) {
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
 }
 
-TEST(ImageWholeFile, NamesMayHoldWhatTheShellDislikes) {
+TEST(ImageWholeFile, FileNamesMayHoldSpecialCharacters) {
   const support::TempDir folder;
   for (const char* name : {"a b.exr", "a####.exr", "a%04d.exr", "a?b=c&d.exr", "-o.exr", "\xc3\xa4.exr"}) {
     write_exr(folder / name, test_picture(4, 4), {}, {});

@@ -16,7 +16,7 @@ namespace {
 
 class ImageWriteEncoded : public testing::Test {
  protected:
-  /// Largest difference, in levels of the picture, after writing and reading.
+  /// Maximum difference in levels after writing and reading back.
   double round_trip(const std::string& name, const film::EncodedPicture& picture) const {
     write_encoded(folder_ / name, picture, "orrery");
     const film::Picture back = read(folder_ / name);
@@ -44,8 +44,8 @@ TEST_F(ImageWriteEncoded, LosslessFormatsKeepEveryLevel) {
   for (const char* name : {"a.png", "a.tif"}) EXPECT_LT(round_trip(name, test_encoded(61, 43, 16)), 0.01) << name;
 }
 
-TEST_F(ImageWriteEncoded, LargePicturesStayWholeToo) {
-  // Larger than every buffer on the way; this once lost a TIFF's directory.
+TEST_F(ImageWriteEncoded, LargeImagesRoundTrip) {
+  // Larger than all buffers. Regression test: a TIFF lost its directory at this size.
   film::EncodedPicture picture = test_encoded(700, 500, 8);
   for (const bool srgb : {false, true}) {
     picture.is_srgb = srgb;
@@ -53,13 +53,13 @@ TEST_F(ImageWriteEncoded, LargePicturesStayWholeToo) {
   }
 }
 
-TEST_F(ImageWriteEncoded, TheSmallestPictureIsOnePixel) {
+TEST_F(ImageWriteEncoded, OnePixelImagesRoundTrip) {
   for (const char* name : {"a.png", "a.tif", "a.ppm"}) EXPECT_LT(round_trip(name, test_encoded(1, 1, 8)), 0.01) << name;
 }
 
-TEST_F(ImageWriteEncoded, JpegStaysCloseAndKeepsColourAtFullSize) {
+TEST_F(ImageWriteEncoded, JpegErrorIsSmallWithoutChromaSubsampling) {
   EXPECT_LE(round_trip("a.jpg", test_encoded(64, 48, 8, true)), 6);
-  // Columns of red and green: colour at half size would mix neighbours into brown.
+  // Columns of red and green: chroma subsampling would mix neighbours into brown.
   film::EncodedPicture columns{64, 64, 8, true, {}};
   for (int i = 0; i < 64 * 64; ++i) {
     const bool red = i % 2 == 0;
@@ -68,18 +68,18 @@ TEST_F(ImageWriteEncoded, JpegStaysCloseAndKeepsColourAtFullSize) {
   EXPECT_LE(round_trip("b.jpeg", columns), 16);
 }
 
-TEST_F(ImageWriteEncoded, SixteenBitsNeedAFormatThatHoldsThem) {
+TEST_F(ImageWriteEncoded, SixteenBitsAreRefusedByEightBitFormats) {
   for (const char* name : {"a.jpg", "a.ppm"})
     expect_error(base::ErrorKind::kUsage, {name, "PNG and TIFF"}, [&] { bytes(name, test_encoded(2, 2, 16)); });
   EXPECT_EQ(folder_.count(), 0u);
 }
 
-TEST_F(ImageWriteEncoded, LightNeedsAFormatForLight) {
+TEST_F(ImageWriteEncoded, SceneLinearAndUnknownFormatsAreRefused) {
   expect_error(base::ErrorKind::kInternal, {"scene-linear"}, [&] { bytes("a.exr", test_encoded(2, 2, 8)); });
-  expect_error(base::ErrorKind::kUsage, {"known are"}, [&] { bytes("a.gif", test_encoded(2, 2, 8)); });
+  expect_error(base::ErrorKind::kUsage, {"known formats are"}, [&] { bytes("a.gif", test_encoded(2, 2, 8)); });
 }
 
-TEST_F(ImageWriteEncoded, PngSaysSrgbOnlyWhereItIs) {
+TEST_F(ImageWriteEncoded, PngIsTaggedSrgbOnlyIfItIs) {
   film::EncodedPicture picture = test_encoded(8, 8, 8);
   picture.is_srgb = true;
   EXPECT_NE(bytes("a.png", picture).find("sRGB"), std::string::npos);
@@ -88,9 +88,9 @@ TEST_F(ImageWriteEncoded, PngSaysSrgbOnlyWhereItIs) {
   for (const char* chunk : {"sRGB", "gAMA", "cHRM", "iCCP"}) EXPECT_EQ(plain.find(chunk), std::string::npos) << chunk;
 }
 
-TEST_F(ImageWriteEncoded, NothingInAFileDependsOnTheTime) {
+TEST_F(ImageWriteEncoded, FilesHoldNoDate) {
   const film::EncodedPicture picture = test_encoded(16, 16, 8);
-  // A date in a file would name the century, in whichever of its forms.
+  // A date in any format would contain the century.
   for (const char* name : {"a.png", "a.tif", "a.jpg", "a.ppm"}) {
     const std::string file = bytes(name, picture);
     for (const char* mark : {"20", "tIME"}) {
@@ -101,7 +101,7 @@ TEST_F(ImageWriteEncoded, NothingInAFileDependsOnTheTime) {
   }
 }
 
-TEST_F(ImageWriteEncoded, JpegIsWhatOpenImageIoWrites) {
+TEST_F(ImageWriteEncoded, JpegBytesMatchOpenImageIo) {
   const film::EncodedPicture picture = test_encoded(67, 43, 8);
   const std::string ours = bytes("a.jpg", picture);
   OIIO::ImageSpec spec(67, 43, 3, OIIO::TypeDesc::UINT8);
@@ -122,8 +122,8 @@ TEST_F(ImageWriteEncoded, JpegIsWhatOpenImageIoWrites) {
   }
 }
 
-TEST_F(ImageWriteEncoded, AnErrorOfLibjpegIsAMessageAndNoExit) {
-  // A side that libjpeg refuses, as it refuses to go on without memory: by a call that must not return.
+TEST_F(ImageWriteEncoded, LibjpegErrorsAreReturnedWithoutExit) {
+  // libjpeg rejects this size with an error handler that must not return, as for lack of memory.
   support::write_bytes(folder_ / "a", "");
   CheckedFile file(folder_ / "a");
   const OIIO::ImageSpec spec(65501, 1, 3, OIIO::TypeDesc::UINT8);
@@ -131,7 +131,7 @@ TEST_F(ImageWriteEncoded, AnErrorOfLibjpegIsAMessageAndNoExit) {
   EXPECT_NE(encode_jpeg(spec, pixels.data(), file).find("65500"), std::string::npos);
 }
 
-TEST_F(ImageWriteEncoded, AFullDiskStopsJpeg) {
+TEST_F(ImageWriteEncoded, AFullDiskFailsTheJpegFile) {
   CheckedFile full("/dev/full");
   const OIIO::ImageSpec spec(600, 400, 3, OIIO::TypeDesc::UINT8);
   const std::vector<std::uint8_t> pixels(600 * 400 * 3);
@@ -168,14 +168,14 @@ TEST_F(ImageWriteEncoded, PngAndTiffHoldStraightAlpha) {
   }
 }
 
-TEST_F(ImageWriteEncoded, PpmIsTheBinaryKind) {
+TEST_F(ImageWriteEncoded, PpmIsBinary) {
   const film::EncodedPicture picture{2, 1, 8, false, {1, 2, 3, 4, 5, 255}};
   const std::string file = bytes("a.ppm", picture);
   EXPECT_EQ(file.substr(0, 2), "P6");
   EXPECT_EQ(file.substr(file.size() - 6), "\1\2\3\4\5\xff");
 }
 
-TEST_F(ImageWriteEncoded, NamesTheProgramThatMadeIt) {
+TEST_F(ImageWriteEncoded, NamesTheSoftware) {
   for (const char* name : {"a.png", "a.tif", "a.jpg"})
     EXPECT_NE(bytes(name, test_encoded(8, 8, 8)).find("orrery"), std::string::npos) << name;
 }

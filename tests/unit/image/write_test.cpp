@@ -35,7 +35,7 @@ std::string joined_names(const std::map<std::string, ExrAttribute>& header) {
   return out;
 }
 
-TEST_F(ImageWrite, ExrKeepsEveryValueThatIsAHalf) {
+TEST_F(ImageWrite, ExrKeepsHalfValuesExactly) {
   const film::Picture picture = test_picture(37, 19);
   const WriteReport report = write_exr(folder_ / "a.exr", picture, {}, {});
   EXPECT_EQ(report.clamped + report.not_finite, 0u);
@@ -59,7 +59,7 @@ TEST_F(ImageWrite, ExrRoundsToTheNearestHalfAndKeepsFloats) {
   EXPECT_EQ(read(folder_ / "a.exr").planes[0].values, picture.planes[0].values);
 }
 
-TEST_F(ImageWrite, ExrClampsBeyondHalfAndWritesNoValueThatIsNotFinite) {
+TEST_F(ImageWrite, ExrClampsToHalfAndWritesNoNonFiniteValues) {
   const film::Picture picture{7, 1, {{"R", {1e6f, -1e6f, 65504, 65505, kNan, kInfinity, -kInfinity}}}};
   const WriteReport report = write_exr(folder_ / "a.exr", picture, {}, {});
   EXPECT_EQ(report.clamped, 3u);
@@ -73,7 +73,7 @@ TEST_F(ImageWrite, ExrClampsBeyondHalfAndWritesNoValueThatIsNotFinite) {
   EXPECT_EQ(read(folder_ / "a.exr").planes[0].values, (std::vector<float>{1e6f, -1e6f, 65504, 65505, 0, 0, 0}));
 }
 
-TEST_F(ImageWrite, ExrCarriesLayersByTheirNames) {
+TEST_F(ImageWrite, ExrStoresLayersByName) {
   const film::Picture picture = test_picture(4, 4, {"R", "G", "B", "A", "variance.R", "albedo.G", "Z"});
   write_exr(folder_ / "a.exr", picture, {}, {});
   const film::Picture back = read(folder_ / "a.exr");
@@ -81,7 +81,7 @@ TEST_F(ImageWrite, ExrCarriesLayersByTheirNames) {
   for (const film::Plane& plane : picture.planes) EXPECT_EQ(back.find(plane.name)->values, plane.values) << plane.name;
 }
 
-TEST_F(ImageWrite, ExrHasTheStandardAttributesByTheirOwnNames) {
+TEST_F(ImageWrite, ExrHasTheStandardAttributes) {
   Header header;
   header.software = "orrery 1.2";
   header.capture_date = "2020:01:02 03:04:05";
@@ -123,7 +123,7 @@ TEST_F(ImageWrite, ExrHasTheStandardAttributesByTheirOwnNames) {
   EXPECT_EQ(exr["orrery/renderSeconds"].numbers<float>(), std::vector<float>{1.5f});
 }
 
-TEST_F(ImageWrite, ExrIsScanlinesOverTheWholeFrame) {
+TEST_F(ImageWrite, ExrIsScanlineAndCoversTheFrame) {
   auto exr = header_of({});
   const std::vector<std::int32_t> frame = {0, 0, 4, 2};
   EXPECT_EQ(exr["dataWindow"].numbers<std::int32_t>(), frame);
@@ -134,13 +134,13 @@ TEST_F(ImageWrite, ExrIsScanlinesOverTheWholeFrame) {
   EXPECT_EQ(flags, std::string("\2\0\0\0", 4));  // version 2, not tiled, not deep, one part
 }
 
-TEST_F(ImageWrite, ExrHasNothingInItsHeaderThatNobodyAskedFor) {
+TEST_F(ImageWrite, ExrHasNoUnrequestedAttributes) {
   EXPECT_EQ(joined_names(header_of({})),
             "channels compression dataWindow displayWindow lineOrder pixelAspectRatio screenWindowCenter "
             "screenWindowWidth ");
 }
 
-TEST_F(ImageWrite, ExrUsesTheCompressionThatIsAskedFor) {
+TEST_F(ImageWrite, ExrUsesTheRequestedCompression) {
   const std::vector<std::pair<std::string, char>> codes = {{"none", 0}, {"rle", 1},  {"zips", 2}, {"zip", 3},
                                                            {"piz", 4},  {"dwaa", 8}, {"dwab", 9}, {"dwaa:45", 8}};
   for (const auto& [name, code] : codes) {
@@ -184,7 +184,7 @@ TEST_F(ImageWrite, ThreadsDoNotChangeTheBytes) {
   EXPECT_TRUE(support::file_bytes(folder_ / "a.exr") == support::file_bytes(folder_ / "b.exr"));
 }
 
-TEST_F(ImageWrite, HdrKeepsEightBitsOfThePixelsLargestValue) {
+TEST_F(ImageWrite, HdrKeepsEightBitsOfThePixelMaximum) {
   const film::Picture picture = test_picture(41, 17);
   EXPECT_EQ(write_hdr(folder_ / "a.hdr", picture).clamped, 0u);
   const film::Picture back = read(folder_ / "a.hdr");
@@ -197,7 +197,7 @@ TEST_F(ImageWrite, HdrKeepsEightBitsOfThePixelsLargestValue) {
   }
 }
 
-TEST_F(ImageWrite, HdrClampsWhatItsPixelsCannotHold) {
+TEST_F(ImageWrite, HdrClampsValuesOutOfRange) {
   const film::Picture picture{3, 1, {{"R", {-1, 3e38f, kNan}}, {"G", {1, 0, 1}}, {"B", {1, 0, kInfinity}}}};
   const WriteReport report = write_hdr(folder_ / "a.hdr", picture);
   EXPECT_EQ(report.clamped, 2u);
@@ -210,13 +210,13 @@ TEST_F(ImageWrite, HdrClampsWhatItsPixelsCannotHold) {
   EXPECT_NEAR(back.planes[1].values[2], 1, 0.01);
 }
 
-TEST_F(ImageWrite, HdrNeedsThreeColours) {
+TEST_F(ImageWrite, HdrRequiresRgb) {
   expect_error(base::ErrorKind::kBadData, {"no channel B"}, [&] {
     write_hdr(folder_ / "a.hdr", test_picture(2, 2, {"R", "G"}));
   });
 }
 
-TEST_F(ImageWrite, APlaneOfAnotherSizeIsABrokenPromise) {
+TEST_F(ImageWrite, APlaneOfTheWrongSizeIsAnInternalError) {
   film::Picture picture = test_picture(4, 4);
   picture.planes[2].values.pop_back();
   expect_error(base::ErrorKind::kInternal, {"plane B"}, [&] { write_exr(folder_ / "a.exr", picture, {}, {}); });
@@ -236,7 +236,7 @@ TEST_F(ImageWrite, OtherProgramsReadTheExr) {
   EXPECT_NE(info.find("Constant: Yes"), std::string::npos) << info;
 }
 
-/// A picture with colours, vectors and data, as renders have them.
+/// An image with colour, vector and data layers.
 film::Picture layered_picture() {
   film::Picture picture = test_picture(6, 4, {"R", "G", "B", "A", "Z", "N.X", "CryptoObject00.R", "CryptoObject01.R"});
   for (film::Plane& plane : picture.planes) {
@@ -246,7 +246,7 @@ film::Picture layered_picture() {
   return picture;
 }
 
-TEST_F(ImageWrite, DataKeepEveryBitBesideHalves) {
+TEST_F(ImageWrite, DataLayersAreLossless) {
   film::Picture picture = layered_picture();
   picture.planes[4].values[0] = 1e30f;
   picture.planes[6].values[1] = -0x1.234567p-100f;
@@ -255,7 +255,7 @@ TEST_F(ImageWrite, DataKeepEveryBitBesideHalves) {
   for (const film::Plane& plane : picture.planes) EXPECT_EQ(back.find(plane.name)->values, plane.values) << plane.name;
 }
 
-TEST_F(ImageWrite, LossyCompressionOfDataIsRefusedUnlessTheyHaveTheirParts) {
+TEST_F(ImageWrite, LossyCompressionOfDataIsRefusedUnlessMultipart) {
   ExrOptions options;
   options.compression = "dwaa:45";
   expect_error(base::ErrorKind::kUsage, {"dwaa:45", "CryptoObject00", "--multipart"},
@@ -267,7 +267,7 @@ TEST_F(ImageWrite, LossyCompressionOfDataIsRefusedUnlessTheyHaveTheirParts) {
   EXPECT_NO_THROW(write_exr(folder_ / "a.exr", test_picture(4, 4), {}, options));
 }
 
-TEST_F(ImageWrite, PartsHaveTheLayersNamesAndAMatteStaysTogether) {
+TEST_F(ImageWrite, PartsAreNamedAfterLayersAndAMatteIsOnePart) {
   ExrOptions options;
   options.multipart = true;
   Header header;
@@ -286,7 +286,7 @@ TEST_F(ImageWrite, PartsHaveTheLayersNamesAndAMatteStaysTogether) {
   EXPECT_EQ(parts, "rgba:4m Z:1 N:1 CryptoObject:2m ");
 }
 
-TEST_F(ImageWrite, AWindowOfAFrameIsInTheHeader) {
+TEST_F(ImageWrite, DataAndDisplayWindowsAreInTheHeader) {
   film::Picture picture = test_picture(6, 4);
   picture.x = -2;
   picture.y = 3;
@@ -302,14 +302,14 @@ TEST_F(ImageWrite, AWindowOfAFrameIsInTheHeader) {
   EXPECT_EQ(spec.full_width, 20);
   EXPECT_EQ(spec.full_height, 10);
   EXPECT_EQ(spec.get_float_attribute("PixelAspectRatio"), 2);
-  // Read back, it is the frame, and what is outside of it is gone.
+  // Reading gives the frame without the pixels outside of it.
   const film::Picture back = read(folder_ / "a.exr");
   EXPECT_EQ(back.width, 20);
   EXPECT_EQ(back.planes[0].values[3 * 20], picture.planes[0].values[2]);
   EXPECT_EQ(back.planes[0].values[0], 0);
 }
 
-TEST_F(ImageWrite, DeepPixelsComeBack) {
+TEST_F(ImageWrite, DeepPixelsRoundTrip) {
   film::DeepPicture deep{2, 1, {{{1, 2, {0.1f, 0.2f, 0.3f}, 0.5f}, {4, 6, {0.5f, 0, 0}, 1}}, {}}};
   film::Picture flat{2, 1, {}};
   write_deep(folder_ / "a.exr", deep, flat, {});

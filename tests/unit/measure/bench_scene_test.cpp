@@ -43,7 +43,7 @@ std::vector<std::string> names(const std::vector<BenchCase>& cases) {
   return out;
 }
 
-TEST_F(MeasureBenchScene, MeasuresEveryPrecisionBothWays) {
+TEST_F(MeasureBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
   const Benchmark b = bench_scene(request());
   EXPECT_EQ(names(b.cases), (std::vector<std::string>{"embree exact", "embree fast", "embree book", "exact packet",
                                                       "exact single", "SIMD list exact", "SIMD list fast",
@@ -72,7 +72,7 @@ TEST_F(MeasureBenchScene, MeasuresTheFeaturesThatTheSceneLacks) {
   EXPECT_EQ(names(bench_scene(request()).features), (std::vector<std::string>{"thin lens", "hemisphere"}));
 }
 
-TEST_F(MeasureBenchScene, FeaturesAreRequiredByTheSceneAndNotByWhatWasMeasuredLast) {
+TEST_F(MeasureBenchScene, RequiredFeaturesAreThoseOfTheScene) {
   for (const FeatureCost& cost : bench_features(request())) EXPECT_EQ(cost.required, cost.name == "gradient sky");
 }
 
@@ -86,13 +86,13 @@ TEST_F(MeasureBenchScene, MeasuresMotionBlur) {
   EXPECT_NE(bench_scene(r).scene_hash, moving);
 }
 
-TEST_F(MeasureBenchScene, TracingAloneIsMeasuredInOneThreadOnly) {
+TEST_F(MeasureBenchScene, TracingAloneIsMeasuredWithOneThreadOnly) {
   BenchRequest r = request();
   r.threads = 2;
   for (const BenchCase& c : bench_scene(r).cases) EXPECT_FALSE(c.tracing.has_value()) << c.name;
 }
 
-TEST_F(MeasureBenchScene, NamesTheInstructionSetThatRan) {
+TEST_F(MeasureBenchScene, ReportsTheInstructionSetUsed) {
   for (const std::string& isa : kernel::available_isas()) {
     BenchRequest r = request();
     r.isa = isa;
@@ -101,7 +101,7 @@ TEST_F(MeasureBenchScene, NamesTheInstructionSetThatRan) {
   EXPECT_EQ(bench_scene(request()).isa, kernel::available_isas().front());
 }
 
-TEST_F(MeasureBenchScene, StopsWhenAsked) {
+TEST_F(MeasureBenchScene, StopsWhenCancelled) {
   BenchRequest r = request();
   const std::atomic<bool> cancel{true};
   r.cancel = &cancel;
@@ -113,7 +113,7 @@ TEST_F(MeasureBenchScene, StopsWhenAsked) {
   }
 }
 
-TEST_F(MeasureBenchScene, TellsHowFarItIs) {
+TEST_F(MeasureBenchScene, ReportsProgress) {
   BenchRequest r = request();
   int last = 0, total = 0;
   r.on_progress = [&](int done, int of) {
@@ -143,8 +143,8 @@ Benchmark some_benchmark() {
 
 TEST(MeasureBenchReport, AsText) {
   EXPECT_EQ(benchmark_text(some_benchmark()),
-            "scene       0123, 0 spheres, 2.50 rays a path\n"
-            "measured    96 x 54 px, 1 thread, avx2, embree; 7 rounds, median (middle half)\n"
+            "scene       0123, 0 spheres, 2.50 rays per path\n"
+            "measured    96 x 54 px, 1 thread, avx2, embree; 7 rounds, median (interquartile range)\n"
             "\n"
             "                  M paths/s  ratio to embree exact    tracing alone\n"
             "embree exact              2  1 (1 .. 1)               70 %\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// That a study reports a bias where there is one, and hardly ever where there is none.
+// A study detects bias, and rarely reports one for unbiased choices.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,8 +21,8 @@ class Noise {
  public:
   explicit Noise(std::uint64_t seed) : engine_(seed) {}
 
-  /// A picture of light 1 plus a bias, and noise that is rare and large in places: a mean of `samples` numbers, each of
-  /// which is 0 but with a small probability that differs between pixels.
+  /// An image with mean 1, a bias in the first pixels, and noise with rare large values in every seventh pixel. Each
+  /// pixel is the mean of `samples` values that are non-zero with probability 0.02 there and 0.5 elsewhere.
   film::Picture picture(int samples, double bias, int biased_pixels) {
     film::Picture out;
     out.width = kWidth;
@@ -60,7 +60,7 @@ int biased_points(std::vector<Point> points) {
   return biased;
 }
 
-TEST(MeasureBias, RareLightRaisesNoAlarm) {
+TEST(MeasureBias, RareLightGivesNoFalsePositives) {
   Noise noise(3);
   constexpr int kStudies = 60, kChoices = 30;
   int alarms = 0;
@@ -73,8 +73,8 @@ TEST(MeasureBias, RareLightRaisesNoAlarm) {
   EXPECT_EQ(alarms, 0);
 }
 
-/// Known: display error is half of the relative error of light.
-TEST(MeasureBias, ABiasIsFoundAndMeasured) {
+/// Known: the display error is half the relative error of radiance.
+TEST(MeasureBias, ABiasIsDetectedAndMeasured) {
   Noise noise(4);
   const Pair reference = noise.pair(1 << 16);
   std::vector<Point> points = {point_of(noise.pair(256, 0.1), reference), point_of(noise.pair(256), reference),
@@ -83,14 +83,14 @@ TEST(MeasureBias, ABiasIsFoundAndMeasured) {
   EXPECT_NEAR(points[0].bias, 0.05, 0.005);
   EXPECT_EQ(points[1].bias, 0);
   EXPECT_EQ(points[1].error, points[1].noise);
-  EXPECT_NEAR(points[2].bias, 0.25 * std::sqrt(40.0 / (kWidth * kHeight)), 0.005) << "a part of the picture";
+  EXPECT_NEAR(points[2].bias, 0.25 * std::sqrt(40.0 / (kWidth * kHeight)), 0.005) << "bias in a part of the image";
   EXPECT_NEAR(points[2].error, std::hypot(points[2].noise, points[2].bias), 1e-12);
 }
 
-TEST(MeasureBias, TheNoiseOfTheReferenceIsThatOfItsMean) {
+TEST(MeasureBias, ReferenceNoiseIsThatOfTheMeanImage) {
   Noise noise(5);
   const Pair reference = noise.pair(1 << 14);
-  // A sample has a variance of 1 in 6 pixels of 7, and of 49 in the others; the mean of two pictures half of it.
+  // A sample has a variance of 1 in six of seven pixels and of 49 in the others; the mean of two images has half of it.
   EXPECT_NEAR(noise_of_mean(reference), std::sqrt((6 + 49) / 7.0 / (1 << 14) / 2) / 2, 4e-4);
   EXPECT_EQ(mean_of(reference).planes[1].values[5],
             (reference.first.planes[1].values[5] + reference.second.planes[1].values[5]) / 2);
@@ -117,8 +117,8 @@ scene::Scene twenty_spheres() {
   return s;
 }
 
-/// ORRERY_STUDIES gives the number of studies; their seeds differ.
-TEST(MeasureBias, AnUnbiasedSceneOfTwentySpheresRaisesNoAlarm) {
+/// ORRERY_STUDIES sets the number of studies, each with different seeds.
+TEST(MeasureBias, AnUnbiasedSceneGivesNoFalsePositives) {
   const char* wanted = std::getenv("ORRERY_STUDIES");
   const int studies = wanted != nullptr ? std::atoi(wanted) : 2;
   const scene::Scene scene = twenty_spheres();
@@ -155,8 +155,8 @@ TEST(MeasureBias, AnUnbiasedSceneOfTwentySpheresRaisesNoAlarm) {
     alarms += found > 0;
     biased += found;
   }
-  std::printf("%d of %d studies of %zu unbiased choices found a bias, in %d choices\n", alarms, studies, choices.size(),
-              biased);
+  std::printf("%d of %d studies of %zu unbiased choices reported a bias, in %d choices\n", alarms, studies,
+              choices.size(), biased);
   EXPECT_LE(alarms, studies * kFalseAlarm + 3 * std::sqrt(studies * kFalseAlarm));
 }
 

@@ -24,7 +24,7 @@ bool has_axis(const AxisPlan& plan, const std::string& axis) {
 
 AxisPlan plan_of(const scene::Scene& s) { return plan_axes(s, compile::compile(s), 0.01); }
 
-TEST(MeasureAxes, OnlyWhatTheSceneCanFeelIsMeasured) {
+TEST(MeasureAxes, OnlyAxesThatAffectTheSceneArePlanned) {
   const AxisPlan all = plan_of(test::everything());
   for (const char* axis : {"samples", "noise", "precision", "sampler", "roulette", "depth", "fresnel", "accelerator"})
     EXPECT_TRUE(has_axis(all, axis)) << axis;
@@ -39,7 +39,7 @@ TEST(MeasureAxes, OnlyWhatTheSceneCanFeelIsMeasured) {
   EXPECT_FALSE(has_axis(plan_of(plain), "depth"));
 }
 
-/// Budgets are counted in work: no test depends on how fast the machine is.
+/// Time is counted in paths, so that the tests do not depend on the speed of the machine.
 constexpr double kPathsPerSecond = 1e6;
 
 class MeasureRun : public ::testing::Test {
@@ -81,7 +81,7 @@ app::SceneInfo info_of(const std::filesystem::path& scene) {
   return app::scene_info(request);
 }
 
-TEST_F(MeasureRun, KeepsToItsBudget) {
+TEST_F(MeasureRun, StaysWithinItsBudget) {
   EXPECT_LT(study->seconds, study->budget_s);
   EXPECT_GT(study->seconds, 0.5 * study->budget_s);
 }
@@ -92,8 +92,8 @@ TEST_F(MeasureRun, EstimatesMemoryAsInfoDoes) {
   EXPECT_EQ(study->scene_hash, info.scene_hash);
 }
 
-TEST_F(MeasureRun, TellsBiasFromNoise) {
-  // One bounce is not enough for glass; sixteen times the samples is a quarter of the noise.
+TEST_F(MeasureRun, SeparatesBiasFromNoise) {
+  // One bounce is not enough for glass. Sixteen times the samples give a quarter of the noise.
   EXPECT_GT(point("depth", "at most 2").bias, 0.02);
   EXPECT_LT(point("depth", "at most 2").energy, -0.005);
   EXPECT_LT(point("precision", "fast").bias, 0.005);
@@ -101,16 +101,16 @@ TEST_F(MeasureRun, TellsBiasFromNoise) {
   EXPECT_LT(point("samples", "64 sobol").error, point("sampler", "64 independent").error);
 }
 
-TEST_F(MeasureRun, TheFrontIsWhatNothingBeats) {
+TEST_F(MeasureRun, TheFrontIsParetoOptimal) {
   for (const Point& p : study->points) {
     if (!p.on_front) continue;
     for (const Point& other : study->points)
       EXPECT_FALSE(other.axis != "accelerator" && other.seconds < p.seconds && other.error < p.error)
-          << p.name << " is beaten by " << other.name;
+          << p.name << " is dominated by " << other.name;
   }
 }
 
-TEST_F(MeasureRun, FilesAreAsLossyAsTheyAre) {
+TEST_F(MeasureRun, FileErrorsMatchTheCompression) {
   for (const FilePoint& f : study->files) {
     if (f.name == "float zip") {
       EXPECT_EQ(f.error, 0);
@@ -134,7 +134,7 @@ TEST_F(MeasureRun, RecommendsACommand) {
   EXPECT_GT(r.baseline_seconds, 0);
 }
 
-TEST_F(MeasureRun, JsonAndPageHoldIt) {
+TEST_F(MeasureRun, JsonAndPageHoldAllPoints) {
   const auto json = nlohmann::json::parse(study_json(*study));
   EXPECT_EQ(json["schema"], "orrery.study/1");
   EXPECT_EQ(json["points"].size(), study->points.size());
@@ -142,11 +142,12 @@ TEST_F(MeasureRun, JsonAndPageHoldIt) {
   const std::string page = study_html(*study);
   EXPECT_EQ(page.find("{{DATA}}"), std::string::npos);
   EXPECT_NE(page.find("data:image/jpeg;base64,"), std::string::npos);
-  EXPECT_EQ(page.find("https://"), std::string::npos) << "it must be readable without a network";
+  EXPECT_EQ(page.find("https://"), std::string::npos) << "the page must not need a network";
   const auto begin = page.find("type=\"application/json\">") + 24;
   const auto data = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
   EXPECT_EQ(data["points"].size(), study->points.size());
-  EXPECT_NE(study_text(*study).find("* nothing measured is both quicker and better"), std::string::npos);
+  EXPECT_NE(study_text(*study).find("* Pareto front: no other choice is both faster and more accurate"),
+            std::string::npos);
 }
 
 Study small_study(const std::filesystem::path& scene, double budget_s, std::vector<format::Override> overrides = {}) {
@@ -158,7 +159,7 @@ Study small_study(const std::filesystem::path& scene, double budget_s, std::vect
   return run_study(request);
 }
 
-TEST_F(MeasureRun, ASmallBudgetMeasuresWhatItAllowsAndNamesTheRest) {
+TEST_F(MeasureRun, ASmallBudgetSkipsAndListsChoices) {
   const Study small = small_study(*folder / "scene.toml", 0.6);
   ASSERT_GE(small.points.size(), 2u);
   EXPECT_EQ(small.points[0].name, "4 sobol");
@@ -166,14 +167,14 @@ TEST_F(MeasureRun, ASmallBudgetMeasuresWhatItAllowsAndNamesTheRest) {
   const auto is_left_out = [&](const std::string& text) {
     return std::find(small.left_out.begin(), small.left_out.end(), text) != small.left_out.end();
   };
-  EXPECT_TRUE(is_left_out("fresnel (exact; schlick; none): the budget does not allow it"));
-  EXPECT_TRUE(is_left_out("trying the recommendation at the scene's own size: the budget does not allow it"));
+  EXPECT_TRUE(is_left_out("fresnel (exact; schlick; none): exceeds the budget"));
+  EXPECT_TRUE(is_left_out("test of the recommendation at full resolution: exceeds the budget"));
   EXPECT_GT(small.recommendation.seconds, 0);
   EXPECT_NE(study_text(small).find("--noise 0.01"), std::string::npos);
   EXPECT_EQ(study_html(small).find("{{DATA}}"), std::string::npos);
 }
 
-TEST_F(MeasureRun, ABudgetThatAllowsNothingIsRefusedWithWhatIsNeeded) {
+TEST_F(MeasureRun, ATooSmallBudgetIsRefusedWithTheTimeNeeded) {
   try {
     small_study(*folder / "scene.toml", 0.05);
     FAIL();

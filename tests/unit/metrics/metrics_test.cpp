@@ -17,7 +17,7 @@
 namespace orrery::metrics {
 namespace {
 
-/// A picture of its own, and the view of it.
+/// An image that owns its values, with its view.
 struct Own {
   std::vector<float> values[3];
   ColorView view;
@@ -38,7 +38,7 @@ Own flat(float r, float g, float b) {
   return Own(24, 16, [=](int, int, int c) { return c == 0 ? r : c == 1 ? g : b; });
 }
 
-TEST(MetricsPixelErrors, AreWhatTheirNamesSay) {
+TEST(MetricsPixelErrors, MatchTheirDefinitions) {
   const Own a(2, 2, [](int x, int y, int c) { return c == 1 && x == 0 && y == 1 ? 1.0 : 0.5; });
   const Own b = flat(0, 0, 0);
   const Own half(2, 2, [](int, int, int) { return 0.5; });
@@ -48,7 +48,7 @@ TEST(MetricsPixelErrors, AreWhatTheirNamesSay) {
   EXPECT_DOUBLE_EQ(e.relative_mse, 0.25 / (0.25 + kRelativeFloor) / 12);
   EXPECT_DOUBLE_EQ(e.bias, 0.5 / 6);
   EXPECT_DOUBLE_EQ(e.psnr_db(), -10 * std::log10(0.25 / 12));
-  // One pixel of four; a third of a half's square, relative to twice its light of a half.
+  // One pixel of four. Its mean squared error is 0.25 / 3, relative to (2 * 0.5)^2.
   EXPECT_NEAR(e.display, std::sqrt(0.25 / 3 / (4 * 0.25) / 4), 1e-7);
   EXPECT_EQ(e.max, 0.5);
   EXPECT_EQ(e.max_channel, 1);
@@ -56,14 +56,14 @@ TEST(MetricsPixelErrors, AreWhatTheirNamesSay) {
   EXPECT_EQ(e.max_y, 1);
 }
 
-TEST(MetricsPixelErrors, RelativeErrorsAreOfTheReference) {
+TEST(MetricsPixelErrors, RelativeErrorsUseTheReference) {
   const Own one(1, 1, [](int, int, int) { return 1; }), ten(1, 1, [](int, int, int) { return 10; });
   EXPECT_DOUBLE_EQ(pixel_errors(one.view, ten.view).relative_mse, 81 / 100.01);
   EXPECT_DOUBLE_EQ(pixel_errors(ten.view, one.view).relative_mse, 81 / 1.01);
   EXPECT_DOUBLE_EQ(pixel_errors(ten.view, one.view).display, 4.5);
 }
 
-TEST(MetricsPixelErrors, WhatIsNoNumberIsLeftOutAndCounted) {
+TEST(MetricsPixelErrors, NonFiniteValuesAreSkippedAndCounted) {
   Own a(2, 1, [](int, int, int) { return 0.5; });
   const Own b(2, 1, [](int, int, int) { return 0.5; });
   a.values[0][0] = std::nanf("");
@@ -74,15 +74,15 @@ TEST(MetricsPixelErrors, WhatIsNoNumberIsLeftOutAndCounted) {
   EXPECT_EQ(e.display, 0);
 }
 
-TEST(MetricsConvolve, IsTheSumOverTheKernelWithTheEdgeGoingOn) {
+TEST(MetricsConvolve, SumsOverTheKernelAndExtendsTheEdge) {
   const Map spot{5, 4, {0, 0, 0, 0, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3}};
   const Map out = convolved(spot, {0.25f, 0.5f, 0.25f}, {0, 0.5f, 0.5f});
-  EXPECT_EQ(out.values[2], 2.0f);  // 8 from below, by the last tap: 0.5 * 0.5 * 8
+  EXPECT_EQ(out.values[2], 2.0f);  // the 8 below: 0.5 * 0.5 * 8
   EXPECT_EQ(out.values[1], 1.0f);
-  EXPECT_EQ(out.values[19], 2.25f);  // 0.5 + 0.25 along the row, all of it down the column
+  EXPECT_EQ(out.values[19], 2.25f);  // 0.5 + 0.25 along the row, 0.5 + 0.5 along the column
 }
 
-TEST(MetricsSsim, OneForTheSameLessForNoiseAndKnownForFlat) {
+TEST(MetricsSsim, IsOneForEqualImagesAndMatchesTheFormulaForFlatOnes) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> u(0, 1);
   const Own noise(24, 16, [&](int, int, int) { return u(random); }),
@@ -90,11 +90,11 @@ TEST(MetricsSsim, OneForTheSameLessForNoiseAndKnownForFlat) {
   EXPECT_DOUBLE_EQ(ssim(noise.view, noise.view), 1);
   EXPECT_LT(ssim(noise.view, other.view), 0.3);
   const Own a = flat(0.5f, 0.5f, 0.5f), b = flat(0.25f, 0.25f, 0.25f);
-  const double c1 = 1e-4;  // without structure only the means are left
+  const double c1 = 1e-4;  // without structure only the term of the means remains
   EXPECT_NEAR(ssim(a.view, b.view), (2 * 0.5 * 0.25 + c1) / (0.25 + 0.0625 + c1), 1e-4);
 }
 
-/// FLIP for tests: whole two-dimensional kernels in double, straight from the paper.
+/// Reference implementation of FLIP: two-dimensional kernels in double, as in the paper.
 class SlowFlip {
  public:
   SlowFlip(const ColorView& a, const ColorView& b) : w_(a.width), h_(a.height), a_(look(a)), b_(look(b)) {}
@@ -207,7 +207,7 @@ class SlowFlip {
   }
 };
 
-TEST(MetricsFlip, IsThePapersFormula) {
+TEST(MetricsFlip, MatchesThePapersFormula) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> u(0, 1);
   const Own a(20, 14,
@@ -221,27 +221,27 @@ TEST(MetricsFlip, IsThePapersFormula) {
       EXPECT_NEAR(static_cast<double>(fast.values[static_cast<std::size_t>(y * 20 + x)]), slow.at(x, y), 2e-4);
 }
 
-TEST(MetricsFlip, BlackToWhiteIsWhatThePaperGives) {
-  // By hand: 100 of lightness against 203.3 between Hunt's green and blue, both to the power of 0.7.
+TEST(MetricsFlip, MatchesThePaperForBlackAndWhite) {
+  // By hand: a lightness difference of 100 against the distance 203.3 of Hunt-adjusted green and blue, both to the 0.7.
   EXPECT_NEAR(flip(flat(0, 0, 0).view, flat(1, 1, 1).view).mean(), 0.9674, 5e-4);
   EXPECT_EQ(flip(flat(0.3f, 0.4f, 0.5f).view, flat(0.3f, 0.4f, 0.5f).view).mean(), 0);
 }
 
-TEST(MetricsHdrFlip, TakesTheExposureThatShowsMost) {
-  // The lower half is a hundredth as bright: at the exposure that shows the sun alone it is black.
+TEST(MetricsHdrFlip, TakesTheMaximumOverTheExposures) {
+  // The lower half is a hundredth as bright as the upper: at the exposure for the upper half it is black.
   const auto scene = [](double dark) { return Own(24, 16, [dark](int, int y, int) { return y < 8 ? 50.0 : dark; }); };
   const Own a = scene(0.5), b = scene(0.4), c = scene(0.5);
   EXPECT_EQ(hdr_flip(a.view, c.view).mean(), 0);
   const Map map = hdr_flip(b.view, a.view);
   EXPECT_GT(map.values[12 * 24 + 12], 0.04f);
   EXPECT_LT(map.values[1 * 24 + 12], 0.02f);
-  // Light has no unit.
+  // The metric is independent of the scale of radiance.
   const Own a1000(24, 16, [](int, int y, int) { return 1000 * (y < 8 ? 50.0 : 0.5); });
   const Own b1000(24, 16, [](int, int y, int) { return 1000 * (y < 8 ? 50.0 : 0.4); });
   EXPECT_NEAR(hdr_flip(b1000.view, a1000.view).mean(), map.mean(), 1e-5);
 }
 
-TEST(MetricsHdrFlip, ComputesExposuresByTheCallersThreadsInAnyOrder) {
+TEST(MetricsHdrFlip, RunsExposuresWithForEachInAnyOrder) {
   const Own a(24, 16, [](int x, int y, int c) { return (x + 1) * (y + 1) * 0.1 + c; });
   const Own b(24, 16, [](int x, int y, int c) { return (x + 2) * (y + 1) * 0.1 + c; });
   std::size_t calls = 0;
@@ -252,24 +252,24 @@ TEST(MetricsHdrFlip, ComputesExposuresByTheCallersThreadsInAnyOrder) {
   EXPECT_GT(calls, 1u);
 }
 
-TEST(MetricsPixelErrors, PixelsThatAreLeftOutDoNotCount) {
+TEST(MetricsPixelErrors, LeftOutPixelsDoNotCount) {
   const Own a(2, 1, [](int x, int, int) { return x == 0 ? 1e30 : 3.0; });
   const Own b(2, 1, [](int, int, int) { return 2.0; });
   const PixelErrors e = pixel_errors(a.view, b.view, {true, false});
   EXPECT_EQ(e.values, 3u);
   EXPECT_EQ(e.rmse, 1);
   EXPECT_EQ(e.max, 1);
-  EXPECT_EQ(e.display, 0.25) << "half of the relative error, of the pixel that counts";
+  EXPECT_EQ(e.display, 0.25) << "half of the relative error of the second pixel";
   EXPECT_EQ(display_error_map(a.view, b.view, {true, false}).values[0], 0);
 }
 
-TEST(MetricsZTest, QuantilesAreThoseOfTables) {
+TEST(MetricsZTest, QuantilesMatchTables) {
   EXPECT_NEAR(two_sided_quantile(0.05), 1.959964, 1e-6);
   EXPECT_NEAR(two_sided_quantile(0.01), 2.575829, 1e-6);
   EXPECT_NEAR(two_sided_quantile(1e-6), 4.891638, 1e-6);
 }
 
-TEST(MetricsZTest, FalseAlarmsAreAsRareAsPromisedAndBiasIsFound) {
+TEST(MetricsZTest, FalsePositivesAreRareAndBiasIsDetected) {
   std::mt19937 random(11);
   std::normal_distribution<float> normal(0, 0.1f);
   const Own variance(48, 48, [](int, int, int) { return 0.01; }), zero(48, 48, [](int, int, int) { return 0.5; });
@@ -278,7 +278,7 @@ TEST(MetricsZTest, FalseAlarmsAreAsRareAsPromisedAndBiasIsFound) {
     const Own noisy(48, 48, [&](int, int, int) { return 0.5f + normal(random); });
     alarms += z_test(noisy.view, variance.view, zero.view, {48, 48, {}})->differ();
   }
-  EXPECT_LE(alarms, 15);  // one in a hundred: 5 of 500, and 15 once in ten thousand times
+  EXPECT_LE(alarms, 15);  // expected: 5 of 500; more than 15 with a probability of about 1e-4
   const Own biased(48, 48, [&](int x, int y, int c) {
     return 0.5f + normal(random) + (c == 2 && x >= 16 && x < 32 && y >= 32 ? 0.05f : 0.0f);
   });
