@@ -110,21 +110,7 @@ Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& co
   film::LayerRequest& r = out.request;
   const std::vector<std::string> names = scene::requested_layers(scene);
   const auto asked = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
-  r.z = asked("Z");
-  r.depth = asked("depth");
-  r.normal = asked("N");
-  r.position = asked("P");
-  r.albedo = asked("albedo");
-  r.diffuse = asked("diffuse");
-  r.specular = asked("specular");
-  r.transmission = asked("transmission");
-  r.background = asked("background");
-  r.variance = asked("variance");
-  r.samples = asked("samples");
-  r.object_id = asked("object_id");
-  r.material_id = asked("material_id");
-  r.guide_albedo = asked("denoise.albedo");
-  r.guide_normal = asked("denoise.normal");
+  for (const film::LayerType& layer : film::kLayerTypes) r.*layer.requested = asked(layer.name);
   r.coverage = scene.background.alpha == 0;
   if (asked("CryptoObject")) add_object_matte(scene, out);
   if (r.material_id || asked("CryptoMaterial")) {
