@@ -28,15 +28,15 @@ figure() {
 }
 
 figure "hit or miss, hit point and distance against 113 and 320 bits" numeric/numeric 'Extremes.HitOrMissAndHitPointError'
-figure "the book's formula must fail the same test" numeric/numeric 'Extremes.TheBooksFormulaFailsThem'
-figure "grey furnace, radii 1e-12 .. 1e12: no self-intersection" numeric/numeric 'ExtremeScenes.AGreySphereNeverHitsItself'
-figure "contacts at gaps of 1e-13 radii or more" numeric/numeric 'Extremes.NoContactIsLost'
-figure "white furnaces" numeric/numeric 'ExtremeScenes.*-*AGreySphereNeverHitsItself'
-figure "Embree against the list: ids and distances" unit_accel 'AccelAccel.EmbreeFindsExactlyWhatTheListFinds'
-figure "scenes scaled by 2^-60 .. 2^48: the same bits" unit_render 'RenderRender.TheSizeOfTheWorldChangesNoBit'
-figure "threads, tiles, shards, lanes, traversals: the same bits" unit_render 'RenderRender.*SameBits:RenderPasses.*SameBits*:RenderTraversals.AllGiveTheSameBits'
-figure "a shell of negative radius is a sphere of the inverse index" unit_render 'RenderRender.AShellOfNegativeRadius*'
-figure "an albedo wrong by 0.1 % is detected" statistical/statistical 'StatisticalClosedForm.AnAlbedoWrong*'
+figure "the book's formula must fail the same test" numeric/numeric 'Extremes.BookFormulaFails'
+figure "grey furnace, radii 1e-12 .. 1e12: no self-intersection" numeric/numeric 'ExtremeScenes.GreySphereNeverHitsItself'
+figure "contacts at gaps of 1e-13 radii or more" numeric/numeric 'Extremes.RaysAcrossNarrowGapsHit'
+figure "white furnaces" numeric/numeric 'ExtremeScenes.*-*GreySphereNeverHitsItself'
+figure "Embree against the list: ids and distances" unit_accel 'AccelAccel.EmbreeAndListFindTheSameHits'
+figure "scenes scaled by 2^-60 .. 2^48: the same bits" unit_render 'RenderRender.SceneScaleChangesNoBits'
+figure "threads, tiles, shards, lanes, traversals: the same bits" unit_render 'RenderRender.*SameBits:RenderProgressiveSampling.*SameBits*:RenderTraversals.AllGiveTheSameBits'
+figure "a shell of negative radius is a sphere of the inverse index" unit_render 'RenderRender.NegativeRadius*'
+figure "an albedo wrong by 0.1 % is detected" statistical/statistical 'StatisticalClosedForm.AlbedoError*'
 figure "samplers against their distributions" statistical/statistical 'StatisticalSamplers.*'
 echo
 "$build/src/orrery" bench "$root/scenes/book/final.toml" --quiet

@@ -22,10 +22,12 @@ if ! git rev-parse --is-inside-work-tree >/dev/null 2>&1; then echo "lint.sh: sk
 if [ "${1:-}" = --fix ]; then "$format" -i "${sources[@]}"; fi
 "$format" --dry-run -Werror "${sources[@]}" || status=1
 shellcheck -S warning -x -e SC1091 "${scripts[@]}" || status=1
-for file in "${sources[@]}" "${scripts[@]}" $(git ls-files '*.py' '*.cmake' '*CMakeLists.txt'); do
+for file in "${sources[@]}" "${scripts[@]}" $(git ls-files '*.py' '*.pl' '*.cmake' '*CMakeLists.txt'); do
   if ! head -n 3 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0'; then
     echo "$file: no SPDX-License-Identifier in the first three lines" >&2
     status=1
   fi
 done
+# Words and phrases that the project does not use.
+tools/terms.pl || status=1
 exit "$status"

@@ -20,7 +20,7 @@ programs=(unit_film unit_metrics unit_compile unit_kernel unit_math unit_accel u
 export ORRERY_NUMERIC_RAYS=${ORRERY_NUMERIC_RAYS:-100000} ORRERY_FURNACE_RAYS=${ORRERY_FURNACE_RAYS:-1e6}
 export ORRERY_STATISTICAL_SAMPLES=${ORRERY_STATISTICAL_SAMPLES:-4e6} ORRERY_ACCEL_RAYS=${ORRERY_ACCEL_RAYS:-100000}
 hung_after_s=600  # a mutant may loop forever
-judges=-StatisticalSamplers.AShiftOfAThousandthIsFound  # needs all samples, and tests the tests, not the program
+judges=-StatisticalSamplers.ShiftOfAThousandthIsDetected  # needs all samples, and tests the tests, not the program
 
 work=""
 list=0

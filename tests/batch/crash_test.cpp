@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is left of a render that is killed, runs out of disk space, or loses its folder. ORRERY_CRASHES is the number of
-// interruptions and of file sizes that are tried; all are chosen by a fixed seed, and none by the clock.
+// What remains after a render is killed, runs out of disk space, or loses its output folder. ORRERY_CRASHES sets the
+// number of interruptions and of file size limits. A fixed seed selects them; nothing depends on the clock.
 #include <cstdlib>
 #include <random>
 #include <thread>
@@ -20,7 +20,7 @@ int tries() {
 
 class BatchCrash : public ProgramTest {
  protected:
-  /// The picture when nothing goes wrong, and another one that may be there before.
+  /// Renders the expected image and an older, different one.
   void SetUp() override {
     write("scene.toml", R"(
 [image]
@@ -55,7 +55,7 @@ material = "grey"
 
   std::string picture() const { return text_of(folder_ / "a.exr"); }
   void put_old() const { support::write_bytes(folder_ / "a.exr", old_); }
-  /// Temporary files of processes that could not remove them.
+  /// Removes temporary files of killed processes.
   void remove_leftovers() const {
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
       if (entry.path().filename().string().rfind(".a.", 0) == 0) std::filesystem::remove(entry.path());
@@ -67,16 +67,16 @@ material = "grey"
 const std::vector<const char*> kRender = {"render", "scene.toml", "-o",     "a.exr",    "--reproducible", "-t",
                                           "1",      "--progress", "arnold", "--resume", "--checkpoint",   "0.01s"};
 
-TEST_F(BatchCrash, KilledAtAnyMomentTheOldPictureOrTheNewOneIsThere) {
+TEST_F(BatchCrash, KillAtAnyMomentLeavesTheOldOrTheNewImage) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> percent(0, 80), changes(1, 24);
   int interrupted = 0;
   for (int i = 0; i < tries(); ++i) {
     PacedProgram render = start(kRender);
     switch (i % 3) {
-      case 0: render.run_to(percent(random)); break;       // while it samples: it cannot have ended
-      case 1: render.run_changes(changes(random)); break;  // while it writes a checkpoint, most likely
-      default:                                             // while it writes the picture
+      case 0: render.run_to(percent(random)); break;       // during sampling: it cannot have finished
+      case 1: render.run_changes(changes(random)); break;  // most likely while writing a checkpoint
+      default:                                             // while writing the image
         render.run_to(100);
         render.run_changes(changes(random));
     }
@@ -84,21 +84,21 @@ TEST_F(BatchCrash, KilledAtAnyMomentTheOldPictureOrTheNewOneIsThere) {
     const int status = render.wait();
     ASSERT_TRUE(status == 0 || status == 128 + SIGKILL) << status << "\n" << render.text();
     const std::string found = picture();
-    ASSERT_TRUE(found == old_ || found == right_) << "killed at try " << i;
+    ASSERT_TRUE(found == old_ || found == right_) << "killed in try " << i;
     interrupted += status != 0;
     if (found == right_) put_old();
-    // From the beginning before those of the first kind, and from whatever checkpoint there is before the others.
+    // The next try of the first kind starts anew; the others resume from the checkpoint, if any.
     if (i % 3 == 2) std::filesystem::remove(folder_ / "a.checkpoint.exr");
     remove_leftovers();
   }
   EXPECT_GE(interrupted, tries() / 3);
-  // Whatever the last one left, the next one ends as if nothing had happened.
+  // Whatever the last try left behind, the next render completes normally.
   ASSERT_EQ(start(kRender).wait(), 0);
   EXPECT_EQ(picture(), right_);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
-TEST_F(BatchCrash, AFullDiskAtAnyByteIsToldAndHarmless) {
+TEST_F(BatchCrash, FullDiskAtAnyByteIsReportedAndKeepsTheOldImage) {
   const std::vector<const char*> words = {"render",         "scene.toml", "-o",        "a.exr",
                                           "--reproducible", "-q",         "--samples", "1"};
   ASSERT_EQ(start(words).wait(), 0);
@@ -110,12 +110,12 @@ TEST_F(BatchCrash, AFullDiskAtAnyByteIsToldAndHarmless) {
     const std::size_t bytes = i == 0 ? 0 : i == 1 ? whole - 1 : size(random);
     ASSERT_EQ(start(words, bytes).wait(), 74) << bytes;
     ASSERT_EQ(picture(), old_) << bytes;
-    ASSERT_EQ(file_count(), 1) << "something was left behind at " << bytes;
+    ASSERT_EQ(file_count(), 1) << "files left behind with a limit of " << bytes;
   }
 }
 
-TEST_F(BatchCrash, ACheckpointThatFindsNoRoomIsNoEndOfTheRender) {
-  // The picture fits, its sums do not.
+TEST_F(BatchCrash, FailedCheckpointDoesNotStopTheRender) {
+  // The image fits into the limit, the checkpoint does not.
   PacedProgram render =
       start({"render", "scene.toml", "-o", "a.exr", "--reproducible", "-t", "1", "--progress", "arnold"},
             right_.size() + 1000);
@@ -126,11 +126,11 @@ TEST_F(BatchCrash, ACheckpointThatFindsNoRoomIsNoEndOfTheRender) {
   EXPECT_EQ(picture(), right_);
 }
 
-TEST_F(BatchCrash, ARealFullDiskIsToldBeforeAnythingIsRendered) {
+TEST_F(BatchCrash, FullFileSystemIsReportedBeforeRendering) {
   const std::string small = (folder_ / "small").string();
   std::filesystem::create_directory(small);
   if (std::system(("mount -t tmpfs -o size=64k tmpfs '" + small + "' 2>/dev/null").c_str()) != 0)
-    GTEST_SKIP() << "no right to mount a small disk";
+    GTEST_SKIP() << "no permission to mount a small file system";
   const Outcome r = run("render scene.toml -o small/a.exr --samples 100000000");
   EXPECT_EQ(r.status, 73);
   EXPECT_NE(r.err.find("has room for"), std::string::npos) << r.err;
@@ -138,18 +138,18 @@ TEST_F(BatchCrash, ARealFullDiskIsToldBeforeAnythingIsRendered) {
   EXPECT_EQ(std::system(("umount '" + small + "'").c_str()), 0);
 }
 
-TEST_F(BatchCrash, AReadOnlyDiskIsTold) {
+TEST_F(BatchCrash, ReadOnlyFileSystemIsReported) {
   const std::string small = (folder_ / "small").string();
   std::filesystem::create_directory(small);
   if (std::system(("mount -t tmpfs -o ro tmpfs '" + small + "' 2>/dev/null").c_str()) != 0)
-    GTEST_SKIP() << "no right to mount a disk";
+    GTEST_SKIP() << "no permission to mount a file system";
   const Outcome r = run("render scene.toml -o small/a.exr --samples 100000000");
   EXPECT_EQ(r.status, 73);
   EXPECT_NE(r.err.find("Read-only file system"), std::string::npos) << r.err;
   EXPECT_EQ(std::system(("umount '" + small + "'").c_str()), 0);
 }
 
-TEST_F(BatchCrash, AFolderThatVanishesIsTold) {
+TEST_F(BatchCrash, RemovedOutputFolderIsReported) {
   std::filesystem::create_directory(folder_ / "out");
   PacedProgram render = start({"render", "scene.toml", "-o", "out/a.exr", "-t", "1", "--progress", "arnold"});
   ASSERT_TRUE(render.run_to(50));
@@ -158,13 +158,13 @@ TEST_F(BatchCrash, AFolderThatVanishesIsTold) {
   EXPECT_TRUE(status == 73 || status == 74) << status;
 }
 
-TEST_F(BatchCrash, TwoProcessesOnOnePictureMakeOneWholePicture) {
+TEST_F(BatchCrash, TwoProcessesWithOneOutputLeaveACompleteImage) {
   for (const int percent : {0, 50, 90}) {
     put_old();
     PacedProgram first = start(kRender);
     ASSERT_TRUE(first.run_to(percent));
     PacedProgram second = start(kRender);
-    // Both write from here on, each as the machine lets it.
+    // From here on both write, in an order that the scheduler decides.
     std::thread other([&] { EXPECT_EQ(second.wait(), 0) << second.text(); });
     EXPECT_EQ(first.wait(), 0) << first.text();
     other.join();
@@ -172,20 +172,20 @@ TEST_F(BatchCrash, TwoProcessesOnOnePictureMakeOneWholePicture) {
   }
 }
 
-TEST_F(BatchCrash, InterruptedThirtyTimesItIsTheSameBytes) {
+TEST_F(BatchCrash, ThirtyInterruptionsGiveTheSameBytes) {
   ASSERT_EQ(run("render scene.toml -o whole.exr --samples 1000 --reproducible -q").status, 0);
   const std::vector<const char*> words = {"render",         "scene.toml", "-o",        "a.exr",
                                           "--reproducible", "--resume",   "--samples", "1000",
                                           "--progress",     "arnold",     "-t",        "1"};
-  // A percent is two squares and a half. A process stops at the third percent after its first line at the latest, so
-  // that every one of the thirty finds something to interrupt.
+  // One percent is two and a half tiles. A process pauses at most three percent after its first line, so there is work
+  // left to interrupt all thirty times.
   for (int i = 0; i < 30; ++i) {
     PacedProgram render = start(words);
     ASSERT_TRUE(render.run_to(3 * i)) << "interruption " << i << "\n" << render.text();
     render.send(i % 2 == 0 ? SIGTERM : SIGINT);
     ASSERT_EQ(render.wait(), 75) << "interruption " << i << "\n" << render.text();
   }
-  // The last one with as many threads as there are.
+  // The last run uses all threads.
   ASSERT_EQ(run("render scene.toml -o a.exr --samples 1000 --reproducible --resume -q").status, 0);
   EXPECT_EQ(picture(), text_of(folder_ / "whole.exr"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranges of frames, several scenes, and what is there already.
+// Frame ranges, several scenes, and existing output files.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -7,7 +7,7 @@
 namespace orrery::test {
 namespace {
 
-/// The good scene, whose ball flies from left to right.
+/// Moves the sphere of the good scene from left to right.
 constexpr const char* kFlight = R"(
 [camera]
 look_from = [0, 0, 1]
@@ -32,7 +32,7 @@ class BatchFrames : public ProgramTest {
   bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
 };
 
-TEST_F(BatchFrames, ARangeIsAPictureForEachFrame) {
+TEST_F(BatchFrames, RangeWritesOneImagePerFrame) {
   const Outcome r = run("render shot.toml -o s.####.exr -o s.%02d.png --frames 1-5:2 --stats s.##.json -q");
   ASSERT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(r.err, "");
@@ -40,14 +40,14 @@ TEST_F(BatchFrames, ARangeIsAPictureForEachFrame) {
     EXPECT_TRUE(exists(name)) << name;
   EXPECT_EQ(file_count(), 9);
   EXPECT_NE(text_of(folder_ / "s.01.png"), text_of(folder_ / "s.05.png"));
-  // A frame is what it is, whoever renders it.
+  // A frame has the same pixels whichever command renders it.
   ASSERT_EQ(run("render shot.toml -o one.png --frames 5 -q").status, 0);
   ASSERT_EQ(run("render shot.toml -o set.png -q --set 'sphere[0].center=[1,0,-1]' --set 'key=[]'").status, 0);
   EXPECT_EQ(run("compare one.png s.05.png -q --fail-above max=0").status, 0);
   EXPECT_EQ(run("compare one.png set.png -q --fail-above max=0").status, 0);
 }
 
-TEST_F(BatchFrames, ARangeWithoutAPlaceForItsNumbersIsRefused) {
+TEST_F(BatchFrames, RangeWithoutFramePlaceholderIsRejected) {
   const Outcome range = run("render shot.toml -o s.png --frames 1-5");
   EXPECT_EQ(range.status, 2);
   EXPECT_NE(range.err.find("s.png is one name for 5 frames"), std::string::npos) << range.err;
@@ -60,17 +60,17 @@ TEST_F(BatchFrames, ARangeWithoutAPlaceForItsNumbersIsRefused) {
     EXPECT_EQ(run(std::string("render shot.toml -o s.##.png --frames '") + text + "'").status, 2) << text;
 }
 
-TEST_F(BatchFrames, WhatIsThereWholeAndRightIsLeftOut) {
+TEST_F(BatchFrames, SkipExistingSkipsCompleteMatchingFiles) {
   const std::string command =
       "render shot.toml -o s.##.exr -o s.##.png -o s.##.jpg -o s.##.tif --frames 1-3 --skip-existing";
   ASSERT_EQ(run(command + " -q").status, 0);
   ASSERT_EQ(run(command + " -q --stats s.##.json").status, 0);
-  EXPECT_FALSE(exists("s.01.json"));  // nothing was done, and what an earlier run did is not to be lost
+  EXPECT_FALSE(exists("s.01.json"));  // nothing was rendered; an earlier run's statistics must survive
   const std::string first = text_of(folder_ / "s.01.exr"), second = text_of(folder_ / "s.02.exr");
   EXPECT_NE(run(command).err.find("0 of 3 rendered, 3 were there"), std::string::npos);
   EXPECT_EQ(text_of(folder_ / "s.01.exr"), first);
 
-  // Cut off, of another picture, or missing: rendered again. The others stay.
+  // Truncated, mismatched and missing files are rendered again. The others stay.
   write("s.02.exr", second.substr(0, second.size() / 2));
   EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 were there"), std::string::npos);
   write("s.02.png", text_of(folder_ / "s.03.png"));
@@ -79,7 +79,7 @@ TEST_F(BatchFrames, WhatIsThereWholeAndRightIsLeftOut) {
   EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 were there"), std::string::npos);
   EXPECT_EQ(text_of(folder_ / "s.01.exr"), first);
 
-  // Other settings are another picture, also those that no pixel of an EXR depends on.
+  // Other settings give another image, even those that no EXR pixel depends on.
   for (const char* other :
        {"--samples 5", "--type float", "--exposure 1", "--layers Z", "--bits 16", "--compression zip"}) {
     ASSERT_EQ(run(command + " -q").status, 0);
@@ -89,7 +89,7 @@ TEST_F(BatchFrames, WhatIsThereWholeAndRightIsLeftOut) {
   }
 }
 
-TEST_F(BatchFrames, AFailureIsToldAndTheOthersGoOn) {
+TEST_F(BatchFrames, FailedFrameIsReportedAndTheOthersRender) {
   for (const int frame : {1, 3}) write("cloud." + std::to_string(frame) + ".ply", kPly);
   write("cloud.toml", animated() + "[[points]]\nfile = \"cloud.%d.ply\"\nmaterial = \"grey\"\n");
   const Outcome r = run("render cloud.toml -o c.##.png --frames 1-3");
@@ -105,7 +105,7 @@ TEST_F(BatchFrames, AFailureIsToldAndTheOthersGoOn) {
   EXPECT_FALSE(exists("c.03.png"));
 }
 
-TEST_F(BatchFrames, SeveralScenesAreNamedByTheirFiles) {
+TEST_F(BatchFrames, ScenePlaceholderNamesSeveralScenes) {
   const Outcome r = run("render good.toml shot.toml -o {scene}.##.png --frames 1-2 -q");
   ASSERT_EQ(r.status, 0) << r.err;
   for (const char* name : {"good.01.png", "good.02.png", "shot.01.png", "shot.02.png"}) EXPECT_TRUE(exists(name));
@@ -119,7 +119,7 @@ TEST_F(BatchFrames, SeveralScenesAreNamedByTheirFiles) {
       << same.err;
 }
 
-TEST_F(BatchFrames, TheLogHasTimesAndWhatNobodyWantedToRead) {
+TEST_F(BatchFrames, LogHasTimestampsAndMessagesHiddenByQuiet) {
   ASSERT_EQ(run("render shot.toml -o s.##.png --frames 1-2 --log log -q").status, 0);
   ASSERT_EQ(run("render nothing.toml -o s.png --log log").status, 66);
   const std::string log = text_of(folder_ / "log");
@@ -130,7 +130,7 @@ TEST_F(BatchFrames, TheLogHasTimesAndWhatNobodyWantedToRead) {
   EXPECT_EQ(log[10], 'T');
 }
 
-TEST_F(BatchFrames, TheTurntableComesRound) {
+TEST_F(BatchFrames, TurntableIsPeriodic) {
   const std::string turn = " --set animation.turntable=4 --samples 4 -q ";
   ASSERT_EQ(run("render shot.toml -o t.##.png --frames 1,3,5" + turn + "--set 'key=[]'").status, 0);
   EXPECT_EQ(run("compare t.01.png t.05.png -q --fail-above max=0").status, 0);

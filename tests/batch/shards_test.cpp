@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture by many processes: shards, merge, and what must not be merged.
+// One image rendered by many processes: shards, merging, and shards that must not be merged.
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace orrery::test {
 namespace {
 
-class BatchParts : public ProgramTest {
+class BatchShards : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
@@ -23,7 +23,7 @@ class BatchParts : public ProgramTest {
     const Outcome r = run("render good.toml -o " + name + settings_ + which);
     ASSERT_EQ(r.status, 0) << r.err;
   }
-  /// Merges in an order of its own.
+  /// Merges the shards in random order.
   Outcome merge(std::vector<std::string> parts, const std::string& more = "") {
     std::shuffle(parts.begin(), parts.end(), random_);
     std::string words;
@@ -32,7 +32,8 @@ class BatchParts : public ProgramTest {
   }
   void expect_refused(const Outcome& r, int status, const std::vector<std::string>& words) {
     EXPECT_EQ(r.status, status) << r.err;
-    for (const std::string& word : words) EXPECT_NE(r.err.find(word), std::string::npos) << r.err << "\nlacks " << word;
+    for (const std::string& word : words)
+      EXPECT_NE(r.err.find(word), std::string::npos) << r.err << "\nmissing: " << word;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "merged.exr"));
   }
 
@@ -43,7 +44,7 @@ class BatchParts : public ProgramTest {
   std::minstd_rand random_{3};
 };
 
-TEST_F(BatchParts, AnyCuttingMergesToTheSameBytes) {
+TEST_F(BatchShards, AnySplitMergesToTheSameBytes) {
   for (const int count : {1, 2, 3, 17}) {
     std::vector<std::string> by_samples, by_tiles;
     for (int i = 0; i < count; ++i) {
@@ -64,7 +65,7 @@ TEST_F(BatchParts, AnyCuttingMergesToTheSameBytes) {
   }
 }
 
-TEST_F(BatchParts, APictureWithoutLayersIsMadeOfPartsWithThem) {
+TEST_F(BatchShards, ShardsWithLayersMergeToAnImageWithoutLayers) {
   ASSERT_EQ(run("develop whole.exr -o whole.png -q").status, 0);
   render("a.exr", "--shard 1/2");
   render("b.exr", "--shard 2/2");
@@ -73,7 +74,7 @@ TEST_F(BatchParts, APictureWithoutLayersIsMadeOfPartsWithThem) {
   EXPECT_EQ(run("compare merged.png whole.png -q --fail-above max=0.01").status, 0);  // whole.exr is half
 }
 
-TEST_F(BatchParts, BothWaysOfCuttingGoTogether) {
+TEST_F(BatchShards, SampleShardsAndPixelShardsCombine) {
   render("a.exr", "--samples 0:10 --shard 1/2");
   render("b.exr", "--samples 0:10 --shard 2/2");
   render("c.exr", "--samples 10:35");
@@ -81,7 +82,7 @@ TEST_F(BatchParts, BothWaysOfCuttingGoTogether) {
   EXPECT_EQ(text_of(folder_ / "merged.exr"), whole_);
 }
 
-TEST_F(BatchParts, WhatDoesNotBelongTogetherIsNamed) {
+TEST_F(BatchShards, MismatchedShardsAreNamed) {
   render("a.exr", "--samples 0:10");
   render("b.exr", "--samples 10:35");
   render("b1.exr", "--samples 9:35");
@@ -108,7 +109,7 @@ TEST_F(BatchParts, WhatDoesNotBelongTogetherIsNamed) {
   EXPECT_EQ(text_of(folder_ / "b.exr"), bytes);
 }
 
-TEST_F(BatchParts, WhatIsMissingMayBeAllowed) {
+TEST_F(BatchShards, MissingSamplesCanBeAllowed) {
   render("a.exr", "--samples 0:10");
   render("c.exr", "--samples 20:35");
   const Outcome r = merge({"a.exr", "c.exr"}, "--allow-missing -o merged.png --stats m.json");
@@ -116,11 +117,11 @@ TEST_F(BatchParts, WhatIsMissingMayBeAllowed) {
   EXPECT_NE(r.err.find("warning: samples 10:20 of all pixels are missing"), std::string::npos) << r.err;
   EXPECT_NE(text_of(folder_ / "merged.exr").find("orrery/missing"), std::string::npos);
   EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "m.json"))["samples"], 25);
-  // It is as bright as the whole: 25 samples are a mean of 25.
+  // It is as bright as the complete image: the mean is over 25 samples.
   EXPECT_EQ(run("compare merged.exr whole.exr -q --fail-above bias=0.01").status, 0);
 }
 
-TEST_F(BatchParts, ADamagedPartMayBeMissing) {
+TEST_F(BatchShards, DamagedShardsCanBeTreatedAsMissing) {
   render("a.exr", "--samples 0:10");
   render("b.exr", "--samples 10:35");
   const std::string bytes = text_of(folder_ / "b.exr");
@@ -140,9 +141,9 @@ TEST_F(BatchParts, ADamagedPartMayBeMissing) {
   }
 }
 
-TEST_F(BatchParts, AnUnfinishedPartIsNamed) {
+TEST_F(BatchShards, UnfinishedShardIsNamed) {
   render("b.exr", "--samples 10:35");
-  // A render that is stopped at once leaves a checkpoint of its part.
+  // A render that is stopped at once leaves a checkpoint of its shard.
   {
     PacedProgram part(folder_, {"render", "good.toml", "-o", "a.exr", "--set", "render.samples=3000000", "--samples",
                                 "0:2999965", "--width", "70", "--height", "45", "--progress", "arnold", "-t", "1"});
@@ -160,7 +161,7 @@ TEST_F(BatchParts, AnUnfinishedPartIsNamed) {
   EXPECT_EQ(run("merge a.checkpoint.exr z.exr -o merged.exr --allow-missing -q").status, 0);
 }
 
-TEST_F(BatchParts, PartsThatMakeNoSenseAreRefused) {
+TEST_F(BatchShards, InvalidShardOptionsAreRejected) {
   const auto refused = [&](const std::string& words) {
     const Outcome r = run("render good.toml " + words);
     EXPECT_EQ(r.status, 2) << words << "\n" << r.err;
@@ -177,14 +178,14 @@ TEST_F(BatchParts, PartsThatMakeNoSenseAreRefused) {
   refused("-o a.exr --samples 0:5");  // the scene has four
 }
 
-TEST_F(BatchParts, AMovedSceneIsFoundWhereItIsSaid) {
+TEST_F(BatchShards, SceneOptionFindsAMovedScene) {
   render("a.exr", "");
   render("b.exr", "--samples 0:35");
   std::filesystem::rename(folder_ / "good.toml", folder_ / "moved.toml");
   EXPECT_EQ(run("merge b.exr -o merged.exr").status, 66);
   ASSERT_EQ(run("merge b.exr -o merged.exr --scene moved.toml --reproducible").status, 0);
   EXPECT_EQ(text_of(folder_ / "merged.exr"), whole_);
-  // Another scene under that name is another picture.
+  // A different scene of that name gives a different image.
   write("moved.toml", std::string(kGoodScene) + "[[sphere]]\ncenter = [0, 1, -1]\nradius = 0.1\nmaterial = \"grey\"\n");
   std::filesystem::remove(folder_ / "merged.exr");
   expect_refused(run("merge b.exr -o merged.exr --scene moved.toml"), 65, {"moved.toml", "b.exr"});

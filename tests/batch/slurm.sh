@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# A farm of four nodes on this machine: Slurm for real, with its own keys, ports and folders, and no systemd.
-# Renders two frames in shards by `orrery submit --slurm`, kills a node in the middle of its task, and compares the
-# merged pictures with those of one program.
+# Runs a Slurm cluster of four nodes on this machine, with its own keys, ports and folders, without systemd. Renders two
+# frames in shards by `orrery submit --slurm`, kills a node in the middle of its task, and compares the merged images
+# with those of a single process.
 #
 #   tests/batch/slurm.sh PROGRAM WORK_FOLDER
 #
-# Exit status 77 where Slurm is not installed, or the user is not root.
+# Exit status 77 if Slurm is not installed or the user is not root.
 set -eu
 [ $# -eq 2 ] || { sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 2; }
 scenes=$(cd "$(dirname "$0")/../../scenes" && pwd)
@@ -14,9 +14,9 @@ program=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
 for tool in munged slurmctld slurmd sbatch squeue; do
-  command -v "$tool" > /dev/null || { echo "slurm: left out, $tool is not installed (munge slurm-wlm)"; exit 77; }
+  command -v "$tool" > /dev/null || { echo "slurm: skipped: $tool is not installed (packages munge, slurm-wlm)"; exit 77; }
 done
-[ "$(id -u)" -eq 0 ] || { echo "slurm: left out, only root can start nodes"; exit 77; }
+[ "$(id -u)" -eq 0 ] || { echo "slurm: skipped: only root can start nodes"; exit 77; }
 
 host=$(hostname -s)
 rm -rf "$folder/cluster" "$folder/shot.parts" "$folder"/*.exr
@@ -39,7 +39,7 @@ chmod 0400 cluster/keys/key
 munged --force --key-file="$folder/cluster/keys/key" --socket="$folder/cluster/keys/socket" \
   --pid-file="$folder/cluster/keys/munged.pid" --log-file="$folder/cluster/keys/log" --seed-file="$folder/cluster/keys/seed"
 
-# Ports of this process's own, so that two farms do not meet.
+# Ports derived from the process id, so that two clusters do not collide.
 port=$((20000 + $$ % 20000))
 cat > cluster/slurm.conf << END
 ClusterName=orrery
@@ -83,7 +83,7 @@ wait_for() {  # seconds, what, command ...
   shift 2
   until "$@"; do
     left=$((left - 1))
-    [ "$left" -gt 0 ] || { echo "slurm: waited in vain for $what"; sinfo -lN; squeue; tail -5 cluster/*.log; exit 1; }
+    [ "$left" -gt 0 ] || { echo "slurm: timed out waiting for $what"; sinfo -lN; squeue; tail -5 cluster/*.log; exit 1; }
     sleep 1
   done
 }
@@ -92,7 +92,7 @@ wait_for 600 "four nodes" four_are_idle
 
 settings="--width 320 --height 180 --samples ${SAMPLES:-30} --set animation.turntable=48 --layers Z,CryptoObject --reproducible"
 cp "$scenes/book/final.toml" shot.toml
-# The first task on n1 never ends by itself, so that the node is killed in the middle of a task on any machine.
+# The first task on n1 never finishes, so the node is killed in the middle of a task on any machine.
 cat > first-hangs-on-n1 << END
 #!/bin/sh
 if [ "\$SLURMD_NODENAME" = n1 ] && mkdir "$folder/cluster/hangs" 2> /dev/null; then
@@ -112,14 +112,14 @@ killed=$(squeue --noheader --states=running --nodelist=n1 -o %i)
 echo "slurm: killing node n1 with its task $killed"
 kill -9 "$(cat cluster/slurmd.n1.pid)"
 rm -f cluster/slurmd.n1.pid
-# The daemon that watches the task first, so that it cannot report the task's end; then the job's script and the task.
+# Kill the task's slurmstepd first, so that it cannot report the end of the task; then the job script and the task.
 pid=$(cat cluster/hangs/pid)
 chain=$pid
 while [ "$(cat "/proc/$pid/comm")" != slurmstepd ] && [ "$pid" -gt 1 ]; do
   pid=$(sed -n 's/^PPid:[[:space:]]*//p' "/proc/$pid/status")
   chain="$pid $chain"
 done
-[ "$pid" -gt 1 ] || { echo "slurm: the task on n1 has no slurmstepd above it"; exit 1; }
+[ "$pid" -gt 1 ] || { echo "slurm: the task on n1 has no slurmstepd ancestor"; exit 1; }
 # shellcheck disable=SC2086  # words
 kill -9 $chain
 
@@ -133,4 +133,4 @@ for frame in 1 2; do
   "$program" render shot.toml -o "one.####.exr" --frames $frame $settings -q
   cmp "one.000$frame.exr" "shot.000$frame.exr" || { tail -n 3 shot.parts/*.log; exit 1; }
 done
-echo "slurm: two frames in four shards each, one node killed: the same bytes as one program's"
+echo "slurm: two frames in four shards each, one node killed: the same bytes as a single process"

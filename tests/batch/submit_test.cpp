@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The jobs that are printed for other people's engines, against what their specifications say. The scripts for Slurm
-// and GNU parallel are run for real, by slurm.sh and parallel.sh.
+// Checks generated jobs against the specifications of the schedulers. slurm.sh and parallel.sh run the scripts for
+// Slurm and GNU parallel.
 #include <nlohmann/json.hpp>
 
 #include <regex>
@@ -20,11 +20,11 @@ class BatchSubmit : public ProgramTest {
   }
 };
 
-/// Keys of an object, of which some must be there and none but these may.
+/// Expects an object that has all `needed` keys and no others but the `allowed` ones.
 void expect_keys(const nlohmann::json& object, const std::set<std::string>& needed,
                  const std::set<std::string>& allowed = {}) {
   ASSERT_TRUE(object.is_object()) << object;
-  for (const std::string& key : needed) EXPECT_TRUE(object.contains(key)) << key << " is not in " << object;
+  for (const std::string& key : needed) EXPECT_TRUE(object.contains(key)) << key << " is missing in " << object;
   for (const auto& [key, value] : object.items())
     EXPECT_TRUE(needed.count(key) + allowed.count(key) > 0) << key << " is unknown in " << object;
 }
@@ -56,7 +56,7 @@ void expect_openjd(const nlohmann::json& job) {
       const std::regex range("-?[0-9]+(--?[0-9]+(:-?[0-9]+)?)?(,-?[0-9]+(--?[0-9]+(:-?[0-9]+)?)?)*");
       EXPECT_TRUE(std::regex_match(parameter["range"].get<std::string>(), range)) << parameter;
     }
-    for (const auto& argument : action["args"]) {  // format strings name what there is
+    for (const auto& argument : action["args"]) {  // format strings refer to defined parameters
       const std::string text = argument;
       const std::regex reference("\\{\\{([^}]*)\\}\\}");
       for (auto i = std::sregex_iterator(text.begin(), text.end(), reference); i != std::sregex_iterator(); ++i)
@@ -65,12 +65,12 @@ void expect_openjd(const nlohmann::json& job) {
     if (step.contains("dependencies"))
       for (const auto& dependency : step["dependencies"]) {
         expect_keys(dependency, {"dependsOn"});
-        EXPECT_EQ(names.count(dependency["dependsOn"]), 1u) << "of no step before";
+        EXPECT_EQ(names.count(dependency["dependsOn"]), 1u) << "depends on no earlier step";
       }
   }
 }
 
-TEST_F(BatchSubmit, OpenJdTemplatesAreWhatTheSpecificationSays) {
+TEST_F(BatchSubmit, OpenJdTemplatesFollowTheSpecification) {
   const auto split = nlohmann::json::parse(submit("-o s.####.exr --frames 1-3,9 --shards 2 --openjd --samples 9"));
   expect_openjd(split);
   EXPECT_EQ(split["steps"].size(), 2u);
@@ -80,10 +80,10 @@ TEST_F(BatchSubmit, OpenJdTemplatesAreWhatTheSpecificationSays) {
   EXPECT_EQ(plain["steps"].size(), 1u);
 }
 
-/// The children of each element, in their order, as cjsl-1.12 has them; "?" may be left out, "+" may come again.
+/// Checks the children of each element, and their order, against cjsl-1.12 as regular expressions.
 ///
 /// Reference  opencue-cjsl-1.12
-TEST_F(BatchSubmit, OpenCueJobsAreWhatTheSpecificationSays) {
+TEST_F(BatchSubmit, OpenCueJobsFollowTheSpecification) {
   const std::string text = submit("-o s.####.exr --frames 1-3 --shards 2 --opencue --set 'sphere[0].name=a & b < c'");
   const std::map<std::string, std::regex> children = {
       {"spec", std::regex("(facility )?(dept )?show shot user (email )?(uid )?(job )*(depends )*")},
@@ -94,7 +94,7 @@ TEST_F(BatchSubmit, OpenCueJobsAreWhatTheSpecificationSays) {
       {"services", std::regex("(service )+")},
       {"depends", std::regex("(depend )*")},
       {"depend", std::regex("depjob (deplayer )?(depframe )?onjob (onlayer )?(onframe )?")}};
-  std::vector<std::pair<std::string, std::string>> open = {{"", ""}};  // elements and the children they have had
+  std::vector<std::pair<std::string, std::string>> open = {{"", ""}};  // open elements and their children so far
   const std::regex tag("<(/?)([a-z_]+)([^>]*)>");
   int layers = 0, depends = 0;
   for (auto i = std::sregex_iterator(text.begin(), text.end(), tag); i != std::sregex_iterator(); ++i) {
@@ -109,10 +109,10 @@ TEST_F(BatchSubmit, OpenCueJobsAreWhatTheSpecificationSays) {
       }
       continue;
     }
-    ASSERT_EQ(open.back().first, name) << "closed in another order";
+    ASSERT_EQ(open.back().first, name) << "mismatched closing tag";
     const auto rule = children.find(name);
     if (rule == children.end()) {
-      EXPECT_EQ(open.back().second, "") << name << " holds text only";
+      EXPECT_EQ(open.back().second, "") << name << " may contain text only";
     } else {
       EXPECT_TRUE(std::regex_match(open.back().second, rule->second)) << name << ": " << open.back().second;
     }
@@ -124,7 +124,7 @@ TEST_F(BatchSubmit, OpenCueJobsAreWhatTheSpecificationSays) {
   EXPECT_NE(text.find("a &amp; b &lt; c"), std::string::npos);
 }
 
-TEST_F(BatchSubmit, ScriptsAreShellAndCallTheProgramThatIsMeant) {
+TEST_F(BatchSubmit, ScriptsAreValidShellAndCallTheGivenProgram) {
   for (const char* engine : {"--slurm", "--parallel 3"}) {
     const std::string text =
         submit(std::string("-o s.####.exr --frames 1-3 --shards 2 --program /opt/o/orrery --type float ") + engine);
@@ -136,7 +136,7 @@ TEST_F(BatchSubmit, ScriptsAreShellAndCallTheProgramThatIsMeant) {
   }
 }
 
-TEST_F(BatchSubmit, WhatWouldFailOnTheFarmFailsHere) {
+TEST_F(BatchSubmit, InvalidJobsFailAtSubmission) {
   const auto expect = [&](const std::string& words, int status, const std::string& word) {
     const Outcome r = run("submit " + words);
     EXPECT_EQ(r.status, status) << words << "\n" << r.err;

@@ -8,7 +8,7 @@ namespace {
 
 class CliBench : public ProgramTest {};
 
-TEST_F(CliBench, PrintsATableOrJsonAndNothingElse) {
+TEST_F(CliBench, PrintsOnlyATableOrJson) {
   const Outcome text = run("bench good.toml --rounds 1 --seconds 0.001");
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_EQ(text.err, "");
@@ -19,7 +19,7 @@ TEST_F(CliBench, PrintsATableOrJsonAndNothingElse) {
   EXPECT_EQ(file_count(), 0);
 }
 
-TEST_F(CliBench, SaysWhatIsWrong) {
+TEST_F(CliBench, ReportsErrors) {
   EXPECT_EQ(run("bench none.toml").status, 66);
   EXPECT_EQ(run("bench good.toml --rounds 0").status, 2);
   EXPECT_EQ(run("bench good.toml --isa mmx").status, 2);

@@ -15,7 +15,7 @@ class CliCompare : public ProgramTest {
   }
 };
 
-TEST_F(CliCompare, APictureIsAsItIs) {
+TEST_F(CliCompare, ImageEqualsItself) {
   const Outcome r = run("compare a.exr a.exr --fail-above rmse=0 --fail-above relmse=0 --fail-above max=0");
   EXPECT_EQ(r.status, 0) << r.err;
   for (const char* line : {"images      32 x 18, channels R, G, B\n", "rmse        0\n", "psnr        infinite\n",
@@ -23,7 +23,7 @@ TEST_F(CliCompare, APictureIsAsItIs) {
     EXPECT_NE(r.out.find(line), std::string::npos) << line << r.out;
 }
 
-TEST_F(CliCompare, AnotherSeedDiffersAndLimitsFail) {
+TEST_F(CliCompare, AnotherSeedDiffersAndExceedsLimits) {
   const Outcome r = run("compare a.exr b.exr --json");
   EXPECT_EQ(r.status, 0);
   const auto json = nlohmann::json::parse(r.out);
@@ -36,7 +36,7 @@ TEST_F(CliCompare, AnotherSeedDiffersAndLimitsFail) {
   EXPECT_EQ(failed.err.rfind("orrery: max is ", 0), 0u) << failed.err;
 }
 
-TEST_F(CliCompare, OtherLayersAreNamedAndTheRestIsCompared) {
+TEST_F(CliCompare, UnmatchedLayersAreNamedAndTheRestIsCompared) {
   ASSERT_EQ(run("render good.toml -o z.exr -q --layers Z,variance").status, 0);
   const Outcome r = run("compare z.exr a.exr");
   EXPECT_EQ(r.status, 0);
@@ -48,7 +48,7 @@ TEST_F(CliCompare, OtherLayersAreNamedAndTheRestIsCompared) {
   EXPECT_EQ(run("compare a.exr b.exr --fail-above z=1").status, 2);
 }
 
-TEST_F(CliCompare, LayersOfHitsAndCryptomattesAreCompared) {
+TEST_F(CliCompare, HitLayersAndCryptomattesAreCompared) {
   ASSERT_EQ(run("render good.toml -o l.exr -q --layers Z,CryptoObject").status, 0);
   ASSERT_EQ(run("render good.toml -o m.exr -q --seed 2 --layers Z,CryptoObject").status, 0);
   const auto of = [&](const std::string& layer) {
@@ -63,7 +63,7 @@ TEST_F(CliCompare, LayersOfHitsAndCryptomattesAreCompared) {
   EXPECT_LE(matte["max"], 1);
 }
 
-TEST_F(CliCompare, ABrighterSceneIsMoreThanNoise) {
+TEST_F(CliCompare, ZTestDetectsABrighterScene) {
   ASSERT_EQ(run("render good.toml -o v.exr -q --layers variance --samples 64").status, 0);
   ASSERT_EQ(run("render good.toml -o w.exr -q --layers variance --samples 64 --seed 9").status, 0);
   ASSERT_EQ(run("render good.toml -o x.exr -q --layers variance --samples 64 --seed 9 --set background.top=[0.6,0.8,1]")
@@ -73,7 +73,7 @@ TEST_F(CliCompare, ABrighterSceneIsMoreThanNoise) {
   EXPECT_NE(run("compare x.exr v.exr").out.find("differ by more than noise"), std::string::npos);
 }
 
-TEST_F(CliCompare, OtherSizesAndDamagedFilesAreBadData) {
+TEST_F(CliCompare, DifferentSizesAndDamagedFilesAreBadData) {
   ASSERT_EQ(run("render good.toml -o c.exr -q --width 16").status, 0);
   const Outcome r = run("compare a.exr c.exr");
   EXPECT_EQ(r.status, 65);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manual page lists the options that the commands have, no more and no less.
+// The manual page lists exactly the options of the commands.
 #include <map>
 #include <set>
 #include <sstream>
@@ -19,20 +19,20 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-/// The long options that a line of mdoc names by "Fl Fl".
+/// Adds the long options of an mdoc line ("Fl Fl NAME").
 void add_options(const std::string& line, Options& options) {
   const std::vector<std::string> words = words_of(line);
   for (std::size_t i = 0; i + 2 < words.size(); ++i)
     if (words[i] == "Fl" && words[i + 1] == "Fl") options.insert("--" + words[i + 2]);
 }
 
-/// What the manual says.
+/// Options listed in the manual page.
 struct Manual {
   std::map<std::string, Options> synopsis;               ///< by command
-  std::map<std::string, Options> sections;               ///< by the name of a .Ss
-  std::map<std::string, std::set<std::string>> members;  ///< of the sections "... options", the commands
+  std::map<std::string, Options> sections;               ///< by the title of a .Ss
+  std::map<std::string, std::set<std::string>> members;  ///< commands of each section "... options"
 
-  /// The options of a command's own section and of those that name it.
+  /// Options in the command's section and in the shared sections that list the command.
   Options options_of(const std::string& command) const {
     Options out = sections.at("orrery " + command);
     for (const auto& [section, commands] : members)
@@ -73,7 +73,7 @@ Manual read_manual() {
 
 class CliManual : public ProgramTest {
  protected:
-  /// The long options that --help lists at the beginning of its lines.
+  /// Long options at the start of the lines of --help.
   Options help_of(const std::string& command) {
     Options options;
     std::istringstream in(run(command + " --help").out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program says when it is asked for nonsense, word for word: people and scripts read it.
+// Exact text of error messages: people and scripts read them.
 #include "cli/program.h"
 
 namespace orrery::test {
@@ -90,9 +90,9 @@ const Case kCases[] = {
 
 class CliMessages : public ProgramTest, public testing::WithParamInterface<Case> {};
 
-TEST_P(CliMessages, AreGolden) {
+TEST_P(CliMessages, MatchTheGoldenText) {
   const Case& c = GetParam();
-  // What a case sends elsewhere is said last in its shell, and wins over the test's own redirection.
+  // A case's own redirection comes last on the command line, so it overrides the test's.
   const std::string arguments = c.arguments;
   const std::size_t to = arguments.find(" > ");
   const Outcome r =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outputs are checked before any work: no input is overwritten, names and formats fit.
+// Outputs are checked before any work: no input is overwritten, and names and formats are valid.
 #include <nlohmann/json.hpp>
 
 #include <map>
@@ -26,7 +26,7 @@ class CliOutputs : public ProgramTest {
     return kGoodScene + ("[[points]]\nfile = \"" + file + "\"\nmaterial = \"grey\"\n");
   }
 
-  /// The bytes of all files, by name.
+  /// Contents of all files, by name.
   std::map<std::string, std::string> contents() const {
     std::map<std::string, std::string> out;
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
@@ -35,7 +35,7 @@ class CliOutputs : public ProgramTest {
     return out;
   }
 
-  /// Expects exit status 2, a message with that text, and every file as it was.
+  /// Expects exit status 2, a message that contains `text`, and unchanged files.
   void expect_refused(const std::string& arguments, const std::string& text, const std::string& before = "") {
     const auto files = contents();
     const Outcome r = run(arguments, before);
@@ -45,7 +45,7 @@ class CliOutputs : public ProgramTest {
   }
 };
 
-TEST_F(CliOutputs, ARenderOverwritesNothingThatItReads) {
+TEST_F(CliOutputs, RenderDoesNotOverwriteItsInputs) {
   expect_refused("render good.toml -o a.png --stats ./good.toml", "would overwrite good.toml (scene)");
   expect_refused("render good.toml -o a.png --log good.toml", "good.toml (--log) would overwrite good.toml (scene)");
   expect_refused("render points.toml -o a.png --stats use.ply", "would overwrite use.ply (points file)");
@@ -59,18 +59,18 @@ TEST_F(CliOutputs, ARenderOverwritesNothingThatItReads) {
   expect_refused("render good.toml -o a.png --stats soft.json", "scene");
 }
 
-TEST_F(CliOutputs, AConfigIsAnInput) {
-  write("my.ocio", "no config, but somebody's file");
+TEST_F(CliOutputs, OcioConfigIsAnInput) {
+  write("my.ocio", "a file that is not a config");
   expect_refused("render good.toml -o a.png --ocio my.ocio --stats my.ocio", "my.ocio (OCIO config)");
   expect_refused("render good.toml -o a.png --stats my.ocio", "my.ocio (OCIO config)", "OCIO=my.ocio");
   expect_refused("bake --ocio my.cube -o my.cube", "my.cube (OCIO config)");
-  // A scene's config is read before its outputs are known; statistics of that failure must not replace it either.
+  // A scene's config is read before its outputs are checked; the statistics of that failure must not overwrite it.
   write("config.toml", std::string("[color]\nconfig = \"my.ocio\"\n") + kGoodScene);
   EXPECT_EQ(run("render config.toml -o a.exr --stats my.ocio").status, 65);
-  EXPECT_EQ(text_of(folder_ / "my.ocio"), "no config, but somebody's file");
+  EXPECT_EQ(text_of(folder_ / "my.ocio"), "a file that is not a config");
 }
 
-TEST_F(CliOutputs, ATableOfAConfigIsAnInput) {
+TEST_F(CliOutputs, LutOfAnOcioConfigIsAnInput) {
   write("film.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
   write("my.ocio",
         "ocio_profile_version: 1\nsearch_path: .\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
@@ -82,7 +82,7 @@ TEST_F(CliOutputs, ATableOfAConfigIsAnInput) {
   expect_refused("render good.toml -o a.png --ocio my.ocio --stats film.cube", "table of the OCIO config");
 }
 
-TEST_F(CliOutputs, NoTwoOutputsAreOneFile) {
+TEST_F(CliOutputs, OutputsMustBeDistinctFiles) {
   expect_refused("render good.toml -o a.png -o ./a.png", "are the same file");
   expect_refused("render good.toml -o a.png --stats s --log ./s", "are the same file");
   expect_refused("render good.toml -o a.exr -o a.checkpoint.exr", "a.checkpoint.exr (checkpoint)");
@@ -92,14 +92,14 @@ TEST_F(CliOutputs, NoTwoOutputsAreOneFile) {
   expect_refused("render good.toml sub/good.toml -o {scene}.png", "good.png (-o of good.toml)");
 }
 
-TEST_F(CliOutputs, ABatchChecksAllItsScenesFirst) {
-  // The second scene reads what the first one would write.
+TEST_F(CliOutputs, BatchChecksAllScenesFirst) {
+  // The first scene's output is an input of the second.
   write("in.toml", kGoodScene);
   expect_refused("render in.toml picture.toml -o {scene}.png", "in.png");
 }
 
-TEST_F(CliOutputs, AFailedRenderKeepsThePointsFile) {
-  // The scene cannot be read, but it names the file for the statistics.
+TEST_F(CliOutputs, FailedRenderKeepsThePointsFile) {
+  // The scene is invalid, but it refers to the file that --stats names.
   write("wrong.toml", with_points("use.ply") + "[camera]\nvfov = 1000\n");
   const auto files = contents();
   EXPECT_EQ(run("render wrong.toml -o a.png --stats use.ply").status, 65);
@@ -110,7 +110,7 @@ TEST_F(CliOutputs, AFailedRenderKeepsThePointsFile) {
   EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "s.json"))["exit_status"], 65);
 }
 
-TEST_F(CliOutputs, OtherCommandsOverwriteNothingEither) {
+TEST_F(CliOutputs, OtherCommandsDoNotOverwriteTheirInputs) {
   std::filesystem::create_symlink("good.toml", folder_ / "scene.html");
   std::filesystem::create_symlink("use.ply", folder_ / "points.html");
   expect_refused("study good.toml -o scene.html", "(scene)");
@@ -130,7 +130,7 @@ TEST_F(CliOutputs, OtherCommandsOverwriteNothingEither) {
   expect_refused("merge part.exr ./part.exr -o m.exr --allow-missing", "given twice");
 }
 
-TEST_F(CliOutputs, ASizeThatAFormatCannotHoldIsRefusedBeforeTheRender) {
+TEST_F(CliOutputs, SizeBeyondTheFormatIsRejectedBeforeRendering) {
   // A render of that many samples would take hours.
   expect_refused("render good.toml -o a.jpg --width 65501 --samples 1000000000", "65500");
   expect_refused("render good.toml -o a.exr -o a.jpg --height 65536 --samples 1000000000", "65500");
@@ -143,7 +143,7 @@ TEST_F(CliOutputs, ASizeThatAFormatCannotHoldIsRefusedBeforeTheRender) {
   expect_refused("compare a.exr a.exr --difference b.jpg", "65500");
 }
 
-TEST_F(CliOutputs, NamesOfTheGreatestLengthWorkAndLongerOnesAre73) {
+TEST_F(CliOutputs, LongestFileNamesWorkAndLongerOnesExit73) {
   const std::string stem(251, 'n');
   EXPECT_EQ(run("render good.toml -q -o " + stem + ".exr").status, 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / (stem + ".exr")));
@@ -155,18 +155,18 @@ TEST_F(CliOutputs, NamesOfTheGreatestLengthWorkAndLongerOnesAre73) {
   EXPECT_EQ(run("generate cloud -o " + std::string(252, 'n')).status, 73) << "its points file";
 }
 
-TEST_F(CliOutputs, ADiskLimitIsKeptOrInsistedOn) {
+TEST_F(CliOutputs, DiskLimitIsEnforced) {
   const Outcome r = run("render good.toml -o a.exr --samples 1000000000 --disk-limit 1K");
   EXPECT_EQ(r.status, 73) << r.err;
   EXPECT_NE(r.err.find("1.0 KiB is what --disk-limit allows"), std::string::npos) << r.err;
   EXPECT_EQ(run("render good.toml -o a.exr -q --disk-limit 1G").status, 0);
 }
 
-TEST_F(CliOutputs, PngAndTiffKeepTheAlphaOfAnEmptyBackground) {
+TEST_F(CliOutputs, PngAndTiffKeepTheAlphaOfATransparentBackground) {
   const std::string empty = "render good.toml -q --type float --set background.alpha=0 ";
   ASSERT_EQ(run(empty + "-o a.exr -o a.png -o a.tif -o a.jpg").status, 0);
   ASSERT_EQ(run("develop a.exr -o d.png -o d.tif -o d.jpg").status, 0);
-  // Channels in which a render's file and the developed one agree.
+  // Returns the number of channels; expects equal values.
   const auto agreeing = [&](const std::string& a, const std::string& b) {
     const auto found = nlohmann::json::parse(run("compare " + a + " " + b + " --json").out);
     EXPECT_EQ(found["differing"], 0) << a;
@@ -175,7 +175,7 @@ TEST_F(CliOutputs, PngAndTiffKeepTheAlphaOfAnEmptyBackground) {
   EXPECT_EQ(agreeing("a.png", "d.png"), 4);
   EXPECT_EQ(agreeing("a.tif", "d.tif"), 4);
   EXPECT_EQ(agreeing("a.jpg", "d.jpg"), 3);
-  // A frame that is covered all over has as many channels as the others of its sequence.
+  // A frame without transparent pixels has as many channels as the other frames of its sequence.
   ASSERT_EQ(run(empty + "-o full.exr -o full.png --set camera.vfov=5").status, 0);
   ASSERT_EQ(run("develop full.exr -o full.tif").status, 0);
   EXPECT_EQ(agreeing("full.png", "full.tif"), 4);

@@ -15,13 +15,13 @@ namespace orrery::test {
 
 inline std::string text_of(const std::filesystem::path& file) { return support::file_bytes(file); }
 
-/// What a run of the program left behind.
+/// Exit status and output of one run.
 struct Outcome {
   int status = -1;
   std::string out, err;
 };
 
-/// A folder of its own for each test, in which the program runs.
+/// Runs the program in a temporary folder, one for each test.
 class ProgramTest : public testing::Test {
  protected:
   void SetUp() override { write("good.toml", kGoodScene); }
@@ -30,7 +30,7 @@ class ProgramTest : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
 
-  /// Runs `orrery ARGUMENTS` in the folder, after `before` in the same shell.
+  /// Runs `orrery ARGUMENTS` in the folder; `before` precedes the command in the same shell.
   Outcome run(const std::string& arguments, const std::string& before = "") {
     const std::string command = "cd \"" + folder_.string() + "\" && " + before + " \"" ORRERY_PROGRAM "\" " +
                                 arguments + " >.out 2>.err </dev/null";
@@ -39,7 +39,7 @@ class ProgramTest : public testing::Test {
             text_of(folder_ / ".err")};
   }
 
-  /// Files in the folder beside what the test itself put there.
+  /// Number of files that the program left: all but scene files and captured output.
   int file_count() const {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {

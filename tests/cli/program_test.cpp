@@ -10,37 +10,37 @@ class CliProgram : public ProgramTest {};
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TEST_F(CliProgram, RendersEveryFormatInOneGo) {
+TEST_F(CliProgram, RendersAllFormatsInOneRun) {
   const Outcome r = run("render good.toml -o a.exr -o a.png -o a.jpg -o a.tif -o a.ppm -o a.hdr");
   EXPECT_EQ(r.status, 0) << r.err;
   for (const char* name : {"a.exr", "a.png", "a.jpg", "a.tif", "a.ppm", "a.hdr"})
     EXPECT_GT(std::filesystem::file_size(folder_ / name), 100u) << name;
   EXPECT_TRUE(r.out.empty());
-  EXPECT_TRUE(contains(r.err, "100% done")) << "progress is told where there is no terminal";
+  EXPECT_TRUE(contains(r.err, "100% done")) << "progress is reported without a terminal";
   EXPECT_TRUE(contains(r.err, "wrote a.exr, a.png"));
-  EXPECT_EQ(file_count(), 6) << "no temporary file is left";
+  EXPECT_EQ(file_count(), 6) << "no temporary files remain";
 }
 
-TEST_F(CliProgram, QuietIsQuiet) {
+TEST_F(CliProgram, QuietPrintsNothing) {
   const Outcome r = run("render good.toml -o a.png -q");
   EXPECT_EQ(r.status, 0);
   EXPECT_EQ(r.out + r.err, "");
 }
 
-TEST_F(CliProgram, SpeaksTheGrammarsOfSupervisors) {
+TEST_F(CliProgram, ReportsProgressInTheFormatsOfRenderManagers) {
   EXPECT_TRUE(contains(run("render good.toml -o a.png --progress alf").err, "ALF_PROGRESS 100%\n"));
   EXPECT_TRUE(contains(run("render good.toml -o a.png --progress openjd").err, "openjd_progress: 100\n"));
   EXPECT_TRUE(contains(run("render good.toml -o a.png --progress json").err, "{\"progress\": 100"));
   EXPECT_FALSE(contains(run("render good.toml -o a.png --progress none").err, "%"));
 }
 
-TEST_F(CliProgram, AMissingSceneIs66) {
+TEST_F(CliProgram, MissingSceneExits66) {
   const Outcome r = run("render nowhere.toml -o a.png");
   EXPECT_EQ(r.status, 66);
   EXPECT_TRUE(contains(r.err, "nowhere.toml"));
 }
 
-TEST_F(CliProgram, AWrongSceneIs65WithEveryFindingAndNothingIsWritten) {
+TEST_F(CliProgram, InvalidSceneExits65WithAllDiagnosticsAndNoFiles) {
   write("bad.toml", "[image]\nwidht = 3\n[camera]\nvfov = 200\n[render]\nsamples = 0\n");
   const Outcome r = run("render bad.toml -o a.png");
   EXPECT_EQ(r.status, 65);
@@ -58,8 +58,8 @@ TEST_F(CliProgram, AWrongSceneIs65WithEveryFindingAndNothingIsWritten) {
   EXPECT_EQ(file_count(), 0);
 }
 
-TEST_F(CliProgram, UnwritableOutputsAre73BeforeAnyRendering) {
-  // A render of this size would take hours; that the answer comes shows that it was not begun.
+TEST_F(CliProgram, UnwritableOutputExits73BeforeRendering) {
+  // This render would take hours: an exit shows that it did not start.
   const std::string slow = "render good.toml --samples 100000000 ";
   Outcome r = run(slow + "-o nowhere/a.exr");
   EXPECT_EQ(r.status, 73);
@@ -69,7 +69,7 @@ TEST_F(CliProgram, UnwritableOutputsAre73BeforeAnyRendering) {
   EXPECT_EQ(run(slow + "-o a.png --stats nowhere/s.json").status, 73);
 }
 
-TEST_F(CliProgram, UsageIs2AndSaysWhatWasMeant) {
+TEST_F(CliProgram, UsageErrorExits2WithASuggestion) {
   Outcome r = run("render good.toml -o a.png --sampels 3");
   EXPECT_EQ(r.status, 2);
   EXPECT_TRUE(contains(r.err, "did you mean `--samples`?")) << r.err;
@@ -90,8 +90,8 @@ TEST_F(CliProgram, UsageIs2AndSaysWhatWasMeant) {
   EXPECT_EQ(file_count(), 0);
 }
 
-TEST_F(CliProgram, AFullDiskIs74AndLeavesNothing) {
-  // A limit on file sizes is what a full disk is to whoever writes; ulimit counts in blocks of 512 or 1024 bytes.
+TEST_F(CliProgram, FullDiskExits74AndLeavesNoFiles) {
+  // A file size limit fails writes like a full disk; ulimit counts in blocks of 512 or 1024 bytes.
   for (const char* name : {"a.exr", "a.png", "a.tif", "a.ppm", "a.hdr"}) {
     const Outcome r =
         run(std::string("render good.toml --width 400 --height 300 --samples 1 -q -o ") + name, "ulimit -f 8 &&");
@@ -100,7 +100,7 @@ TEST_F(CliProgram, AFullDiskIs74AndLeavesNothing) {
   }
 }
 
-TEST_F(CliProgram, AnExistingPictureSurvivesAFailedWrite) {
+TEST_F(CliProgram, ExistingImageSurvivesAFailedWrite) {
   ASSERT_EQ(run("render good.toml -o a.png -q").status, 0);
   const std::string before = text_of(folder_ / "a.png");
   EXPECT_EQ(run("render good.toml --width 400 --height 300 --samples 1 -q -o a.png", "ulimit -f 8 &&").status, 74);
@@ -113,7 +113,7 @@ TEST_F(CliProgram, NumbersAreDecimal) {
   EXPECT_TRUE(contains(r.err, " 10 threads")) << r.err;
 }
 
-TEST_F(CliProgram, WhatDoesNotFitIntoMemoryIsRefused) {
+TEST_F(CliProgram, MemoryLimitIsEnforced) {
   const Outcome r = run("render good.toml -o a.png --memory-limit 1K");
   EXPECT_EQ(r.status, 1);
   EXPECT_TRUE(contains(r.err, "orrery: the render needs about ")) << r.err;
@@ -122,7 +122,7 @@ TEST_F(CliProgram, WhatDoesNotFitIntoMemoryIsRefused) {
   EXPECT_EQ(run("render good.toml -o a.png --memory-limit 1G").status, 0);
 }
 
-TEST_F(CliProgram, OverridesAreCheckedLikeTheFile) {
+TEST_F(CliProgram, OverridesAreValidatedLikeTheFile) {
   const Outcome r = run("render good.toml -o a.png --set camera.vfov=30 --set render.sampels=3");
   EXPECT_EQ(r.status, 65);
   EXPECT_TRUE(contains(r.err,
@@ -134,7 +134,7 @@ TEST_F(CliProgram, OverridesAreCheckedLikeTheFile) {
   EXPECT_EQ(run("render good.toml -o a.png -q --set 'sphere[0].radius=0.25' --set render.precision=fast").status, 0);
 }
 
-TEST_F(CliProgram, SettingsTellWhereTheyCameFrom) {
+TEST_F(CliProgram, SettingsShowTheirOrigin) {
   const Outcome r = run("info good.toml --settings --set camera.vfov=33");
   EXPECT_EQ(r.status, 0);
   EXPECT_TRUE(contains(r.out, "good.toml:3")) << r.out;
@@ -142,7 +142,7 @@ TEST_F(CliProgram, SettingsTellWhereTheyCameFrom) {
   EXPECT_TRUE(contains(r.out, "default")) << r.out;
 }
 
-TEST_F(CliProgram, InfoIsJsonOnRequest) {
+TEST_F(CliProgram, InfoPrintsJson) {
   const Outcome r = run("info good.toml --json");
   ASSERT_EQ(r.status, 0) << r.err;
   const auto json = nlohmann::json::parse(r.out);
@@ -150,7 +150,7 @@ TEST_F(CliProgram, InfoIsJsonOnRequest) {
   EXPECT_EQ(json["schema"], "orrery.info/1");
 }
 
-TEST_F(CliProgram, CheckLooksAtAllScenesAndTellsTheWorst) {
+TEST_F(CliProgram, CheckValidatesAllScenesAndExitsWithAFailure) {
   write("bad.toml", "nonsense");
   const Outcome r = run("check bad.toml good.toml");
   EXPECT_EQ(r.status, 65);
@@ -158,7 +158,7 @@ TEST_F(CliProgram, CheckLooksAtAllScenesAndTellsTheWorst) {
   EXPECT_EQ(run("check good.toml missing.toml").status, 66);
 }
 
-TEST_F(CliProgram, StatisticsSayWhatWasDone) {
+TEST_F(CliProgram, StatisticsDescribeTheRender) {
   ASSERT_EQ(run("render good.toml -o a.png -q --stats s.json").status, 0);
   const auto json = nlohmann::json::parse(text_of(folder_ / "s.json"));
   EXPECT_EQ(json["schema"], "orrery.stats/1");
@@ -167,7 +167,7 @@ TEST_F(CliProgram, StatisticsSayWhatWasDone) {
   EXPECT_GT(json["paths_per_second"], 0);
 }
 
-TEST_F(CliProgram, ReproducibleFilesAreTheSameBytes) {
+TEST_F(CliProgram, ReproducibleFilesAreByteIdentical) {
   ASSERT_EQ(run("render good.toml -o a.exr -q --reproducible").status, 0);
   ASSERT_EQ(run("render good.toml -o b.exr -q --reproducible -t 1").status, 0);
   EXPECT_TRUE(text_of(folder_ / "a.exr") == text_of(folder_ / "b.exr"));
@@ -175,7 +175,7 @@ TEST_F(CliProgram, ReproducibleFilesAreTheSameBytes) {
   EXPECT_TRUE(text_of(folder_ / "a.exr") == text_of(folder_ / "c.exr"));
 }
 
-TEST_F(CliProgram, DevelopsAnExrAsARenderWould) {
+TEST_F(CliProgram, DevelopMatchesRender) {
   ASSERT_EQ(run("render good.toml -o a.exr -o a.ppm -q --type float --display 'Gamma 2.0 Rec.709'").status, 0);
   ASSERT_EQ(run("develop a.exr -o b.ppm --display 'Gamma 2.0 Rec.709'").status, 0);
   EXPECT_TRUE(text_of(folder_ / "a.ppm") == text_of(folder_ / "b.ppm"));
@@ -185,7 +185,7 @@ TEST_F(CliProgram, DevelopsAnExrAsARenderWould) {
   EXPECT_EQ(run("develop noise.exr -o b.png").status, 65);
 }
 
-TEST_F(CliProgram, GeneratesScenesThatRender) {
+TEST_F(CliProgram, GeneratedScenesRender) {
   ASSERT_EQ(run("generate final -o f.toml --grid 2 --seed 5").status, 0);
   ASSERT_EQ(run("generate cloud -o c.toml --count 500").status, 0);
   EXPECT_EQ(run("render f.toml -o f.png -q --width 32 --height 18 --samples 2").status, 0);
@@ -193,8 +193,8 @@ TEST_F(CliProgram, GeneratesScenesThatRender) {
   EXPECT_EQ(run("generate final -o g.toml --grid 5000").status, 2);
 }
 
-TEST_F(CliProgram, AConfigThatIsNoneIs65AndAMissingOne66) {
-  write("broken.ocio", "this is no config");
+TEST_F(CliProgram, InvalidOcioConfigExits65AndAMissingOne66) {
+  write("broken.ocio", "not a config");
   EXPECT_EQ(run("render good.toml -o a.png --ocio broken.ocio").status, 65);
   EXPECT_EQ(run("render good.toml -o a.png --ocio nowhere.ocio").status, 66);
   EXPECT_EQ(run("render good.toml -o a.png -q", "OCIO=").status, 0);

@@ -9,7 +9,7 @@ namespace {
 
 class CliSignals : public ProgramTest {
  protected:
-  /// A render that would take hours. It handles signals before it reports progress.
+  /// Starts a render that would take hours. It installs its signal handlers before it reports progress.
   PacedProgram start_render(int ignored_signal = 0) const {
     return PacedProgram(folder_,
                         {"render", "good.toml", "-o", "a.exr", "--width", "1000", "--height", "1000", "--samples",
@@ -18,7 +18,7 @@ class CliSignals : public ProgramTest {
   }
 };
 
-TEST_F(CliSignals, TermAndIntStopSoonAndLeaveACheckpoint) {
+TEST_F(CliSignals, TermIntAndHupStopTheRenderAndLeaveACheckpoint) {
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
     PacedProgram render = start_render();
     ASSERT_TRUE(render.run_to(0)) << render.text();
@@ -30,17 +30,17 @@ TEST_F(CliSignals, TermAndIntStopSoonAndLeaveACheckpoint) {
   }
 }
 
-TEST_F(CliSignals, ASecondOneEndsAtOnce) {
+TEST_F(CliSignals, SecondSignalExitsAtOnce) {
   PacedProgram render = start_render();
   ASSERT_TRUE(render.run_to(0)) << render.text();
   render.send(SIGINT);
-  render.send(SIGTERM);  // two kinds, so that the kernel does not make them one
+  render.send(SIGTERM);  // a different signal, because pending signals of one kind are merged
   const int status = render.wait();
   EXPECT_TRUE(status == 75 || status == 128 + SIGINT || status == 128 + SIGTERM) << status;
   EXPECT_EQ(file_count(), status == 75 ? 1 : 0);
 }
 
-TEST_F(CliSignals, Usr1WritesASnapshotAndGoesOn) {
+TEST_F(CliSignals, Usr1WritesACheckpointAndContinues) {
   PacedProgram render = start_render();
   ASSERT_TRUE(render.run_to(0)) << render.text();
   render.send(SIGUSR1);
@@ -49,8 +49,8 @@ TEST_F(CliSignals, Usr1WritesASnapshotAndGoesOn) {
   EXPECT_TRUE(render.is_running());
 }
 
-TEST_F(CliSignals, WhatWasIgnoredStaysSo) {
-  // As under nohup: the render goes on, until a signal comes that it listens to.
+TEST_F(CliSignals, IgnoredSignalsStayIgnored) {
+  // As under nohup: the render continues until a signal that it handles.
   PacedProgram render = start_render(SIGHUP);
   ASSERT_TRUE(render.run_to(0)) << render.text();
   render.send(SIGHUP);
@@ -60,11 +60,11 @@ TEST_F(CliSignals, WhatWasIgnoredStaysSo) {
   EXPECT_EQ(render.wait(), 75);
 }
 
-TEST_F(CliSignals, GeneratingEndsAtTheFirstOneAndLeavesNothing) {
-  // The points file appears under a temporary name first, and would take seconds to complete.
+TEST_F(CliSignals, GenerateExitsAtTheFirstSignalAndLeavesNoFiles) {
+  // The points file is first written under a temporary name, which takes seconds.
   PacedProgram generate(folder_, {"generate", "cloud", "-o", "cloud.toml", "--count", "5000000"});
   ASSERT_TRUE(generate.run_changes(1)) << generate.text();
-  // The first changes may be those of the check that files can be created here; wait for the data.
+  // The first changes may come from the check that files can be created; wait for data.
   const auto has_data = [&] {
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       std::error_code gone;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process inherits, and what reaches it before it has done anything.
+// Inherited process state, and signals that arrive during startup.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/ptrace.h>
@@ -15,9 +15,9 @@ namespace {
 
 class CliStartup : public ProgramTest {
  protected:
-  /// Runs `orrery WORDS`; `prepare` is called in the new process, before it becomes the program.
+  /// Runs `orrery WORDS`; calls `prepare` in the child process before exec.
   ///
-  /// Result     the exit status; 128 + the signal that ended it
+  /// Result     exit status, or 128 + the signal that ended the process
   int run_prepared(std::vector<const char*> words, const std::function<void()>& prepare) {
     words.insert(words.begin(), "orrery");
     words.push_back(nullptr);
@@ -37,7 +37,7 @@ class CliStartup : public ProgramTest {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
-  /// Leaves USR1 blocked and pending across exec: it comes the moment that it is let through.
+  /// Leaves USR1 blocked and pending across exec; unblocking delivers it.
   static void raise_blocked() {
     sigset_t usr1;
     sigemptyset(&usr1);
@@ -46,7 +46,7 @@ class CliStartup : public ProgramTest {
     raise(SIGUSR1);
   }
 
-  /// Makes a file descriptor one end of a pipe whose other end is closed.
+  /// Replaces a file descriptor by a pipe whose read end is closed.
   static void break_pipe(int descriptor) {
     int ends[2];
     if (pipe(ends) != 0) _exit(125);
@@ -55,14 +55,14 @@ class CliStartup : public ProgramTest {
   }
 };
 
-TEST_F(CliStartup, Usr1ThatIsThereFromTheBeginningIsASnapshot) {
+TEST_F(CliStartup, PendingUsr1WritesACheckpoint) {
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "a.png"}, raise_blocked), 0);
   EXPECT_NE(text_of(folder_ / ".err").find("wrote a.checkpoint.exr"), std::string::npos) << text_of(folder_ / ".err");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
 }
 
-TEST_F(CliStartup, Usr1WaitsWhileTheLibrariesAreLoaded) {
-  // The launcher becomes the program: at this moment, before the dynamic loader runs, the signal comes.
+TEST_F(CliStartup, Usr1IsDeferredWhileLibrariesLoad) {
+  // Sends the signal when the launcher has called exec, before the dynamic loader runs.
   const pid_t child = fork();
   if (child == 0) {
     if (chdir(folder_.c_str()) != 0) _exit(126);
@@ -88,7 +88,7 @@ TEST_F(CliStartup, Usr1WaitsWhileTheLibrariesAreLoaded) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
 }
 
-TEST_F(CliStartup, ACheckpointOfTheLongestNameIsWritten) {
+TEST_F(CliStartup, CheckpointOfTheLongestNameIsWritten) {
   const std::string picture = std::string(251, 'n') + ".exr";
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", picture.c_str()}, raise_blocked), 0);
   EXPECT_NE(text_of(folder_ / ".err").find(".checkpoint.exr\n"), std::string::npos) << text_of(folder_ / ".err");
@@ -96,12 +96,12 @@ TEST_F(CliStartup, ACheckpointOfTheLongestNameIsWritten) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / picture));
 }
 
-TEST_F(CliStartup, Usr1EndsNoCommand) {
+TEST_F(CliStartup, Usr1DoesNotEndOtherCommands) {
   EXPECT_EQ(run_prepared({"info", "good.toml"}, raise_blocked), 0);
   EXPECT_EQ(run_prepared({"generate", "final", "-o", "f.toml"}, raise_blocked), 0);
 }
 
-TEST_F(CliStartup, OnlyCommandsWithPicturesLoadOpenImageIO) {
+TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
   const auto loads_it = [this](const std::string& words) {
     EXPECT_EQ(run(words, "LD_DEBUG=files LD_DEBUG_OUTPUT=loader").status, 0) << words;
     std::string loaded;
@@ -110,7 +110,7 @@ TEST_F(CliStartup, OnlyCommandsWithPicturesLoadOpenImageIO) {
       loaded += text_of(entry.path());
       std::filesystem::remove(entry.path());
     }
-    EXPECT_NE(loaded.find("libOpenColorIO"), std::string::npos) << "the loader reports nothing";
+    EXPECT_NE(loaded.find("libOpenColorIO"), std::string::npos) << "LD_DEBUG has no effect";
     return loaded.find("libOpenImageIO") != std::string::npos;
   };
   for (const char* words : {"--help", "info good.toml", "check good.toml", "generate final -o final.toml",
@@ -119,7 +119,7 @@ TEST_F(CliStartup, OnlyCommandsWithPicturesLoadOpenImageIO) {
   EXPECT_TRUE(loads_it("render good.toml -o a.exr -q"));
 }
 
-TEST_F(CliStartup, AReaderOfMessagesThatLeavesStopsNoRender) {
+TEST_F(CliStartup, BrokenStderrPipeDoesNotStopTheRender) {
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "a.png", "-v"}, [] { break_pipe(2); }), 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
   EXPECT_EQ(run_prepared({"render", "good.toml", "-o", "b.png"},
@@ -131,7 +131,7 @@ TEST_F(CliStartup, AReaderOfMessagesThatLeavesStopsNoRender) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "b.png"));
 }
 
-TEST_F(CliStartup, AReaderOfResultsThatLeavesIsNoMessage) {
+TEST_F(CliStartup, BrokenStdoutPipeExits74Silently) {
   for (const std::vector<const char*>& words : std::vector<std::vector<const char*>>{
            {"info", "good.toml"}, {"check", "good.toml"}, {"--help"}, {"--version"}}) {
     EXPECT_EQ(run_prepared(words, [] { break_pipe(1); }), 74) << words[0];
@@ -139,7 +139,7 @@ TEST_F(CliStartup, AReaderOfResultsThatLeavesIsNoMessage) {
   }
 }
 
-TEST_F(CliStartup, AResultThatCannotBePrintedIsAFailure) {
+TEST_F(CliStartup, ClosedStdoutExits74) {
   EXPECT_EQ(run_prepared({"info", "good.toml"}, [] { close(1); }), 74);
   EXPECT_NE(text_of(folder_ / ".err"), "");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked for by error or by time, and what comes of it.
+// Target noise, time budgets, studies, and feature costs.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -12,7 +12,7 @@ class CliTrade : public ProgramTest {
   nlohmann::json stats() { return nlohmann::json::parse(text_of(folder_ / "s.json")); }
 };
 
-TEST_F(CliTrade, NoiseAloneIsNotLimitedByTheScenesSamples) {
+TEST_F(CliTrade, TargetNoiseOverridesTheScenesSampleCount) {
   const Outcome r = run("render good.toml -o a.exr --noise 0.002 --stats s.json --progress none");
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.err.find("; noise 0.00"), std::string::npos) << r.err;
@@ -23,7 +23,7 @@ TEST_F(CliTrade, NoiseAloneIsNotLimitedByTheScenesSamples) {
   EXPECT_GT(s["samples_most"], s["samples_fewest"]);
 }
 
-TEST_F(CliTrade, ATargetThatSamplesDoNotReachIsTold) {
+TEST_F(CliTrade, MissedTargetNoiseIsReported) {
   const Outcome r = run("render good.toml -o a.exr --noise 0.0001 --samples 32 --stats s.json --progress none");
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.err.find("warning: noise 0.00"), std::string::npos) << r.err;
@@ -32,12 +32,12 @@ TEST_F(CliTrade, ATargetThatSamplesDoNotReachIsTold) {
   const Outcome strict = run("render good.toml -o b.exr --noise 0.0001 --samples 32 --strict -q");
   EXPECT_EQ(strict.status, 75);
   EXPECT_EQ(strict.err.rfind("orrery: noise 0.00", 0), 0u) << strict.err;
-  // The picture is there all the same, and the same.
+  // The image is written nevertheless, with the same pixels.
   EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0 -q").status, 0);
 }
 
-TEST_F(CliTrade, NoiseThatCannotBeJudgedIsReported) {
-  // Light of a thousandth of the paths: with 64 samples nearly all pixels look black.
+TEST_F(CliTrade, PixelsWithoutNoiseEstimateAreReported) {
+  // One path in a thousand finds light: with 64 samples nearly all pixels are black.
   write(
       "dark.toml",
       "[image]\nwidth = 24\nheight = 14\n"
@@ -63,15 +63,15 @@ TEST_F(CliTrade, NoiseThatCannotBeJudgedIsReported) {
   EXPECT_EQ(run("render dark.toml -o b.exr --noise 0.3 --samples 64 --strict -q").status, 75);
 }
 
-TEST_F(CliTrade, TimeEndsARenderThatCannotReachItsNoise) {
-  // How well the time is kept is a test of render/rounds, whose clock counts samples.
+TEST_F(CliTrade, TimeBudgetEndsARenderThatMissesItsTargetNoise) {
+  // RenderAdaptiveSampling.TimeBudgetIsKept tests the precision of the budget with a clock that counts samples.
   const Outcome r = run("render good.toml -o a.exr --noise 1e-6 --time 0.5s --stats s.json --progress none");
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.err.find(" instead of 1e-06: time was over\n"), std::string::npos) << r.err;
   EXPECT_EQ(stats()["ended_by"], "time");
 }
 
-TEST_F(CliTrade, WhatIsNoTargetIsAUsageError) {
+TEST_F(CliTrade, InvalidTargetsAreUsageErrors) {
   EXPECT_EQ(run("render good.toml -o a.exr --noise 0").status, 2);
   EXPECT_EQ(run("render good.toml -o a.exr --noise nan").status, 2);
   const Outcome time = run("render good.toml -o a.exr --time 90");
@@ -81,8 +81,8 @@ TEST_F(CliTrade, WhatIsNoTargetIsAUsageError) {
   EXPECT_EQ(run("render good.toml -o a.exr --time 1e30h").status, 2);
 }
 
-TEST_F(CliTrade, AStudyWritesItsReport) {
-  // A slow machine may need more than the first budget for the least that a study measures.
+TEST_F(CliTrade, StudyWritesAReport) {
+  // A slow machine may need more than the first budget for the minimum that a study measures.
   Outcome r;
   for (const char* budget : {"3s", "60s", "1200s"}) {
     r = run(std::string("study good.toml --noise 0.05 -o report.html --json -q --budget ") + budget);
@@ -96,7 +96,7 @@ TEST_F(CliTrade, AStudyWritesItsReport) {
   EXPECT_EQ(run("study good.toml --budget 5s -q -o no/such/place.html").status, 73);
 }
 
-TEST_F(CliTrade, InfoMeasuresWhatLeavingOutSaves) {
+TEST_F(CliTrade, InfoMeasuresFeatureCosts) {
   const Outcome r = run("info good.toml --measure");
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.out.find("; saves "), std::string::npos) << r.out;

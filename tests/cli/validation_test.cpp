@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a scene is wrong for every command, in the same words.
+// Every command reports the same errors for an invalid scene.
 #include <sys/stat.h>
 
 #include <map>
@@ -14,16 +14,16 @@ namespace {
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 struct Broken {
-  const char* name;     ///< of the scene's file
-  const char* text;     ///< behind the good scene
-  const char* options;  ///< of all commands
+  const char* name;     ///< of the scene file
+  const char* text;     ///< appended to the good scene
+  const char* options;  ///< for every command
   int status;
-  const char* told;  ///< a part of the message; what begins with a colon follows the file's name
+  const char* told;  ///< part of the message; the file name precedes a leading colon
 };
 
 const Broken kBroken[] = {
     {"AColorSpace", "[color]\nspace = \"foo\"\n", "", 65, ":15:9: error: color.space: the OCIO config (built-in)"},
-    {"ASpaceOfADisplay", "[color]\nspace = \"srgb_texture\"\n", "", 65, "is not scene-linear"},
+    {"ADisplayReferredSpace", "[color]\nspace = \"srgb_texture\"\n", "", 65, "is not scene-linear"},
     {"AWorkingSpace", "[color]\nworking = \"foo\"\n", "", 65, ":15:11: error: color.working: "},
     {"ADisplay", "[color]\ndisplay = \"sGRB\"\n", "", 65, ":15:11: error: color.display: "},
     {"AView", "[color]\nview = \"Filmik\"\n", "", 65, ":15:8: error: color.view: "},
@@ -33,11 +33,11 @@ const Broken kBroken[] = {
     {"AllNames", "[color]\nspace = \"a\"\nworking = \"b\"\ndisplay = \"c\"\nlook = \"d\"\n", "", 65, ": 4 errors"},
     {"AMissingConfig", "[color]\nconfig = \"none.ocio\"\n", "", 66,
      ":15:10: error: color.config: cannot open none.ocio: No such file"},
-    {"AConfigThatIsNone", "[color]\nconfig = \"good.toml\"\n", "", 65, ":15:10: error: color.config: "},
-    {"AConfigThatIsADevice", "[color]\nconfig = \"/dev/zero\"\n", "", 66, "it is not a regular file"},
+    {"AnInvalidConfig", "[color]\nconfig = \"good.toml\"\n", "", 65, ":15:10: error: color.config: "},
+    {"ADeviceAsConfig", "[color]\nconfig = \"/dev/zero\"\n", "", 66, "it is not a regular file"},
     {"AnOverriddenView", "", "--set color.view=Filmik", 65, "--set: error: color.view: "},
     {"ALayer", "[output]\nlayers = [\"Z\", \"Y\"]\n", "", 65, ":15:16: error: output.layers[1] is \"Y\""},
-    {"ALayerWithoutLight", "[output]\nlayers = [\"Z\", \"diffuse\"]\n", "--set render.shading=normal", 65,
+    {"ALayerWithoutLightPaths", "[output]\nlayers = [\"Z\", \"diffuse\"]\n", "--set render.shading=normal", 65,
      ":15:16: error: output.layers[1]: diffuse requires render.shading"},
     {"ALayerOption", "", "--layers Z,Y", 65, "--layers: error: output.layers[1] is \"Y\""},
     {"ASampleCount", "", "--samples 0", 65, "--samples: error: render.samples is 0; allowed"},
@@ -45,34 +45,33 @@ const Broken kBroken[] = {
     {"AShutter", "[camera]\nshutter_open = 1\n", "", 65, "error: camera.shutter_close: "},
     {"CropAndOverscan", "", "--set image.crop=[0,0,2,2] --set image.overscan=1", 65, "--set: error: image.overscan: "},
     {"ATarget", "[[key]]\ntarget = \"camera.speed\"\nframes = [1]\nvalues = [1]\n", "", 65, ":15:10: error: key[0]"},
-    {"ATargetOfTwoSpheres",
+    {"AnAmbiguousTarget",
      "[[sphere]]\nname = \"b\"\ncenter = [0, 0, -3]\nradius = 1\nmaterial = \"grey\"\n[[sphere]]\nname = \"b\"\n"
      "center = [0, 1, -3]\nradius = 1\nmaterial = \"grey\"\n"
      "[[key]]\ntarget = \"sphere.b.radius\"\nframes = [1]\nvalues = [1]\n",
      "", 65,
      "key[0].target: \"sphere.b.radius\" matches 2 spheres; use an index, such as sphere[1].radius or "
      "sphere[2].radius"},
-    {"AValueBetweenItsKeys",
+    {"AValueOutsideItsRangeBetweenKeys",
      "[[key]]\ntarget = \"sphere[0].radius\"\ninterpolation = \"cubic\"\nframes = [-9, 0, 2, 3]\n"
      "values = [1e18, 1e18, 1e18, 1]\n",
      "", 65, "at frame 1; allowed"},
     {"MissingPoints", "[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 66,
      ":15:8: error: points[0].file: cannot open none.ply: No such file"},
-    {"PointsThatAreADevice", "[[points]]\nfile = \"/dev/zero\"\nmaterial = \"grey\"\n", "", 66,
+    {"ADeviceAsPoints", "[[points]]\nfile = \"/dev/zero\"\nmaterial = \"grey\"\n", "", 66,
      "cannot open /dev/zero: it is not a regular file"},
-    {"PointsThatAreAPipe", "[[points]]\nfile = \"pipe\"\nmaterial = \"grey\"\n", "", 66,
+    {"APipeAsPoints", "[[points]]\nfile = \"pipe\"\nmaterial = \"grey\"\n", "", 66,
      "cannot open pipe: it is not a regular file"},
-    {"PointsThatAreAFolder", "[[points]]\nfile = \".\"\nmaterial = \"grey\"\n", "", 66,
-     "cannot open .: it is a directory"},
-    {"PointsOfAnotherVersion", "[[points]]\nfile = \"two.ply\"\nmaterial = \"grey\"\n", "", 65,
+    {"AFolderAsPoints", "[[points]]\nfile = \".\"\nmaterial = \"grey\"\n", "", 66, "cannot open .: it is a directory"},
+    {"PointsOfAnUnknownVersion", "[[points]]\nfile = \"two.ply\"\nmaterial = \"grey\"\n", "", 65,
      "two.ply:2: error: unsupported format version `2.0`"},
-    {"PointsInBrokenLines", "[[points]]\nfile = \"lines.ply\"\nmaterial = \"grey\"\n", "", 65,
+    {"AnIncompletePointsLine", "[[points]]\nfile = \"lines.ply\"\nmaterial = \"grey\"\n", "", 65,
      "lines.ply:9: error: vertex 0 of 2, `radius`: unexpected end of line"},
-    {"MorePointsThanPromised", "[[points]]\nfile = \"more.ply\"\nmaterial = \"grey\"\n", "", 65,
+    {"MorePointsThanDeclared", "[[points]]\nfile = \"more.ply\"\nmaterial = \"grey\"\n", "", 65,
      "more.ply:11: error: 9 bytes"},
-    {"MissingPointsAndMore", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,
+    {"MissingPointsAndAnUnknownKey", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,
      ": 2 errors"},
-    {"NoToml", "[[[", "", 65, ":14:3: error: "},
+    {"InvalidToml", "[[[", "", 65, ":14:3: error: "},
 };
 
 class CliValidation : public ProgramTest {
@@ -89,7 +88,7 @@ class CliValidation : public ProgramTest {
   }
   void write_bad(const std::string& text) { write("bad.toml", kGoodScene + text); }
 
-  /// What a command leaves behind; the render's errors must be all that check prints.
+  /// Expects check and render to fail with the same messages, and no image.
   void expect_same(const std::string& scene, const std::string& options, int status, const std::string& told) {
     const Outcome check = run("check " + scene + " " + options);
     EXPECT_EQ(check.status, status) << check.err;
@@ -101,9 +100,9 @@ class CliValidation : public ProgramTest {
   }
 };
 
-/// Scenes that the same options and the same status belong to, in one call of each command: a process costs more than
-/// reading a scene.
-TEST_F(CliValidation, WhatCheckRefusesRenderRefusesAlike) {
+/// Runs each command once for all scenes with the same options and status: starting a process costs more than reading a
+/// scene.
+TEST_F(CliValidation, CheckAndRenderReportTheSameErrors) {
   std::map<std::pair<std::string, int>, std::vector<const Broken*>> groups;
   for (const Broken& broken : kBroken) {
     write(std::string(broken.name) + ".toml", std::string(kGoodScene) + broken.text);
@@ -115,7 +114,7 @@ TEST_F(CliValidation, WhatCheckRefusesRenderRefusesAlike) {
     for (const Broken* broken : members) scenes += std::string(broken->name) + ".toml ";
     const Outcome check = run("check " + scenes + options);
     EXPECT_EQ(check.status, status) << check.err;
-    EXPECT_EQ(check.out, "") << "none of them is right";
+    EXPECT_EQ(check.out, "") << "none of the scenes is valid";
     for (const Broken* broken : members) {
       const std::string file = std::string(broken->name) + ".toml", told = broken->told;
       EXPECT_TRUE(contains(check.err, told[0] == ':' ? file + told : told)) << told << "\n" << check.err;
@@ -130,7 +129,7 @@ TEST_F(CliValidation, WhatCheckRefusesRenderRefusesAlike) {
   }
 }
 
-TEST_F(CliValidation, EveryCommandLoadsAScenesTheSameWay) {
+TEST_F(CliValidation, AllCommandsReportTheSameSceneErrors) {
   for (const char* text : {"[color]\nview = \"Filmik\"\n", "[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n"}) {
     write_bad(text);
     const Outcome check = run("check bad.toml");
@@ -144,13 +143,13 @@ TEST_F(CliValidation, EveryCommandLoadsAScenesTheSameWay) {
   }
 }
 
-TEST_F(CliValidation, AScenesFileMustBeARegularFile) {
+TEST_F(CliValidation, SceneMustBeARegularFile) {
   expect_same("pipe", "", 66, "orrery: cannot open pipe: it is not a regular file\n");
   expect_same("/dev/zero", "", 66, "orrery: cannot open /dev/zero: it is not a regular file\n");
   expect_same(".", "", 66, "orrery: cannot open .: it is a directory\n");
 }
 
-TEST_F(CliValidation, OptionsAreNamedAndAreUsage) {
+TEST_F(CliValidation, InvalidOptionsAreNamedUsageErrors) {
   const std::string render = "render good.toml -q -o a.png ";
   EXPECT_EQ(run(render + "--view Filmik").err.rfind("orrery: --view: the OCIO config (built-in) has no view", 0), 0u);
   EXPECT_EQ(run(render + "--view Filmik").status, 2);
@@ -160,7 +159,7 @@ TEST_F(CliValidation, OptionsAreNamedAndAreUsage) {
   EXPECT_EQ(missing.err, "orrery: --ocio: cannot open none.ocio: No such file or directory\n");
 }
 
-TEST_F(CliValidation, TheEnvironmentsConfigCountsWhereADisplayIsAskedFor) {
+TEST_F(CliValidation, OcioVariableIsIgnoredForExrOutput) {
   const std::string before = "OCIO=none.ocio";
   const Outcome check = run("check good.toml", before);
   EXPECT_EQ(check.status, 66);
@@ -168,10 +167,10 @@ TEST_F(CliValidation, TheEnvironmentsConfigCountsWhereADisplayIsAskedFor) {
   const Outcome shown = run("render good.toml -q -o a.png", before);
   EXPECT_EQ(shown.status, 66);
   EXPECT_EQ(shown.err, check.err);
-  EXPECT_EQ(run("render good.toml -q -o a.exr", before).status, 0) << "an EXR leaves before any display";
+  EXPECT_EQ(run("render good.toml -q -o a.exr", before).status, 0) << "EXR output needs no display transform";
 }
 
-TEST_F(CliValidation, CheckLooksAtEveryFrame) {
+TEST_F(CliValidation, CheckValidatesEveryFrame) {
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
       "property float z\nproperty float radius\nend_header\n";
@@ -181,14 +180,14 @@ TEST_F(CliValidation, CheckLooksAtEveryFrame) {
   EXPECT_EQ(run("check c.toml").out, "c.toml: ok\n");
   EXPECT_EQ(run("check c.toml --frames 1-2").out, "c.toml: ok, 2 frames\n");
   const Outcome r = run("check c.toml --frames 1-7");
-  EXPECT_EQ(r.status, 66) << "as a render: the first failure's";
+  EXPECT_EQ(r.status, 66) << "the status of the first failure, as for a render";
   EXPECT_TRUE(contains(r.err, "cannot open c.3.ply")) << r.err;
   EXPECT_TRUE(contains(r.err, "c.5.ply:9: error: ")) << r.err;
   EXPECT_TRUE(contains(r.err, "orrery: c.toml: 4 of 7 frames have errors: 3,5-7\n")) << r.err;
   EXPECT_EQ(run("render c.toml -q -o a.##.png --frames 1-7").status, 66);
 }
 
-TEST_F(CliValidation, WhatIsWrongWithEveryFrameIsSaidOnce) {
+TEST_F(CliValidation, ErrorOfEveryFrameIsReportedOnce) {
   write_bad("[camera]\nvfov = 200\n");
   const Outcome r = run("check bad.toml --frames 1-20");
   EXPECT_EQ(r.status, 65);
@@ -196,7 +195,7 @@ TEST_F(CliValidation, WhatIsWrongWithEveryFrameIsSaidOnce) {
   EXPECT_TRUE(contains(r.err, "20 of 20 frames have errors: 1-20")) << r.err;
 }
 
-TEST_F(CliValidation, OneFrameIsShownAndMeasured) {
+TEST_F(CliValidation, InfoAndBenchTakeOneFrame) {
   write("shot.toml",
         std::string(kGoodScene) + "[[key]]\ntarget = \"camera.vfov\"\nframes = [1, 11]\nvalues = [20, 40]\n");
   EXPECT_TRUE(contains(run("info shot.toml --settings").out, "camera.vfov                20 "));
@@ -207,10 +206,10 @@ TEST_F(CliValidation, OneFrameIsShownAndMeasured) {
   EXPECT_EQ(many.status, 2);
   EXPECT_EQ(many.err, "orrery: --frame 1-6 is 6 frames; this command takes one, and orrery check takes many\n");
   const std::string bench = "bench shot.toml -q --rounds 1 --seconds 0.001 --frame ";
-  EXPECT_NE(run(bench + "1").out.substr(0, 40), run(bench + "6").out.substr(0, 40)) << "the scene's hash";
+  EXPECT_NE(run(bench + "1").out.substr(0, 40), run(bench + "6").out.substr(0, 40)) << "the scene hash differs";
 }
 
-TEST_F(CliValidation, AMillionErrorsAreAHundredLines) {
+TEST_F(CliValidation, LongErrorListsAreTruncated) {
   std::string text;
   for (int i = 0; i < 2000; ++i) text += "[[sphere]]\nradius = \"big\"\nmaterial = \"gray\"\n";
   write_bad(text);
@@ -220,7 +219,7 @@ TEST_F(CliValidation, AMillionErrorsAreAHundredLines) {
   EXPECT_LT(r.err.size(), 30000u);
 }
 
-TEST_F(CliValidation, AReportIsAPage) {
+TEST_F(CliValidation, ReportMustBeAnHtmlFile) {
   for (const char* name : {"x.pdf", "x", "x.json"}) {
     const Outcome r = run(std::string("study good.toml -o ") + name);
     EXPECT_EQ(r.status, 2);
@@ -231,7 +230,7 @@ TEST_F(CliValidation, AReportIsAPage) {
   }
 }
 
-TEST_F(CliValidation, AllLayersAreThoseOfInfo) {
+TEST_F(CliValidation, AllLayersMatchInfo) {
   const Outcome info = run("info good.toml --layers all");
   EXPECT_TRUE(contains(info.out, "layers      Z, depth, N, ")) << info.out;
   ASSERT_EQ(run("render good.toml -q -o a.exr --layers all").status, 0);
@@ -243,7 +242,7 @@ TEST_F(CliValidation, AllLayersAreThoseOfInfo) {
   EXPECT_EQ(run("render good.toml -q -o c.exr --layers all --set render.shading=flat").status, 0);
 }
 
-TEST_F(CliValidation, UnusedColoursAreTold) {
+TEST_F(CliValidation, UnusedPointColoursAreReported) {
   write("c.ply",
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
         "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n0 0 -3 255 0 0\n");

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What Blender makes of our EXR files; run by Blender itself, blender --background --python blender.py -- FOLDER.
+"""Checks how Blender reads our EXR files. Runs inside Blender: blender --background --python blender.py -- FOLDER.
 
-FOLDER holds single.exr and multipart.exr of bunny.toml. Their layers must be found under the names that Blender gives
-to passes, and its Cryptomatte node must pick the sphere named "bunny" with the coverage that geometry says.
+FOLDER contains single.exr and multipart.exr, rendered from bunny.toml. Blender must find their layers under its own
+names for passes, and its Cryptomatte node must select the sphere "bunny" with the coverage computed from geometry.
 """
 import math
 import os
@@ -11,10 +11,10 @@ import sys
 import bpy
 
 FOLDER = sys.argv[sys.argv.index("--") + 1]
-WIDTH, HEIGHT = 240, 160  # px, as bunny.toml has it
+WIDTH, HEIGHT = 240, 160  # px, as in bunny.toml
 DISTANCE, RADIUS, VFOV_DEG = 5.0, 1.0, 40.0
 
-# A sphere in the middle of the view is a circle: its tangent cone cut by the picture's plane.
+# A sphere at the image centre projects to a circle: its tangent cone intersected with the image plane.
 PIXELS_PER_TANGENT = HEIGHT / 2 / math.tan(math.radians(VFOV_DEG) / 2)
 AREA_PX = math.pi * (PIXELS_PER_TANGENT * math.tan(math.asin(RADIUS / DISTANCE))) ** 2
 
@@ -30,7 +30,7 @@ def expect(holds, what):
 
 
 def composite(name, source):
-    """Runs one compositor tree: `source(tree)` gives the socket whose picture is wanted. Returns its values."""
+    """Runs a compositor tree and returns the pixel values of the socket that `source(tree)` returns."""
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = WIDTH, HEIGHT, 100
     scene.use_nodes = True
@@ -42,7 +42,7 @@ def composite(name, source):
     output.format.color_depth = "32"
     output.file_slots[0].path = name + "-"
     tree.links.new(source(tree), output.inputs[0])
-    # The tree is only run if something is rendered.
+    # Blender evaluates the tree only when it renders.
     bpy.ops.render.render()
     result = bpy.data.images.load(os.path.join(FOLDER, f"{name}-{scene.frame_current:04d}.exr"))
     values = list(result.pixels)
@@ -58,7 +58,7 @@ def check(file):
         node = tree.nodes.new("CompositorNodeImage")
         node.image = image
         found.update(s.name for s in node.outputs)
-        # What stands before the last dot but one is a layer to Blender; a node shows the passes of one layer.
+        # Blender takes the text before the second-to-last dot as the layer; a node has the passes of one layer.
         other = tree.nodes.new("CompositorNodeImage")
         other.image = image
         other.layer = "denoise"
@@ -79,15 +79,15 @@ def check(file):
     values = composite(file + "-depth", depth)
     print(file, "passes:", sorted(found))
     middle = values[((HEIGHT // 2) * WIDTH + WIDTH // 2) * 4]
-    expect(abs(middle - (DISTANCE - RADIUS)) < 1e-2, f"{file}: depth in the middle is {middle}")
+    expect(abs(middle - (DISTANCE - RADIUS)) < 1e-2, f"{file}: depth at the centre is {middle}")
 
     values = composite(file + "-matte", matte)
     coverage = sum(values[0::4])
-    print(file, "coverage", coverage, "px, geometry", AREA_PX)
-    expect(abs(coverage - AREA_PX) < 0.002 * AREA_PX, f"{file}: the matte covers {coverage} px, geometry says {AREA_PX}")
-    expect(max(values[0::4]) <= 1.0, f"{file}: a matte above 1")
+    print(file, "coverage", coverage, "px, expected", AREA_PX)
+    expect(abs(coverage - AREA_PX) < 0.002 * AREA_PX, f"{file}: the matte covers {coverage} px, expected {AREA_PX}")
+    expect(max(values[0::4]) <= 1.0, f"{file}: matte value above 1")
     corner = values[0]
-    expect(corner == 0, f"{file}: the matte is {corner} in the corner")
+    expect(corner == 0, f"{file}: the matte is {corner} in the corner, expected 0")
     missing = PASSES - found
     expect(not missing, f"{file}: Blender does not find {sorted(missing)} among {sorted(found)}")
 

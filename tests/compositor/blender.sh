@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Blender's compositor opens our EXR files: tests/compositor/blender.sh ORRERY WORK_FOLDER. Exit 77: no Blender here.
+# Opens our EXR files in Blender's compositor: tests/compositor/blender.sh ORRERY WORK_FOLDER
 set -eu
 orrery=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)

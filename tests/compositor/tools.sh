@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# What other programs say of our EXR files: tests/compositor/tools.sh ORRERY WORK_FOLDER. Exit 77: one of them is missing.
+# Checks our EXR files with other programs: tests/compositor/tools.sh ORRERY WORK_FOLDER. Exit 77: one is missing.
 set -eu
 orrery=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)
@@ -23,20 +23,20 @@ layers=$layers,denoise.albedo,denoise.normal,CryptoObject,CryptoMaterial
 "$orrery" render "$here/bunny.toml" -q --samples 32 -o parts.exr --layers "$layers" --multipart --type float
 "$orrery" render "$here/bunny.toml" -q --samples 32 -o over.exr --layers Z --set image.overscan=8
 
-# Every program opens every file, and finds what the header is to say.
+# Every program opens every file and finds the expected header attributes.
 for file in one.exr parts.exr deep.exr over.exr; do
-  exrheader "$file" >"$file.header" || fail "exrheader does not read $file"
-  oiiotool --hash "$file" >/dev/null || fail "oiiotool does not read $file"
+  exrheader "$file" >"$file.header" || fail "exrheader cannot read $file"
+  oiiotool --hash "$file" >/dev/null || fail "oiiotool cannot read $file"
   grep -q 'worldToNDC (type m44f)' "$file.header" || fail "$file has no worldToNDC"
   grep -q 'chromaticities (type chromaticities)' "$file.header" || fail "$file has no chromaticities"
 done
 grep -q 'cryptomatte/3ae39a5/name (type string): "CryptoObject"' one.exr.header || fail "no Cryptomatte in one.exr"
-grep -q 'name (type string): "CryptoObject"' parts.exr.header || fail "no part of the Cryptomatte"
+grep -q 'name (type string): "CryptoObject"' parts.exr.header || fail "no Cryptomatte part in parts.exr"
 grep -q 'type (type string): "deepscanline"' deep.exr.header || fail "deep.exr is not deep"
-grep -q 'dataWindow (type box2i): (-8 -8) - (247 167)' over.exr.header || fail "no overscan in over.exr"
-exrstdattr -part 0 -string comments 'seen' one.exr copy.exr || fail "exrstdattr does not take one.exr"
+grep -q 'dataWindow (type box2i): (-8 -8) - (247 167)' over.exr.header || fail "wrong data window in over.exr"
+exrstdattr -part 0 -string comments 'seen' one.exr copy.exr || fail "exrstdattr rejects one.exr"
 
-# The layers are the beauty. idiff compares in float; the sum is exact in the order of the channels.
+# The layers sum to the beauty. idiff compares in float; the sum is exact in the order of the channels.
 sum="oiiotool one.exr --ch background.R,background.G,background.B"
 for group in diffuse specular transmission; do
   for way in direct indirect; do
@@ -46,12 +46,12 @@ done
 $sum --chnames R,G,B -d float -o sum.exr
 oiiotool one.exr --ch R,G,B -d float -o beauty.exr
 idiff -q -fail 0 -warn 0 sum.exr beauty.exr || fail "the sum of the layers is not the beauty"
-# Parts hold what one part holds; what is deep, flattened, is the beauty.
+# A multipart file has the same pixels as a single-part one; the flattened deep image is the beauty.
 oiiotool parts.exr --subimage 0 --ch R,G,B -d float -o part.exr
 idiff -q -fail 0 -warn 0 part.exr beauty.exr || fail "the first part is not the beauty"
 oiiotool deep.exr --flatten --ch R,G,B -d float -o flat.exr
-idiff -q -fail 0.000001 -warn 0.000001 flat.exr beauty.exr || fail "the deep picture flattened is not the beauty"
+idiff -q -fail 0.000001 -warn 0.000001 flat.exr beauty.exr || fail "the flattened deep image is not the beauty"
 
-# The built-in config, and a baked view that does what the view does.
-ociocheck --iconfig "$here/../../src/display/config/orrery.ocio" >ociocheck.log || fail "ociocheck refuses the config"
-echo "exrheader, exrstdattr, oiiotool, idiff and ociocheck agree"
+# The built-in OCIO config is valid.
+ociocheck --iconfig "$here/../../src/display/config/orrery.ocio" >ociocheck.log || fail "ociocheck rejects the built-in config"
+echo "exrheader, exrstdattr, oiiotool, idiff and ociocheck accept our files"

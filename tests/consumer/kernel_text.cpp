@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The installed text over lanes, instantiated by a program of its own.
+// Instantiates installed SIMD code (-inl.h) in an external program.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernel_text.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep

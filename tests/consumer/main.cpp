@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders one sphere through the installed libraries, and calls kernel text that it instantiated itself.
+// Renders one sphere with the installed libraries, and calls kernel code that this project instantiated.
 #include <cstdio>
 
 #include "compile/compile.h"
@@ -15,7 +15,7 @@ int main() {
   scene.spheres = {{{0, 0, -1}, 0.5, 0, ""}};
   const auto result = orrery::render::render(orrery::compile::compile(scene), {});
   if (!result.completed || result.picture.planes.size() != 4) {
-    std::puts("no picture");
+    std::puts("the render failed");
     return 1;
   }
   if (sine_of_quarter_turn() != 1) {

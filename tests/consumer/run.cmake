@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs the build into a folder of its own, moves that, and configures, builds and runs the consumer against it.
-# Moved, since an installed tree that names the folder of its birth is of no use in a package.
+# Installs the build, moves the installed tree, and configures, builds and runs the consumer against it. The move shows
+# that the tree is relocatable, as a package requires.
 file(REMOVE_RECURSE ${WORK})
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -17,7 +17,7 @@ run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 run(${WORK}/prefix/bin/orrery --version)
 
-# Nothing that was installed remembers where it was built.
+# Installed files do not name the build folder.
 file(GLOB_RECURSE texts ${WORK}/prefix/*.cmake ${WORK}/prefix/*.h)
 foreach(text IN LISTS texts)
   file(STRINGS ${text} lines)

@@ -27,9 +27,9 @@ class DeterminismProgram : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// Renders the scene with more arguments; 32-bit EXR without what changes between runs.
+  /// Renders the scene to a reproducible 32-bit EXR file; `arguments` are appended.
   fs::path render(const std::string& name, const std::string& arguments) {
-    const fs::path file = folder_ / (name + ".exr");
+    fs::path file = folder_ / (name + ".exr");
     const std::string command = std::string("\"") + ORRERY_PROGRAM + "\" render \"" + ORRERY_SCENE + "\" -o \"" +
                                 file.string() + "\" --type float --reproducible -q " + arguments;
     EXPECT_EQ(std::system(command.c_str()), 0) << command;
@@ -45,7 +45,7 @@ std::string bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Headers may tell how a picture was made; its values may not.
+/// Compares pixel values; headers may differ.
 bool same_values(const fs::path& a, const fs::path& b) {
   const film::Picture p = image::read(a), q = image::read(b);
   EXPECT_EQ(p.planes.size(), 4u);
@@ -75,7 +75,7 @@ TEST_F(DeterminismProgram, EmbreeAndListGiveTheSameValuesInEveryPrecision) {
   }
 }
 
-/// Those with fused multiply-add; SSE4 has none, and no values are promised of it.
+/// SSE4 has no fused multiply-add, so its values may differ.
 TEST_F(DeterminismProgram, EveryInstructionSetFromAvx2UpwardsGivesTheSameValues) {
   for (const std::string precision : {"exact", "fast", "book"}) {
     const auto best = render("best", "--precision " + precision);
@@ -83,7 +83,7 @@ TEST_F(DeterminismProgram, EveryInstructionSetFromAvx2UpwardsGivesTheSameValues)
       const fs::path statistics = folder_ / "statistics.json";
       const auto limited =
           render(isa, "--precision " + precision + " --isa " + isa + " --stats \"" + statistics.string() + "\"");
-      EXPECT_NE(bytes_of(statistics).find("\"isa\": \"" + isa + "\""), std::string::npos) << "another one ran";
+      EXPECT_NE(bytes_of(statistics).find("\"isa\": \"" + isa + "\""), std::string::npos) << "--isa was ignored";
       if (isa != "sse4") {
         EXPECT_TRUE(same_values(best, limited)) << isa << ", " << precision;
       }
@@ -91,11 +91,10 @@ TEST_F(DeterminismProgram, EveryInstructionSetFromAvx2UpwardsGivesTheSameValues)
   }
 }
 
-/// Whatever compiler, level, library and processor: these are the values. Who changes what is sampled changes the
-/// number.
-TEST_F(DeterminismProgram, ThePictureIsTheOneThatIsWrittenDown) {
+/// The hash holds for every compiler, optimization level, library and processor. Update it when sampling changes.
+TEST_F(DeterminismProgram, ImageMatchesTheStoredHash) {
   if (kernel::isa_name() == "sse4") GTEST_SKIP() << "no fused multiply-add on this processor";
-  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over the bytes of all values
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a of the bytes of all values
   for (const film::Plane& plane : image::read(render("picture", "")).planes) {
     for (const float value : plane.values) {
       std::uint32_t bits;
@@ -106,8 +105,8 @@ TEST_F(DeterminismProgram, ThePictureIsTheOneThatIsWrittenDown) {
   EXPECT_EQ(hash, 0x3fa6a00f7e524967u) << std::hex << hash;
 }
 
-TEST_F(DeterminismProgram, EverythingInTheSceneThatMattersShows) {
-  // The tests above would be blind if the program rendered the same whatever it is told.
+TEST_F(DeterminismProgram, OptionsThatMatterChangeTheImage) {
+  // Guards the tests above: they would pass if the program ignored its options.
   const auto plain = render("plain", "");
   EXPECT_FALSE(same_values(plain, render("seed", "--seed 18")));
   EXPECT_FALSE(same_values(plain, render("depth", "--max-depth 2")));

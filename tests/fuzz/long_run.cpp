@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For libFuzzer, by run.sh: FAULT names the function of readers.h that is given the bytes.
+// Entry point for libFuzzer, built by run.sh. FAULT is the function of readers.h to call.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

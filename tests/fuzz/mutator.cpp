@@ -9,7 +9,7 @@ void Mutator::accident(std::string& bytes) {
   const std::size_t at = below(bytes.size() + 1);
   const std::size_t length = below(std::min<std::size_t>(bytes.size() - at, 40) + 1);
   switch (below(8)) {
-    case 0:  // a bit falls over
+    case 0:  // flip a bit
       if (at < bytes.size()) bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
       return;
     case 1: bytes.resize(at); return;

@@ -21,16 +21,16 @@ void write(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// An error must be one that a user can act on, and be fit to be printed.
+/// Checks that an error has actionable, printable diagnostics.
 std::string fault_with_error(const base::Error& error, bool needs_findings) {
   if (error.kind() != base::ErrorKind::kBadData) return "not bad data: " + std::string(error.what());
-  if (needs_findings && error.diagnostics().empty()) return "bad data without a finding";
+  if (needs_findings && error.diagnostics().empty()) return "bad data without a diagnostic";
   for (const base::Diagnostic& diagnostic : error.diagnostics()) {
     const std::string text = base::formatted(diagnostic);
-    if (diagnostic.file.empty()) return "a finding without a file: " + text;
-    if (diagnostic.text.empty()) return "a finding without a text: " + text;
+    if (diagnostic.file.empty()) return "a diagnostic without a file: " + text;
+    if (diagnostic.text.empty()) return "a diagnostic without a text: " + text;
     const auto is_control = [](char c) { return c >= 0 && c < ' ' && c != '\n' && c != '\t'; };
-    if (std::any_of(text.begin(), text.end(), is_control)) return "a finding with control characters";
+    if (std::any_of(text.begin(), text.end(), is_control)) return "a diagnostic with control characters";
   }
   return {};
 }
@@ -38,18 +38,18 @@ std::string fault_with_error(const base::Error& error, bool needs_findings) {
 std::string fault_with_result(const format::ReadResult& read) {
   for (const scene::SceneDiagnostic& diagnostic : scene::validate(read.scene))
     if (diagnostic.severity == base::Severity::kError)
-      return "accepted in spite of " + diagnostic.key + ": " + diagnostic.text;
+      return "accepted despite " + diagnostic.key + ": " + diagnostic.text;
   if (read.settings.empty()) return "no settings";
   return {};
 }
 
-/// What is written of a scene reads back, and says the same when it is written again.
+/// Checks that a written scene reads back and writes the same text again.
 std::string fault_with_round_trip(const std::filesystem::path& folder, scene::Scene scene) {
-  scene.points.clear();  // their files are not ours to write
+  scene.points.clear();  // points files are not written
   const std::string text = format::scene_text(scene, "");
   write(folder / "again.toml", text);
   if (format::scene_text(format::read_scene(folder / "again.toml").scene, "") != text)
-    return "does not read back the same";
+    return "changes when it is read back";
   return {};
 }
 
@@ -67,7 +67,7 @@ std::string fault_with(const std::filesystem::path& folder, const std::filesyste
   try {
     return fault_with_round_trip(folder, read.scene);
   } catch (const base::Error& error) {
-    return "what was written is refused: " +
+    return "the written scene is rejected: " +
            (error.diagnostics().empty() ? std::string(error.what()) : base::formatted(error.diagnostics()[0]));
   }
 }
@@ -101,13 +101,13 @@ std::string fault_with_ply(const std::filesystem::path& folder, const std::strin
   constexpr std::size_t kMaterials = 3;
   write(folder / "points.ply", bytes);
   scene::Points points;
-  if (bytes.size() % 2 == 1) points.radius = 0.5;  // both ways, whatever the bytes are
+  if (bytes.size() % 2 == 1) points.radius = 0.5;  // covers both ways to set the radius
   try {
     format::read_ply(folder / "points.ply", kMaterials, points);
-    return fits(points, kMaterials) ? "" : "accepted, but not fit to render";
+    return fits(points, kMaterials) ? "" : "accepted, but not renderable";
   } catch (const base::Error& error) {
     if (!points.centers.empty() || !points.radii.empty() || !points.materials.empty())
-      return "an error left points behind";
+      return "points remain after an error";
     return fault_with_error(error, true);
   } catch (const std::exception& error) {
     return "not an Error: " + std::string(error.what());

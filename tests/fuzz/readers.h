@@ -6,15 +6,14 @@
 
 namespace orrery::fuzz {
 
-/// Each gives bytes to a reader and checks what must hold whatever they are: there is a scene that is fit to render, or
-/// a base::Error with something to say; nothing else.
+/// Passes bytes to a reader and checks its contract: it returns a valid scene or throws a base::Error with diagnostics.
 ///
-/// `folder` is for files, and may be used again.
+/// `folder` receives temporary files and can be reused.
 ///
-/// Result     what does not hold, empty where all does; a crash is for the caller to see
+/// Result     description of the violation, empty if there is none; crashes are left to the caller
 std::string fault_with_scene(const std::filesystem::path& folder, const std::string& bytes);
 std::string fault_with_ply(const std::filesystem::path& folder, const std::string& bytes);
-/// The bytes are overrides, one a line.
+/// As above for overrides, one per line.
 std::string fault_with_overrides(const std::filesystem::path& folder, const std::string& bytes);
 
 }  // namespace orrery::fuzz

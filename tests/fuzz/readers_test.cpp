@@ -16,7 +16,7 @@ namespace {
 
 using Fault = std::string (*)(const std::filesystem::path&, const std::string&);
 
-/// The files of a folder of seeds, in an order that does not depend on the machine.
+/// Contents of the files of a corpus folder, sorted by name.
 std::vector<std::string> seeds_of(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
@@ -110,7 +110,7 @@ void expect_no_fault_with_noise(Fault fault, std::uint64_t seed, int count, cons
     expect_no_fault(fault, begin + mutator.noise(300), "noise " + std::to_string(i));
 }
 
-TEST(FuzzReaders, SeedsAreGood) {
+TEST(FuzzReaders, CorpusPasses) {
   const support::TempDir folder;
   for (const std::string& seed : seeds_of(corpus() / "scene")) EXPECT_EQ(fault_with_scene(folder.path(), seed), "");
   for (const std::string& seed : seeds_of(corpus() / "ply")) EXPECT_EQ(fault_with_ply(folder.path(), seed), "");
@@ -118,11 +118,11 @@ TEST(FuzzReaders, SeedsAreGood) {
     EXPECT_EQ(fault_with_overrides(folder.path(), seed), "");
 }
 
-TEST(FuzzReaders, NoiseIsNoScene) { expect_no_fault_with_noise(fault_with_scene, 1, 3000); }
+TEST(FuzzReaders, RandomBytesAsScene) { expect_no_fault_with_noise(fault_with_scene, 1, 3000); }
 
-TEST(FuzzReaders, NoiseIsNoPly) { expect_no_fault_with_noise(fault_with_ply, 2, 3000); }
+TEST(FuzzReaders, RandomBytesAsPly) { expect_no_fault_with_noise(fault_with_ply, 2, 3000); }
 
-TEST(FuzzReaders, NoiseBehindAGoodHeader) {
+TEST(FuzzReaders, RandomBytesAfterAValidHeader) {
   const std::string properties =
       "property float x\nproperty float y\nproperty float z\nproperty double radius\nend_header\n";
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"})
@@ -132,29 +132,29 @@ TEST(FuzzReaders, NoiseBehindAGoodHeader) {
                                    properties);
 }
 
-TEST(FuzzReaders, NoiseIsNoOverride) { expect_no_fault_with_noise(fault_with_overrides, 4, 3000); }
+TEST(FuzzReaders, RandomBytesAsOverrides) { expect_no_fault_with_noise(fault_with_overrides, 4, 3000); }
 
-TEST(FuzzReaders, BrokenScenes) {
+TEST(FuzzReaders, MutatedScenes) {
   std::vector<std::string> seeds = seeds_of(corpus() / "scene");
   expect_no_fault_with_mutants(fault_with_scene, Mutator(5, seeds, scene_words()), 6000);
 }
 
-TEST(FuzzReaders, BrokenPlys) {
+TEST(FuzzReaders, MutatedPlyFiles) {
   expect_no_fault_with_mutants(fault_with_ply, Mutator(6, seeds_of(corpus() / "ply"), ply_words()), 10000);
 }
 
-TEST(FuzzReaders, BrokenOverrides) {
+TEST(FuzzReaders, MutatedOverrides) {
   expect_no_fault_with_mutants(fault_with_overrides, Mutator(7, seeds_of(corpus() / "override"), scene_words()), 6000);
 }
 
-/// A character of U+0800 and more, as UTF-8.
+/// UTF-8 encoding of a character from U+0800 to U+FFFF.
 std::string character(unsigned code) {
   return {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 63)),
           static_cast<char>(0x80 | (code & 63))};
 }
 
-// What is no ASCII belongs into strings and comments; the library's tables of blanks have gaps, see run.sh.
-TEST(FuzzReaders, LettersOutsideOfStrings) {
+// Non-ASCII characters are valid in strings and comments only. The library's tables of blanks have gaps: see run.sh.
+TEST(FuzzReaders, NonAsciiLettersOutsideStrings) {
   for (unsigned code = 0x0800; code <= 0x3100 && !testing::Test::HasFailure(); ++code) {
     const std::string letter = character(code);
     expect_no_fault(fault_with_scene, "camera.vfov =" + letter + "30\n" + letter + "[camera]\n", "letter");
@@ -162,8 +162,8 @@ TEST(FuzzReaders, LettersOutsideOfStrings) {
   }
 }
 
-// The checks themselves must be able to fail.
-TEST(FuzzReaders, AFaultIsFound) {
+// Shows that the checks can fail.
+TEST(FuzzReaders, FaultsAreDetected) {
   const support::TempDir folder;
   EXPECT_EQ(
       fault_with_scene(folder.path() / "none", ""),

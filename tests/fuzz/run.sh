@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Feeds broken files to the readers for a long time, guided by coverage, under the address and undefined-behaviour
-# sanitizers. Needs clang.
+# Fuzzes the readers with libFuzzer under the address and undefined-behaviour sanitizers. Needs clang.
 #
-#   tests/fuzz/run.sh scene|ply|overrides [SECONDS=600] [more options of libFuzzer]
+#   tests/fuzz/run.sh scene|ply|overrides [SECONDS=600] [libFuzzer options]
 #
-# What is found stays in the build folder (ORRERY_FUZZ_BUILD, default build-fuzz) as crash-*, and so does the corpus.
+# Crashing inputs (crash-*) and the corpus are kept in the build folder (ORRERY_FUZZ_BUILD, default build-fuzz).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -24,8 +23,8 @@ shift $(($# < 2 ? $# : 2))
 
 build=${ORRERY_FUZZ_BUILD:-build-fuzz}
 mkdir -p "$build/corpus-$target"
-# toml++ 3.3 promises its compiler that some letters and signs never come. Compiled as Debian does it, without assertions,
-# it does what is right with them all the same; readers_test.cpp asks for each letter.
+# toml++ 3.3 declares code for some characters unreachable. As Debian compiles it, without assertions, it still handles
+# them correctly, which readers_test.cpp checks for each character. So exclude it from the sanitizers.
 echo 'src:*/toml\+\+/*' >"$build/not-ours.txt"
 "${CLANGXX:-clang++}" -std=c++20 -O1 -g -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
   -fsanitize-ignorelist="$build/not-ours.txt" \

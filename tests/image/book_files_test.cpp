@@ -31,7 +31,7 @@ std::vector<fs::path> scene_files(const fs::path& folder) {
   return files;
 }
 
-TEST(ImageBookFiles, EverySceneReadsWithoutFindings) {
+TEST(ImageBookFiles, EverySceneReadsWithoutDiagnostics) {
   const auto files = scene_files(kScenes);
   EXPECT_GE(files.size(), 22u);
   for (const fs::path& file : files) {
@@ -44,12 +44,12 @@ TEST(ImageBookFiles, EverySceneReadsWithoutFindings) {
   }
 }
 
-TEST(ImageBookFiles, EverySceneSaysWhichSectionItIs) {
+TEST(ImageBookFiles, EverySceneNamesItsSectionOfTheBook) {
   for (const fs::path& file : scene_files(kScenes / "book"))
     EXPECT_EQ(text_of(file).rfind("# Ray Tracing in One Weekend, \"", 0), 0u) << file;
 }
 
-TEST(ImageBookFiles, EverySceneNamesACommandThatRendersIt) {
+TEST(ImageBookFiles, EverySceneNamesItsRenderCommand) {
   for (const fs::path& file : scene_files(kScenes / "book"))
     EXPECT_NE(text_of(file).find("orrery render " + file.filename().string() + " -o "), std::string::npos) << file;
 }
@@ -64,12 +64,12 @@ TEST(ImageBookFiles, EverySceneIsShownInTheReadme) {
   }
 }
 
-TEST(ImageBookFiles, FinalIsWhatGenerateWrites) {
+TEST(ImageBookFiles, FinalSceneMatchesGenerate) {
   const fs::path folder = fs::path(testing::TempDir()) / "orrery-book-files";
   fs::create_directories(folder);
   generate::generate_final({}, folder / "final.toml");
   EXPECT_TRUE(text_of(folder / "final.toml") == text_of(kScenes / "book/final.toml"))
-      << "write it anew: orrery generate final -o scenes/book/final.toml";
+      << "regenerate it: orrery generate final -o scenes/book/final.toml";
   fs::remove_all(folder);
 }
 

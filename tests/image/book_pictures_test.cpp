@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the book says is to be seen in its figures, asked of small pictures of the scenes. Places are shares of width
-// and height from the upper left.
+// Checks in small images of the scenes what the book describes in its figures. Positions are fractions of width and
+// height from the upper left.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ film::Picture picture_of(const std::string& name, std::vector<format::Override> 
   return std::move(result.picture);
 }
 
-/// The mean colour of a block of seven by seven pixels.
+/// Mean colour of a block of 7 x 7 pixels.
 Vec3d color_at(const film::Picture& picture, double u, double v) {
   const int x0 = static_cast<int>(u * kWidth), y0 = static_cast<int>(v * kHeight);
   double sums[3] = {};
@@ -47,11 +47,11 @@ Vec3d color_at(const film::Picture& picture, double u, double v) {
 }
 
 double brightness(Vec3d c) { return (c.x + c.y + c.z) / 3; }
-/// The ground of the metal and glass scenes reflects no blue at all.
+/// The ground of the metal and glass scenes reflects no blue.
 bool is_ground(Vec3d c) { return c.z < 0.3 * c.x; }
 bool is_sky(Vec3d c) { return c.z > c.x && c.x > 0.4; }
 
-/// The steepest step of blue from pixel to pixel along a row. The ground's blue is 0 without noise.
+/// Maximum difference in blue between neighbouring pixels of a row. The ground's blue is 0 without noise.
 double steepest_blue(const film::Picture& picture, double v, double u_from, double u_to) {
   const auto& blue = picture.find("B")->values;
   const auto row = static_cast<std::size_t>(static_cast<int>(v * kHeight) * kWidth);
@@ -61,14 +61,14 @@ double steepest_blue(const film::Picture& picture, double v, double u_from, doub
   return static_cast<double>(most);
 }
 
-TEST(ImageBookPictures, SkyIsBluerAbove) {
+TEST(ImageBookPictures, SkyIsBluerAtTheTop) {
   const auto p = picture_of("01-gradient-sky");
   const Vec3d top = color_at(p, 0.5, 0), middle = color_at(p, 0.5, 0.5), bottom = color_at(p, 0.5, 1);
   EXPECT_LT(top.x, middle.x);
   EXPECT_LT(middle.x, bottom.x);
   EXPECT_NEAR(top.z, 1, 1e-6);
   EXPECT_NEAR(bottom.z, 1, 1e-6);
-  EXPECT_NEAR(middle.x, 0.75, 0.01);  // level: half of white, half of the blue's 0.5
+  EXPECT_NEAR(middle.x, 0.75, 0.01);  // horizontal: the mean of white, 1, and blue, 0.5
 }
 
 TEST(ImageBookPictures, RedSphereIsFlat) {
@@ -77,7 +77,7 @@ TEST(ImageBookPictures, RedSphereIsFlat) {
   EXPECT_TRUE(is_sky(color_at(p, 0.1, 0.5)));
 }
 
-TEST(ImageBookPictures, NormalsAreColours) {
+TEST(ImageBookPictures, NormalsAreShownAsColours) {
   const auto p = picture_of("03-normals-one-sphere");
   EXPECT_GT(color_at(p, 0.62, 0.5).x, color_at(p, 0.38, 0.5).x + 0.4);
   EXPECT_GT(color_at(p, 0.5, 0.27).y, color_at(p, 0.5, 0.73).y + 0.4);
@@ -87,8 +87,8 @@ TEST(ImageBookPictures, NormalsAreColours) {
   EXPECT_NEAR(ground.y, 1.0, 0.02);
 }
 
-TEST(ImageBookPictures, ManySamplesMixTheEdge) {
-  // Left of the ball there are the sky, whose blue is 1, and the ground, whose blue is a half; one sample is either.
+TEST(ImageBookPictures, ManySamplesAntialiasTheEdge) {
+  // To the left of the ball are the sky (blue 1) and the ground (blue 0.5); a single sample is one or the other.
   const auto mixed_pixels = [](const film::Picture& p) {
     int count = 0;
     for (int y = 0; y < kHeight; ++y) {
@@ -103,7 +103,7 @@ TEST(ImageBookPictures, ManySamplesMixTheEdge) {
   EXPECT_GT(mixed_pixels(picture_of("05-antialiased")), kWidth / 8);
 }
 
-TEST(ImageBookPictures, ALowLimitIsDarkUnderTheBall) {
+TEST(ImageBookPictures, LowRayLimitDarkensTheCreviceUnderTheBall) {
   const auto fifty = picture_of("07-child-ray-limit"), two = picture_of("07-child-ray-limit", {"render.max_depth=2"});
   EXPECT_LT(brightness(color_at(two, 0.5, 0.8)), 0.75 * brightness(color_at(fifty, 0.5, 0.8)));
   EXPECT_NEAR(brightness(color_at(picture_of("06-hemisphere-diffuse"), 0.5, 0.5)),
@@ -117,13 +117,13 @@ TEST(ImageBookPictures, AcneDarkensAndExactHasNone) {
   EXPECT_NEAR(ball(picture_of("08-shadow-acne", {"render.precision=exact"})), fixed, 0.01 * fixed);
 }
 
-TEST(ImageBookPictures, LambertianShadowIsDeeperAndTheBallLighter) {
+TEST(ImageBookPictures, LambertianShadowIsDarkerAndTheBallBrighter) {
   const auto hemisphere = picture_of("06-hemisphere-diffuse"), lambertian = picture_of("10-lambertian");
   EXPECT_GT(brightness(color_at(lambertian, 0.5, 0.4)), 1.03 * brightness(color_at(hemisphere, 0.5, 0.4)));
   EXPECT_LT(brightness(color_at(lambertian, 0.5, 0.81)), 0.95 * brightness(color_at(hemisphere, 0.5, 0.81)));
 }
 
-TEST(ImageBookPictures, FiveReflectancesRiseToTheRight) {
+TEST(ImageBookPictures, ReflectanceIncreasesToTheRight) {
   const auto p = picture_of("11-gamma");
   double last = 0;
   for (const double u : {0.133, 0.316, 0.5, 0.684, 0.867}) {
@@ -133,7 +133,7 @@ TEST(ImageBookPictures, FiveReflectancesRiseToTheRight) {
   }
 }
 
-TEST(ImageBookPictures, MetalMirrorsUprightAndFuzzBlursIt) {
+TEST(ImageBookPictures, MetalReflectsUprightAndFuzzBlurs) {
   const auto p = picture_of("12-metal");
   for (const double u : {0.2, 0.8}) {
     EXPECT_FALSE(is_ground(color_at(p, u, 0.35))) << u;
@@ -143,10 +143,10 @@ TEST(ImageBookPictures, MetalMirrorsUprightAndFuzzBlursIt) {
   EXPECT_LT(gold.z / gold.x, 0.5 * silver.z / silver.x);
   const Vec3d fuzzy = color_at(picture_of("13-fuzzy-metal"), 0.8, 0.65);
   const Vec3d sharp = color_at(p, 0.8, 0.65);
-  EXPECT_GT(fuzzy.z / fuzzy.x, 2 * sharp.z / sharp.x) << "as fuzzy as it gets, the lower half mirrors some sky";
+  EXPECT_GT(fuzzy.z / fuzzy.x, 2 * sharp.z / sharp.x) << "with maximum fuzz the lower half reflects some sky";
 }
 
-TEST(ImageBookPictures, GlassThatRefractsTurnsTheWorldUpsideDown) {
+TEST(ImageBookPictures, RefractingGlassShowsTheSceneUpsideDown) {
   for (const char* name : {"14-glass-always-refracts", "16-glass-schlick"}) {
     const auto p = picture_of(name);
     EXPECT_TRUE(is_ground(color_at(p, 0.19, 0.31))) << name;
@@ -154,7 +154,7 @@ TEST(ImageBookPictures, GlassThatRefractsTurnsTheWorldUpsideDown) {
   }
 }
 
-TEST(ImageBookPictures, BubbleAndHollowGlassLeaveItUpright) {
+TEST(ImageBookPictures, BubbleAndHollowGlassShowTheSceneUpright) {
   for (const char* name : {"15-glass-total-internal-reflection", "17-hollow-glass"}) {
     const auto p = picture_of(name);
     EXPECT_TRUE(is_sky(color_at(p, 0.19, 0.4))) << name;
@@ -162,7 +162,7 @@ TEST(ImageBookPictures, BubbleAndHollowGlassLeaveItUpright) {
   }
 }
 
-TEST(ImageBookPictures, BubbleMirrorsTheBlueBallInItsRim) {
+TEST(ImageBookPictures, BubbleRimReflectsTheBlueBall) {
   const auto p = picture_of("15-glass-total-internal-reflection");
   const Vec3d rim = color_at(p, 0.345, 0.5), further_in = color_at(p, 0.28, 0.45);
   EXPECT_LT(rim.x, 0.4);
@@ -171,7 +171,7 @@ TEST(ImageBookPictures, BubbleMirrorsTheBlueBallInItsRim) {
 }
 
 TEST(ImageBookPictures, SchlickBrightensTheRim) {
-  // Where the refracting ball shows dark ground near its upper edge, the mirroring one adds sky.
+  // Near its upper edge the refracting ball shows dark ground; Schlick reflection adds sky.
   EXPECT_GT(color_at(picture_of("16-glass-schlick"), 0.125, 0.235).z,
             color_at(picture_of("14-glass-always-refracts"), 0.125, 0.235).z + 0.05);
 }
@@ -185,7 +185,7 @@ TEST(ImageBookPictures, WideAngleHasBlueOnTheLeft) {
   EXPECT_EQ(right.z, 0);
 }
 
-TEST(ImageBookPictures, ZoomKeepsTheMiddleAndMagnifies) {
+TEST(ImageBookPictures, ZoomMagnifies) {
   const auto far = picture_of("19-far-view"), zoomed = picture_of("20-zoomed-view");
   const auto blue_pixels = [](const film::Picture& p) {
     int count = 0;
@@ -195,18 +195,18 @@ TEST(ImageBookPictures, ZoomKeepsTheMiddleAndMagnifies) {
   };
   const double magnified = static_cast<double>(blue_pixels(zoomed)) / blue_pixels(far);
   const double expected = std::pow(std::tan(0.7853981633974483) / std::tan(0.17453292519943295), 2);
-  EXPECT_NEAR(magnified / expected, 1, 0.2);  // the ball's edges leave the flat of the picture plane
+  EXPECT_NEAR(magnified / expected, 1, 0.2);  // perspective distortion at the ball's edges
 }
 
-TEST(ImageBookPictures, DefocusBlursInFrontAndBehindAndNotInTheMiddle) {
-  // Flat shading leaves nothing but edges: the glass in front shows white, the middle ball blue, the metal behind gold.
+TEST(ImageBookPictures, DefocusBlursInFrontOfAndBehindTheFocusPlane) {
+  // Flat shading leaves edges only: glass in front is white, the middle ball blue, metal behind gold.
   const auto sharp = picture_of("20-zoomed-view", {"render.shading=flat"});
   const auto blurred = picture_of("21-defocus-blur", {"render.shading=flat"});
   const auto step = [](const film::Picture& p, double v, double u_from, double u_to) {
     return steepest_blue(p, v, u_from, u_to);
   };
-  EXPECT_LT(step(blurred, 0.3, 0.85, 1.0), 0.5 * step(sharp, 0.3, 0.85, 1.0)) << "behind";
-  EXPECT_LT(step(blurred, 0.9, 0.2, 0.45), 0.5 * step(sharp, 0.9, 0.2, 0.45)) << "in front";
+  EXPECT_LT(step(blurred, 0.3, 0.85, 1.0), 0.5 * step(sharp, 0.3, 0.85, 1.0)) << "behind the focus plane";
+  EXPECT_LT(step(blurred, 0.9, 0.2, 0.45), 0.5 * step(sharp, 0.9, 0.2, 0.45)) << "in front of the focus plane";
   EXPECT_GT(step(blurred, 0.2, 0.15, 0.35), 0.7 * step(sharp, 0.2, 0.15, 0.35)) << "in focus";
 }
 

@@ -1,18 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Holds every #include and namespace under a source folder against the table of rooms.
+# Checks every #include and namespace under a source folder against the table of rooms.
 #
 #   check.sh ROOMS.txt SRC
 #
-# ROOMS.txt has a line a room: name | rooms it may include | prefixes of foreign headers that stay within it | prefixes
-# of foreign headers that its own headers may show to others. A room that another one includes is not included with it:
-# whoever uses it names it.
+# ROOMS.txt has one line per room: name | rooms it may include | include prefixes of libraries used internally | include
+# prefixes of libraries that its headers may expose to other rooms. Dependencies are not transitive: a room lists every
+# room that it includes.
 set -eu
 awk -v src="$2" '
   function trim(s) { gsub(/^ +| +$/, "", s); return s }
   function complain(file, text) { printf "%s: %s\n", file, text; bad = 1 }
   function room_of(path) { sub(/\/.*/, "", path); return path }
-  # The foreign prefix that a header begins with, or nothing.
+  # Returns the library prefix of a header, or nothing.
   function foreign_of(header,   prefix) {
     for (prefix in foreign) if (index(header, prefix) == 1) return prefix
     return ""
@@ -30,7 +30,7 @@ awk -v src="$2" '
   function check_file(path,   file, room, line, header, prefix, opened) {
     file = src "/" path
     room = room_of(path)
-    if (!(room in rooms)) { complain(file, "is in no room"); return }
+    if (!(room in rooms)) { complain(file, "is not in a room of the table"); return }
     while ((getline line < file) > 0) {
       if (match(line, /^[ \t]*#[ \t]*include[ \t]*[<"][^>"]+/)) {
         header = substr(line, RSTART, RLENGTH); sub(/^[^<"]*[<"]/, "", header)
@@ -42,26 +42,26 @@ awk -v src="$2" '
           if (!((room, prefix) in allowed)) complain(file, room " may not use " header)
           else if (!((room, prefix) in shown)) internal[path] = header
         } else if (header ~ /\// && header !~ /^(sys|linux)\//) {
-          complain(file, header " is of a library that no room names")
+          complain(file, header " belongs to a library that no room declares")
         }
       }
-      if (line ~ /^#[ \t]*define ORRERY_/) opened = 1  # a macro lives in no namespace
+      if (line ~ /^#[ \t]*define ORRERY_/) opened = 1  # macros have no namespace
       if (line ~ /^[ \t]*(inline )?namespace orrery/) {
         opened = 1
-        if (line !~ "^namespace orrery::" room "[: {]") complain(file, "opens a namespace that is not its room: " line)
+        if (line !~ "^namespace orrery::" room "[: {]") complain(file, "opens a namespace of another room: " line)
       }
     }
     close(file)
-    if (!opened && path !~ /main\.cpp$/) complain(file, "opens no namespace orrery::" room)
+    if (!opened && path !~ /main\.cpp$/) complain(file, "does not open namespace orrery::" room)
   }
 
   END {
-    if (room_count == 0) { print "no rooms in the table"; exit 1 }
+    if (room_count == 0) { print "the table has no rooms"; exit 1 }
     command = "find " src " -type f \\( -name \"*.h\" -o -name \"*.cpp\" -o -name \"*.in\" \\)"
     while ((command | getline file) > 0) { file_count++; check_file(substr(file, length(src) + 2)) }
     if (file_count == 0) { print "no source files under " src; exit 1 }
 
-    # A header that includes an internal one is internal itself, and neither is for another room.
+    # A header that includes an internal header is internal; other rooms may not include internal headers.
     do {
       grown = 0
       for (i = 1; i <= include_count; i++) {
@@ -73,7 +73,7 @@ awk -v src="$2" '
     } while (grown)
     for (key in complained) {
       split(key, pair, SUBSEP)
-      complain(src "/" pair[1], pair[2] " brings " internal[pair[2]] " and is not for other rooms")
+      complain(src "/" pair[1], pair[2] " includes " internal[pair[2]] ", so other rooms may not include it")
     }
     exit bad
   }' "$1"

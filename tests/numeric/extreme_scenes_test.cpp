@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole scenes at the extremes: no bad sample, the list's bits, and in a white furnace exactly one.
+// Extreme scenes: no bad samples, the same bits with Embree and the list, and exactly 1 in a white furnace.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,10 +16,10 @@ namespace {
 struct ExtremeScene {
   std::string name;
   scene::Scene scene;
-  bool absorbs = false;  ///< some light may end in it although all is white
+  bool absorbs = false;  ///< paths may be absorbed although every material is white
 };
 
-/// Two white spheres and a glass one on a white ground, in a white sky.
+/// A white, a glass and a mirror sphere under a white sky.
 scene::Scene furnace() {
   scene::Scene s;
   s.image = {24, 16};
@@ -88,7 +88,7 @@ std::vector<ExtremeScene> extreme_scenes() {
     s.spheres[0] = {{-1, 0, 0}, 0.5, 1, ""};
     list.push_back({"camera inside glass, beside others", s});
     s.camera.look_from = {-0.5, 0, 0};
-    // A ray that starts in glass on its surface is reflected for ever, if its angle is beyond the critical one.
+    // A ray that starts in glass at its surface beyond the critical angle is totally reflected for ever.
     list.push_back({"camera on a surface", s, true});
   }
   for (const double offset : {1e6, 1e9}) {
@@ -117,7 +117,7 @@ render::Result rendered(scene::Scene s, scene::Accelerator accelerator) {
   return render::render(compile::compile(s), {});
 }
 
-TEST(ExtremeScenes, NoSampleIsBadNoBitDependsOnTheAcceleratorNoLightIsLost) {
+TEST(ExtremeScenes, NoBadSamplesNoAcceleratorDifferenceNoEnergyLoss) {
   for (const ExtremeScene& extreme : extreme_scenes()) {
     const render::Result embree = rendered(extreme.scene, scene::Accelerator::kEmbree);
     const render::Result list = rendered(extreme.scene, scene::Accelerator::kList);
@@ -132,7 +132,7 @@ TEST(ExtremeScenes, NoSampleIsBadNoBitDependsOnTheAcceleratorNoLightIsLost) {
   }
 }
 
-/// Nothing but a ray's length changes when it passes a border between equal indices.
+/// An interface between equal indices of refraction changes nothing but the length of a ray.
 TEST(ExtremeScenes, GlassOfIndexOneIsInvisible) {
   scene::Scene s = furnace();
   s.background.top = {0.5, 0.7, 1};
@@ -146,8 +146,8 @@ TEST(ExtremeScenes, GlassOfIndexOneIsInvisible) {
       EXPECT_FLOAT_EQ(with.picture.planes[c].values[i], without.picture.planes[c].values[i]);
 }
 
-/// Self-hits of a convex grey sphere would halve a sample again: none, whatever the radius.
-TEST(ExtremeScenes, AGreySphereNeverHitsItself) {
+/// A self-intersection of a convex grey sphere would halve a sample once more. There is none at any radius.
+TEST(ExtremeScenes, GreySphereNeverHitsItself) {
   const char* wanted = std::getenv("ORRERY_FURNACE_RAYS");
   const double rays = wanted != nullptr ? std::atof(wanted) : 1e7;
   const std::vector<double> radii = {1e-12, 1e-6, 1e-3, 1, 1e3, 1e6, 1e9, 1e12};
@@ -167,7 +167,7 @@ TEST(ExtremeScenes, AGreySphereNeverHitsItself) {
   }
 }
 
-TEST(ExtremeScenes, AMillionSpheresInOnePlace) {
+TEST(ExtremeScenes, MillionCoincidentSpheresRender) {
   scene::Scene s = furnace();
   s.image = {4, 4};
   s.render.samples = 1;

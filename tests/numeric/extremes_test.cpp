@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The intersection against arithmetic of many digits, where other renderers break. Prints the table of
-// docs/numerics.md.
+// Compares ray-sphere intersection with multi-precision arithmetic, in regimes where other renderers fail. Prints the
+// table of docs/numerics.md.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,16 +21,16 @@ namespace {
 using kernel::kNoSphere;
 using kernel::kPacketSize;
 
-/// Where rounding of the authored doubles alone decides between hit and miss.
+/// Band in which the rounding of the input doubles alone decides between hit and miss, in radii.
 constexpr double kGrazingBand = 1e-15;
 
-/// |computed - true hit point| x cos(incidence) in radii; docs/numerics.md promises it.
+/// |computed - true hit point| x cos(incidence), in radii, as stated in docs/numerics.md.
 constexpr double kHitPointBound = 4.5e-16;
 
-/// |computed - true distance| x cos(incidence), relative to the distance or to one radius, whichever is more.
+/// |computed - true distance| x cos(incidence), relative to the larger of the distance and the radius.
 constexpr double kDistanceBound = 5e-16;
 
-/// |distance of a hit point from the centre / radius - 1|, grazing or not.
+/// |distance of the hit point from the centre / radius - 1|, also at grazing incidence.
 constexpr double kLengthBound = 4e-16;
 
 int rays_per_regime() {
@@ -68,7 +68,7 @@ struct Regime {
   std::function<Case(Random&)> make;
 };
 
-/// A ray from `distance` radii away that passes the centre at `impact` radii.
+/// A ray that starts `distance` radii from the centre and passes it at `impact` radii.
 Case aimed(Random& random, double radius, double distance, double impact, double scene_offset, double length) {
   Case c;
   double to_center[3], side[3], where[3];
@@ -98,7 +98,7 @@ Case aimed(Random& random, double radius, double distance, double impact, double
   return c;
 }
 
-/// A ray that leaves the sphere's own surface, or one beside it, at gap radii.
+/// A ray that leaves the sphere's own surface, or that of a neighbour at a gap of `gap` radii.
 Case leaving(Random& random, double radius, double scene_offset, double gap, bool own) {
   Case c;
   double n[3], where[3];
@@ -109,7 +109,7 @@ Case leaving(Random& random, double radius, double scene_offset, double gap, boo
   c.sphere = {center[0], center[1], center[2], radius};
   c.self = own ? 0 : 1;
   for (int i = 0; i < 3; ++i) {
-    // The neighbour has the same radius and its centre on the line through n: its point next to this sphere.
+    // The neighbour has the same radius and its centre along n; the ray starts at its point closest to this sphere.
     c.base[i] = own ? center[i] : center[i] + n[i] * radius * (2 + gap);
     c.offset[i] = (own ? n[i] : -n[i]) * radius;
   }
@@ -153,12 +153,12 @@ std::vector<Regime> regimes() {
   return list;
 }
 
-/// The truth about one case, in arithmetic of many digits.
+/// Reference solution of one case, in multi-precision arithmetic.
 struct Truth {
   bool hit = false;
-  bool in_band = false;  ///< too close to call: grazing, or starting on the surface of a sphere that is not its own
+  bool in_band = false;  ///< undecidable in double: grazing, or starting on the surface of another sphere
   double offset[3] = {0, 0, 0};
-  double distance = 0;  ///< in lengths of the direction
+  double distance = 0;  ///< in units of the direction's length
   double cos_incidence = 0;
 };
 
@@ -176,8 +176,8 @@ Truth truth(const Case& c, const kernel::RayPacket& p, int lane) {
     out.offset[2] = m.z.to_double();
   };
   if (c.self == 0) {
-    // The other end of the chord that starts at the stored point. Rounding has put that point, and so the chord's other
-    // end, some 1e-16 radii off the sphere; the point asked for is the one on the sphere.
+    // The other end of the chord that starts at the stored point. Rounding puts that point, and thus the other end,
+    // about 1e-16 radii off the sphere; the reference hit point lies on the sphere.
     const Vec start{c.offset[0], c.offset[1], c.offset[2]};
     const Real t = Real(-2.0) * dot(start, direction) / dd;
     out.hit = Real(0.0) < t;
@@ -207,12 +207,12 @@ Truth truth(const Case& c, const kernel::RayPacket& p, int lane) {
 
 struct Tally {
   long rays = 0, wrong = 0, skipped = 0, differing = 0, doubtful = 0;
-  double worst = 0;           ///< error of the hit point, times the cosine of incidence; radii
-  double worst_length = 0;    ///< hit point's distance from the centre: error, radii
-  double worst_distance = 0;  ///< the same of the distance, relative to it, or to one radius if that is more
+  double worst = 0;           ///< hit point error x cos(incidence), in radii
+  double worst_length = 0;    ///< error of the hit point's distance from the centre, in radii
+  double worst_distance = 0;  ///< distance error x cos(incidence), relative to the larger of distance and radius
 };
 
-/// Runs a regime in batches through the kernel, all lanes and one, and compares with the truth.
+/// Intersects a regime's rays in the kernel, with all lanes and with one, and compares with the reference.
 Tally run(const Regime& regime, kernel::Precision precision, int rays) {
   Random random;
   Tally tally;
@@ -235,7 +235,7 @@ Tally run(const Regime& regime, kernel::Precision precision, int rays) {
            (one.hit[i] && (one.distance[i] != found.distance[i] || one.offset[0][i] != found.offset[0][i]))))
         ++tally.differing;
       const Truth t = truth<QuadReal>(cases[i], packet, i);
-      // The judge has a judge: 320 bits must say the same.
+      // Check the 113-bit reference against 320 bits.
       if (tally.rays % 64 == 0) {
         const Truth more = truth<BigReal>(cases[i], packet, i);
         tally.doubtful += more.hit != t.hit || more.in_band != t.in_band;
@@ -282,12 +282,12 @@ TEST(Extremes, HitOrMissAndHitPointError) {
     EXPECT_LE(t.worst, kHitPointBound) << regime.name;
     EXPECT_LE(t.worst_distance, kDistanceBound) << regime.name;
     EXPECT_LE(t.worst_length, kLengthBound) << regime.name;
-    EXPECT_LT(t.skipped, t.rays / 10) << regime.name << ": the band must stay an exception";
+    EXPECT_LT(t.skipped, t.rays / 10) << regime.name << ": too many rays in the band";
   }
 }
 
-/// The same judge finds the book's quadratic guilty, so it can find guilt.
-TEST(Extremes, TheBooksFormulaFailsThem) {
+/// The same test rejects the book's quadratic formula, which shows that it can fail.
+TEST(Extremes, BookFormulaFails) {
   std::printf("%-32s %10s %8s %8s %14s\n", "regime (the book's formula)", "rays", "in band", "wrong", "error x cos");
   long wrong = 0;
   constexpr int kRays = 8000;
@@ -299,12 +299,12 @@ TEST(Extremes, TheBooksFormulaFailsThem) {
   EXPECT_GT(wrong, kRays / 10);
 }
 
-/// Two equal spheres with a gap between them: a ray that leaves the one towards the other's centre must meet it.
-TEST(Extremes, NoContactIsLost) {
+/// Two equal spheres with a gap between them: a ray from one sphere towards the centre of the other must hit it.
+TEST(Extremes, RaysAcrossNarrowGapsHit) {
   Random random;
   for (const double gap : {0.0, 1e-15, 1e-14, 1e-13, 1e-10, 1e-6}) {
     for (const double offset : {0.0, 1e3, 1e9}) {
-      // Far from the origin the gap cannot be written down: there it is what the doubles make of it.
+      // Far from the origin doubles cannot represent the gap, so only the rounded positions are tested.
       if (offset > 0 && gap != 0) continue;
       for (int i = 0; i < 20000; i += kPacketSize) {
         kernel::RayPacket packet;
@@ -328,7 +328,7 @@ TEST(Extremes, NoContactIsLost) {
         for (int lane = 0; lane < kPacketSize; ++lane) {
           ASSERT_TRUE(found.hit[lane]) << gap;
           if (gap >= 1e-13 && outside[lane]) {
-            // The near side, not the far one.
+            // The near side is hit, not the far side.
             ASSERT_LT(found.distance[lane], 1.0) << gap;
           }
         }

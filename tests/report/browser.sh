@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# A browser opens the report of a study, light and dark, wide and narrow: tests/report/browser.sh ORRERY WORK_FOLDER.
-# Exit 77: no Chromium here.
+# Opens a study's report in a browser, in dark and light mode, narrow and wide: tests/report/browser.sh ORRERY WORK_FOLDER
+# Exit status 77 if Chromium is not installed.
 set -eu
 orrery=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)
@@ -11,15 +11,15 @@ if ! command -v chromium >/dev/null; then
 fi
 rm -rf "$work"
 mkdir -p "$work/profile"
-# What a small budget does not allow is left out of the report; one that allows nothing is refused, on a slow machine.
+# A small budget shortens the report. On a slow machine it may be too small for any measurement, which is an error.
 for budget in 6s 60s 600s; do
   if "$orrery" study "$here/../../scenes/trade/glass.toml" --budget $budget --noise 0.05 -q -o "$work/report.html" \
     >"$work/report.txt"; then break; fi
 done
-# The page, and at its end what presses its buttons and writes down what came of it.
+# Appends the script that presses the page's buttons and stores the results in the page.
 { sed 's|</body>||; s|</html>||' "$work/report.html" && printf '<script>' && cat "$here/press.js" &&
   printf '</script></body></html>\n'; } >"$work/pressed.html"
-# 0 is dark, 1 is light.
+# Preferred colour scheme: 0 is dark, 1 is light.
 for look in 0 1; do
   for width in 500 1400; do
     chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/profile" \
@@ -30,7 +30,7 @@ for look in 0 1; do
     for expected in '"ready":true' '"fits":true' '"sorts":true' '"sortsBack":true' '"chooses":true' '"slides":true' \
       '"pictures":true' '"front":true' '"slopes":true' "\"dark\":$([ $look = 0 ] && echo true || echo false)"; do
       if ! grep -qF "$expected" "$work/result"; then
-        echo "expected $expected; the last lines of the browser's log:"
+        echo "missing $expected; the last lines of the browser's log:"
         tail -n 5 "$work/log"
         exit 1
       fi

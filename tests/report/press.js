@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presses the report's buttons as a reader would; browser.sh reads what is left in data-result.
+// Operates the report's controls as a reader would and stores the results in data-result, which browser.sh reads.
 (async () => {
   "use strict";
   const at = id => document.getElementById(id);
@@ -21,7 +21,7 @@
   const images = [at("before"), at("after"), at("heat")];
   await Promise.all(images.map(image => image.decode()));
   result.pictures = images.every(image => image.naturalWidth > 8);
-  // How much was measured depends on how fast the machine is.
+  // The number of measurements depends on the speed of the machine.
   const drawn = data.points.filter(p => p.error > 0 && p.seconds > 0);
   const front = document.querySelector("#pareto polyline.front");
   result.front = front !== null &&

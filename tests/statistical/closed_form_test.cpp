@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole renders against pictures that are known by formula.
+// Compares renders with closed-form images.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,13 +16,13 @@ constexpr int kSide = 64;
 constexpr int kSeeds = 24;
 constexpr double kAlbedo[3] = {0.8, 0.5, 0.2};
 
-/// A diffuse sphere alone under the gradient sky, seen from far away so that every pixel is on it.
+/// A single diffuse sphere under the gradient sky, seen from afar so that it covers every pixel.
 scene::Scene diffuse_sphere(double albedo_factor) {
   scene::Scene s;
   s.image = {kSide, kSide};
   s.camera.look_from = {300, 400, 1200};
   s.camera.look_at = {0, 0, 0};
-  s.camera.vfov = 0.06;  // of 0.088 degrees: the corners are on the sphere too
+  s.camera.vfov = 0.06;  // the sphere subtends 0.088 degrees and covers the corners
   s.render.samples = 64;
   s.background.bottom = {1, 0.9, 0.8};
   s.background.top = {0.2, 0.5, 1};
@@ -32,8 +32,8 @@ scene::Scene diffuse_sphere(double albedo_factor) {
   return s;
 }
 
-/// What one channel of one pixel should be: the sky is linear in y, so its cosine-weighted mean over the hemisphere
-/// around n is the sky at height 2/3 n.y. Averaged over the pixel's area.
+/// Expected value of a channel, averaged over the pixel's area. The sky is linear in y, so its cosine-weighted mean
+/// over the hemisphere around n is the sky at height 2/3 n.y.
 double expected(const compile::CompiledScene& compiled, int px, int py, int channel) {
   constexpr int kGrid = 4;
   double sum = 0;
@@ -58,10 +58,10 @@ double expected(const compile::CompiledScene& compiled, int px, int py, int chan
   return sum / (kGrid * kGrid);
 }
 
-/// Residuals of many seeds, summed up over the picture in several ways; each as a t-statistic over the seeds.
+/// Weighted sums of the residuals over the image, each as a t-statistic over the seeds.
 std::vector<double> z_scores(double albedo_factor) {
   constexpr int kTiles = 4;
-  constexpr int kSums = 2 + kTiles * kTiles;  // all, all weighted by height, each tile
+  constexpr int kSums = 2 + kTiles * kTiles;  // all pixels, all weighted by height, each tile
   std::vector<std::vector<double>> sums(kSums, std::vector<double>(kSeeds, 0.0));
   const compile::CompiledScene compiled = compile::compile(diffuse_sphere(albedo_factor));
   std::vector<double> truth;
@@ -93,14 +93,16 @@ std::vector<double> z_scores(double albedo_factor) {
   return z;
 }
 
-/// Twenty-three degrees of freedom: a right renderer is beyond this once in about a hundred thousand statistics.
+/// With 23 degrees of freedom a correct renderer exceeds this about once in a hundred thousand statistics.
 constexpr double kLargestT = 5.6;
 
-TEST(StatisticalClosedForm, ADiffuseSphereUnderAGradientSky) {
+TEST(StatisticalClosedForm, DiffuseSphereUnderAGradientSky) {
   for (const double z : z_scores(1)) EXPECT_LT(std::abs(z), kLargestT);
 }
 
-TEST(StatisticalClosedForm, AnAlbedoWrongByAThousandthIsSeenAtSixSigma) { EXPECT_GT(std::abs(z_scores(1.001)[0]), 6); }
+TEST(StatisticalClosedForm, AlbedoErrorOfAThousandthIsDetectedAtSixSigma) {
+  EXPECT_GT(std::abs(z_scores(1.001)[0]), 6);
+}
 
 }  // namespace
 }  // namespace orrery::test

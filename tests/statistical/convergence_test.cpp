@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the error of a pixel falls with its samples, by sampler, and that adaptive sampling keeps what it promises.
+// Convergence rate by sampler, and accuracy and bias of adaptive sampling.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace orrery::render {
 namespace {
 
-/// A picture of many pixels that all see the same thing: the root of the mean square of their errors needs no seeds.
+/// Views in which all pixels are equivalent, so one render gives the RMS error without several seeds.
 enum class View { kSmooth, kSilhouette };
 
 scene::Scene scene_of(View view) {
@@ -20,13 +20,13 @@ scene::Scene scene_of(View view) {
   s.image = {64, 64};
   s.materials = {{"white", scene::Lambertian{{0.8, 0.8, 0.8}}}};
   if (view == View::kSmooth) {
-    // A lens so wide that every pixel sees half the sky, out of focus: smooth in all four dimensions.
+    // A lens so wide that every pixel sees half the sky out of focus: smooth in all four dimensions.
     s.camera.vfov = 0.001;
     s.camera.defocus_angle = 60;
     s.camera.focus_distance = 1e-3;
     s.camera.look_at = {0, 1, -1};
   } else {
-    // The edge of a ball so large that it is straight, through the middle of every pixel row on the way.
+    // A sphere so large that its edge is straight; the edge crosses the defocused view of every pixel.
     s.camera.vfov = 1e-3;
     s.camera.defocus_angle = 1;
     s.camera.focus_distance = 1;
@@ -52,7 +52,7 @@ double error_of(scene::Scene s, scene::Sampler sampler, int samples, const std::
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Of log error by log samples, from 16 to 1024.
+/// Slope of log error over log samples, from 16 to 1024 samples.
 double slope_of(View view, scene::Sampler sampler) {
   scene::Scene s = scene_of(view);
   s.render.samples = 16384;
@@ -74,21 +74,21 @@ double slope_of(View view, scene::Sampler sampler) {
   return slope;
 }
 
-TEST(Convergence, IndependentSamplesFallAsTheRoot) {
+TEST(Convergence, IndependentSamplesConvergeAsTheInverseSquareRoot) {
   EXPECT_NEAR(slope_of(View::kSmooth, scene::Sampler::kIndependent), -0.5, 0.05);
   EXPECT_NEAR(slope_of(View::kSilhouette, scene::Sampler::kIndependent), -0.5, 0.05);
 }
 
-TEST(Convergence, SobolPointsFallFasterWhereItIsSmooth) {
+TEST(Convergence, SobolConvergesFasterOnSmoothIntegrands) {
   EXPECT_LT(slope_of(View::kSmooth, scene::Sampler::kSobol), -0.9);
   EXPECT_LT(slope_of(View::kSmooth, scene::Sampler::kBlueNoise), -0.9);
 }
 
-TEST(Convergence, SobolPointsFallFasterAtEdgesToo) {
+TEST(Convergence, SobolConvergesFasterAtEdges) {
   EXPECT_LT(slope_of(View::kSilhouette, scene::Sampler::kSobol), -0.62);
 }
 
-/// Mean over squares of 4 x 4 pixels: what is left of the error from some distance.
+/// RMS error after averaging blocks of 4 x 4 pixels.
 double error_from_afar(scene::Sampler sampler) {
   scene::Scene s = scene_of(View::kSmooth);
   s.render.samples = 4096;
@@ -110,11 +110,11 @@ double error_from_afar(scene::Sampler sampler) {
   return std::sqrt(sum / 256);
 }
 
-TEST(Convergence, BlueNoiseVanishesFromAfar) {
+TEST(Convergence, BlueNoiseAveragesOutOverNeighbouringPixels) {
   EXPECT_LT(error_from_afar(scene::Sampler::kBlueNoise), 0.5 * error_from_afar(scene::Sampler::kSobol));
 }
 
-/// Balls of all kinds on a ground, small enough for many renders.
+/// Spheres of several materials on a ground; fast to render.
 scene::Scene balls() {
   scene::Scene s;
   s.image = {64, 36};
@@ -144,7 +144,7 @@ struct Pictures {
   }
 };
 
-TEST(Adaptive, KeepsItsPromiseAndIsNotBiased) {
+TEST(Adaptive, MeetsTheTargetNoiseWithoutBias) {
   scene::Scene s = balls();
   s.render.samples = 8192;
   s.render.seed = 1000;
@@ -180,22 +180,21 @@ TEST(Adaptive, KeepsItsPromiseAndIsNotBiased) {
     true_total += true_light;
     variance += (light - true_light) * (light - true_light);
   }
-  // The mean over seeds is off by no more than chance allows: four standard errors, estimated from the seeds
-  // themselves.
+  // The error of the mean over seeds is at most four standard errors, estimated from the seeds themselves.
   const double standard_error = std::sqrt(variance / kSeeds / kSeeds);
   EXPECT_LT(std::abs(total - true_total) / kSeeds, 4 * standard_error);
   EXPECT_LT(standard_error / (true_total / kSeeds), 2e-4);
 }
 
-/// Light of a whole picture.
+/// Sum of the red channel over an image.
 double light_of(const film::Picture& picture) {
   double sum = 0;
   for (const float v : picture.planes[0].values) sum += static_cast<double>(v);
   return sum;
 }
 
-TEST(Adaptive, FavoursNoSampleByItsValue) {
-  // A tenth of the paths find light. Going on where a pixel's own samples disagree, the picture lost a seventh of it.
+TEST(Adaptive, RareLightIsNotBiased) {
+  // One path in ten finds light. Choosing pixels by the variance of their own samples would lose a seventh of it.
   scene::Scene s = test::room(3.6, 10, 32, 18);
   s.render.sampler = scene::Sampler::kIndependent;
   s.render.samples = 8192;
@@ -217,7 +216,7 @@ TEST(Adaptive, FavoursNoSampleByItsValue) {
   const double mean = sum / kSeeds;
   const double standard_error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
   EXPECT_LT(standard_error, 0.005);
-  EXPECT_LT(std::abs(mean), 4 * standard_error);  // the reference's own is an eighth of it
+  EXPECT_LT(std::abs(mean), 4 * standard_error);  // the reference's standard error is an eighth of this
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every distribution that the renderer samples, against the distribution that it should have: Pearson's test over
-// 32 x 32 bins that are equally likely by the distribution's own inverse. Fixed seed, so it fails always or never.
+// Pearson's chi-square test of every distribution that the renderer samples, over 32 x 32 bins made equally likely by
+// the distribution's inverse. The seed is fixed, so a test fails always or never.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ std::uint32_t sample_count() {
   return wanted != nullptr ? static_cast<std::uint32_t>(std::atof(wanted)) : 20'000'000u;
 }
 
-/// Two numbers that are uniform in 0..1 and independent where the sample is as it should be.
+/// Two numbers that are uniform in 0..1 and independent if the samples have the right distribution.
 struct Uniforms {
   double u, v;
 };
@@ -31,7 +31,7 @@ double turn_of(double x, double y) {
   return turn < 0 ? turn + 1 : turn;
 }
 
-/// Cosine to the normal, and the turn around it.
+/// Cosine to the normal, and the azimuth around it in turns.
 Uniforms around_normal(double x, double y, double z) {
   const double across = x * kTangent[0] + y * kTangent[1] + z * kTangent[2];
   const double other = x * kBitangent[0] + y * kBitangent[1] + z * kBitangent[2];
@@ -46,8 +46,8 @@ Uniforms uniforms_of(Shape shape, double x, double y, double z) {
     }
     case Shape::kHemisphere: return around_normal(x, y, z);  // P(cos < c) = c
     case Shape::kFuzzyMetal: {
-      // The tip n + f s, with s uniform over the unit sphere, is seen under the cosine c from two heights h of s:
-      // f h = c^2 - 1 +- c sqrt(c^2 + f^2 - 1). Heights are uniform, so what lies between the two is P(cos < c).
+      // The point n + f s, with s uniform on the unit sphere, has cosine c to n at two heights h of s:
+      // f h = c^2 - 1 +- c sqrt(c^2 + f^2 - 1). Heights are uniform, so the interval between the two gives P(cos < c).
       const Uniforms a = around_normal(x, y, z);
       const double root = std::sqrt(std::max(0.0, a.u * a.u + kFuzz * kFuzz - 1));
       return {a.u * root / kFuzz, a.v};
@@ -60,7 +60,13 @@ Uniforms uniforms_of(Shape shape, double x, double y, double z) {
 
 int bin_of(double u) { return std::min(kBins - 1, std::max(0, static_cast<int>(u * kBins))); }
 
-/// Counts of a million samples at a time; `bend` deforms samples on purpose.
+/// Index of the bin of a pair of numbers.
+std::size_t cell_of(double u, double v) {
+  const int cell = bin_of(u) * kBins + bin_of(v);
+  return static_cast<std::size_t>(cell);
+}
+
+/// Tests `count` samples of a shape; `bend` distorts samples on purpose.
 template <class Bend>
 ChiSquare test(Shape shape, Bend bend, std::uint32_t count) {
   constexpr std::uint32_t kBatch = 1 << 14;
@@ -71,7 +77,7 @@ ChiSquare test(Shape shape, Bend bend, std::uint32_t count) {
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       bend(x[i], y[i], z[i]);
       const Uniforms at = uniforms_of(shape, x[i], y[i], z[i]);
-      ++counts[static_cast<std::size_t>(bin_of(at.u) * kBins + bin_of(at.v))];
+      ++counts[cell_of(at.u, at.v)];
     }
   }
   return chi_square_of_equal_bins(counts);
@@ -79,7 +85,7 @@ ChiSquare test(Shape shape, Bend bend, std::uint32_t count) {
 
 constexpr Shape kShapes[] = {Shape::kLambertian, Shape::kHemisphere, Shape::kFuzzyMetal, Shape::kDisc, Shape::kPixel};
 
-TEST(StatisticalSamplers, HaveTheirDistributions) {
+TEST(StatisticalSamplers, MatchTheirDistributions) {
   for (const Shape shape : kShapes) {
     const ChiSquare result = test(
         shape, [](double&, double&, double&) {}, sample_count());
@@ -89,8 +95,8 @@ TEST(StatisticalSamplers, HaveTheirDistributions) {
   }
 }
 
-/// The judge can condemn: a shift of a thousandth is found in every shape.
-TEST(StatisticalSamplers, AShiftOfAThousandthIsFound) {
+/// Shows that the test can fail: it detects a shift of a thousandth in every shape.
+TEST(StatisticalSamplers, ShiftOfAThousandthIsDetected) {
   for (const Shape shape : kShapes) {
     const ChiSquare result = test(
         shape, [](double& x, double& y, double& z) { x += 1e-3, y += 1e-3, z += 1e-3; }, sample_count());
@@ -98,8 +104,8 @@ TEST(StatisticalSamplers, AShiftOfAThousandthIsFound) {
   }
 }
 
-TEST(StatisticalSamplers, OneDistributionIsNotTakenForAnother) {
-  // Cosine-weighted directions judged as uniform ones, and the other way round.
+TEST(StatisticalSamplers, WrongDistributionIsDetected) {
+  // Cosine-weighted directions tested as uniform ones, and vice versa.
   std::vector<double> x(1 << 14), y(1 << 14), z(1 << 14);
   for (const auto& [drawn, judged] :
        {std::pair{Shape::kLambertian, Shape::kHemisphere}, {Shape::kHemisphere, Shape::kLambertian}}) {
@@ -107,21 +113,20 @@ TEST(StatisticalSamplers, OneDistributionIsNotTakenForAnother) {
     std::vector<std::uint64_t> counts(kBins * kBins);
     for (std::size_t i = 0; i < x.size(); ++i) {
       const Uniforms at = uniforms_of(judged, x[i], y[i], z[i]);
-      ++counts[static_cast<std::size_t>(bin_of(at.u) * kBins + bin_of(at.v))];
+      ++counts[cell_of(at.u, at.v)];
     }
     EXPECT_GT(chi_square_of_equal_bins(counts).z, kLargestZ);
   }
 }
 
-/// Neighbouring samples, pixels and dimensions must know nothing of each other: pairs fill the unit square.
+/// Neighbouring samples, lanes and pixels are independent: their pairs fill the unit square uniformly.
 TEST(StatisticalSamplers, NeighboursAreIndependent) {
   std::vector<double> x(1 << 14), y(1 << 14), z(1 << 14);
   for (const std::uint32_t lag : {1u, 16u, 256u}) {  // the next sample, another lane, the next pixel
     std::vector<std::uint64_t> counts(kBins * kBins);
     for (std::uint32_t first = 0; first < sample_count() / 4; first += 1 << 14) {
       draw(Shape::kPixel, first, x.size(), x.data(), y.data(), z.data());
-      for (std::size_t i = 0; i + lag < x.size(); ++i)
-        ++counts[static_cast<std::size_t>(bin_of(x[i]) * kBins + bin_of(x[i + lag]))];
+      for (std::size_t i = 0; i + lag < x.size(); ++i) ++counts[cell_of(x[i], x[i + lag])];
     }
     EXPECT_LT(std::abs(chi_square_of_equal_bins(counts).z), kLargestZ) << lag;
   }

@@ -5,7 +5,7 @@
 
 namespace orrery::test {
 
-/// A real number of 320 bits: products of doubles from 1e-30 to 1e30 lose nothing that a test could see.
+/// A 320-bit floating-point number: products of doubles from 1e-30 to 1e30 lose nothing that a test could detect.
 class BigReal {
  public:
   BigReal() : BigReal(0.0) {}

@@ -6,18 +6,18 @@
 
 namespace orrery::test {
 
-/// How far counts lie from what was expected.
+/// Result of a chi-square test.
 struct ChiSquare {
   double statistic = 0;
-  double z = 0;  ///< about a standard normal number where the expectation is right (Wilson and Hilferty's cube root)
+  double z = 0;  ///< approximately standard normal under the null hypothesis (Wilson-Hilferty cube root)
 };
 
-/// Pearson's test of counts against equally likely bins.
+/// Pearson's chi-square test of counts in equally likely bins.
 ///
 /// Reference  wilson1931
 ChiSquare chi_square_of_equal_bins(const std::vector<std::uint64_t>& counts);
 
-/// Beyond this |z| a right sampler is condemned once in ten million tests; the suite has some dozen.
+/// Threshold on |z|. A correct sampler exceeds it once in ten million tests; the suite has a few dozen.
 inline constexpr double kLargestZ = 5.2;
 
 }  // namespace orrery::test

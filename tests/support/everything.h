@@ -5,7 +5,7 @@
 
 namespace orrery::test {
 
-/// A scene with every material, a lens, and spheres that touch.
+/// A scene with every material, a lens, and touching spheres.
 inline scene::Scene everything() {
   scene::Scene s;
   s.image = {61, 37};

@@ -10,20 +10,20 @@
 
 namespace orrery::test {
 
-/// One packet of rays against one sphere a ray, by the kernel's own text.
+/// Result of intersecting each ray of a packet with its own sphere, computed by the kernel.
 struct Intersections {
   double distance[kernel::kPacketSize];
   bool hit[kernel::kPacketSize];
-  double offset[3][kernel::kPacketSize];  ///< from the sphere's centre to the point; where there is a hit
+  double offset[3][kernel::kPacketSize];  ///< from the sphere's centre to the hit point; valid where `hit` is true
 };
 
 /// Intersects lane i with spheres[i], whose id is ids[i].
 ///
-/// Domain     packet's origin_low, inverse_square and self as the renderer would set them (see set_ray)
+/// Domain     origin_low, inverse_square and self of the packet are set as by the renderer (see set_ray)
 Intersections intersect_batch(kernel::Precision precision, kernel::Lanes lanes, const kernel::RayPacket& packet,
                               const kernel::Sphere* spheres, const std::uint64_t* ids);
 
-/// Sets a lane to a ray that leaves base + offset; by the renderer's arithmetic.
+/// Sets a lane to a ray with origin base + offset, with the renderer's arithmetic.
 void set_ray(kernel::RayPacket& packet, int lane, const double (&base)[3], const double (&offset)[3],
              const double (&direction)[3], std::uint64_t self);
 

@@ -16,17 +16,16 @@
 
 namespace orrery::test {
 
-/// A render in a process of its own that cannot run ahead of the test.
+/// A child process that renders in step with the test.
 ///
-/// Its standard error is a pipe that holds one line. While the test does not read, the render stops at the second line
-/// of progress after the last one read, so a signal always arrives at the same stage of the work, however fast or slow
-/// the machine is.
+/// Its standard error is a pipe that holds one line. Unless the test reads, the render blocks at the second line of
+/// progress after the last one read, so a signal arrives at the same stage of the work however fast the machine is.
 ///
-/// Domain     one render thread (`-t 1`) and `--progress arnold`; with more threads only one of them waits
+/// Domain     one render thread (`-t 1`) and `--progress arnold`; with more threads only one of them blocks
 class PacedProgram {
  public:
   struct Options {
-    rlim_t largest_file = RLIM_INFINITY;  ///< bytes; a write beyond fails
+    rlim_t largest_file = RLIM_INFINITY;  ///< file size limit in bytes (RLIMIT_FSIZE)
     int ignored_signal = 0;               ///< ignored from the start, as SIGHUP under nohup
   };
 
@@ -36,7 +35,7 @@ class PacedProgram {
     words.push_back(nullptr);
     inotify_add_watch(changes_, folder.c_str(), IN_CREATE | IN_MODIFY | IN_CLOSE_WRITE | IN_MOVED_TO | IN_DELETE);
     int ends[2];
-    // O_DIRECT: each write is a packet in a slot of its own; the smallest pipe has one slot.
+    // O_DIRECT: each write is a packet in its own slot; the smallest pipe has one slot.
     if (pipe2(ends, O_CLOEXEC | O_DIRECT) != 0 || fcntl(ends[1], F_SETPIPE_SZ, 4096) != 4096) std::abort();
     lines_ = ends[0];
     child_ = fork();
@@ -65,27 +64,27 @@ class PacedProgram {
     close(changes_);
   }
 
-  /// Lets the program run until it reports this percentage or more.
+  /// Lets the program run until it reports at least this percentage.
   ///
-  /// Result     false if it ended before
+  /// Result     false if it exited before
   bool run_to(int percent) {
     while (percent_ < percent)
       if (!read_packet()) return false;
     return true;
   }
 
-  /// Lets the program run until its standard error holds this text.
+  /// Lets the program run until its standard error contains `text`.
   ///
-  /// Result     false if it ended before
+  /// Result     false if it exited before
   bool run_until(const std::string& text) {
     while (text_.find(text) == std::string::npos)
       if (!read_packet()) return false;
     return true;
   }
 
-  /// Lets the program run until files in its folder have changed this many times more.
+  /// Lets the program run until it has made `count` more changes to files in its folder.
   ///
-  /// Result     false if it ended before
+  /// Result     false if it exited before
   bool run_changes(int count) {
     while (read_changes() > 0) {
     }
@@ -100,9 +99,9 @@ class PacedProgram {
 
   void send(int number) const { kill(child_, number); }
 
-  /// Lets the program run to its end.
+  /// Waits for the program to exit.
   ///
-  /// Result     the exit status, or 128 + the signal that ended it
+  /// Result     exit status, or 128 + the signal that ended it
   int wait() {
     while (read_packet()) {
     }
@@ -114,7 +113,7 @@ class PacedProgram {
 
   bool is_running() const { return waitpid(child_, nullptr, WNOHANG) == 0; }
 
-  /// What was read of standard error so far.
+  /// Standard error read so far.
   const std::string& text() const { return text_; }
 
  private:

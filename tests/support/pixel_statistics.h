@@ -7,8 +7,8 @@
 
 namespace orrery::test {
 
-/// Statistics of pixels with `samples` samples in each half, of which each is `light(x, y, u)` with a number u by
-/// chance, the same in all three channels.
+/// Pixel statistics of two halves of `samples` samples each. A sample's value is `light(x, y, u)` in all three
+/// channels, with a uniform random number u.
 template <class Light>
 render::PixelStatistics statistics_of(int width, int height, std::uint32_t samples, unsigned seed, Light light) {
   render::PixelStatistics s(width, height);

@@ -5,7 +5,7 @@
 
 namespace orrery::test {
 
-/// A real number of 113 bits, ten times as fast as BigReal: enough wherever digits are not lost on purpose.
+/// A 113-bit floating-point number, ten times as fast as BigReal and precise enough without heavy cancellation.
 class QuadReal {
  public:
   QuadReal(double value = 0) : value_(value) {}  // NOLINT(google-explicit-constructor): doubles are exact here
@@ -15,7 +15,7 @@ class QuadReal {
   friend QuadReal operator*(QuadReal a, QuadReal b) { return QuadReal(a.value_ * b.value_, 0); }
   friend QuadReal operator/(QuadReal a, QuadReal b) { return QuadReal(a.value_ / b.value_, 0); }
   friend bool operator<(QuadReal a, QuadReal b) { return a.value_ < b.value_; }
-  /// Two steps of Newton's method double the double's 53 bits twice.
+  /// Two Newton steps double the 53 bits of the double result twice.
   friend QuadReal sqrt(QuadReal a) {
     if (!(0.0 < a)) return 0.0;
     QuadReal x = std::sqrt(a.to_double());

@@ -7,8 +7,8 @@
 
 namespace orrery::test {
 
-/// A camera among six diffuse spheres that touch each other's sides: light comes in through eight gaps at the corners,
-/// which are the smaller the larger the spheres are, and closed from a radius of 3.92 on.
+/// A camera enclosed by six diffuse spheres. Sky light enters through eight gaps at the corners, which shrink as the
+/// radius grows and close at a radius of 3.92.
 inline scene::Scene room(double radius, double sky, int width_px, int height_px) {
   scene::Scene s;
   s.image = {width_px, height_px};

@@ -42,7 +42,7 @@ k::Vec3<hn::Vec<D>> sample(D d, Shape shape, const k::Four<hn::Vec<D>>& u) {
 void draw_all(Shape shape, std::uint32_t first, std::size_t count, double* x, double* y, double* z) {
   const D d;
   const k::IdTag<D> du;
-  // As in a picture: neighbouring pixels, some hundred samples each.
+  // As in an image: neighbouring pixels with some hundred samples each.
   constexpr std::uint32_t kSamplesPerPixel = 256;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const std::uint32_t index = first + static_cast<std::uint32_t>(i);

@@ -11,13 +11,13 @@
 
 namespace orrery::support {
 
-/// Scene files of one test, and what the reader says about them.
+/// Temporary scene files of one test, and the reader's diagnostics.
 class SceneFiles {
  public:
-  /// Puts a file beside scene.toml.
+  /// Writes a file next to scene.toml.
   void add(const std::string& name, const std::string& bytes) { write_bytes(folder_ / name, bytes); }
 
-  /// Reads `text` as scene.toml; fails the test where it is refused.
+  /// Reads `text` as scene.toml; fails the test if the reader rejects it.
   format::ReadResult read(const std::string& text, const std::vector<format::Override>& overrides = {}) {
     add("scene.toml", text);
     try {
@@ -28,7 +28,7 @@ class SceneFiles {
     }
   }
 
-  /// All findings as the user reads them, without the folder; what the reader warns of where there is no error.
+  /// Returns the errors as the user sees them, without the folder; without errors, the warnings.
   std::string diagnostics(const std::string& text, const std::vector<format::Override>& overrides = {}) {
     add("scene.toml", text);
     try {

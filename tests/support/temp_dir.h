@@ -13,12 +13,12 @@
 
 namespace orrery::support {
 
-/// An empty folder of one test's own, removed when the test ends.
+/// A new temporary folder, removed on destruction.
 class TempDir {
  public:
   TempDir() {
     std::string name = testing::TempDir() + "orrery.XXXXXX";
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot create " + name);
     path_ = name;
   }
   ~TempDir() {
@@ -31,7 +31,7 @@ class TempDir {
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   const std::filesystem::path& path() const { return path_; }
 
-  /// How many names there are in it, hidden ones too.
+  /// Number of entries, including hidden ones.
   std::size_t count() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
   }
@@ -40,13 +40,13 @@ class TempDir {
   std::filesystem::path path_;
 };
 
-/// All bytes of a file.
+/// Contents of a file.
 inline std::string file_bytes(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Replaces a file's bytes.
+/// Replaces the contents of a file.
 inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }

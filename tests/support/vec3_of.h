@@ -3,7 +3,7 @@
 
 namespace orrery::test {
 
-/// Three numbers of any type with the four operations.
+/// A 3D vector over a number type with arithmetic operators.
 template <class Real>
 struct Vec3Of {
   Real x, y, z;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree against the list, ray by ray: the same sphere, the same bits of distance.
+// Compares Embree with the list, ray by ray: the same sphere and the same bits of distance.
 #include "accel/accel.h"
 
 #include <gtest/gtest.h>
@@ -39,11 +39,12 @@ long ray_count() {
 struct Scene {
   const char* name;
   std::vector<Sphere> spheres;
-  double camera_distance;  ///< from the first small sphere, scene units
+  double camera_distance;  ///< from the target sphere, scene units
 };
 
 std::vector<Sphere> scattered(Random& random, int count, double spread, double radius, double offset) {
   std::vector<Sphere> out;
+  out.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     out.push_back({offset + random.uniform(-spread, spread), random.uniform(-spread, spread),
                    offset + random.uniform(-spread, spread), radius * random.uniform(0.1, 1)});
@@ -65,6 +66,7 @@ std::vector<Scene> scenes() {
   list.push_back({"tiny", scattered(random, 100, 1e-12, 2e-13, 0), 1e-11});
   list.push_back({"seen from 1e9", scattered(random, 100, 1, 0.3, 0), 1e9});
   std::vector<Sphere> mixed;
+  mixed.reserve(60);
   for (int i = 0; i < 60; ++i)
     mixed.push_back(
         {random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5), std::exp(random.uniform(-12, 1))});
@@ -78,7 +80,7 @@ void normalize(double (&d)[3]) {
   for (double& x : d) x /= length;
 }
 
-/// A ray that is tangent to a sphere at one of the six places where it touches its box, or a little inside.
+/// A ray tangent, or nearly so, to a sphere at one of the six points where the sphere touches its bounding box.
 void graze_pole(Random& random, const Scene& scene, const Sphere& s, kernel::RayPacket& packet, int lane) {
   const int axis = static_cast<int>(random.uniform(0, 3)), across = (axis + 1) % 3, other = (axis + 2) % 3;
   const double turn = random.coin() ? 0 : random.uniform(0, 6.28);
@@ -90,7 +92,7 @@ void graze_pole(Random& random, const Scene& scene, const Sphere& s, kernel::Ray
   test::set_ray(packet, lane, base, {0, 0, 0}, direction, kNoSphere);
 }
 
-/// Half of the rays aim at places where boxes and spheres part: poles, rims, corners of boxes.
+/// Aims most rays at points where boxes and spheres separate: poles, rims, corners of boxes.
 void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
   const auto pick = [&] {
     return static_cast<std::size_t>(random.uniform(0, static_cast<double>(scene.spheres.size())));
@@ -100,7 +102,7 @@ void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane
   const double center[3] = {target.x, target.y, target.z};
   double base[3], offset[3] = {0, 0, 0}, direction[3], point[3];
   std::uint64_t self = kNoSphere;
-  if (random.coin()) {  // from a sphere
+  if (random.coin()) {  // starts on a sphere
     self = pick();
     const Sphere& s = scene.spheres[self];
     const double c[3] = {s.x, s.y, s.z};
@@ -135,7 +137,7 @@ void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane
   test::set_ray(packet, lane, base, offset, direction, self);
 }
 
-/// Moves a ray's origin back along it, as far as a thousand times the camera's distance.
+/// Moves a ray's origin backwards by up to a thousand times the camera distance.
 void step_back(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
   const double by = scene.camera_distance * std::exp(random.uniform(0, 7));
   double base[3], direction[3];
@@ -146,7 +148,7 @@ void step_back(Random& random, const Scene& scene, kernel::RayPacket& packet, in
   test::set_ray(packet, lane, base, {0, 0, 0}, direction, kNoSphere);
 }
 
-/// One of the ways to find hits that must agree with the list's.
+/// An accelerator and traversal whose hits must agree with the list's.
 struct Way {
   const char* name;
   std::unique_ptr<Accel> (*make)(const kernel::SceneView&, kernel::Precision);
@@ -159,7 +161,7 @@ constexpr Way kWays[] = {{"packet", embree, Traversal::kPacket},
                          {"single", embree, Traversal::kSingle},
                          {"SIMD list", make_simd_list, Traversal::kPacket}};
 
-/// Counts of rays that the list and another way were both given.
+/// Counts over rays traced by the list and by another accelerator.
 struct Differences {
   long rays = 0, hits = 0, lost = 0, different = 0;
 };
@@ -179,7 +181,7 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
     a.count = kPacketSize;
     for (int lane = 0; lane < kPacketSize; ++lane) {
       aim(random, scene, a, lane);
-      // Rays of one packet that come from far and from near are moved on by different lengths.
+      // Distant and near origins in one packet are advanced by different lengths.
       if (random.uniform(0, 1) < 0.05) step_back(random, scene, a, lane);
       a.distance[lane] = std::numeric_limits<double>::max();
       a.hit[lane] = kNoSphere;
@@ -197,9 +199,9 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
   return found;
 }
 
-/// Packets and single rays through the BVH, and a list in all lanes, on every instruction set that this processor has.
-/// Each instance reports what it was compiled for.
-TEST(AccelAccel, EmbreeFindsExactlyWhatTheListFinds) {
+/// Packet and single-ray BVH traversal and the SIMD list, on every available instruction set. Each instance reports the
+/// instruction set it was compiled for.
+TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
   const std::vector<std::string> isas = kernel::available_isas();
   const std::vector<Scene> all = scenes();
   const long parts = static_cast<long>(all.size() * isas.size() * std::size(kWays));
@@ -225,7 +227,7 @@ TEST(AccelAccel, EmbreeFindsExactlyWhatTheListFinds) {
   kernel::limit_isa("");
 }
 
-TEST(AccelAccel, ABuildTellsHowFarItIsAndCanBeStopped) {
+TEST(AccelAccel, BuildReportsProgressAndCanBeStopped) {
   Random random;
   const std::vector<Sphere> spheres = scattered(random, 200'000, 100, 0.1, 0);
   kernel::SceneView view;
@@ -242,13 +244,13 @@ TEST(AccelAccel, ABuildTellsHowFarItIsAndCanBeStopped) {
   EXPECT_FALSE(outside);
   try {
     make_embree(view, kernel::Precision::kExact, [](double) { return false; });
-    FAIL() << "a build that was stopped";
+    FAIL() << "the build was not stopped";
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kStopped);
   }
 }
 
-TEST(AccelAccel, APacketMayBePartlyFilled) {
+TEST(AccelAccel, PacketsCanBePartlyFilled) {
   const std::vector<Sphere> spheres = {{0, 0, -5, 1}, {0, 0, 5, 1}};
   kernel::SceneView view;
   view.spheres = spheres.data();
@@ -272,7 +274,7 @@ TEST(AccelAccel, APacketMayBePartlyFilled) {
   }
 }
 
-TEST(AccelAccel, SpherePointsFindTheSameSpheres) {
+TEST(AccelAccel, NativePointsFindTheSameSpheres) {
   const Scene cloud = scenes()[1];
   kernel::SceneView view;
   view.spheres = cloud.spheres.data();
@@ -302,10 +304,10 @@ TEST(AccelAccel, SpherePointsFindTheSameSpheres) {
     }
   }
   EXPECT_GT(hits, 4000);
-  EXPECT_LT(different, hits / 1000) << "rims may differ";
+  EXPECT_LT(different, hits / 1000) << "hits may differ at silhouettes only";
 }
 
-TEST(AccelAccel, ATouchCountsAndTheStartDoesNot) {
+TEST(AccelAccel, TangentHitsCountAndTheRayOriginDoesNot) {
   const std::vector<Sphere> spheres = {{0, 1, 0, 1}};
   kernel::SceneView view;
   view.spheres = spheres.data();
@@ -313,8 +315,8 @@ TEST(AccelAccel, ATouchCountsAndTheStartDoesNot) {
   const auto list = make_list(view, kernel::Precision::kExact);
   kernel::RayPacket p;
   p.count = 2;
-  test::set_ray(p, 0, {0, 0, 5}, {0, 0, 0}, {0, 0, -1}, kNoSphere);  // tangent in the origin
-  test::set_ray(p, 1, {0, 2, 0}, {0, 0, 0}, {0, 1, 0}, kNoSphere);   // starts on the surface, outward
+  test::set_ray(p, 0, {0, 0, 5}, {0, 0, 0}, {0, 0, -1}, kNoSphere);  // tangent at the world origin
+  test::set_ray(p, 1, {0, 2, 0}, {0, 0, 0}, {0, 1, 0}, kNoSphere);   // starts on the surface, pointing outward
   for (int lane = 0; lane < 2; ++lane) {
     p.distance[lane] = std::numeric_limits<double>::max();
     p.hit[lane] = kNoSphere;

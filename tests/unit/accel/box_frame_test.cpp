@@ -15,7 +15,7 @@ std::vector<std::uint32_t> all(std::size_t count) {
   return ids;
 }
 
-TEST(AccelBoxFrame, HoldsEverySphereWithRoomToSpare) {
+TEST(AccelBoxFrame, BoxesContainPaddedSpheres) {
   const std::vector<kernel::Sphere> spheres = {{1, 2, 3, 0.5}, {-4, 0, 1, 2}, {0, 9, -3, 1e-6}};
   const BoxFrame frame(spheres.data(), all(3));
   for (const kernel::Sphere& s : spheres) {
@@ -34,7 +34,7 @@ TEST(AccelBoxFrame, HoldsEverySphereWithRoomToSpare) {
   }
 }
 
-TEST(AccelBoxFrame, DependsNeitherOnTheScenesSizeNorOnItsPlace) {
+TEST(AccelBoxFrame, IsIndependentOfSceneScaleAndPosition) {
   const std::vector<kernel::Sphere> unit = {{1, 2, 3, 0.5}, {-4, 0, 1, 2}};
   const BoxFrame reference(unit.data(), all(2));
   for (const double factor : {0x1p-90, 0x1p-3, 0x1p50}) {
@@ -49,8 +49,8 @@ TEST(AccelBoxFrame, DependsNeitherOnTheScenesSizeNorOnItsPlace) {
   EXPECT_EQ(BoxFrame(moved.data(), all(2)).box(moved[1]).upper[0], reference.box(unit[1]).upper[0]);
 }
 
-/// Far from the origin the corners of tiny spheres round onto each other: no box may vanish.
-TEST(AccelBoxFrame, TinySpheresFarAwayKeepTheirBoxes) {
+/// Far from the origin the box corners of a tiny sphere round to the same value; boxes must not become empty.
+TEST(AccelBoxFrame, TinySpheresFarAwayHaveNonEmptyBoxes) {
   const std::vector<kernel::Sphere> spheres = {{1e9, 1e9, 1e9, 1e-12}, {1e9, 1e9, 1e9, 3e-12}};
   const BoxFrame frame(spheres.data(), all(2));
   for (const kernel::Sphere& s : spheres)

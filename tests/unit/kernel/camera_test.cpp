@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of a thin lens: where they start, and where they meet.
+// Origins and focus points of thin-lens camera rays.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,7 +57,7 @@ namespace {
 
 HWY_EXPORT(camera_case);
 
-/// Looks along -z at a plane 10 away, one unit a pixel, through a lens of radius 2.
+/// Looks along -z through a lens of radius 2; the focus plane is at distance 10, with one unit per pixel.
 CameraCase lens_case() {
   CameraCase c;
   const double forward[3] = {0, 0, -10}, right[3] = {1, 0, 0}, down[3] = {0, -1, 0}, u[3] = {2, 0, 0}, v[3] = {0, 2, 0};
@@ -73,7 +73,7 @@ CameraCase lens_case() {
   return c;
 }
 
-TEST(KernelCamera, RaysOfALensStartOnItsDiscAndMeetInTheFocusPlane) {
+TEST(KernelCamera, LensRaysStartOnTheLensAndMeetOnTheFocusPlane) {
   std::mt19937_64 engine(5);
   double farthest = 0, corner = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -93,10 +93,10 @@ TEST(KernelCamera, RaysOfALensStartOnItsDiscAndMeetInTheFocusPlane) {
   }
   EXPECT_LE(farthest, 2 * (1 + 1e-15));
   EXPECT_GT(farthest, 2 * 0.999);
-  EXPECT_GT(corner, std::sqrt(2.0) * 0.98) << "the diagonal is reached as well";
+  EXPECT_GT(corner, std::sqrt(2.0) * 0.98) << "samples also cover the diagonal of the disc";
 }
 
-TEST(KernelCamera, APinholesRaysStartInIt) {
+TEST(KernelCamera, PinholeRaysStartAtThePinhole) {
   CameraCase c = lens_case();
   c.has_lens = false;
   c.random[2] = 0.9;

@@ -7,8 +7,8 @@
 namespace orrery::kernel {
 namespace {
 
-/// isa_name() asks an instance for the name it was compiled with. Highway's own record is reset by SupportedTargets().
-TEST(KernelIsa, ALimitHoldsWhoeverElseAsksHighway) {
+/// isa_name() returns the target of the dispatched instance. SupportedTargets() resets Highway's own record.
+TEST(KernelIsa, LimitSurvivesOtherUsesOfHighway) {
   const std::vector<std::string> available = available_isas();
   ASSERT_FALSE(available.empty());
   for (const std::string& isa : available) {
@@ -19,7 +19,7 @@ TEST(KernelIsa, ALimitHoldsWhoeverElseAsksHighway) {
     EXPECT_EQ(available_isas(), available);
   }
   EXPECT_FALSE(limit_isa("mmx"));
-  EXPECT_EQ(isa_name(), available.back()) << "a name that is refused changes nothing";
+  EXPECT_EQ(isa_name(), available.back()) << "a rejected name changes nothing";
   ASSERT_TRUE(limit_isa(""));
   EXPECT_EQ(isa_name(), available.front());
 }

@@ -36,19 +36,19 @@ void philox_32(const std::uint32_t* c, const std::uint32_t* k, std::uint32_t* ou
   philox_all<std::uint32_t>(c, k, out);
 }
 
-/// Unit numbers made of the smallest and the largest bits, in double and float.
+/// Unit numbers of the smallest and the largest random bits, in double and float.
 void unit_ends(double* ends, float* ends_fast) {
   const hn::ScalableTag<double> d;
   const hn::ScalableTag<float> df;
   const hn::RebindToUnsigned<decltype(d)> du;
   const hn::RebindToUnsigned<decltype(df)> duf;
   ends[0] = hn::GetLane(to_unit(d, hn::Set(du, 0u)));
-  ends[1] = hn::GetLane(to_unit(d, hn::Set(du, 0xffffffffffffffffu)));  // the high half must not count
+  ends[1] = hn::GetLane(to_unit(d, hn::Set(du, 0xffffffffffffffffu)));  // the high half is ignored
   ends_fast[0] = hn::GetLane(to_unit(df, hn::Set(duf, 0u)));
   ends_fast[1] = hn::GetLane(to_unit(df, hn::Set(duf, 0xffffffffu)));
 }
 
-/// All numbers of the vertices 0 .. 3 of one path, four each.
+/// Random numbers of vertices 0 .. 3 of one path, four per vertex.
 void numbers_of_a_path(double* out) {
   const hn::FixedTag<double, 1> d;
   const hn::RebindToUnsigned<decltype(d)> du;
@@ -85,7 +85,7 @@ constexpr KnownAnswer kAnswers[] = {
      {0x4dfccaba, 0x190a87f0, 0xc47362ba, 0xb6b5242a}},
 };
 
-TEST(KernelRandom, GivesThePublishedAnswersInLanesOfBothWidths) {
+TEST(KernelRandom, MatchesThePublishedVectorsInBothLaneWidths) {
   for (const KnownAnswer& known : kAnswers) {
     std::uint32_t wide[4], narrow[4];
     ORRERY_BEST(philox_64)(known.counter, known.key, wide);
@@ -97,7 +97,7 @@ TEST(KernelRandom, GivesThePublishedAnswersInLanesOfBothWidths) {
   }
 }
 
-TEST(KernelRandom, UnitNumbersStayInside) {
+TEST(KernelRandom, UnitNumbersAreInTheOpenInterval) {
   double ends[2];
   float ends_fast[2];
   ORRERY_BEST(unit_ends)(ends, ends_fast);
@@ -107,7 +107,7 @@ TEST(KernelRandom, UnitNumbersStayInside) {
   EXPECT_EQ(ends_fast[1], 1 - 0x1p-24f);
 }
 
-TEST(KernelRandom, NoVertexAndNoDimensionTakesAnothersNumber) {
+TEST(KernelRandom, VerticesAndDimensionsHaveDistinctNumbers) {
   double numbers[16];
   ORRERY_BEST(numbers_of_a_path)(numbers);
   for (int i = 0; i < 16; ++i)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mirrors, glass and fuzz at single surface points, against formulas: a white furnace is blind to how light is divided.
+// Compares reflection, refraction and fuzz at single surface points with formulas. A white furnace cannot detect wrong
+// proportions of reflected and refracted light.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@
 namespace orrery::kernel {
 #ifndef ORRERY_UNIT_KERNEL_SCATTER_TEST_CASE_
 #define ORRERY_UNIT_KERNEL_SCATTER_TEST_CASE_
-/// A ray that falls at an angle on the top of a unit sphere, and where it goes.
+/// A ray incident on the top of a unit sphere, and its scattered directions.
 struct ScatterCase {
   double cos_arriving = 1, eta = 1, r0 = 0, fuzz = 0, u = 0.5;
   FresnelKind fresnel = FresnelKind::kNone;
@@ -86,13 +87,13 @@ TEST(KernelScatter, GlassRefractsBySnellAndReflectsBeyondTheCriticalAngle) {
   }
 }
 
-TEST(KernelScatter, ReflectanceIsSchlicksOrFresnels) {
+TEST(KernelScatter, ReflectanceMatchesSchlickAndFresnel) {
   for (const double cosine : kCosines) {
     const double schlick = 0.04 + 0.96 * std::pow(1 - cosine, 5);
     EXPECT_NEAR(
         scattered({.cos_arriving = cosine, .eta = 1 / 1.5, .r0 = 0.04, .fresnel = FresnelKind::kSchlick}).reflectance,
         schlick, 1e-14);
-    // Fresnel's own form: tangents and sines of the two angles.
+    // Fresnel's equations in their sine and tangent form.
     const double a = std::acos(cosine), b = std::asin(std::sin(a) / 1.5);
     const double s = a == 0 ? 0.2 : std::sin(a - b) / std::sin(a + b),
                  p = a == 0 ? 0.2 : std::tan(a - b) / std::tan(a + b);
@@ -102,7 +103,7 @@ TEST(KernelScatter, ReflectanceIsSchlicksOrFresnels) {
   }
 }
 
-TEST(KernelScatter, FuzzMovesTheUnitMirrorDirectionToTheSurfaceOfASphere) {
+TEST(KernelScatter, FuzzMovesTheUnitMirrorDirectionOntoASphere) {
   const ScatterCase c = scattered({.cos_arriving = 0.6, .fuzz = 0.5, .on_sphere = {0, 0, 1}});
   const double length = std::sqrt(1 + 0.5 * 0.5);
   EXPECT_NEAR(c.metal[0], 0.8 / length, 1e-14);
@@ -111,7 +112,7 @@ TEST(KernelScatter, FuzzMovesTheUnitMirrorDirectionToTheSurfaceOfASphere) {
   EXPECT_TRUE(c.metal_alive);
 }
 
-TEST(KernelScatter, FuzzThatLeadsIntoTheSurfaceAbsorbs) {
+TEST(KernelScatter, FuzzBelowTheSurfaceAbsorbs) {
   EXPECT_FALSE(scattered({.cos_arriving = 0.1, .fuzz = 1, .on_sphere = {0, -1, 0}}).metal_alive);
 }
 

@@ -21,7 +21,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// Points of the sequence with a name, four coordinates each, by lanes of one width.
+/// Points of the sequence `name`, four coordinates each, in SIMD lanes of type U.
 template <class U>
 void points(std::uint32_t name, std::uint32_t order, std::uint32_t first, std::size_t count, std::uint32_t* out) {
   const hn::ScalableTag<U> du;
@@ -41,7 +41,7 @@ void points_32(std::uint32_t name, std::uint32_t order, std::uint32_t first, std
   points<std::uint32_t>(name, order, first, count, out);
 }
 
-/// Numbers of one lane: four for each sample of a pixel at a vertex.
+/// Random numbers at a vertex, computed in one lane: four per sample of a pixel.
 void numbers(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, std::uint32_t first, std::size_t count,
              double* out) {
   const hn::FixedTag<double, 1> d;
@@ -80,9 +80,9 @@ std::vector<double> numbers_of(const Sampler& sampler, std::uint32_t pixel, std:
   return out;
 }
 
-TEST(KernelSobol, ColumnsAreThoseOfTheFirstPublishedPoints) {
-  // Without scrambling points 1, 2, 4 are 1/2; 1/4 or 3/4; an eighth, three or so: joe2008's table for three
-  // dimensions.
+TEST(KernelSobol, ColumnsMatchThePublishedPoints) {
+  // Without scrambling, point 1 is 1/2, point 2 is 1/4 or 3/4, and point 4 an odd multiple of 1/8: joe2008's table for
+  // three dimensions.
   const auto value = [](std::uint32_t reversed) {
     double out = 0;
     for (int bit = 0; bit < 32; ++bit) out += (reversed >> bit & 1) != 0 ? std::ldexp(1.0, -bit - 1) : 0;
@@ -97,7 +97,7 @@ TEST(KernelSobol, ColumnsAreThoseOfTheFirstPublishedPoints) {
   EXPECT_EQ(value(kSobolColumns.fourth[2]), 0.125);
 }
 
-TEST(KernelSobol, BothWidthsOfLanesGiveTheSamePoints) {
+TEST(KernelSobol, BothLaneWidthsGiveTheSamePoints) {
   std::vector<std::uint32_t> wide(4 * 1000), narrow(4 * 1000);
   for (const std::uint32_t name : {0u, 1u, 0xdeadbeefu}) {
     for (std::uint32_t order = 0; order < kSobolOrders.size(); ++order) {
@@ -108,7 +108,7 @@ TEST(KernelSobol, BothWidthsOfLanesGiveTheSamePoints) {
   }
 }
 
-/// Orders of vertices behind the camera mix blocks of 2^kSobolFreeBits points; the camera's and the time's do not.
+/// The orders of bounce vertices permute points in blocks of 2^kSobolFreeBits; those of the camera and time do not.
 int smallest_block_bits(std::uint32_t order) {
   return order == 0 || order == kSobolTimeOrder ? 0 : static_cast<int>(kSobolFreeBits);
 }
@@ -119,7 +119,8 @@ TEST(KernelSobol, EveryBlockIsANetInTheFirstTwoDimensions) {
       for (int bits = smallest_block_bits(order); bits <= 8; ++bits) {
         const std::size_t count = std::size_t{1} << bits;
         const auto p = points_of(name, static_cast<std::uint32_t>(3 * count), count, order);
-        for (int across = 0; across <= bits; ++across) {  // 2^across columns of 2^(bits - across) rows: one point each
+        for (int across = 0; across <= bits;
+             ++across) {  // 2^across columns x 2^(bits - across) rows: one point per cell
           std::set<std::pair<std::uint32_t, std::uint32_t>> cells;
           for (const Point& point : p)
             cells.insert({across == 0 ? 0 : point.v[0] >> (32 - across),
@@ -142,7 +143,7 @@ TEST(KernelSobol, EachDimensionIsStratifiedAtEveryPowerOfTwo) {
         }
 }
 
-/// Of cells that are equally likely: (sum (n - e)^2 / e - f) / sqrt(2 f), nearly normal for many cells.
+/// z-score of equally likely cells: (sum (n - e)^2 / e - f) / sqrt(2 f), approximately normal for many cells.
 double z_of(const std::vector<int>& cells) {
   double total = 0, chi = 0;
   for (const int n : cells) total += n;
@@ -152,7 +153,7 @@ double z_of(const std::vector<int>& cells) {
   return (chi - freedom) / std::sqrt(2 * freedom);
 }
 
-TEST(KernelSobol, APointIsUniformOverNamesInEveryPairOfDimensions) {
+TEST(KernelSobol, PointsAreUniformOverNamesInEveryPairOfDimensions) {
   constexpr int kSide = 32, kNames = 200000;
   for (const std::uint32_t index : {0u, 1u, 2u, 3u, 5u, 16u, 1000u}) {
     for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}) {
@@ -166,13 +167,13 @@ TEST(KernelSobol, APointIsUniformOverNamesInEveryPairOfDimensions) {
   }
 }
 
-/// How much more the mean of products of two numbers at different vertices varies than with independent numbers.
+/// Variance of the mean product of two numbers at different vertices, relative to independent numbers.
 struct Excess {
-  double mean = 0;     ///< over all pairs of vertices and of numbers
-  double largest = 0;  ///< of the vertices pair by pair
+  double mean = 0;     ///< over all pairs of vertices and numbers
+  double largest = 0;  ///< maximum over pairs of vertices
 };
 Excess product_variance(SamplerKind kind, std::size_t samples, std::uint32_t vertices, std::uint32_t first_sample = 0) {
-  constexpr std::size_t kNumbers = 2;  // that direct a ray
+  constexpr std::size_t kNumbers = 2;  // the two that determine a direction
   const std::uint32_t pixels = static_cast<std::uint32_t>(std::max<std::size_t>(200, 20000 / samples));
   Sampler sampler;
   sampler.kind = kind;
@@ -202,24 +203,24 @@ Excess product_variance(SamplerKind kind, std::size_t samples, std::uint32_t ver
   return out;
 }
 
-/// A nested shuffle for each vertex would leave samples 2k and 2k + 1 in opposite halves everywhere, and this at 1.58.
+/// With a nested shuffle per vertex, samples 2k and 2k + 1 would be in opposite halves everywhere, and the mean 1.58.
 TEST(KernelSampler, ProductsAcrossVerticesVaryNoMoreThanIndependentNumbers) {
   for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kBlueNoise}) {
     for (std::size_t samples = 4; samples <= 1024; samples *= 2) {
       const Excess at = product_variance(kind, samples, kSobolVertices);
-      std::printf("%4zu samples: %.3f, of a pair of vertices at most %.3f\n", samples, at.mean, at.largest);
+      std::printf("%4zu samples: %.3f, at most %.3f for a pair of vertices\n", samples, at.mean, at.largest);
       EXPECT_LE(at.mean, 1.05) << samples;
       EXPECT_LE(at.largest, samples < 64 ? 3 : 1.25) << samples;
     }
   }
   for (std::size_t samples = 16; samples <= 1024; samples *= 4)
-    EXPECT_LE(product_variance(SamplerKind::kSobol, samples, 3).mean, 0.7) << "close to the camera, " << samples;
+    EXPECT_LE(product_variance(SamplerKind::kSobol, samples, 3).mean, 0.7) << "first three vertices, " << samples;
   EXPECT_LE(product_variance(SamplerKind::kSobol, 64, kSobolVertices, Sampler::kSecondHalf + 192).mean, 1.05);
-  EXPECT_LE(product_variance(SamplerKind::kSobol, 16, kSobolVertices + 3).mean, 1.05) << "with later vertices";
-  EXPECT_NEAR(product_variance(SamplerKind::kIndependent, 16, 4).mean, 1, 0.05) << "the judge is right";
+  EXPECT_LE(product_variance(SamplerKind::kSobol, 16, kSobolVertices + 3).mean, 1.05) << "including later vertices";
+  EXPECT_NEAR(product_variance(SamplerKind::kIndependent, 16, 4).mean, 1, 0.05) << "independent numbers must give 1";
 }
 
-TEST(KernelSampler, NumbersOfDifferentVerticesHalvesAndPixelsDoNotGoTogether) {
+TEST(KernelSampler, VerticesHalvesPixelsAndSeedsAreIndependent) {
   Sampler sampler;
   constexpr int kSide = 16;
   std::vector<int> vertices(kSide * kSide), halves(kSide * kSide), pixels(kSide * kSide), seeds(kSide * kSide);
@@ -242,18 +243,18 @@ TEST(KernelSampler, NumbersOfDifferentVerticesHalvesAndPixelsDoNotGoTogether) {
   for (const auto& cells : {vertices, halves, pixels, seeds}) EXPECT_LT(std::abs(z_of(cells)), 5);
 }
 
-TEST(KernelSampler, BlueNoiseSharesASequenceAmongNeighbours) {
+TEST(KernelSampler, BlueNoiseNeighboursShareOneSequence) {
   Sampler sampler;
   sampler.kind = SamplerKind::kBlueNoise;
   sampler.blue_noise_bits = 2;
-  // Four samples of each of the four pixels of a square: sixteen points that are one net together.
+  // Four samples in each of 2 x 2 pixels: together the sixteen points are one net.
   std::set<int> strata;
   for (const std::uint32_t pixel : {0x00060004u, 0x00060005u, 0x00070004u, 0x00070005u}) {
     const auto n = numbers_of(sampler, pixel, 0, 0, 4);
     for (std::size_t i = 0; i < 4; ++i) strata.insert(static_cast<int>(n[4 * i] * 16));
   }
   EXPECT_EQ(strata.size(), 16u);
-  // What a pixel has beyond its share is not its neighbour's.
+  // A pixel's further samples differ from its neighbour's.
   EXPECT_NE(numbers_of(sampler, 0x00060004u, 0, 4, 4), numbers_of(sampler, 0x00060005u, 0, 0, 4));
 }
 

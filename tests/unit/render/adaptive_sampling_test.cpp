@@ -36,7 +36,7 @@ void expect_same(const film::Picture& a, const film::Picture& b) {
     ASSERT_EQ(a.planes[p].values, b.planes[p].values) << a.planes[p].name;
 }
 
-TEST(RenderRounds, ThreadsAndTraversalsChangeNoBit) {
+TEST(RenderAdaptiveSampling, ThreadsAndTraversalsGiveTheSameBits) {
   Settings settings = noise(0.012);
   settings.threads = 1;
   const Result one = render(world_of(), settings);
@@ -49,15 +49,15 @@ TEST(RenderRounds, ThreadsAndTraversalsChangeNoBit) {
   EXPECT_EQ(one.statistics.paths, five.statistics.paths);
 }
 
-TEST(RenderRounds, MoreAccuracyTakesMoreSamples) {
+TEST(RenderAdaptiveSampling, LowerTargetNoiseTakesMoreSamples) {
   const Result rough = render(world_of(), noise(0.02)), fine = render(world_of(), noise(0.005));
   EXPECT_LE(*rough.statistics.noise, 0.02);
   EXPECT_LE(*fine.statistics.noise, 0.005);
-  EXPECT_GT(*fine.statistics.noise, 0.0035);  // and not more than was asked for
+  EXPECT_GT(*fine.statistics.noise, 0.0035);  // no more accurate than requested
   EXPECT_GT(fine.statistics.paths, 4 * rough.statistics.paths);
 }
 
-TEST(RenderRounds, SamplesAreALimitWhereTheyWereAskedFor) {
+TEST(RenderAdaptiveSampling, RequestedSampleCountIsALimit) {
   Settings settings = noise(0.001);
   settings.sampling.unlimited = false;
   const Result r = render(world_of(40), settings);
@@ -67,7 +67,7 @@ TEST(RenderRounds, SamplesAreALimitWhereTheyWereAskedFor) {
   EXPECT_GT(*r.statistics.noise, 0.001);
 }
 
-TEST(RenderRounds, LayersCountThePathsThatWereTaken) {
+TEST(RenderAdaptiveSampling, SampleLayerMatchesThePathCount) {
   Settings settings = noise(0.012);
   settings.layers.samples = settings.layers.variance = settings.layers.normal = settings.layers.diffuse = true;
   const Result r = render(world_of(), settings);
@@ -81,12 +81,12 @@ TEST(RenderRounds, LayersCountThePathsThatWereTaken) {
   EXPECT_EQ(sum, static_cast<double>(r.statistics.paths));
   EXPECT_EQ(static_cast<std::uint64_t>(fewest), r.statistics.fewest_samples);
   EXPECT_EQ(static_cast<std::uint64_t>(most), r.statistics.most_samples);
-  // The beauty is the one without layers.
+  // Layers do not change the beauty.
   const Result bare = render(world_of(), noise(0.012));
   for (const char* name : {"R", "G", "B"}) EXPECT_EQ(r.picture.find(name)->values, bare.picture.find(name)->values);
 }
 
-TEST(RenderRounds, NegativeLobesAndBlueNoiseWorkInRounds) {
+TEST(RenderAdaptiveSampling, NegativeFilterLobesAndBlueNoiseWork) {
   scene::Scene s = test::everything();
   s.image = {40, 24};
   s.render.filter = scene::Filter::kMitchell;
@@ -96,8 +96,8 @@ TEST(RenderRounds, NegativeLobesAndBlueNoiseWorkInRounds) {
   for (const float v : r.picture.planes[0].values) ASSERT_TRUE(std::isfinite(v));
 }
 
-TEST(RenderRounds, TimeIsKept) {
-  // The clock counts samples, so that the result does not depend on the machine.
+TEST(RenderAdaptiveSampling, TimeBudgetIsKept) {
+  // The clock counts samples, so the result does not depend on the machine.
   for (const double seconds : {0.3, 1.0, 20.0}) {
     Settings settings;
     settings.clock = [](std::uint64_t samples) { return static_cast<double>(samples) * 1e-5; };
@@ -109,7 +109,7 @@ TEST(RenderRounds, TimeIsKept) {
   }
 }
 
-TEST(RenderRounds, AnEmptyViewIsDoneAtOnce) {
+TEST(RenderAdaptiveSampling, EmptyViewFinishesAtOnce) {
   scene::Scene s;
   s.image = {20, 10};
   s.background.type = scene::BackgroundType::kConstant;
@@ -119,7 +119,7 @@ TEST(RenderRounds, AnEmptyViewIsDoneAtOnce) {
   EXPECT_EQ(r.picture.planes[0].values[0], 1.0f);
 }
 
-/// The display error of a picture against the truth.
+/// Display error of an image relative to the reference.
 double error_of(const film::Picture& picture, const film::Picture& truth) {
   double sum = 0;
   const std::size_t pixels = truth.planes[0].values.size();
@@ -136,8 +136,8 @@ double error_of(const film::Picture& picture, const film::Picture& truth) {
   return std::sqrt(sum / static_cast<double>(pixels));
 }
 
-TEST(RenderRounds, RareLightIsNotTakenForNone) {
-  // Four samples in a hundred find light: after sixteen samples a pixel looks black, or as if it were known.
+TEST(RenderAdaptiveSampling, RareLightIsNotMistakenForBlack) {
+  // Four samples in a hundred find light: after sixteen a pixel may look black, or free of noise.
   scene::Scene s = test::room(3.7, 5, 32, 18);
   s.render.samples = 4096;
   s.render.seed = 1000;
@@ -157,7 +157,7 @@ TEST(RenderRounds, RareLightIsNotTakenForNone) {
   }
 }
 
-TEST(RenderRounds, BlackIsBelievedAfterAThousandSamples) {
+TEST(RenderAdaptiveSampling, BlackIsAcceptedAfter1024Samples) {
   const Result r = render(compile::compile(test::room(3.95, 5, 12, 8)), noise(0.3));
   EXPECT_EQ(r.statistics.ended_by, "noise");
   EXPECT_EQ(r.statistics.fewest_samples, 1024u);
@@ -165,7 +165,7 @@ TEST(RenderRounds, BlackIsBelievedAfterAThousandSamples) {
   EXPECT_EQ(r.statistics.unjudged_pixels, 0u);
 }
 
-TEST(RenderRounds, WhatTooFewSamplesCannotJudgeIsCounted) {
+TEST(RenderAdaptiveSampling, PixelsWithTooFewSamplesAreCounted) {
   scene::Scene s = test::room(3.95, 5, 12, 8);
   s.render.samples = 64;
   Settings settings = noise(0.3);
@@ -177,7 +177,7 @@ TEST(RenderRounds, WhatTooFewSamplesCannotJudgeIsCounted) {
   EXPECT_EQ(r.statistics.unjudged_pixels, 96u);
 }
 
-TEST(RenderRounds, ATransparentBackgroundIsKnownToBeBlack) {
+TEST(RenderAdaptiveSampling, TransparentBackgroundIsKnownToBeBlack) {
   scene::Scene s;
   s.image = {30, 20};
   s.camera.look_from = {0, 0, 9};
@@ -188,10 +188,10 @@ TEST(RenderRounds, ATransparentBackgroundIsKnownToBeBlack) {
   const Result r = render(compile::compile(s), settings);
   EXPECT_EQ(r.statistics.ended_by, "noise");
   EXPECT_EQ(r.statistics.fewest_samples, 16u);
-  EXPECT_LT(r.statistics.paths, 30u * 600u);  // a thousand for each pixel if black had to be proven
+  EXPECT_LT(r.statistics.paths, 30u * 600u);  // a thousand per pixel if black needed evidence
 }
 
-TEST(RenderRounds, PicturesOfFewPixelsEnd) {
+TEST(RenderAdaptiveSampling, ImagesOfFewPixelsFinish) {
   std::uint64_t most = 0;
   for (const auto& [width, height] : {std::pair{1, 1}, {2, 3}, {5, 1}}) {
     scene::Scene s = test::room(3.6, 10, width, height);
@@ -203,8 +203,8 @@ TEST(RenderRounds, PicturesOfFewPixelsEnd) {
   EXPECT_GT(most, 16u);
 }
 
-TEST(RenderRounds, ALonePixelThatDiffersFromAllOthersIsReached) {
-  // A small sphere before an even sky: no other pixel knows anything of the one that it is in.
+TEST(RenderAdaptiveSampling, IsolatedNoisyPixelGetsSamples) {
+  // A small sphere before a uniform sky: no other pixel has information about the pixel that contains it.
   scene::Scene s;
   s.image = {24, 16};
   s.camera.look_from = {0, 0, 10};
@@ -224,7 +224,7 @@ TEST(RenderRounds, ALonePixelThatDiffersFromAllOthersIsReached) {
   EXPECT_GE(gone_on, 2);
 }
 
-TEST(RenderRounds, AStoppedOneGoesOnToTheSameBits) {
+TEST(RenderAdaptiveSampling, ResumedRenderGivesTheSameBits) {
   const compile::CompiledScene compiled = compile::compile(test::room(3.7, 5, 33, 18));
   Settings settings = noise(0.3);
   settings.threads = 2;
@@ -238,7 +238,7 @@ TEST(RenderRounds, AStoppedOneGoesOnToTheSameBits) {
     settings.snapshot_is_due = [&] {
       static std::mutex mutex;
       const std::lock_guard lock(mutex);
-      if (++looks > 5) cancel = true;  // in the middle of a round
+      if (++looks > 5) cancel = true;  // in the middle of an iteration
       return false;
     };
     Result r = render(compiled, settings, std::move(from));
@@ -252,7 +252,7 @@ TEST(RenderRounds, AStoppedOneGoesOnToTheSameBits) {
   EXPECT_GT(stops, 4);
 }
 
-TEST(RenderRounds, ProgressGoesForwardAndSaysWhatEndsIt) {
+TEST(RenderAdaptiveSampling, ProgressIncreasesAndNamesTheGoal) {
   Settings settings = noise(0.004);
   std::mutex mutex;
   std::vector<double> fractions;
@@ -268,7 +268,7 @@ TEST(RenderRounds, ProgressGoesForwardAndSaysWhatEndsIt) {
   EXPECT_EQ(goal.rfind("noise 0.0", 0), 0u) << goal;
 }
 
-TEST(RenderRounds, ACancelledOneIsNotComplete) {
+TEST(RenderAdaptiveSampling, CancelledRenderIsNotComplete) {
   std::atomic<bool> cancel{false};
   Settings settings = noise(1e-5);
   settings.cancel = &cancel;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kAll = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint32_t kEndless = 1u << 30;
 
-/// Three bands of thirty rows: no noise, some, and four times as much of one sample's squared error.
+/// Three bands of thirty rows with squared errors per sample of 0, 1 and 4.
 struct Bands {
   explicit Bands(std::uint32_t samples_each) : samples(40 * 90, samples_each), lacks_evidence(samples.size()) {
     for (int y = 0; y < 90; ++y) errors.insert(errors.end(), 40, y < 30 ? 0.0f : y < 60 ? 1.0f : 4.0f);
@@ -32,27 +32,27 @@ int chosen_in(const Round& round, int from, int to) {
   return static_cast<int>(std::count(round.chosen.begin() + from * 40, round.chosen.begin() + to * 40, true));
 }
 
-TEST(RenderAllocation, WhatHasNoErrorGetsNoSamples) {
+TEST(RenderAllocation, PixelsWithoutErrorGetNoSamples) {
   const Round round = Bands(16).choose({0.01, kAll, kEndless});
   EXPECT_TRUE(round.any);
   EXPECT_EQ(chosen_in(round, 0, 30), 0);
   EXPECT_EQ(chosen_in(round, 30, 90), 60 * 40);
 }
 
-TEST(RenderAllocation, TheForecastIsNeymansMinimum) {
-  // Samples in proportion to the root of a pixel's squared error: (sum of roots)^2 / wanted, by hand.
+TEST(RenderAllocation, ForecastIsNeymansMinimum) {
+  // Optimal samples are proportional to the root of a pixel's squared error; the total is (sum of roots)^2 / wanted.
   const double roots = 1200 * (1.0 + 2.0), wanted = 0.01 * 1200 * (1.0 + 4.0) / 16;
   const Round round = Bands(16).choose({0.01, kAll, kEndless});
   EXPECT_NEAR(round.samples_to_goal, roots * roots / wanted - 2400 * 16, 0.06 * roots * roots / wanted);
 }
 
-TEST(RenderAllocation, NearTheGoalOnlyTheNoisiestGoOn) {
+TEST(RenderAllocation, NearTheGoalOnlyTheNoisiestPixelsAreChosen) {
   const Round round = Bands(16).choose({0.8, kAll, kEndless});
   EXPECT_EQ(chosen_in(round, 0, 60), 0);
   EXPECT_GT(chosen_in(round, 60, 90), 0);
 }
 
-TEST(RenderAllocation, ItKeepsWithinWhatCanBePaid) {
+TEST(RenderAllocation, StaysWithinTheBudget) {
   Bands bands(16);
   for (std::size_t i = 0; i < bands.errors.size(); ++i) bands.errors[i] *= 1 + static_cast<float>(i) / 500;
   for (const std::uint64_t affordable : {4000u, 30000u}) {
@@ -64,13 +64,13 @@ TEST(RenderAllocation, ItKeepsWithinWhatCanBePaid) {
   EXPECT_FALSE(bands.choose({0.01, 0, kEndless}).any);
 }
 
-TEST(RenderAllocation, PixelsThatHaveHadAllStayBehind) {
+TEST(RenderAllocation, PixelsAtTheSampleLimitAreNotChosen) {
   const Round round = Bands(16).choose({0.01, kAll, 16});
   EXPECT_FALSE(round.any);
   EXPECT_TRUE(round.limited_by_pixels);
 }
 
-TEST(RenderAllocation, PixelsWithoutEvidenceGoOnWhateverTheirError) {
+TEST(RenderAllocation, PixelsWithoutEvidenceAreChosenWhateverTheirError) {
   Bands bands(16);
   std::fill_n(bands.lacks_evidence.begin(), 400, std::uint8_t{1});
   EXPECT_EQ(chosen_in(bands.choose({0.01, kAll, kEndless}), 0, 30), 400);
@@ -81,7 +81,7 @@ TEST(RenderAllocation, PixelsWithoutEvidenceGoOnWhateverTheirError) {
   EXPECT_FALSE(bands.choose({1, kAll, 16}).any);
 }
 
-TEST(RenderAllocation, ARoundIsWorthItsChoice) {
+TEST(RenderAllocation, IterationHasAMinimumSize) {
   Bands bands(16);
   for (int i = 0; i < 40; ++i) bands.errors[static_cast<std::size_t>(60 * 40 + i)] = 6.0f + static_cast<float>(i);
   const Round round = bands.choose({0.9999, kAll, kEndless});

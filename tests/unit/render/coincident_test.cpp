@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spheres that coincide: the first of them is rendered, as if the others were not there.
+// Of spheres that coincide, only the first is rendered.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace orrery::render {
 namespace {
 
-/// A sphere of one material that fills half of the picture, under a white sky.
+/// A sphere of one material that covers half of the image, under a white sky.
 scene::Scene furnace(const scene::MaterialModel& material) {
   scene::Scene s;
   s.image = {16, 16};
@@ -51,8 +51,8 @@ Outcome outcome(const scene::Scene& s, const scene::Scene* closing, std::optiona
   return out;
 }
 
-/// Both scenes give the same picture by the same number of rays: by packets, single rays and the list, in every
-/// precision.
+/// Expects the same image from the same number of rays for both scenes, with packets, single rays and the list, in
+/// every precision.
 void expect_equal(scene::Scene a, scene::Scene b, const std::string& what, const scene::Scene* a_closing = nullptr,
                   const scene::Scene* b_closing = nullptr) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
@@ -68,7 +68,7 @@ void expect_equal(scene::Scene a, scene::Scene b, const std::string& what, const
   }
 }
 
-TEST(RenderCoincident, OnlyTheFirstIsRendered) {
+TEST(RenderCoincident, OnlyTheFirstSphereIsRendered) {
   const std::pair<const char*, scene::MaterialModel> materials[] = {
       {"grey", scene::Lambertian{{0.5, 0.5, 0.5}}},
       {"white", scene::Lambertian{{1, 1, 1}}},
@@ -86,8 +86,8 @@ TEST(RenderCoincident, OnlyTheFirstIsRendered) {
   }
 }
 
-/// Known: each path meets a convex sphere once, at most.
-TEST(RenderCoincident, AGreySphereInAWhiteFurnaceIsHalf) {
+/// A path hits a convex sphere at most once, so the value is known.
+TEST(RenderCoincident, GreySphereInAWhiteFurnaceIsHalf) {
   scene::Scene s = furnace(scene::Lambertian{{0.5, 0.5, 0.5}});
   s.spheres.push_back(s.spheres[0]);
   s.camera.look_at = s.spheres[0].center;
@@ -96,8 +96,8 @@ TEST(RenderCoincident, AGreySphereInAWhiteFurnaceIsHalf) {
   EXPECT_EQ(outcome(s, nullptr, std::nullopt).values[0], 0.5f);
 }
 
-/// Everything twice: the ground, which stands apart from the boxes, too; and points twice in one file.
-TEST(RenderCoincident, AWholeSceneTwiceIsTheSceneOnce) {
+/// Duplicates every sphere, including the ground, an outlier outside the BVH, and a point within one points file.
+TEST(RenderCoincident, DuplicatedSceneEqualsTheScene) {
   const scene::Scene once = test::everything();
   scene::Scene twice = once;
   twice.spheres.insert(twice.spheres.end(), once.spheres.begin(), once.spheres.end());
@@ -110,7 +110,7 @@ TEST(RenderCoincident, AWholeSceneTwiceIsTheSceneOnce) {
   expect_equal(points, points_twice, "points");
 }
 
-TEST(RenderCoincident, TheSameWayIsTheSamePlaceAllTheTime) {
+TEST(RenderCoincident, SpheresWithEqualMotionCoincide) {
   scene::Scene one = furnace(scene::Lambertian{{0.5, 0.5, 0.5}});
   scene::Scene one_closing = one;
   one_closing.spheres[0].center.x = 0.5;
@@ -120,7 +120,7 @@ TEST(RenderCoincident, TheSameWayIsTheSamePlaceAllTheTime) {
   expect_equal(one, two, "moving", &one_closing, &two_closing);
 }
 
-TEST(RenderCoincident, SpheresThatPartAreBothRendered) {
+TEST(RenderCoincident, SpheresThatSeparateAreBothRendered) {
   scene::Scene s = furnace(scene::Lambertian{{0.5, 0.5, 0.5}});
   s.spheres.push_back({s.spheres[0].center, 1, 1, ""});
   scene::Scene closing = s;
@@ -128,8 +128,8 @@ TEST(RenderCoincident, SpheresThatPartAreBothRendered) {
   EXPECT_FALSE(outcome(s, &closing, std::nullopt) == outcome(s, nullptr, std::nullopt));
 }
 
-/// In single precision these two are one; in double they are not.
-TEST(RenderCoincident, FastComparesWhatItComputesWith) {
+/// The two spheres coincide in single precision but not in double.
+TEST(RenderCoincident, FastComparesInSinglePrecision) {
   const scene::Scene one = furnace(scene::Lambertian{{0.5, 0.5, 0.5}});
   scene::Scene two = one;
   two.spheres.push_back({{0, 0.25 + 1e-12, 0}, 1 + 1e-12, 1, ""});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers as a render makes them, beside a beauty that does not change by them.
+// Layers of whole renders. They do not change the beauty.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,7 +47,7 @@ void expect_equal(const Result& a, const Result& b) {
     EXPECT_EQ(a.picture.planes[i].values, b.picture.planes[i].values) << a.picture.planes[i].name;
 }
 
-TEST(RenderLayers, TheBeautyIsTheSameBitForBit) {
+TEST(RenderLayers, BeautyIsBitIdenticalWithLayers) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
     scene::Scene s = test::everything();
     s.render.precision = precision;
@@ -57,7 +57,7 @@ TEST(RenderLayers, TheBeautyIsTheSameBitForBit) {
   }
 }
 
-TEST(RenderLayers, ThreadsAcceleratorAndInstructionSetChangeNoBit) {
+TEST(RenderLayers, ThreadsAndAcceleratorsGiveTheSameBits) {
   scene::Scene s = test::everything();
   const Result one = render_with(s, all_layers(), 1);
   expect_equal(render_with(s, all_layers(), 3), one);
@@ -82,7 +82,7 @@ TEST(RenderLayers, LightGroupsAddUpToTheBeauty) {
   }
 }
 
-/// A narrow view of a ball that fills the picture; another one stands behind the camera and is seen in it, if at all.
+/// A sphere that fills the image, and another one behind the camera, visible only by reflection or refraction.
 scene::Scene ball_before_another(const scene::MaterialModel& first, const scene::MaterialModel& second, int samples) {
   scene::Scene s;
   s.image = {9, 9};
@@ -95,7 +95,7 @@ scene::Scene ball_before_another(const scene::MaterialModel& first, const scene:
   return s;
 }
 
-/// A scene of one material has light in its groups only.
+/// With a single material, only that material's groups receive light.
 TEST(RenderLayers, LightIsInTheGroupOfTheFirstSurface) {
   const auto groups_of = [](scene::MaterialModel model) {
     scene::Scene s;
@@ -119,13 +119,13 @@ TEST(RenderLayers, LightIsInTheGroupOfTheFirstSurface) {
   };
   EXPECT_EQ(groups_of(scene::Lambertian{{0.5, 0.5, 0.5}}), "background diffuse_direct ");
   EXPECT_EQ(groups_of(scene::Metal{{0.5, 0.5, 0.5}, 0}), "background specular_direct ");
-  // Straight through both sides is direct; light that went round inside before it left is not.
+  // Light transmitted through both interfaces is direct; light reflected inside is indirect.
   EXPECT_EQ(groups_of(scene::Dielectric{1.5, scene::Fresnel::kExact}),
             "background specular_direct transmission_direct transmission_indirect ");
 }
 
-/// Whatever light meets behind it, it stays in the group of the first surface.
-TEST(RenderLayers, TheFirstSurfaceDecidesTheGroup) {
+/// Later surfaces do not change the light group.
+TEST(RenderLayers, FirstSurfaceDeterminesTheGroup) {
   const scene::MaterialModel mirror = scene::Metal{{0.9, 0.9, 0.9}, 0}, clay = scene::Lambertian{{0.5, 0.5, 0.5}},
                              glass = scene::Dielectric{1.5, scene::Fresnel::kExact};
   const std::tuple<scene::MaterialModel, scene::MaterialModel, std::string> cases[] = {
@@ -142,7 +142,7 @@ TEST(RenderLayers, TheFirstSurfaceDecidesTheGroup) {
   }
 }
 
-TEST(RenderLayers, DistancesNormalsAndPlacesAreThoseOfTheSphere) {
+TEST(RenderLayers, DepthNormalAndPositionMatchTheSphere) {
   scene::Scene s;
   s.image = {33, 33};
   s.camera.look_from = {0, 0, 5};
@@ -164,7 +164,7 @@ TEST(RenderLayers, DistancesNormalsAndPlacesAreThoseOfTheSphere) {
     EXPECT_NEAR(plane(r, "depth.X")[i], std::sqrt(x * x + y * y + (5 - z) * (5 - z)), 1e-6);
     if (plane(r, "CryptoObject00.G")[i] < 1) continue;  // an edge
     ++inside;
-    EXPECT_NEAR(plane(r, "N.X")[i], x, 0.1);  // the mean of a pixel beside one of its points
+    EXPECT_NEAR(plane(r, "N.X")[i], x, 0.1);  // mean over the pixel compared with one point in it
     EXPECT_EQ(plane(r, "albedo.R")[i], 0.5F);
     EXPECT_EQ(plane(r, "denoise.albedo.G")[i], 0.25F);
     EXPECT_FLOAT_EQ(plane(r, "denoise.normal.Z")[i], plane(r, "N.Z")[i]);
@@ -172,9 +172,9 @@ TEST(RenderLayers, DistancesNormalsAndPlacesAreThoseOfTheSphere) {
   EXPECT_GT(inside, 300);
 }
 
-/// A lens that reaches into a sphere: paths of the same pixel meet its surface from both sides, and each tells the
-/// normal on its own.
-TEST(RenderLayers, NormalsOfALensWithinASpherePointAgainstEachRay) {
+/// The lens extends into a sphere, so paths of one pixel hit its surface from both sides. Each path's normal faces its
+/// own ray.
+TEST(RenderLayers, NormalsFaceEachRayOfALensInsideASphere) {
   scene::Scene s;
   s.image = {16, 16};
   s.camera.look_from = {0, 0, 3};
@@ -184,8 +184,8 @@ TEST(RenderLayers, NormalsOfALensWithinASpherePointAgainstEachRay) {
   s.camera.defocus_angle = 90;  // a lens of radius 3
   s.render.samples = 64;
   s.materials = {{"one", scene::Lambertian{{0.5, 0.5, 0.5}}}};
-  s.spheres = {{{0, 0, 3}, 2, 0, ""}};  // around the lens's middle, but not around its rim
-  // The kernel makes the guide's normal at the hit, by the ray itself.
+  s.spheres = {{{0, 0, 3}, 2, 0, ""}};  // contains the lens's centre but not its rim
+  // The kernel computes the guide normal at the hit, from the ray.
   const Result r = render_with(s, all_layers());
   for (const char* axis : {"X", "Y", "Z"})
     for (std::size_t i = 0; i < 256; ++i)
@@ -193,18 +193,19 @@ TEST(RenderLayers, NormalsOfALensWithinASpherePointAgainstEachRay) {
                   plane(r, (std::string("denoise.normal.") + axis).c_str())[i], 1e-6F);
 }
 
-/// Through a mirror a denoiser is told of what stands in it.
+/// Denoiser guides show the surface that a mirror reflects.
 TEST(RenderLayers, GuidesFollowMirrorsToTheFirstDiffuseSurface) {
   const Result r = render_with(
       ball_before_another(scene::Metal{{0.5, 0.5, 0.5}, 0}, scene::Lambertian{{0.8, 0.4, 0.2}}, 4), all_layers());
   EXPECT_FLOAT_EQ(plane(r, "denoise.albedo.R")[40], 0.4F);
   EXPECT_FLOAT_EQ(plane(r, "denoise.albedo.B")[40], 0.1F);
   EXPECT_NEAR(plane(r, "denoise.normal.Z")[40], -1, 1e-3);
-  EXPECT_FLOAT_EQ(plane(r, "albedo.R")[40], 0.5F);  // the mirror's own
+  EXPECT_FLOAT_EQ(plane(r, "albedo.R")[40], 0.5F);  // the mirror's albedo
 }
 
-/// A matte picks light without a halo: what it leaves out, laid over another sky, is what that sky would have given.
-TEST(RenderLayers, AnEmptyBackgroundLeavesNoHaloAtADefocusedEdge) {
+/// Compositing the image over a constant sky by the sum of its mattes, which equals alpha, gives the image rendered
+/// with that sky: no halo.
+TEST(RenderLayers, TransparentBackgroundLeavesNoHaloAtADefocusedEdge) {
   scene::Scene s = test::everything();
   s.render.samples = 64;
   s.background.type = scene::BackgroundType::kConstant;
@@ -219,7 +220,7 @@ TEST(RenderLayers, AnEmptyBackgroundLeavesNoHaloAtADefocusedEdge) {
   for (std::size_t i = 0; i < plane(empty, "A").size(); ++i) {
     const double alpha = plane(empty, "A")[i];
     edges += alpha > 0 && alpha < 1 ? 1 : 0;
-    double matte = 0;  // of all things in the pixel
+    double matte = 0;  // sum over all objects in the pixel
     for (const char* rank : {"00.G", "00.A", "01.G", "01.A", "02.G", "02.A"})
       matte += static_cast<double>(plane(empty, (std::string("CryptoObject") + rank).c_str())[i]);
     EXPECT_NEAR(matte, alpha, 1e-6);
@@ -247,8 +248,8 @@ TEST(RenderLayers, DeepSamplesFlattenToTheBeauty) {
   }
 }
 
-/// Many samples are taken in parts; nothing may be lost between them.
-TEST(RenderLayers, SamplesBeyondOnePartAreThereToo) {
+/// Many samples are rendered in several passes; none may be lost.
+TEST(RenderLayers, SamplesOfAllPassesAreCounted) {
   scene::Scene s = test::everything();
   s.image = {4, 4};
   s.render.samples = 10000;
@@ -256,13 +257,13 @@ TEST(RenderLayers, SamplesBeyondOnePartAreThereToo) {
   for (const float n : plane(r, "samples.X")) EXPECT_EQ(n, 10000);
 }
 
-TEST(RenderLayers, VarianceForecastsTheSpreadOverSeeds) {
+TEST(RenderLayers, VarianceMatchesTheVarianceOverSeeds) {
   for (const auto filter : {scene::Filter::kBox, scene::Filter::kGaussian, scene::Filter::kMitchell}) {
     scene::Scene s = test::everything();
     s.render.filter = filter;
     s.image = {12, 8};
     s.render.samples = 64;
-    s.render.sampler = scene::Sampler::kIndependent;  // with the others it is an upper bound
+    s.render.sampler = scene::Sampler::kIndependent;  // for the other samplers the variance layer is an upper bound
     constexpr int kSeeds = 40;
     std::vector<double> sum(96), squares(96), forecast(96);
     for (int seed = 0; seed < kSeeds; ++seed) {
@@ -280,13 +281,13 @@ TEST(RenderLayers, VarianceForecastsTheSpreadOverSeeds) {
       seen += (squares[i] - sum[i] * sum[i] / kSeeds) / (kSeeds - 1);
       told += forecast[i];
     }
-    // 96 pixels of 39 degrees of freedom: a standard error of about 3 %.
+    // 96 pixels with 39 degrees of freedom: a standard error of about 3 %.
     EXPECT_NEAR(seen / told, 1, 0.1) << static_cast<int>(filter);
   }
 }
 
-/// A filter may be as sharp as it likes: what is flat stays flat.
-TEST(RenderFilter, AFlatSkyIsFlatUnderEveryFilter) {
+/// Pixel filters, even with negative lobes, preserve a constant image.
+TEST(RenderFilter, ConstantSkyIsConstantUnderEveryFilter) {
   using enum scene::Filter;
   for (const auto filter : {kBox, kGaussian, kBlackmanHarris, kMitchell}) {
     scene::Scene s;
@@ -307,8 +308,8 @@ TEST(RenderFilter, AFlatSkyIsFlatUnderEveryFilter) {
   }
 }
 
-/// The edge of a sphere so large that it is a line: coverage across it is the filter's integral.
-TEST(RenderFilter, AnEdgeShowsTheFiltersIntegral) {
+/// The silhouette of a huge sphere is a straight edge. Coverage across it is the integral of the filter.
+TEST(RenderFilter, EdgeCoverageIsTheFilterIntegral) {
   using enum scene::Filter;
   for (const auto& [filter, width] : {std::pair{kBox, 1.0}, {kBox, 2.0}, {kGaussian, 3.0}, {kMitchell, 4.0}}) {
     scene::Scene s;
@@ -316,7 +317,7 @@ TEST(RenderFilter, AnEdgeShowsTheFiltersIntegral) {
     s.camera.look_from = {0, 0, 0};
     s.camera.look_at = {0, 0, -1};
     s.camera.vfov = 0.02;
-    // Its edge stands in the middle of the picture, on the camera's axis, upright.
+    // Its silhouette is vertical at the image centre, on the camera axis.
     s.materials = {{"one", scene::Lambertian{}}};
     s.spheres = {{{-1e6, 0, -1e6}, 1e6, 0, ""}};
     s.render.samples = 1 << 16;
@@ -325,7 +326,7 @@ TEST(RenderFilter, AnEdgeShowsTheFiltersIntegral) {
     film::LayerRequest request;
     request.coverage = true;
     const Result r = render_with(s, request);
-    // The same integral by brute force, from the formulas.
+    // The same integral by numerical quadrature of the filter formulas.
     const auto f = [filter = filter, width = width](double x) {
       const double t = std::abs(x);
       if (t > width / 2) return 0.0;
@@ -348,7 +349,7 @@ TEST(RenderFilter, AnEdgeShowsTheFiltersIntegral) {
   }
 }
 
-TEST(RenderWindow, ACropIsAPartOfTheWholeBitForBit) {
+TEST(RenderWindow, CropIsBitIdenticalToTheFullImage) {
   scene::Scene s = test::everything();
   const Result whole = render_with(s, all_layers());
   s.image.crop = scene::Window{20, 9, 31, 17};
@@ -364,7 +365,7 @@ TEST(RenderWindow, ACropIsAPartOfTheWholeBitForBit) {
             << p.name << " at " << x << ", " << y;
 }
 
-TEST(RenderWindow, OverscanSurroundsTheFrameAndLeavesItAsItIs) {
+TEST(RenderWindow, OverscanDoesNotChangeTheFrame) {
   scene::Scene s = test::everything();
   const Result frame = render_with(s, {});
   s.image.overscan = 5;
@@ -378,7 +379,7 @@ TEST(RenderWindow, OverscanSurroundsTheFrameAndLeavesItAsItIs) {
           << x << ", " << y;
 }
 
-TEST(RenderWindow, APixelMayBeWiderThanHigh) {
+TEST(RenderWindow, PixelAspectStretchesPixels) {
   scene::Scene s = test::everything();
   s.image = {20, 20};
   s.camera.defocus_angle = 0;

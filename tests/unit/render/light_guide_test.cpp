@@ -23,7 +23,7 @@ std::vector<float> whole(const PixelStatistics& s, int excluded_class) {
   return out;
 }
 
-TEST(RenderLightGuide, EvenLightIsFoundUpToTheBorderAndAcrossBlocks) {
+TEST(RenderLightGuide, UniformImageIsExactUpToBordersAndAcrossBlocks) {
   for (const auto& [width, height] : {std::pair{300, 140}, {7, 5}, {1, 9}, {2, 1}}) {
     PixelStatistics s(width, height);
     std::fill(s.light.begin(), s.light.end(), 0.5f);
@@ -39,7 +39,7 @@ TEST(RenderLightGuide, EvenLightIsFoundUpToTheBorderAndAcrossBlocks) {
   }
 }
 
-/// The guide's definition, window by window.
+/// Direct implementation of the guide's definition.
 double expected(const PixelStatistics& s, int excluded, int x, int y) {
   struct Means {
     double light = 0, squares = 0, variance = 0, count = 0;
@@ -69,7 +69,7 @@ double expected(const PixelStatistics& s, int excluded, int x, int y) {
                  (spread + static_cast<double>(s.variance[s.at(x, y)]));
 }
 
-TEST(RenderLightGuide, IsWhatItsDefinitionSays) {
+TEST(RenderLightGuide, MatchesItsDefinition) {
   for (const auto& [width, height] : {std::pair{150, 40}, {20, 140}}) {
     const PixelStatistics s = test::statistics_of(
         width, height, 8, 3, [](int x, int, double u) { return u < 0.3 ? 0.1f * static_cast<float>(x) : 0.2f; });
@@ -86,8 +86,8 @@ TEST(RenderLightGuide, IsWhatItsDefinitionSays) {
   }
 }
 
-TEST(RenderLightGuide, RareHitsTellTheLightAroundThem) {
-  // A hit in a hundred samples, sixteen samples each: most pixels have seen nothing, and a hit is six times the light.
+TEST(RenderLightGuide, RareHitsGiveTheLocalMean) {
+  // One hit in a hundred samples, sixteen samples per pixel: most pixels are black, and a hit is six times the mean.
   const PixelStatistics s =
       test::statistics_of(96, 64, 8, 7, [](int, int, double u) { return u < 0.01 ? 50.0f : 0.0f; });
   const std::vector<float> guide = whole(s, kNoClass);
@@ -101,7 +101,7 @@ TEST(RenderLightGuide, RareHitsTellTheLightAroundThem) {
   EXPECT_LT(sum / count, 0.6);
 }
 
-TEST(RenderLightGuide, AnExcludedClassHasNoInfluence) {
+TEST(RenderLightGuide, ExcludedClassHasNoInfluence) {
   const auto random = [](int, int, double u) { return static_cast<float>(u); };
   PixelStatistics s = test::statistics_of(150, 140, 8, 1, random);
   for (const int excluded : {0, 4, 8}) {
@@ -120,7 +120,7 @@ TEST(RenderLightGuide, AnExcludedClassHasNoInfluence) {
   }
 }
 
-TEST(RenderLightGuide, CountsOfARemainderAreThoseOfALoop) {
+TEST(RenderLightGuide, RemainderCountsMatchALoop) {
   for (const int size : {1, 2, 3, 7, 40}) {
     for (int at = 0; at < size; ++at) {
       for (const int reach : {0, 2, 16}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the light of whole paths is known exactly: how often they scatter, what they multiply, what is left out.
+// Scenes with known path radiance: depth limits, throughput, Russian roulette, bad samples, precision.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ scene::Scene grey_sphere() {
   return s;
 }
 
-TEST(RenderLight, APathInAClosedSphereHasAsManyRaysAsItMay) {
+TEST(RenderLight, PathsInAClosedSphereReachTheMaximumDepth) {
   scene::Scene s = grey_sphere();
   s.spheres[0].radius = 10;
   s.render.roulette_depth = 0;
@@ -35,9 +35,9 @@ TEST(RenderLight, APathInAClosedSphereHasAsManyRaysAsItMay) {
   }
 }
 
-/// The book's count: with one ray, the camera's, whatever it hits is black and the sky beside it is not; with two a
-/// convex sphere has all of its light.
-TEST(RenderLight, TheCameraRayCounts) {
+/// As in the book, the camera ray counts: with depth 1 surfaces are black and the sky is visible; with depth 2 a convex
+/// sphere has its full radiance.
+TEST(RenderLight, CameraRayCountsTowardsTheDepth) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
     scene::Scene s = grey_sphere();
     s.render.precision = precision;
@@ -53,31 +53,31 @@ TEST(RenderLight, TheCameraRayCounts) {
   }
 }
 
-TEST(RenderLight, RouletteChangesNoMean) {
+TEST(RenderLight, RussianRouletteIsUnbiased) {
   scene::Scene s = grey_sphere();
   s.materials[0].model = scene::Lambertian{{0.05, 0.05, 0.05}};
   s.render.samples = 4096;
   for (const auto sampler : {scene::Sampler::kIndependent, scene::Sampler::kSobol}) {
     s.render.sampler = sampler;
-    s.render.roulette_depth = 1;  // after the ball, with a chance of eight times 0.05
+    s.render.roulette_depth = 1;  // at the sphere, with survival probability 8 x 0.05
     const Result result = render(compile::compile(s), {});
     double sum = 0;
     for (const float value : result.picture.planes[0].values) sum += static_cast<double>(value);
     const auto pixels = static_cast<double>(result.picture.planes[0].values.size());
     EXPECT_NEAR(static_cast<double>(result.statistics.rays) / static_cast<double>(result.statistics.paths), 1.4, 0.01);
-    // Five standard errors of independent samples.
+    // A tolerance of five standard errors of independent samples.
     EXPECT_NEAR(sum / pixels, 0.05, 5 * 0.05 * std::sqrt((1 / 0.4 - 1) / (4096 * pixels)));
   }
 }
 
-TEST(RenderLight, EverySurfaceOnTheWayMultiplies) {
+TEST(RenderLight, EverySurfaceMultipliesTheThroughput) {
   scene::Scene s = grey_sphere();
-  s.spheres.push_back({{0, 0, 0}, 1, 1, ""});  // into it, off the grey one, out of it
+  s.spheres.push_back({{0, 0, 0}, 1, 1, ""});  // in through the air sphere, off the grey one, and out
   const Result result = render(compile::compile(s), {});
   for (const float value : result.picture.planes[0].values) ASSERT_EQ(value, 0.5f);
 }
 
-TEST(RenderLight, ABadSampleIsLeftOutOfItsPixelsMean) {
+TEST(RenderLight, BadSampleIsExcludedFromThePixelMean) {
   scene::Scene s = grey_sphere();
   s.camera.vfov = 30;
   s.background.bottom = s.background.top = {1e30, 1e30, 1e30};
@@ -94,15 +94,15 @@ double mean_red(const scene::Scene& s) {
   return sum / static_cast<double>(result.picture.planes[0].values.size());
 }
 
-/// Places in the pixel and directions of the first bounce must know nothing of each other: one large pixel is the mean
-/// of many small ones. Half of what the pixel sees is black, so that the other half has half of the pixel's numbers.
-TEST(RenderLight, OnePixelIsTheMeanOfManySmallOnes) {
+/// Pixel positions and directions of the first bounce are independent, so one large pixel is the mean of many small
+/// ones. Half of the pixel's view is black, so the other half uses half of the pixel's random numbers.
+TEST(RenderLight, LargePixelIsTheMeanOfSmallPixels) {
   scene::Scene s = grey_sphere();
   s.camera.vfov = 18;
   s.background.bottom = {0, 0, 0};
   s.background.top = {1, 1, 1};
   s.materials[1] = {"black", scene::Lambertian{{0, 0, 0}}};
-  // Two walls that face the camera and meet in its middle.
+  // Two walls that face the camera and meet at the image centre.
   const math::Vec3d behind{0, 0, -30};
   for (const math::Vec3d side : {math::Vec3d{3, 0, 0}, {-3, 0, 0}, {0, 3, 0}, {0, -3, 0}}) {
     s.spheres = {{behind + side, 30, 0, ""}, {behind - side, 30, 1, ""}};
@@ -115,8 +115,8 @@ TEST(RenderLight, OnePixelIsTheMeanOfManySmallOnes) {
   }
 }
 
-/// What rounding takes from a far origin is carried along: at 2^40 units from home a double is wrong by 2^-13.
-TEST(RenderLight, ASceneFarFromHomeLooksTheSame) {
+/// Ray origins keep their rounding error: at 2^40 units from the origin a double is off by up to 2^-13.
+TEST(RenderLight, SceneFarFromTheOriginLooksTheSame) {
   scene::Scene s = grey_sphere();
   s.camera.vfov = 40;
   s.background.bottom = {1, 0, 1};
@@ -131,12 +131,12 @@ TEST(RenderLight, ASceneFarFromHomeLooksTheSame) {
   int different = 0;
   for (std::size_t i = 0; i < 256; ++i)
     different += std::abs(far.picture.planes[0].values[i] - home.picture.planes[0].values[i]) > 1e-6f;
-  EXPECT_LE(different, 2);  // a path or two may pass a rim on the other side
+  EXPECT_LE(different, 2);  // a few paths may pass a silhouette on the other side
 }
 
-/// A billionth of a unit large and a million away, on coordinates that doubles hold: an eighth of a radius is lost
-/// where the origins of bounced rays are rounded.
-TEST(RenderLight, ASmallSceneFarFromHomeLooksTheSame) {
+/// Spheres of a billionth of a unit at a distance of a million, on coordinates exact in double. Rounding the origins of
+/// bounced rays would lose an eighth of a radius.
+TEST(RenderLight, SmallSceneFarFromTheOriginLooksTheSame) {
   scene::Scene s = grey_sphere();
   s.camera.look_from = {0.5, 0.25, 3};
   s.camera.look_at = {0.5, 0.25, 0};
@@ -159,9 +159,9 @@ TEST(RenderLight, ASmallSceneFarFromHomeLooksTheSame) {
   EXPECT_LE(different, 2);
 }
 
-/// A ball in a shell that touches it nearly: at 2^30 units from home the gap is a twentieth of what an origin that is
-/// one double cannot say, and a ray that is bent nowhere on its way in must still find the ball.
-TEST(RenderLight, ANarrowGapFarFromHomeIsNotJumped) {
+/// A ball inside a shell that almost touches it. At 2^30 units from the origin the gap is a twentieth of the rounding
+/// error of an origin stored as one double, yet an unrefracted ray from the shell must hit the ball.
+TEST(RenderLight, NarrowGapFarFromTheOriginIsNotSkipped) {
   scene::Scene s = grey_sphere();
   const math::Vec3d away{0x1p30, 0x1p30, -0x1p30};
   s.camera.look_from = s.camera.look_from + away;

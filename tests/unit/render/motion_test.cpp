@@ -18,7 +18,7 @@ std::vector<float> values(const film::Picture& picture) {
   return all;
 }
 
-/// A scene in which spheres fly, grow, and rest, one of them a ground that stands apart; and the camera with them.
+/// A scene with moving, growing and static spheres, one a ground outside the BVH, and a moving camera.
 struct Moving {
   scene::Scene opening = test::everything(), closing;
   explicit Moving(bool camera = true) {
@@ -58,7 +58,7 @@ TEST(RenderMotion, EveryAcceleratorThreadCountAndTraversalGivesTheSameBits) {
   }
 }
 
-TEST(RenderMotion, WhatRestsIsRenderedAsIfTheShutterWereNeverOpen) {
+TEST(RenderMotion, StaticSceneRendersAsWithoutMotion) {
   const scene::Scene scene = test::everything();
   const compile::CompiledScene compiled = compile::compile(scene, &scene);
   EXPECT_FALSE(compiled.features.motion);
@@ -66,7 +66,7 @@ TEST(RenderMotion, WhatRestsIsRenderedAsIfTheShutterWereNeverOpen) {
   EXPECT_EQ(values(render(compiled, {}).picture), values(render(compile::compile(scene), {}).picture));
 }
 
-TEST(RenderMotion, OnlySpheresUpToTheLastThatMovesAreKept) {
+TEST(RenderMotion, MotionArrayEndsAtTheLastMovingSphere) {
   scene::Scene opening = test::everything(), closing = opening;
   closing.spheres[2].center.x += 1;
   const compile::CompiledScene compiled = compile::compile(opening, &closing);
@@ -76,7 +76,7 @@ TEST(RenderMotion, OnlySpheresUpToTheLastThatMovesAreKept) {
   EXPECT_EQ(compiled.motion[1].radius, 0);
 }
 
-/// The blurred picture is the mean of the pictures of all moments.
+/// Expects the motion-blurred image to be the mean of images at many times.
 void expect_mean_of_moments(const Moving& moving) {
   scene::Scene scene = moving.opening;
   scene.render.samples = 4096;
@@ -115,16 +115,16 @@ void expect_mean_of_moments(const Moving& moving) {
   EXPECT_LT(worst, 0.08);
 }
 
-TEST(RenderMotion, IsTheMeanOfAllMomentsOfMovingSpheres) { expect_mean_of_moments(Moving(false)); }
+TEST(RenderMotion, MovingSpheresAreAveragedOverTheShutter) { expect_mean_of_moments(Moving(false)); }
 
-TEST(RenderMotion, IsTheMeanOfAllMomentsOfAMovingCamera) {
+TEST(RenderMotion, MovingCameraIsAveragedOverTheShutter) {
   Moving moving;
   moving.closing.spheres = moving.opening.spheres;
   expect_mean_of_moments(moving);
 }
 
-TEST(RenderMotion, TimeIsSpreadOverTheWholeShutter) {
-  // A white sphere without light from elsewhere flies from left to right across a black sky.
+TEST(RenderMotion, TimeIsUniformOverTheShutter) {
+  // A white sphere with flat shading moves from left to right across a black sky.
   scene::Scene s;
   s.image = {64, 1};
   s.camera.vfov = 1;  // 64 pixels are 1.117 degrees
@@ -134,12 +134,12 @@ TEST(RenderMotion, TimeIsSpreadOverTheWholeShutter) {
   s.background.type = scene::BackgroundType::kConstant;
   s.background.color = {0, 0, 0};
   s.materials = {{"white", scene::Lambertian{{1, 1, 1}}}};
-  const double pixel = 2 * std::tan(0.5 / 180 * 3.14159265358979) * 100;  // at 100 units, of one row
+  const double pixel = 2 * std::tan(0.5 / 180 * 3.14159265358979) * 100;  // width of a pixel at a distance of 100 units
   s.spheres = {{{-24 * pixel, 0, -100}, 4 * pixel, 0}};
   scene::Scene closing = s;
   closing.spheres[0].center.x = 24 * pixel;
   const film::Picture picture = render(compile::compile(s, &closing), {}).picture;
-  // Each pixel that the whole sphere passes sees it for the same share of the time: mean chord by way.
+  // Every pixel that the whole sphere crosses sees it for the same fraction of the shutter: diameter / distance moved.
   const film::Plane& red = *picture.find("R");
   for (int x = 14; x < 50; ++x) EXPECT_NEAR(red.values[static_cast<std::size_t>(x)], 8.0 / 48, 0.012) << x;
   EXPECT_EQ(red.values[2], 0);

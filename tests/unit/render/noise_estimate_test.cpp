@@ -11,23 +11,23 @@
 namespace orrery::render {
 namespace {
 
-/// A hit among 1 / kRare samples.
+/// Fraction of samples that hit.
 constexpr double kRare = 0.01;
 float rare(int, int, double u) { return u < kRare ? 50.0f : 0.0f; }
 
-TEST(RenderNoiseEstimate, RareLightIsAsNoisyAsItIs) {
+TEST(RenderNoiseEstimate, EstimatesTheNoiseOfRareLight) {
   TilePool pool(1);
   for (const std::uint32_t half : {8u, 64u, 512u}) {
-    // Of light 50 p: a squared error of 50^2 p (1 - p) / 2 n, and half of the relative error counts.
+    // The mean is 50 p, the squared error 50^2 p (1 - p) / 2 n, and the display error is half the relative error.
     const double truth = (1 - kRare) / (kRare * 2 * half) / 4;
     const NoiseEstimate noise = estimate_noise(test::statistics_of(80, 60, half, half, rare), pool);
-    EXPECT_GT(noise.mean_square, 0.75 * truth) << half;  // not quite by the mean: it is a mean of ratios
+    EXPECT_GT(noise.mean_square, 0.75 * truth) << half;  // biased, because it is a mean of ratios
     EXPECT_LT(noise.mean_square, 1.6 * truth) << half;
     EXPECT_GT(noise.upper(), truth) << half;
   }
 }
 
-TEST(RenderNoiseEstimate, TheUpperEstimateLeavesRoomForALuckyDip) {
+TEST(RenderNoiseEstimate, UpperEstimateIsRarelyBelowTheTrueNoise) {
   TilePool pool(1);
   const auto even = [](int, int, double u) { return static_cast<float>(u); };  // variance 1 / 12 around 1 / 2
   int below = 0;
@@ -38,7 +38,7 @@ TEST(RenderNoiseEstimate, TheUpperEstimateLeavesRoomForALuckyDip) {
   EXPECT_LE(below, 8);
 }
 
-TEST(RenderNoiseEstimate, ADarkPixelIsNotJudgedByBrightOnesBesideIt) {
+TEST(RenderNoiseEstimate, DarkPixelIsNotScaledByBrightNeighbours) {
   TilePool pool(1);
   PixelStatistics s(40, 30);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
@@ -49,7 +49,7 @@ TEST(RenderNoiseEstimate, ADarkPixelIsNotJudgedByBrightOnesBesideIt) {
   EXPECT_FLOAT_EQ(noise.of_pixel[s.at(20, 15)], 1 / (4 * 0.25f * 0.25f));
 }
 
-TEST(RenderNoiseEstimate, BelowASixtyFourthOfWhiteLightCountsAsThat) {
+TEST(RenderNoiseEstimate, LightIsClampedToASixtyFourthOfWhite) {
   TilePool pool(1);
   PixelStatistics s(9, 9);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
@@ -57,7 +57,7 @@ TEST(RenderNoiseEstimate, BelowASixtyFourthOfWhiteLightCountsAsThat) {
   EXPECT_NEAR(estimate_noise(s, pool).mean_square, 1e-6 * 64 * 64 / 4, 1e-8);
 }
 
-TEST(RenderNoiseEstimate, NoPixelIsChosenByItsOwnValues) {
+TEST(RenderNoiseEstimate, ChoiceOfAPixelIgnoresItsOwnValues) {
   TilePool pool(1);
   const auto random = [](int, int, double u) { return u < 0.2 ? 3.0f : static_cast<float>(u); };
   PixelStatistics s = test::statistics_of(90, 70, 8, 3, random);
@@ -78,7 +78,7 @@ TEST(RenderNoiseEstimate, NoPixelIsChosenByItsOwnValues) {
   }
 }
 
-TEST(RenderNoiseEstimate, ALonePixelIsNotLeftBehind) {
+TEST(RenderNoiseEstimate, IsolatedNoisyPixelIsNotIgnored) {
   TilePool pool(1);
   PixelStatistics s(60, 40);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
@@ -93,7 +93,7 @@ TEST(RenderNoiseEstimate, ALonePixelIsNotLeftBehind) {
   EXPECT_GT(errors_of_one_sample(one, estimate_noise(one, pool), pool)[0], 0);
 }
 
-TEST(RenderNoiseEstimate, ErrorsOfNeighboursAreAveragedUntilEnoughOfThemCount) {
+TEST(RenderNoiseEstimate, ErrorsAreAveragedOverNeighbours) {
   TilePool pool(1);
   PixelStatistics s(120, 120);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
@@ -102,12 +102,12 @@ TEST(RenderNoiseEstimate, ErrorsOfNeighboursAreAveragedUntilEnoughOfThemCount) {
     for (int x = 0; x < 120; ++x) s.variance[s.at(x, y)] = 0.01f;
   const std::vector<float> errors = errors_of_one_sample(s, estimate_noise(s, pool), pool);
   const float noisy = 0.01f * 8 / 4;
-  EXPECT_NEAR(errors[s.at(60, 90)], noisy, 0.02f * noisy);  // and a 64th of the picture's mean
+  EXPECT_NEAR(errors[s.at(60, 90)], noisy, 0.02f * noisy);  // plus a 64th of the image's mean
   EXPECT_LT(errors[s.at(60, 20)], 0.02f * noisy);
 }
 
-TEST(RenderNoiseEstimate, WhereFewPixelsAreNoisyAnyMayBe) {
-  // One pixel in a hundred far apart, among others that have no noise: they cannot be told from those around them.
+TEST(RenderNoiseEstimate, SparseNoiseIsSpreadOverAllPixels) {
+  // One pixel in a hundred is noisy, at a large spacing. Neighbours cannot show which, so all get a similar error.
   TilePool pool(1);
   PixelStatistics s(90, 90);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
@@ -119,7 +119,7 @@ TEST(RenderNoiseEstimate, WhereFewPixelsAreNoisyAnyMayBe) {
   EXPECT_GT(*least, 0.4f * *most);
 }
 
-TEST(RenderNoiseEstimate, BlackIsBelievedAfterAThousandSamples) {
+TEST(RenderNoiseEstimate, BlackIsAcceptedAfter1024Samples) {
   TilePool pool(1);
   PixelStatistics s(30, 20);
   for (const std::uint32_t half : {8u, 256u, 511u}) {
@@ -133,7 +133,7 @@ TEST(RenderNoiseEstimate, BlackIsBelievedAfterAThousandSamples) {
   EXPECT_EQ(find_missing_evidence(s, pool).count, 0u);
 }
 
-TEST(RenderNoiseEstimate, FewHitsAreNoEvidence) {
+TEST(RenderNoiseEstimate, TooFewHitsAreNoEvidence) {
   TilePool pool(1);
   PixelStatistics s(7, 7);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
@@ -148,7 +148,7 @@ TEST(RenderNoiseEstimate, FewHitsAreNoEvidence) {
   EXPECT_EQ(find_missing_evidence(s, pool).of_pixel[s.at(3, 3)], 0);
 }
 
-TEST(RenderNoiseEstimate, LightBesideADarkAreaIsNoEvidenceInIt) {
+TEST(RenderNoiseEstimate, LightBesideADarkAreaIsNoEvidenceForIt) {
   TilePool pool(1);
   PixelStatistics s(30, 20);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
@@ -159,7 +159,7 @@ TEST(RenderNoiseEstimate, LightBesideADarkAreaIsNoEvidenceInIt) {
   EXPECT_EQ(missing[s.at(13, 10)], 0);
 }
 
-TEST(RenderNoiseEstimate, ThreadsChangeNoBit) {
+TEST(RenderNoiseEstimate, ThreadsGiveTheSameBits) {
   const auto random = [](int x, int y, double u) { return u < 0.01 * (x % 50) ? static_cast<float>(y) : 0.0f; };
   const PixelStatistics s = test::statistics_of(290, 150, 4, 5, random);
   struct Found {
@@ -178,7 +178,7 @@ TEST(RenderNoiseEstimate, ThreadsChangeNoBit) {
   EXPECT_TRUE(with(1) == with(5));
 }
 
-TEST(RenderNoiseEstimate, ExtremeValuesStayNumbers) {
+TEST(RenderNoiseEstimate, ExtremeValuesStayFinite) {
   TilePool pool(1);
   PixelStatistics s(40, 40);
   std::fill(s.samples.begin(), s.samples.end(), 0x7fffffffu);

@@ -27,7 +27,7 @@ std::vector<float> values(const film::Picture& picture) {
   return all;
 }
 
-/// A picture cut into squares of `side` pixels and its samples into `shards` ranges, the last piece first.
+/// Renders an image in squares of `side` pixels and `shards` sample ranges, in reverse order.
 std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, int side, int shards,
                                       kernel::Lanes lanes) {
   const std::unique_ptr<accel::Accel> accel = accel::make_embree(compiled.view(), compiled.precision);
@@ -57,11 +57,11 @@ std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, in
 
 compile::CompiledScene world_of_everything() {
   scene::Scene scene = test::everything();
-  scene.render.samples = 19;  // 17 shards that are not all alike
+  scene.render.samples = 19;  // 17 shards of different sizes
   return compile::compile(scene);
 }
 
-/// The layers that keep all that a partial can hold.
+/// Requests layers that use every field of a partial.
 Settings with_layers(Settings settings = {}) {
   film::LayerRequest& r = settings.layers;
   r.z = r.depth = r.normal = r.position = r.albedo = r.diffuse = r.specular = r.transmission = r.background = true;
@@ -90,7 +90,7 @@ void expect_same(const Result& a, const Result& b) {
   }
 }
 
-/// Renders by fits and starts: each start goes on from the words that the last one has left.
+/// Renders with many interruptions; each start resumes from the serialized state of the last.
 Result interrupted(const compile::CompiledScene& compiled, Settings settings, int* starts) {
   std::optional<film::Partial> from;
   std::minstd_rand random(7);
@@ -98,7 +98,7 @@ Result interrupted(const compile::CompiledScene& compiled, Settings settings, in
     std::atomic<bool> cancel{false};
     std::atomic<int> tiles{static_cast<int>(random() % 3) + 2};
     settings.cancel = &cancel;
-    settings.snapshot_is_due = [&] {  // asked before each tile
+    settings.snapshot_is_due = [&] {  // called before each tile
       if (--tiles == 0) cancel = true;
       return false;
     };
@@ -111,7 +111,7 @@ Result interrupted(const compile::CompiledScene& compiled, Settings settings, in
   }
 }
 
-TEST(RenderPasses, StopsAndStartsChangeNoBit) {
+TEST(RenderProgressiveSampling, ResumedRendersGiveTheSameBits) {
   scene::Scene scene = test::everything();
   scene.render.samples = 90;  // three passes
   const compile::CompiledScene compiled = compile::compile(scene);
@@ -122,7 +122,7 @@ TEST(RenderPasses, StopsAndStartsChangeNoBit) {
   }
 }
 
-TEST(RenderPasses, NegativeWeightsSurviveStopsToo) {
+TEST(RenderProgressiveSampling, ResumedRendersKeepNegativeWeights) {
   scene::Scene scene = test::everything();
   scene.render.filter = scene::Filter::kMitchell;
   scene.render.samples = 40;
@@ -132,11 +132,11 @@ TEST(RenderPasses, NegativeWeightsSurviveStopsToo) {
   EXPECT_GT(starts, 1);
 }
 
-TEST(RenderPasses, SnapshotsAreWholeAndChangeNoBit) {
+TEST(RenderProgressiveSampling, SnapshotsAreCompleteAndChangeNoBits) {
   const compile::CompiledScene compiled = world_of_everything();
   for (const Settings& plain : {Settings{}, in_rounds()}) {
     Settings settings = plain;
-    std::atomic<int> asked{0};  // before every square
+    std::atomic<int> asked{0};  // called before every tile
     std::uint64_t last = 0;
     int snapshots = 0;
     settings.snapshot_is_due = [&] { return ++asked % 4 == 0; };
@@ -153,7 +153,7 @@ TEST(RenderPasses, SnapshotsAreWholeAndChangeNoBit) {
   }
 }
 
-TEST(RenderShare, EveryPixelBelongsToOneOfTheParts) {
+TEST(RenderPixelShard, EveryPixelBelongsToOneShard) {
   for (const int count : {1, 2, 3, 17, 1000}) {
     std::vector<int> owners(130 * 67, 0);
     for (int i = 0; i < count; ++i) {
@@ -164,7 +164,7 @@ TEST(RenderShare, EveryPixelBelongsToOneOfTheParts) {
   }
 }
 
-TEST(RenderShare, PartsAddUpToTheWholeWithItsLayers) {
+TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
   const compile::CompiledScene compiled = world_of_everything();
   const Settings whole = with_layers();
   for (const int count : {2, 5}) {
@@ -190,7 +190,7 @@ TEST(RenderShare, PartsAddUpToTheWholeWithItsLayers) {
   }
 }
 
-TEST(RenderPasses, AnyCuttingGivesTheSameBits) {
+TEST(RenderProgressiveSampling, AnySplitGivesTheSameBits) {
   const compile::CompiledScene compiled = world_of_everything();
   const std::vector<float> whole = values(render(compiled, {}).picture);
   for (const int side : {1, 5, 32, 128})
@@ -199,7 +199,7 @@ TEST(RenderPasses, AnyCuttingGivesTheSameBits) {
           << side << " pixels, " << shards << " shards";
 }
 
-TEST(RenderPasses, OneLaneGivesTheSameBitsAsAll) {
+TEST(RenderProgressiveSampling, OneLaneGivesTheSameBitsAsAll) {
   const compile::CompiledScene compiled = world_of_everything();
   EXPECT_EQ(rendered_in_pieces(compiled, 32, 1, kernel::Lanes::kOne), values(render(compiled, {}).picture));
 }

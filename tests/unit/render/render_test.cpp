@@ -46,14 +46,14 @@ TEST(RenderRender, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(pixels(s, 5), one);
 }
 
-TEST(RenderRender, AnotherSeedGivesAnotherPicture) {
+TEST(RenderRender, AnotherSeedGivesAnotherImage) {
   scene::Scene s = everything();
   const auto first = pixels(s);
   s.render.seed = 2;
   EXPECT_NE(pixels(s), first);
 }
 
-/// Multiplies every length of a scene; a power of two leaves every ratio its bits.
+/// Scales all lengths of a scene. A power of two leaves the bits of every ratio unchanged.
 scene::Scene scaled(scene::Scene s, double factor) {
   s.camera.look_from = s.camera.look_from * factor;
   s.camera.look_at = s.camera.look_at * factor;
@@ -64,19 +64,19 @@ scene::Scene scaled(scene::Scene s, double factor) {
   return s;
 }
 
-TEST(RenderRender, TheSizeOfTheWorldChangesNoBit) {
+TEST(RenderRender, SceneScaleChangesNoBits) {
   const scene::Scene s = everything();
   const auto unit = pixels(s);
   for (const int k : {-60, -17, 1, 30, 48}) EXPECT_EQ(pixels(scaled(s, std::ldexp(1.0, k))), unit) << "2^" << k;
 }
 
-TEST(RenderRender, TheBooksFixedDistanceFailsThatTest) {
+TEST(RenderRender, BookPrecisionDependsOnTheSceneScale) {
   scene::Scene s = everything();
   s.render.precision = scene::Precision::kBook;
   EXPECT_NE(pixels(scaled(s, 0x1p-8)), pixels(s));
 }
 
-TEST(RenderRender, NoSpheresIsTheSky) {
+TEST(RenderRender, EmptySceneShowsTheSky) {
   scene::Scene s;
   s.image = {8, 8};
   s.camera.vfov = 1;
@@ -88,14 +88,14 @@ TEST(RenderRender, NoSpheresIsTheSky) {
   EXPECT_NEAR(p[2 * 64], 1.0, 1e-4);  // blue
 }
 
-/// One convex diffuse sphere of albedo 0.5 in a white sky: every path that meets it leaves it at once.
-TEST(RenderRender, AGreySphereInAWhiteSkyIsExactlyHalf) {
+/// A convex diffuse sphere of albedo 0.5 in a white sky: every path that hits it escapes after one bounce.
+TEST(RenderRender, GreySphereInAWhiteSkyIsExactlyHalf) {
   for (const double radius : {1e-12, 1e-3, 1.0, 1e6, 1e12}) {
     scene::Scene s;
     s.image = {40, 40};
     s.camera.look_from = {0, 0, 3 * radius};
     s.camera.look_at = {0, 0, 0};
-    s.camera.vfov = 20;  // the sphere fills the picture
+    s.camera.vfov = 20;  // the sphere fills the image
     s.background.bottom = s.background.top = {1, 1, 1};
     s.render.samples = 60;
     s.materials = {{"grey", scene::Lambertian{{0.5, 0.5, 0.5}}}};
@@ -105,8 +105,8 @@ TEST(RenderRender, AGreySphereInAWhiteSkyIsExactlyHalf) {
   }
 }
 
-/// Nothing is absorbed, so every path that ends brings the sky's one: glass, mirror and white diffuse alike.
-TEST(RenderRender, AWhiteFurnaceIsExactlyOne) {
+/// No material absorbs, so every path that escapes has the sky's radiance of 1.
+TEST(RenderRender, WhiteFurnaceIsExactlyOne) {
   scene::Scene s = everything();
   s.background.bottom = s.background.top = {1, 1, 1};
   s.render.max_depth = 1000;
@@ -119,7 +119,7 @@ TEST(RenderRender, AWhiteFurnaceIsExactlyOne) {
   for (const float value : pixels(s)) ASSERT_EQ(value, 1.0f);
 }
 
-TEST(RenderRender, AShellOfNegativeRadiusIsASphereOfTheInverseIndex) {
+TEST(RenderRender, NegativeRadiusEqualsTheInverseIndex) {
   scene::Scene s = everything();
   for (const auto fresnel : {scene::Fresnel::kSchlick, scene::Fresnel::kExact, scene::Fresnel::kNone}) {
     s.materials[4] = {"glass", scene::Dielectric{1.5, fresnel}};
@@ -133,7 +133,7 @@ TEST(RenderRender, AShellOfNegativeRadiusIsASphereOfTheInverseIndex) {
   }
 }
 
-TEST(RenderRender, SpheresAreBlackToTheCameraRayAlone) {
+TEST(RenderRender, SpheresAreBlackAtDepthOne) {
   scene::Scene s = everything();
   s.camera.vfov = 0.01;
   s.camera.defocus_angle = 0;
@@ -160,7 +160,7 @@ TEST(RenderRender, NormalAndFlatShading) {
   EXPECT_NEAR(p[2 * 81 + 40], 1.0, 1e-6);  // towards the camera
 }
 
-TEST(RenderRender, StopsWhenAsked) {
+TEST(RenderRender, StopsWhenCancelled) {
   scene::Scene s = everything();
   const std::atomic<bool> cancel{true};
   Settings settings;
@@ -170,7 +170,7 @@ TEST(RenderRender, StopsWhenAsked) {
   EXPECT_TRUE(result.picture.planes.empty());
 }
 
-TEST(RenderRender, ReportsWhatItDid) {
+TEST(RenderRender, ReportsStatistics) {
   const scene::Scene s = everything();
   std::uint64_t last = 0;
   Settings settings;

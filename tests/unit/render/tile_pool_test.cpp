@@ -11,7 +11,7 @@
 namespace orrery::render {
 namespace {
 
-TEST(RenderTilePool, AFailedAllocationInAnyThreadReachesTheCaller) {
+TEST(RenderTilePool, AllocationFailureInAnyThreadReachesTheCaller) {
   TilePool pool(3);
   const auto fail = [](std::size_t i, TileWorker&) {
     if (i == 77) throw std::bad_alloc();
@@ -19,7 +19,7 @@ TEST(RenderTilePool, AFailedAllocationInAnyThreadReachesTheCaller) {
   EXPECT_THROW(pool.run(100, fail, [] { return false; }), std::bad_alloc);
 }
 
-TEST(RenderTilePool, UsesNoMoreThreadsThanItWasGiven) {
+TEST(RenderTilePool, UsesAtMostTheGivenNumberOfThreads) {
   TilePool pool(2);
   std::mutex mutex;
   std::set<std::thread::id> threads;

@@ -32,7 +32,7 @@ TEST(RenderTraversals, AllGiveTheSameBits) {
   }
 }
 
-TEST(RenderTraversals, WhatIsAskedForIsUsed) {
+TEST(RenderTraversals, RequestedTraversalIsUsed) {
   const compile::CompiledScene compiled = compile::compile(test::everything());
   Settings settings;
   settings.traversal = accel::Traversal::kSingle;
@@ -41,14 +41,14 @@ TEST(RenderTraversals, WhatIsAskedForIsUsed) {
   EXPECT_EQ(render(compiled, settings).statistics.traversal, "packet");
 }
 
-TEST(RenderTraversals, NamesSayWhatDiffers) {
+TEST(RenderTraversals, NamesDescribeBothKindsOfRays) {
   using enum accel::Traversal;
   EXPECT_EQ(name_of({kPacket, kPacket}), "packet");
   EXPECT_EQ(name_of({kSingle, kSingle}), "single");
   EXPECT_EQ(name_of({kPacket, kSingle}), "packet, bounced single");
 }
 
-/// Small balls all over a cube, too few paths for a trial.
+/// Small spheres on a grid; the scene has too few paths for a trial.
 scene::Scene balls(int count) {
   scene::Scene scene = test::everything();
   scene.spheres.clear();
@@ -59,7 +59,7 @@ scene::Scene balls(int count) {
   return scene;
 }
 
-TEST(RenderTraversals, WithoutATrialTheNumberOfSpheresDecides) {
+TEST(RenderTraversals, WithoutATrialTheSphereCountDecides) {
   for (const auto& [count, name] : {std::pair{900, "packet"}, std::pair{4000, "packet, bounced single"}}) {
     const compile::CompiledScene compiled = compile::compile(balls(count));
     const std::unique_ptr<accel::Accel> accel = build(compiled, 1);
@@ -67,9 +67,8 @@ TEST(RenderTraversals, WithoutATrialTheNumberOfSpheresDecides) {
   }
 }
 
-/// The same picture with enough samples for a trial: whatever the clock says, it comes to an end and is one of the
-/// four.
-TEST(RenderTraversals, ATrialChoosesBetweenBoth) {
+/// With enough samples for a trial, the result is one of the four combinations, whichever is faster.
+TEST(RenderTraversals, TrialChoosesATraversal) {
   scene::Scene scene = balls(4000);
   scene.render.samples = 4096;
   const compile::CompiledScene compiled = compile::compile(scene);
