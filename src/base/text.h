@@ -12,4 +12,7 @@ namespace orrery::base {
 /// Formats a size in bytes: "49.4 MiB".
 std::string bytes_text(std::uint64_t bytes);
 
+/// Quotes a word for a POSIX shell; a word without special characters stays as it is.
+std::string shell_quoted(const std::string& word);
+
 }  // namespace orrery::base

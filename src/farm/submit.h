@@ -41,7 +41,4 @@ Commands commands_of(const Submission& submission);
 /// Errors     as commands_of
 std::string submission_text(const Submission& submission);
 
-/// Words as a POSIX shell takes them.
-std::string shell_quoted(const std::string& word);
-
 }  // namespace orrery::farm

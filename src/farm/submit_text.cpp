@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "farm/submit.h"
+
+#include "base/text.h"
 #include "job/text.h"
 
 namespace orrery::farm {
@@ -26,9 +28,9 @@ std::string shell_line(const Words& words, const std::string& frame, const std::
   std::string out;
   for (const std::string& word : words) {
     // Quotes end around what the shell shall fill in.
-    const bool is_plain = shell_quoted(word) == word;
+    const bool is_plain = base::shell_quoted(word) == word;
     const std::string quote = is_plain ? "" : "'";
-    std::string text = shell_quoted(word);
+    std::string text = base::shell_quoted(word);
     text = replaced(text, Commands::kFrame, quote + frame + quote);
     text = replaced(text, Commands::kShard, quote + shard + quote);
     out += (out.empty() ? "" : " ") + text;
@@ -65,7 +67,7 @@ std::string slurm_text(const Submission& s, const Commands& c) {
   out +=
       "# Run it with sh, in a folder that all nodes see under the same name. Edit it as you like.\n"
       "set -eu\nmkdir -p " +
-      shell_quoted(c.parts.string()) +
+      base::shell_quoted(c.parts.string()) +
       "\n\n"
       "render=$(sbatch --parsable <<'END'\n#!/bin/sh\n";
   out += slurm_array(c, "render", c.frames.size() * static_cast<std::size_t>(s.shards));
@@ -99,7 +101,7 @@ std::string slurm_text(const Submission& s, const Commands& c) {
 // --------------------------------------------------------------------------------------------- GNU parallel
 
 std::string parallel_text(const Submission& s, const Commands& c) {
-  const std::string parts = shell_quoted(c.parts.string());
+  const std::string parts = base::shell_quoted(c.parts.string());
   std::string out = "#!/bin/sh\n" + heading(s, c, "with GNU parallel on this machine");
   base::append(out,
                "# Run it with sh, again as often as needed: only what has failed or is not done is done.\n"
@@ -107,7 +109,8 @@ std::string parallel_text(const Submission& s, const Commands& c) {
                parts.c_str(), s.jobs_at_a_time - 1, s.jobs_at_a_time);
   const auto run = [&](const Words& words, const char* kind, const std::string& more, const std::string& tail) {
     base::append(out, "parallel --jobs %d --joblog %s/%s.log --resume-failed --retries 3 \\\n  %s%s \\\n  ::: %s%s\n",
-                 s.jobs_at_a_time, parts.c_str(), kind, shell_quoted(shell_line(words, "{1}", "{2}") + more).c_str(),
+                 s.jobs_at_a_time, parts.c_str(), kind,
+                 base::shell_quoted(shell_line(words, "{1}", "{2}") + more).c_str(),
                  more.empty() ? "" : "\" -t $threads\"", frame_list(c).c_str(), tail.c_str());
   };
   std::string shards = " :::";

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/text.h"
-#include "farm/submit.h"
 #include "format/read_scene.h"
 
 namespace orrery::measure {
@@ -52,7 +51,7 @@ class Recommender {
     r.noise = std::min(last.noise, request_.noise);
     r.seconds = last.seconds * growth(pilots, request_.noise, &Point::seconds);
     r.samples = last.samples * growth(pilots, request_.noise, &Point::samples);
-    r.command = "orrery render " + farm::shell_quoted(study_.scene) + " -o final.exr " + scene_flags() + flags;
+    r.command = "orrery render " + base::shell_quoted(study_.scene) + " -o final.exr " + scene_flags() + flags;
     r.baseline_seconds = baseline_seconds();
     base::append(r.words, "for %.3g %% noise: %s, %.3g s", request_.noise * 100, flags.c_str(), r.seconds);
     if (r.baseline_seconds > 0) base::append(r.words, " instead of %.3g s", r.baseline_seconds);
@@ -79,7 +78,7 @@ class Recommender {
   std::string scene_flags() const {
     std::string flags;
     for (const format::Override& override : request_.scene.overrides)
-      if (!override.sets("render.samples")) flags += override.option + " " + farm::shell_quoted(override.typed) + " ";
+      if (!override.sets("render.samples")) flags += override.option + " " + base::shell_quoted(override.typed) + " ";
     if (request_.scene.frame != format::kFirstFrame) base::append(flags, "--frames %d ", request_.scene.frame);
     return flags;
   }
