@@ -221,7 +221,7 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
       write_numbers(pictures.difference, difference_picture(channels, false));
     }
   }
-  write_map(pictures.heat, out.display_map, kHottest);
+  write_map(pictures.heat, out.display_map, metrics::kHottest);
   write_map(pictures.flip, out.flip_map, 1);
   return out;
 }

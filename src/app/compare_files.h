@@ -56,16 +56,13 @@ struct ComparisonPictures {
 /// Compares two image files, and writes difference images.
 ///
 /// The difference is stored as is in scene-linear formats, and as half of it plus mid-grey in display formats. The heat
-/// map shows the display error in false colours up to kHottest, the FLIP map up to 1; scene-linear formats hold the
-/// values.
+/// map shows the display error in false colours up to metrics::kHottest, the FLIP map up to 1; scene-linear formats
+/// hold the values.
 ///
 /// Errors     base::Error: as compare, image::read and image::write; kUsage if one file is scene-linear and the other
 ///            display-encoded
 Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
                          const std::string& layer, const ComparisonPictures& pictures, int threads = 0);
-
-/// Display error at the upper end of the heat map's scale.
-inline constexpr double kHottest = 0.1;
 
 /// A comparison as text.
 std::string comparison_text(const Comparison& comparison);

@@ -13,7 +13,7 @@
 #include "job/load_scene.h"
 #include "job/reduced_picture.h"
 #include "job/scene_hash.h"
-#include "job/text.h"
+#include "base/text.h"
 #include "base/error.h"
 #include "compile/compile.h"
 #include "render/recorded_rays.h"

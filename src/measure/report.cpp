@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/compare_files.h"
 #include "base/text.h"
 #include "display/develop.h"
 #include "image/write.h"
@@ -196,7 +195,7 @@ std::string study_html(const Study& study) {
     const Point& p = study.points[i];
     data["points"][i]["picture"] = encode.shown(p.picture);
     const metrics::Map map = metrics::display_error_map(metrics::color_of(p.picture), truth);
-    data["points"][i]["heat"] = encode.codes(shrunk(metrics::false_color(map, app::kHottest)));
+    data["points"][i]["heat"] = encode.codes(shrunk(metrics::false_color(map, metrics::kHottest)));
   }
   // The text must not contain the end tag of its script element.
   std::string text = data.dump(-1, ' ', true, json::error_handler_t::replace);

@@ -21,4 +21,7 @@ film::EncodedPicture encoded(const film::Picture& codes);
 /// A map as a grey image with the same values in R, G and B.
 film::Picture grey(const Map& map);
 
+/// Display error at the upper end of a heat map's scale.
+inline constexpr double kHottest = 0.1;
+
 }  // namespace orrery::metrics

@@ -51,7 +51,7 @@ const Case kCases[] = {
     {"render good.toml -o a.exr --compression zipp", 2,
      "orrery: unknown EXR compression zipp; did you mean `zip`? known names are none, rle, zip, zips, piz, dwaa, dwab; "
      "dwaa and dwab take a level, e.g. dwaa:45\n"},
-    {"render good.toml -o a.jpg --bits 16", 2, "orrery: a.jpg holds 8 bits in a channel; PNG and TIFF hold 16\n"},
+    {"render good.toml -o a.jpg --bits 16", 2, "orrery: a.jpg holds 8 bits per channel; use PNG or TIFF for 16\n"},
     {"render good.toml -o a.png -o ./a.png", 2,
      "orrery: ./a.png (-o) and a.png (-o) are the same file; choose another name\n"},
     {"render good.toml -o a.png --stats good.toml", 2,
