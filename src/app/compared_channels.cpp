@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "film/layers.h"
 
 namespace orrery::app {

@@ -11,7 +11,7 @@
 #include "job/layers.h"
 #include "job/scene_hash.h"
 #include "job/text.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "compile/compile.h"
 #include "film/layer_film.h"
 #include "kernel/isa.h"

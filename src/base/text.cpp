@@ -3,6 +3,9 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
 
 namespace orrery::base {
 
@@ -40,6 +43,70 @@ std::string shell_quoted(const std::string& word) {
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
+}
+
+namespace {
+
+/// Returns the number of insertions, deletions, replacements and swaps of neighbouring letters between two words.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> two_back(b.size() + 1), back(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) back[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = back[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({back[j] + 1, row[j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], two_back[j - 2] + 1);
+    }
+    two_back.swap(back);
+    back.swap(row);
+  }
+  return back[b.size()];
+}
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+/// Maximum length of names to compare: longer names are not typed by hand and are expensive to compare.
+constexpr std::size_t kLongestName = 64;
+
+}  // namespace
+
+std::string closest(std::string_view wrong, const std::vector<std::string>& candidates) {
+  if (wrong.empty() || wrong.size() > kLongestName) return {};
+  std::string best;
+  std::size_t best_distance = 0;
+  for (const std::string& candidate : candidates) {
+    if (candidate.size() > kLongestName) continue;
+    const std::size_t distance = edit_distance(lower(wrong), lower(candidate));
+    const std::size_t letters = std::max(wrong.size(), candidate.size());
+    const std::size_t allowed = letters < 2 ? 0 : std::max<std::size_t>(1, letters / 3);
+    if (distance > allowed) continue;
+    if (best.empty() || distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& candidates) {
+  const std::string best = closest(wrong, candidates);
+  return best.empty() ? "" : "did you mean `" + best + "`?";
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) {
+    if (!out.empty()) out += ", ";
+    out += name;
+  }
+  return out;
 }
 
 }  // namespace orrery::base

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace orrery::base {
 
@@ -14,5 +16,18 @@ std::string bytes_text(std::uint64_t bytes);
 
 /// Quotes a word for a POSIX shell; a word without special characters stays as it is.
 std::string shell_quoted(const std::string& word);
+
+/// Returns the candidate closest to a misspelt word.
+///
+/// Result     the first of equally close candidates; empty if more than a third of the letters, or the only letter,
+///            would have to change
+/// Cost       number of candidates times the square of the word length
+std::string closest(std::string_view wrong, const std::vector<std::string>& candidates);
+
+/// Returns "did you mean `samples`?", or an empty string if no candidate is close.
+std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& candidates);
+
+/// Joins names with commas: "a, b, c".
+std::string joined(const std::vector<std::string>& names);
 
 }  // namespace orrery::base

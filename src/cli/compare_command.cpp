@@ -9,7 +9,7 @@
 #include "app/compare_files.h"
 #include "app/compared_channels.h"
 #include "base/error.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"

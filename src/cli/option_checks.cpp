@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/suggestion.h"
+#include "base/text.h"
 
 namespace orrery::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "base/exit_status.h"
+#include "base/error.h"
 #include "cli/messages.h"
 
 namespace orrery::cli {

@@ -10,7 +10,6 @@
 
 #include "farm/batch.h"
 #include "base/error.h"
-#include "base/exit_status.h"
 #include "base/frames.h"
 #include "cli/commands.h"
 #include "cli/messages.h"

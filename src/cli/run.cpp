@@ -10,7 +10,6 @@
 
 #include "job/version.h"
 #include "base/error.h"
-#include "base/exit_status.h"
 #include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/signals.h"

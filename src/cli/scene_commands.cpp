@@ -8,7 +8,6 @@
 
 #include "app/info.h"
 #include "base/error.h"
-#include "base/exit_status.h"
 #include "base/frames.h"
 #include "cli/commands.h"
 #include "cli/output.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/suggestion.h"
+#include "base/text.h"
 
 namespace orrery::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compile/filter_tables.h"
+#include "compile/pixel_filter.h"
 #include "kernel/precision.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"

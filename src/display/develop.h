@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "film/encoded_picture.h"
 #include "film/picture.h"
 
 namespace orrery::display {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "display/config.h"
 
 namespace orrery::display {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "display/config.h"
 #include "display/find_color_space.h"
 #include "display/names.h"

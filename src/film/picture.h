@@ -59,4 +59,27 @@ struct BadValues {
 /// Counts the invalid values of a plane. Data planes are checked for NaN and infinity only; vectors may be negative.
 BadValues count_bad_values(const Plane& plane);
 
+/// A display-encoded image with integer channels, ready for PNG, TIFF, JPEG or PPM.
+struct EncodedPicture {
+  int width = 0;                      ///< px
+  int height = 0;                     ///< px
+  int bits = 8;                       ///< 8 or 16; the largest value is 2^bits - 1
+  bool is_srgb = false;               ///< the values are sRGB codes
+  std::vector<std::uint16_t> values;  ///< width * height * channels, row by row from the top, R G B or R G B A
+  int channels = 3;                   ///< 3, or 4 with straight (unpremultiplied) alpha
+};
+
+/// Radiance and coverage of one sphere, or of the background, in a pixel.
+struct DeepSample {
+  float front, back;  ///< range along the view axis, scene units
+  float rgb[3];       ///< premultiplied by alpha
+  float alpha;        ///< opacity of this sample alone
+};
+
+/// A deep image: each pixel holds its samples, nearest first. Compositing them gives the flat image.
+struct DeepPicture {
+  int width = 0, height = 0;                    ///< px
+  std::vector<std::vector<DeepSample>> pixels;  ///< rows from the top
+};
+
 }  // namespace orrery::film

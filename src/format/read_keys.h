@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "format/toml_tree.h"
 #include "scene/schema.h"
 

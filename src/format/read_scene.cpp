@@ -246,4 +246,8 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<Overr
   return result;
 }
 
+std::string toml_version() {
+  return std::to_string(TOML_LIB_MAJOR) + "." + std::to_string(TOML_LIB_MINOR) + "." + std::to_string(TOML_LIB_PATCH);
+}
+
 }  // namespace orrery::format

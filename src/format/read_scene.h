@@ -49,4 +49,7 @@ using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene
 ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {},
                       int frame = kFirstFrame, const SceneCheck& also = {});
 
+/// Returns the version of toml++.
+std::string toml_version();
+
 }  // namespace orrery::format

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 
 namespace orrery::image {
 namespace {

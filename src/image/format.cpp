@@ -5,7 +5,7 @@
 #include <cctype>
 
 #include "base/error.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 
 namespace orrery::image {
 namespace {

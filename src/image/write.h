@@ -9,8 +9,6 @@
 #include <variant>
 #include <vector>
 
-#include "film/deep_picture.h"
-#include "film/encoded_picture.h"
 #include "film/picture.h"
 #include "image/exr_options.h"
 #include "image/library.h"

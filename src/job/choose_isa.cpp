@@ -2,7 +2,7 @@
 #include "job/choose_isa.h"
 
 #include "base/error.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "kernel/isa.h"
 
 namespace orrery::job {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "display/develop.h"
-#include "film/encoded_picture.h"
 #include "film/picture.h"
 
 namespace orrery::job {

@@ -22,7 +22,6 @@
 #include "job/threads.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/exit_status.h"
 #include "compile/compile.h"
 #include "film/layer_film.h"
 #include "image/format.h"

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/frames.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 
 namespace orrery::job {
 namespace {

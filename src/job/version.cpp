@@ -5,7 +5,7 @@
 
 #include "accel/accel.h"
 #include "display/develop.h"
-#include "format/version.h"
+#include "format/read_scene.h"
 #include "image/write.h"
 #include "kernel/version.h"
 #include "render/version.h"

@@ -31,4 +31,8 @@ struct Map {
 /// Result     null channels if any of the planes is missing
 ColorView color_of(const film::Picture& picture, const std::string& prefix = "");
 
+/// The sRGB transfer function, IEC 61966-2-1, from linear 0..1 to encoded 0..1, and its inverse.
+float srgb_encoded(float light);
+float srgb_decoded(float code);
+
 }  // namespace orrery::metrics

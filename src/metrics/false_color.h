@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "film/encoded_picture.h"
 #include "film/picture.h"
 #include "metrics/color_view.h"
 

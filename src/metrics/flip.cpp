@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "metrics/convolve.h"
-#include "metrics/srgb.h"
+#include "metrics/color_view.h"
 
 namespace orrery::metrics {
 namespace {

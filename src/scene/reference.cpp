@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "scene/schema.h"
 
 namespace orrery::scene {

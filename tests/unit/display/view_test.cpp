@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "display/builtin_config.h"
 #include "display/develop.h"
 #include "support/temp_dir.h"

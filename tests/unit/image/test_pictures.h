@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "film/encoded_picture.h"
 #include "film/picture.h"
 
 namespace orrery::image {

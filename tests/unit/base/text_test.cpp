@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/suggestion.h"
+#include "base/text.h"
 
 #include <gtest/gtest.h>
 
@@ -8,42 +8,42 @@ namespace {
 
 const std::vector<std::string> kKeys = {"samples", "max_depth", "seed", "precision", "shading", "accelerator"};
 
-TEST(BaseSuggestion, FindsInsertedDeletedReplacedAndSwappedLetters) {
+TEST(BaseText, FindsInsertedDeletedReplacedAndSwappedLetters) {
   EXPECT_EQ(closest("sampless", kKeys), "samples");
   EXPECT_EQ(closest("sampes", kKeys), "samples");
   EXPECT_EQ(closest("sanples", kKeys), "samples");
   EXPECT_EQ(closest("smaples", kKeys), "samples");
 }
 
-TEST(BaseSuggestion, ASwapIsOneEdit) {
+TEST(BaseText, ASwapIsOneEdit) {
   // Four letters allow one edit: two edits would be too many.
   EXPECT_EQ(closest("sede", {"seed"}), "seed");
 }
 
-TEST(BaseSuggestion, IgnoresCase) { EXPECT_EQ(closest("Max_Depth", kKeys), "max_depth"); }
+TEST(BaseText, IgnoresCase) { EXPECT_EQ(closest("Max_Depth", kKeys), "max_depth"); }
 
-TEST(BaseSuggestion, EmptyIfNothingIsClose) {
+TEST(BaseText, EmptyIfNothingIsClose) {
   EXPECT_EQ(closest("gamma", kKeys), "");
   EXPECT_EQ(closest("", kKeys), "");
   EXPECT_EQ(closest("seed", {}), "");
   EXPECT_EQ(closest("r", {"x", "y", "z"}), "") << "single letters have nothing in common";
 }
 
-TEST(BaseSuggestion, ChoosesTheClosest) {
+TEST(BaseText, ChoosesTheClosest) {
   EXPECT_EQ(closest("material", {"materials", "material_"}), "materials") << "the first of equally close candidates";
   EXPECT_EQ(closest("shadin", {"shadow", "shading"}), "shading");
 }
 
-TEST(BaseSuggestion, VeryLongNamesAreNotCompared) {
+TEST(BaseText, VeryLongNamesAreNotCompared) {
   EXPECT_EQ(closest(std::string(100000, 'a'), {std::string(100000, 'a')}), "");
 }
 
-TEST(BaseSuggestion, DidYouMeanIsEmptyWithoutACandidate) {
+TEST(BaseText, DidYouMeanIsEmptyWithoutACandidate) {
   EXPECT_EQ(did_you_mean("sampels", kKeys), "did you mean `samples`?");
   EXPECT_EQ(did_you_mean("gamma", kKeys), "");
 }
 
-TEST(BaseSuggestion, JoinsWithCommas) {
+TEST(BaseText, JoinsWithCommas) {
   EXPECT_EQ(joined({"a", "b", "c"}), "a, b, c");
   EXPECT_EQ(joined({}), "");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/exit_status.h"
+#include "base/error.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@ namespace orrery::base {
 namespace {
 
 // Users' scripts depend on these numbers.
-TEST(BaseExitStatus, EachKindHasItsDocumentedNumber) {
+TEST(BaseError, EachKindHasItsDocumentedNumber) {
   EXPECT_EQ(exit_status(ErrorKind::kInternal), 1);
   EXPECT_EQ(exit_status(ErrorKind::kUsage), 2);
   EXPECT_EQ(exit_status(ErrorKind::kBadData), 65);
