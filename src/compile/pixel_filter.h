@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "scene/scene.h"
 #include <vector>
 #include "kernel/pixel_filter.h"
+
+namespace orrery::scene {
+struct Render;
+}
 
 namespace orrery::compile {
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "scene/scene.h"
+
 namespace orrery::compile {
 namespace {
 
