@@ -20,6 +20,7 @@ find_dependency(HWY CONFIG)
 find_dependency(tomlplusplus CONFIG)
 find_dependency(nlohmann_json CONFIG)
 find_dependency(CLI11 CONFIG)
+find_dependency(fmt CONFIG)
 # Debian installs this config in a directory that CMake does not search.
 find_dependency(OpenColorIO CONFIG PATHS /usr/share/cmake)
 find_dependency(OpenImageIO CONFIG)

@@ -8,7 +8,7 @@
 namespace orrery::cli {
 namespace {
 
-/// Has no text of its own in the help: the option's description is better.
+/// Adds no text to the help, where the option's description suffices.
 CLI::Validator validator(Check check) { return CLI::Validator(std::move(check), ""); }
 
 }  // namespace
@@ -29,7 +29,10 @@ Option* Option::check(Check check) {
 }
 
 Option* Option::transform(Check check) {
-  option_->transform(validator(std::move(check)));
+  option_->transform(validator([this, check = std::move(check)](std::string& value) {
+    typed_.push_back(value);
+    return check(value);
+  }));
   return this;
 }
 
@@ -50,8 +53,24 @@ Option* Option::repeatable() {
 
 std::size_t Option::count() const { return option_->count(); }
 
+std::vector<std::string> Option::arguments() const {
+  if (option_->count() == 0) return {};
+  const std::vector<std::string>& short_names = option_->get_snames();
+  const std::string name = short_names.empty() ? "--" + option_->get_lnames().front() : "-" + short_names.front();
+  const std::vector<std::string> values = typed_.empty() ? option_->results() : typed_;
+  const bool is_flag = option_->get_items_expected_max() == 0;
+  if (is_flag) return values.back() == "true" ? std::vector{name} : std::vector<std::string>{};
+  std::vector<std::string> out;
+  for (const std::string& value : values) out.insert(out.end(), {name, value});
+  return out;
+}
+
+std::string Option::heading() const { return option_->get_group(); }
+
 Command* Command::add_subcommand(const std::string& name, const std::string& description) {
-  return &subcommands_.emplace_back(*app_->add_subcommand(name, description));
+  CLI::App* const command = app_->add_subcommand(name, description);
+  if (!heading_.empty()) command->group(heading_);
+  return &subcommands_.emplace_back(*command);
 }
 
 void Command::require_subcommand() { app_->require_subcommand(1); }
@@ -94,8 +113,27 @@ Option* Command::add_flag(const std::string& names, bool& variable, const std::s
   return &options_.emplace_back(*app_->add_flag(names, variable, description));
 }
 
+std::vector<std::string> Command::arguments(const std::string& heading) const {
+  std::vector<std::string> out;
+  for (const Option& option : options_) {
+    if (option.heading() != heading) continue;
+    const std::vector<std::string> words = option.arguments();
+    out.insert(out.end(), words.begin(), words.end());
+  }
+  return out;
+}
+
+void Command::heading(const std::string& text) { heading_ = text; }
+
 void Command::footer(const std::string& text) { app_->footer(text); }
 
 void Command::callback(std::function<void()> function) { app_->callback(std::move(function)); }
+
+OptionGroup::OptionGroup(Command& command, const std::string& heading)
+    : app_(command.app_), outer_(app_->option_defaults()->get_group()) {
+  app_->option_defaults()->group(heading);
+}
+
+OptionGroup::~OptionGroup() { app_->option_defaults()->group(outer_); }
 
 }  // namespace orrery::cli

@@ -16,37 +16,43 @@ class Option;
 
 namespace orrery::cli {
 
-// The part of CLI11 that commands use, without its headers: these take several seconds to compile in each file that
-// includes them. Only arguments.cpp, usage.cpp and run.cpp do.
+// The part of CLI11 that commands use, without its headers, which take several seconds to compile. Only arguments.cpp,
+// usage.cpp and run.cpp include them.
 
-/// Checks the text of an argument, and may replace it. Returns what is wrong with it; empty: nothing.
+/// Checks the text of an argument, and may replace it. Returns an error message, or an empty string.
 using Check = std::function<std::string(std::string& value)>;
 
-/// A flag or a positional argument.
+/// An option or a positional argument.
 class Option {
  public:
   explicit Option(CLI::Option& option) : option_(&option) {}
 
   Option* required();
   Option* type_name(const std::string& name);
-  /// Refuses what `check` finds wrong; the value stays as it was typed.
+  /// Rejects values that fail `check`, and keeps the others as typed.
   Option* check(Check check);
-  /// Refuses what `check` finds wrong, and takes the value that it leaves.
+  /// Rejects values that fail `check`, and replaces the others by its output.
   Option* transform(Check check);
   Option* excludes(const Option* other);
-  /// Takes all values up to the next flag.
+  /// Takes all values up to the next option.
   Option* take_all();
-  /// Can be given several times, with one value each time: what follows the value is the next argument.
+  /// Can be given several times, with one value each time.
   Option* repeatable();
-  /// How often it was given.
+  /// Number of times that it was given.
   std::size_t count() const;
+  /// The arguments that gave it, as typed: {"-o", "a.exr", "-o", "b.png"}.
+  std::vector<std::string> arguments() const;
+  /// Its heading in the help.
+  std::string heading() const;
 
  private:
   CLI::Option* option_;
+  std::vector<std::string> typed_;  ///< values before transform()
 };
 
-/// A command with its options, or the program with its commands. Options and subcommands live as long as it does, and
-/// so must the variables.
+/// A command with its options, or the program with its commands. Its options and subcommands live as long as it does.
+///
+/// Domain     variables of options outlive it
 class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}
@@ -56,7 +62,7 @@ class Command {
   Command* add_subcommand(const std::string& name, const std::string& description);
   void require_subcommand();
 
-  // `names` as "-o,--output", or "SCENE" for a positional argument; parsing writes the value into `variable`.
+  // `names` are "-o,--output", or "SCENE" for a positional argument. Parsing writes the value to `variable`.
   Option* add_option(const std::string& names, std::string& variable, const std::string& description);
   Option* add_option(const std::string& names, std::filesystem::path& variable, const std::string& description);
   Option* add_option(const std::string& names, int& variable, const std::string& description);
@@ -68,15 +74,36 @@ class Command {
                      const std::string& description);
   Option* add_flag(const std::string& names, bool& variable, const std::string& description);
 
+  /// The arguments that gave the options under a heading of the help, as typed.
+  std::vector<std::string> arguments(const std::string& heading) const;
+
+  /// The heading of commands added from now on, in the program's help.
+  void heading(const std::string& text);
   /// Text below the options in the help.
   void footer(const std::string& text);
-  /// Called after parsing where the command line names this command.
+  /// Calls the function after parsing, if the command line names this command.
   void callback(std::function<void()> function);
 
  private:
+  friend class OptionGroup;
+
   CLI::App* app_;
+  std::string heading_;
   std::deque<Option> options_;
   std::deque<Command> subcommands_;
+};
+
+/// While it exists, options added to a command are listed under its heading in the help.
+class OptionGroup {
+ public:
+  OptionGroup(Command& command, const std::string& heading);
+  ~OptionGroup();
+  OptionGroup(const OptionGroup&) = delete;
+  OptionGroup& operator=(const OptionGroup&) = delete;
+
+ private:
+  CLI::App* app_;
+  std::string outer_;
 };
 
 }  // namespace orrery::cli

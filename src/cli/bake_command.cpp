@@ -10,7 +10,7 @@
 namespace orrery::cli {
 namespace {
 
-/// Smaller cubes miss what a view does, larger ones no other program takes.
+/// Smaller cubes are too coarse for a view; other programs do not read larger ones.
 constexpr std::uint64_t kSmallestCube = 2, kLargestCube = 129;
 
 struct BakeOptions {
@@ -23,14 +23,16 @@ struct BakeOptions {
 
 void add_bake(Command& program, Action& action) {
   const auto options = std::make_shared<BakeOptions>();
-  Command& command = *program.add_subcommand("bake", "Write a display transform as a table for other programs");
-  command.add_option("-o,--output", options->output, "File to write: .cube, or .clf, exact where its steps have words")
+  Command& command = *program.add_subcommand("bake", "Write a display transform as a look-up table for other programs");
+  command
+      .add_option("-o,--output", options->output,
+                  "File to write: .cube, or .clf, which is exact where the format has the transform's steps")
       ->required()
       ->type_name("FILE");
   add_view_options(command, options->display);
-  command.add_option("--space", options->display.working_space, "Colour space that goes in; default lin_rec709")
+  command.add_option("--space", options->display.working_space, "Input colour space; default: lin_rec709")
       ->type_name("NAME");
-  command.add_option("--size", options->size, "Points along each edge of a table; default 65")
+  command.add_option("--size", options->size, "Points along each edge of the table; default: 65")
       ->transform(whole_number(kSmallestCube, kLargestCube))
       ->type_name("N");
   command.footer(

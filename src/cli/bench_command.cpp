@@ -15,8 +15,8 @@
 namespace orrery::cli {
 namespace {
 
-constexpr std::uint64_t kMostRounds = 1000;
-constexpr double kLongest = 3600;  // seconds of one measurement
+constexpr std::uint64_t kMaxRounds = 1000;
+constexpr double kMaxSeconds = 3600;  // of one measurement
 
 struct BenchOptions {
   measure::BenchRequest request;
@@ -43,24 +43,24 @@ int bench(BenchOptions& options) {
 
 void add_bench(Command& program, Action& action) {
   const auto options = std::make_shared<BenchOptions>();
-  Command& command = *program.add_subcommand("bench", "Measure how fast a scene renders, in every precision");
+  Command& command = *program.add_subcommand("bench", "Measure how fast a scene renders in each precision");
   command.add_option("SCENE", options->request.scene.file, "Scene file")->required()->type_name("FILE");
   options->scene.add_to(command);
   options->scene.add_frame_to(command);
-  command.add_option("-t,--threads", options->request.threads, "Threads; default 1")
+  command.add_option("-t,--threads", options->request.threads, "Number of threads; default: 1")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command
       .add_option("--isa", options->request.isa,
                   "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
-  command.add_option("--rounds", options->request.rounds, "Measurements of each case; default 7")
-      ->transform(whole_number(1, kMostRounds))
+  command.add_option("--rounds", options->request.rounds, "Measurements of each case; default: 7")
+      ->transform(whole_number(1, kMaxRounds))
       ->type_name("N");
-  command.add_option("--seconds", options->request.seconds, "Least time of one measurement; default 0.25")
-      ->check(real_number(0.001, kLongest))
+  command.add_option("--seconds", options->request.seconds, "Minimum time of a measurement; default: 0.25")
+      ->check(real_number(0.001, kMaxSeconds))
       ->type_name("SECONDS");
-  command.add_flag("--json", options->json, "As JSON");
+  command.add_flag("--json", options->json, "Print JSON");
   command.add_flag("-q,--quiet", options->quiet, "Show no progress");
   command.footer(
       "Examples:\n"

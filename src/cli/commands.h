@@ -7,24 +7,24 @@
 
 namespace orrery::cli {
 
-/// What a command does once argv is read: prints results to stdout and messages to stderr, throws base::Error.
+/// Runs a command after argv is parsed. Prints results to stdout and messages to stderr; throws base::Error.
 ///
 /// Result     the exit status
 using Action = std::function<int()>;
 
-/// Adds one command to the program; where argv names it, parsing puts what it does into `action`.
+/// Adds one command to the program. Parsing sets `action` if argv names the command.
 ///
 /// Domain     `action` outlives the parsing
-void add_submit(Command& program, Action& action);
-void add_merge(Command& program, Action& action);
 void add_render(Command& program, Action& action);
-void add_info(Command& program, Action& action);
+void add_merge(Command& program, Action& action);
+void add_submit(Command& program, Action& action);
 void add_check(Command& program, Action& action);
-void add_generate(Command& program, Action& action);
-void add_develop(Command& program, Action& action);
-void add_bake(Command& program, Action& action);
+void add_info(Command& program, Action& action);
 void add_compare(Command& program, Action& action);
 void add_bench(Command& program, Action& action);
 void add_study(Command& program, Action& action);
+void add_generate(Command& program, Action& action);
+void add_develop(Command& program, Action& action);
+void add_bake(Command& program, Action& action);
 
 }  // namespace orrery::cli

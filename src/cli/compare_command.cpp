@@ -18,10 +18,10 @@
 namespace orrery::cli {
 namespace {
 
-/// As diff has it: the comparison itself went well, and the files differ. docs/orrery.1 lists it.
+/// As diff(1): the comparison succeeded, and the images differ. Listed in docs/orrery.1.
 constexpr int kDiffer = 1;
 
-/// The largest value that a metric may have.
+/// The maximum of a metric.
 struct Limit {
   std::string metric;
   double value = 0;
@@ -41,30 +41,30 @@ Limit limit_of(const std::string& text) {
     return base::Error(base::ErrorKind::kUsage, "--fail-above " + text + ": " + reason);
   };
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) throw wrong("write METRIC=VALUE, as in rmse=0.001");
+  if (equals == std::string::npos) throw wrong("write METRIC=VALUE, e.g. rmse=0.001");
   Limit limit{text.substr(0, equals), 0};
   const char* const end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data() + equals + 1, end, limit.value);
   if (error != std::errc() || stopped != end || !(limit.value >= 0))
-    throw wrong("the value must be a number of 0 or more");
+    throw wrong("the value must be a number, 0 or more");
   const std::vector<std::string>& known = app::limitable_metrics();
   if (limit.metric == "psnr" || limit.metric == "ssim")
-    throw wrong(limit.metric + " falls as pictures differ more; limit rmse or flip instead");
+    throw wrong(limit.metric + " decreases with the error; limit rmse or flip instead");
   if (std::find(known.begin(), known.end(), limit.metric) == known.end()) {
     const std::string remedy = base::did_you_mean(limit.metric, known);
-    throw wrong("there is no such metric; " + (remedy.empty() ? "there are " + base::joined(known) : remedy));
+    throw wrong("unknown metric; " + (remedy.empty() ? "use one of " + base::joined(known) : remedy));
   }
   return limit;
 }
 
 void warn_of_layers(const CompareOptions& options, const app::Comparison& found) {
   if (options.quiet) return;
-  const auto tell = [](const std::vector<std::string>& channels, const std::filesystem::path& file) {
+  const auto warn = [](const std::vector<std::string>& channels, const std::filesystem::path& file) {
     if (!channels.empty())
       std::fprintf(stderr, "warning: only in %s: %s\n", file.c_str(), app::channels_text(channels).c_str());
   };
-  tell(found.only_in_picture, options.picture);
-  tell(found.only_in_reference, options.reference);
+  warn(found.only_in_picture, options.picture);
+  warn(found.only_in_reference, options.reference);
 }
 
 int compare(const CompareOptions& options) {
@@ -79,7 +79,7 @@ int compare(const CompareOptions& options) {
   for (const Limit& limit : limits) {
     const double value = found.metric(limit.metric);
     if (value <= limit.value) continue;
-    std::fprintf(stderr, "orrery: %s is %g, above %g\n", limit.metric.c_str(), value, limit.value);
+    std::fprintf(stderr, "orrery: %s is %g, above the limit of %g\n", limit.metric.c_str(), value, limit.value);
     status = kDiffer;
   }
   if (!limits.empty() && found.errors.not_finite > 0) {
@@ -94,25 +94,27 @@ int compare(const CompareOptions& options) {
 
 void add_compare(Command& program, Action& action) {
   const auto options = std::make_shared<CompareOptions>();
-  Command& command = *program.add_subcommand("compare", "Tell how much two pictures differ");
-  command.add_option("A", options->picture, "Picture to judge")->required()->type_name("FILE");
-  command.add_option("B", options->reference, "Picture to judge it by")->required()->type_name("FILE");
+  Command& command = *program.add_subcommand("compare", "Measure the difference between two images");
+  command.add_option("A", options->picture, "Image to compare")->required()->type_name("FILE");
+  command.add_option("B", options->reference, "Reference image")->required()->type_name("FILE");
   command
-      .add_option(
-          "--fail-above", options->limits,
-          "Exit with 1 if a metric is larger: rmse, relmse, mae, max, display, flip, bias or z; can be repeated")
+      .add_option("--fail-above", options->limits,
+                  "Exit with 1 if a metric exceeds the value: rmse, relmse, mae, max, display, flip, bias or z; can be "
+                  "repeated")
       ->type_name("METRIC=VALUE")
       ->repeatable();
-  command.add_option("--layer", options->layer, "Compare this layer instead of the beauty; a Cryptomatte by coverage")
+  command
+      .add_option("--layer", options->layer,
+                  "Layer to compare; Cryptomattes are compared by coverage; default: the beauty")
       ->type_name("NAME");
-  command.add_option("--difference", options->pictures.difference, "Write A - B as a picture")->type_name("FILE");
+  command.add_option("--difference", options->pictures.difference, "Write A - B as an image")->type_name("FILE");
   command.add_option("--heat", options->pictures.heat, "Write the display error as a heat map")->type_name("FILE");
-  command.add_option("--flip", options->pictures.flip, "Write where eyes notice a difference")->type_name("FILE");
-  command.add_option("-t,--threads", options->threads, "Threads; default: as many as this process may use")
+  command.add_option("--flip", options->pictures.flip, "Write the FLIP error map")->type_name("FILE");
+  command.add_option("-t,--threads", options->threads, "Number of threads; default: all that this process may use")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
-  command.add_flag("--json", options->json, "As JSON");
-  command.add_flag("-q,--quiet", options->quiet, "Print nothing but errors and what is above its limit");
+  command.add_flag("--json", options->json, "Print JSON");
+  command.add_flag("-q,--quiet", options->quiet, "Print only errors and exceeded limits");
   command.footer(
       "Examples:\n"
       "  orrery compare fast.exr exact.exr\n"

@@ -22,7 +22,7 @@ int develop(const DevelopOptions& options) {
   if (options.quiet) return 0;
   for (const std::string& warning : report.display.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (const std::uint64_t bad = report.bad_values.nan + report.bad_values.infinite; bad > 0)
-    std::fprintf(stderr, "warning: %llu values of %s are not finite and are shown as 0\n",
+    std::fprintf(stderr, "warning: %llu values of %s are not finite and were written as 0\n",
                  static_cast<unsigned long long>(bad), options.development.input.c_str());
   return 0;
 }
@@ -33,10 +33,8 @@ void add_develop(Command& program, Action& action) {
   const auto options = std::make_shared<DevelopOptions>();
   app::Development& development = options->development;
   development.display.working_space.clear();
-  Command& command = *program.add_subcommand("develop", "Develop an EXR on disk for a display, through OCIO");
-  command.add_option("IN", development.input, "Picture with scene-linear light: EXR or HDR")
-      ->required()
-      ->type_name("FILE");
+  Command& command = *program.add_subcommand("develop", "Convert an EXR or HDR file to display formats, through OCIO");
+  command.add_option("IN", development.input, "Scene-linear image: EXR or HDR")->required()->type_name("FILE");
   command.add_option("-o,--output", development.outputs, "File to write: PNG, TIFF, JPEG or PPM; can be repeated")
       ->required()
       ->type_name("FILE")
@@ -44,9 +42,9 @@ void add_develop(Command& program, Action& action) {
   add_display_options(command, development.display, development.bits);
   command
       .add_option("--space", development.display.working_space,
-                  "Colour space of the picture; default: what it says itself, else lin_rec709")
+                  "Colour space of the input; default: from its header, otherwise lin_rec709")
       ->type_name("NAME");
-  command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+  command.add_flag("-q,--quiet", options->quiet, "Print only errors");
   command.footer(
       "Examples:\n"
       "  orrery develop final.exr -o final.png --exposure 1\n"

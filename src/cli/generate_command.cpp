@@ -16,20 +16,21 @@ struct GenerateOptions {
   std::filesystem::path output;
 };
 
-constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t kMaxSeed = std::numeric_limits<std::uint64_t>::max();
 
-/// What all kinds of scenes have.
+/// Adds the options of all generators.
 void add_common(Command& command, std::filesystem::path& output, std::uint64_t& seed) {
   command.add_option("-o,--output", output, "Scene file to write")->required()->type_name("FILE");
-  command.add_option("--seed", seed, "Another seed is another scene; default 1")
-      ->transform(whole_number(0, kLargestSeed))
+  command.add_option("--seed", seed, "Seed of the random numbers; default: 1")
+      ->transform(whole_number(0, kMaxSeed))
       ->type_name("N");
 }
 
 void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
   Command& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
   add_common(command, options->output, options->final_scene.seed);
-  command.add_option("--grid", options->final_scene.grid, "Cells from the middle to the edge; default 11, the book's")
+  command
+      .add_option("--grid", options->final_scene.grid, "Cells from the centre to the edge; default: 11, as in the book")
       ->transform(whole_number(0, generate::kLargestFinalGrid))
       ->type_name("N");
   command.footer("Example:\n  orrery generate final -o final.toml --seed 7");
@@ -43,12 +44,15 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
 }
 
 void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
-  Command& command = *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY beside it");
+  Command& command =
+      *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY file next to it");
   add_common(command, options->output, options->cloud.seed);
-  command.add_option("--count", options->cloud.count, "Spheres; default 1000")
+  command.add_option("--count", options->cloud.count, "Number of spheres; default: 1000")
       ->transform(whole_number(1, generate::kLargestCloud))
       ->type_name("N");
-  command.add_option("--radius", options->cloud.radius, "Of every sphere; default: by the count, and varied")
+  command
+      .add_option("--radius", options->cloud.radius,
+                  "Radius of all spheres, in scene units; default: varied, according to the count")
       ->check(real_number(0, generate::kLargestCloudRadius))
       ->type_name("R");
   command.footer("Example:\n  orrery generate cloud -o cloud.toml --count 1000000");
@@ -65,7 +69,7 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
 
 void add_generate(Command& program, Action& action) {
   const auto options = std::make_shared<GenerateOptions>();
-  Command& command = *program.add_subcommand("generate", "Make a scene file");
+  Command& command = *program.add_subcommand("generate", "Generate a scene file");
   command.require_subcommand();
   add_final(command, options, action);
   add_cloud(command, options, action);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What users start as `orrery`: it becomes the program, once no signal can end it for want of a handler. Loading the
-// program's libraries takes some tenths of a second, in which USR1, sent by a supervisor, would end a process that is
-// about to handle it. Blocked, the signal waits; prepare_signals lets it through.
+// The executable `orrery`: blocks USR1 and executes the program. Loading the program's libraries takes some tenths of a
+// second, in which a supervisor's USR1 would end the process, since no handler is installed yet. The blocked signal
+// stays pending until prepare_signals unblocks it.
 //
-// It uses the C library alone, so that it runs within a millisecond.
+// Links only the C library, so that it runs within a millisecond.
 #include <climits>
 #include <csignal>
 #include <cstdio>
@@ -15,7 +15,7 @@
 namespace orrery::cli {
 namespace {
 
-/// The program's path from the folder of the launcher.
+/// Path of the program, relative to the launcher's folder.
 constexpr char kProgram[] = ORRERY_PROGRAM_FROM_LAUNCHER;
 
 void block_snapshots() {
@@ -25,7 +25,7 @@ void block_snapshots() {
   sigprocmask(SIG_BLOCK, &snapshot, nullptr);
 }
 
-/// Result     false where the launcher's own path is unknown or too long
+/// Result     false if the launcher's own path is unknown or too long
 bool find_program(char (&path)[PATH_MAX]) {
   const ssize_t size = readlink("/proc/self/exe", path, sizeof(path) - 1);
   if (size < 0) return false;
@@ -44,6 +44,6 @@ int main(int, char** argv) {
   orrery::cli::block_snapshots();
   char path[PATH_MAX];
   if (orrery::cli::find_program(path)) execv(path, argv);
-  std::perror("orrery: cannot start its program, which is installed with it as " ORRERY_PROGRAM_FROM_LAUNCHER);
+  std::perror("orrery: cannot start the program, which is installed as " ORRERY_PROGRAM_FROM_LAUNCHER);
   return EXIT_FAILURE;
 }

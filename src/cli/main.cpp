@@ -4,6 +4,6 @@
 #include "cli/run.h"
 
 int main(int argc, char** argv) {
-  prctl(PR_SET_NAME, "orrery");  // ps and killall show the launcher's name, not that of the program's file
+  prctl(PR_SET_NAME, "orrery");  // so that ps and killall show the launcher's name, not the program file's
   return orrery::cli::run(argc, argv);
 }

@@ -18,7 +18,7 @@ namespace {
 struct MergeOptions {
   job::Job job;
   PictureOptions picture;
-  std::vector<std::filesystem::path> parts;
+  std::vector<std::filesystem::path> shards;
   bool quiet = false, verbose = false;
 };
 
@@ -26,13 +26,13 @@ int merge(MergeOptions& options) {
   job::Job& job = options.job;
   options.picture.finish(job);
   job.hooks.on_warning = [&](const base::Diagnostic& warning) {
-    if (!options.quiet) tell(base::formatted(warning));
+    if (!options.quiet) print_message(base::formatted(warning));
   };
-  job.merge.shards = job::read_shards(options.parts, job.merge.allow_missing ? job.hooks.on_warning : nullptr);
+  job.merge.shards = job::read_shards(options.shards, job.merge.allow_missing ? job.hooks.on_warning : nullptr);
   job::take_scene(job.merge.shards.front(), job);
   job.hooks.cancel = &stop_on_signals();
   const job::JobReport report = job::run_job(job);
-  if (!options.quiet) tell(report_text(job, report, options.verbose));
+  if (!options.quiet) print_message(report_text(job, report, options.verbose));
   return 0;
 }
 
@@ -40,30 +40,30 @@ int merge(MergeOptions& options) {
 
 void add_merge(Command& program, Action& action) {
   const auto options = std::make_shared<MergeOptions>();
-  Command& command = *program.add_subcommand("merge", "Join parts of a picture that were rendered apart");
-  command.add_option("PART", options->parts, "EXR files that --samples A:B or --shard I/N have made, in any order")
+  Command& command = *program.add_subcommand("merge", "Merge shards of an image");
+  command.add_option("SHARD", options->shards, "EXR files rendered with --samples A:B or --shard I/N, in any order")
       ->required()
       ->type_name("FILE");
   options->picture.add_to(command, options->job);
   command
       .add_option("--scene", options->job.scene.file,
-                  "The scene file, where it is no longer where it was when the parts were rendered")
+                  "Scene file; default: the file that the shards were rendered from")
       ->type_name("FILE");
   command.add_flag("--allow-missing", options->job.merge.allow_missing,
-                   "Make a picture of what is there, and say in its header what is not");
+                   "Merge incomplete shards, and list missing samples in the header");
   command
       .add_option("--memory-limit", options->job.resources.memory_limit,
-                  "Refuse what needs more, as 8G; default: what is free")
+                  "Memory limit for the estimated need, e.g. 8G; default: the free memory")
       ->transform(byte_size())
       ->type_name("SIZE");
-  command.add_option("--stats", options->job.outputs.statistics, "Write what all parts together did as JSON")
+  command.add_option("--stats", options->job.outputs.statistics, "Write statistics of all shards as JSON")
       ->type_name("FILE");
-  command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
-  command.add_flag("-v,--verbose", options->verbose, "Say what was done and how long it took");
+  command.add_flag("-q,--quiet", options->quiet, "Print only errors");
+  command.add_flag("-v,--verbose", options->verbose, "Also print phases and their times");
   command.footer(
       "Examples:\n"
-      "  orrery merge part.*.exr -o final.exr -o final.png\n"
-      "  orrery merge part.1.exr part.3.exr -o preview.png --allow-missing");
+      "  orrery merge shard.*.exr -o final.exr -o final.png\n"
+      "  orrery merge shard.1.exr shard.3.exr -o preview.png --allow-missing");
   command.callback([options, &action] { action = [options] { return merge(*options); }; });
 }
 

@@ -11,6 +11,8 @@
 #include <ctime>
 #include <sstream>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 
 namespace orrery::cli {
@@ -26,27 +28,26 @@ std::string time_text() {
       std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
   std::tm utc{};
   gmtime_r(&seconds, &utc);
-  char text[32], out[48];
+  char text[32];
   std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%S", &utc);
-  std::snprintf(out, sizeof(out), "%s.%03dZ", text, static_cast<int>(milliseconds));
-  return out;
+  return fmt::format("{}.{:03}Z", text, milliseconds);
 }
 
 }  // namespace
 
-void tell(const std::string& text) {
+void print_message(const std::string& text) {
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
-  tell_log(text);
+  log_message(text);
 }
 
-void tell_log(const std::string& text) {
+void log_message(const std::string& text) {
   if (log_file < 0) return;
-  const std::string begin = time_text() + " " + std::to_string(getpid()) + " ";
+  const std::string begin = fmt::format("{} {} ", time_text(), getpid());
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     const std::string whole = begin + line + "\n";
-    // A log that cannot be written on is no reason to lose a picture.
+    // A failed write to the log must not end the render.
     [[maybe_unused]] const ssize_t written = ::write(log_file, whole.data(), whole.size());
   }
 }

@@ -6,16 +6,16 @@
 
 namespace orrery::cli {
 
-/// Says something on stderr, and in the log where there is one.
+/// Prints a message to stderr and to the log, if open.
 ///
 /// Domain     whole lines
-void tell(const std::string& text);
+void print_message(const std::string& text);
 
-/// What is only for the log, as what a job begins with.
-void tell_log(const std::string& text);
+/// Writes a message to the log only, if open.
+void log_message(const std::string& text);
 
-/// From now on every line that is told stands in this file, too, behind its time, in UTC, and the number of the
-/// process. Lines are appended whole: several processes may share a log.
+/// Opens the log. Each message line is appended to it with UTC time and process id. Lines are appended atomically, so
+/// that several processes can share a log.
 ///
 /// Errors     base::Error(kCannotCreate)
 void open_log(const std::filesystem::path& file);

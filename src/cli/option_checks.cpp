@@ -4,24 +4,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <sstream>
-#include <cstdio>
 #include <functional>
 #include <string_view>
 #include <utility>
+
+#include <fmt/core.h>
 
 #include "base/text.h"
 
 namespace orrery::cli {
 namespace {
 
-std::string text_of(double value) {
-  char out[32];
-  std::snprintf(out, sizeof(out), "%g", value);
-  return out;
-}
-
-/// All of the text, not only how it begins.
+/// Parses the whole text, not only its beginning.
 template <class Number>
 bool parse(const std::string& text, Number& value) {
   const char* const end = text.data() + text.size();
@@ -34,9 +28,9 @@ bool parse(const std::string& text, Number& value) {
 Check one_of(std::vector<std::string> names) {
   return [names = std::move(names)](std::string& word) -> std::string {
     if (std::find(names.begin(), names.end(), word) != names.end()) return {};
-    const bool is_number = !word.empty() && word[0] >= '0' && word[0] <= '9';  // 12 is not meant to be 16
+    const bool is_number = !word.empty() && word[0] >= '0' && word[0] <= '9';  // do not suggest 16 for 12
     const std::string remedy = is_number ? "" : base::did_you_mean(word, names);
-    return "there is no `" + word + "`; " + (remedy.empty() ? "there are " + base::joined(names) : remedy);
+    return fmt::format("unknown value `{}`; {}", word, remedy.empty() ? "use one of " + base::joined(names) : remedy);
   };
 }
 
@@ -44,10 +38,10 @@ Check whole_number(std::uint64_t from, std::uint64_t to) {
   return [from, to](std::string& text) -> std::string {
     std::uint64_t value = 0;
     if (parse(text, value) && value >= from && value <= to) {
-      text = std::to_string(value);  // the library would take 010 for eight
+      text = std::to_string(value);  // CLI11 would read 010 as eight
       return {};
     }
-    return "must be a whole number from " + std::to_string(from) + " to " + std::to_string(to) + ", not `" + text + "`";
+    return fmt::format("must be a whole number from {} to {}, not `{}`", from, to, text);
   };
 }
 
@@ -56,7 +50,7 @@ Check real_number(double from, double to) {
     double value = 0;
     const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
     if (parse(plus ? text.substr(1) : text, value) && value >= from && value <= to) return {};
-    return "must be a number from " + text_of(from) + " to " + text_of(to) + ", not `" + text + "`";
+    return fmt::format("must be a number from {:g} to {:g}, not `{}`", from, to, text);
   };
 }
 
@@ -72,21 +66,22 @@ Check byte_size() {
         return {};
       }
     }
-    return "must be a size with its unit, as 512M or 1.5G, not `" + text + "`";
+    return "must be a size with a unit, e.g. 512M or 1.5G, not `" + text + "`";
   };
 }
 
 namespace {
 
-/// `next_unit` is the largest one that may follow.
+/// The message for a number without a unit; `next_unit` is the index of the largest unit that may follow.
 std::string missing_unit(const std::string& text, std::size_t next_unit) {
-  if (next_unit == 0) return "`" + text + "` has no unit; write " + text + "s, " + text + "m or " + text + "h";
-  return "`" + text + "` has no unit at its end; write " + text + (next_unit == 1 ? "m or " + text + "s" : "s");
+  if (next_unit == 0) return fmt::format("`{0}` has no unit; write {0}s, {0}m or {0}h", text);
+  if (next_unit == 1) return fmt::format("`{0}` has no final unit; write {0}m or {0}s", text);
+  return fmt::format("`{0}` has no final unit; write {0}s", text);
 }
 
-/// Seconds of "1h30m" and its like: numbers with units, each unit at most once, the largest first.
+/// Parses times such as "1h30m": numbers with units, each unit at most once, in descending order.
 ///
-/// Result     what is wrong, or nothing
+/// Result     an error message, or an empty string
 std::string parse_duration(const std::string& text, double& seconds) {
   constexpr std::string_view kUnits = "hms";
   constexpr double kSeconds[] = {3600, 60, 1};
@@ -105,8 +100,8 @@ std::string parse_duration(const std::string& text, double& seconds) {
     begin = end + 1;
   }
   if (text.empty()) return wrong;
-  if (seconds < kShortestTime) return "must be at least " + text_of(kShortestTime) + "s, not `" + text + "`";
-  if (!(seconds <= kLongestTime)) return "must be at most " + text_of(kLongestTime / 3600) + "h, not `" + text + "`";
+  if (seconds < kShortestTime) return fmt::format("must be at least {:g}s, not `{}`", kShortestTime, text);
+  if (!(seconds <= kLongestTime)) return fmt::format("must be at most {:g}h, not `{}`", kLongestTime / 3600, text);
   return {};
 }
 
@@ -116,10 +111,7 @@ Check duration() {
   return [](std::string& text) -> std::string {
     double seconds = 0;
     if (std::string wrong = parse_duration(text, seconds); !wrong.empty()) return wrong;
-    std::ostringstream out;
-    out.precision(17);
-    out << seconds;
-    text = out.str();
+    text = fmt::format("{:.17g}", seconds);
     return {};
   };
 }

@@ -11,7 +11,7 @@
 namespace orrery::cli {
 
 void print_result(const std::string& text) {
-  // What stdio holds back is only known to have arrived once it is flushed.
+  // Buffered output fails only when it is flushed.
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
   if (errno == EPIPE) throw ReaderLeft();
   throw base::Error(base::ErrorKind::kIo, std::string("writing to standard output failed: ") + std::strerror(errno));
@@ -24,7 +24,7 @@ std::string error_text(const base::Error& error) {
 }
 
 int print_error(const base::Error& error) {
-  tell(error_text(error));
+  print_message(error_text(error));
   return base::exit_status(error.kind());
 }
 

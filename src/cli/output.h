@@ -7,21 +7,20 @@
 
 namespace orrery::cli {
 
-/// Whoever read stdout through a pipe has enough, as head(1) has: the command ends without a message.
+/// Thrown if the reader of stdout, a pipe, has exited, as head(1) does. The command ends without a message.
 struct ReaderLeft {};
 
-/// Prints a result to stdout, all of it.
+/// Prints a result to stdout and flushes it.
 ///
-/// Errors     ReaderLeft; base::Error(kIo): a result that nobody got is a failure, also of a command that writes no
-/// file
+/// Errors     ReaderLeft; base::Error(kIo) if stdout cannot be written
 void print_result(const std::string& text);
 
-/// An error in whole lines: each finding with its place, then the error itself.
+/// An error as whole lines: each diagnostic with its location, then the error.
 std::string error_text(const base::Error& error);
 
-/// Tells an error on stderr: each finding with its place, then the error itself.
+/// Prints error_text to stderr.
 ///
-/// Result     the exit status that it asks for
+/// Result     the exit status of the error's kind
 int print_error(const base::Error& error);
 
 }  // namespace orrery::cli

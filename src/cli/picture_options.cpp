@@ -7,29 +7,29 @@
 namespace orrery::cli {
 
 void PictureOptions::add_to(Command& command, job::Job& job) {
+  const OptionGroup group(command, kImageOptions);
   command
       .add_option("-o,--output", files_,
-                  "File to write; its extension chooses EXR, HDR, PNG, TIFF, JPEG or PPM; can be repeated")
+                  "File to write: .exr, .hdr, .png, .tif, .tiff, .jpg, .jpeg or .ppm; can be repeated")
       ->required()
       ->type_name("FILE")
       ->repeatable();
   add_display_options(command, job.outputs.display, job.outputs.bits);
-  command.add_option("--type", type_, "EXR channels: half, the default, or float")
+  command.add_option("--type", type_, "EXR channel type: half or float; default: half")
       ->check(one_of({"half", "float"}))
       ->type_name("TYPE");
   command
-      .add_option("--compression", job.outputs.exr.compression, "EXR compression, zips by default: zip, dwaa:45 ...")
+      .add_option("--compression", job.outputs.exr.compression, "EXR compression, e.g. zip or dwaa:45; default: zips")
       ->type_name("NAME");
-  command
-      .add_option("--deep", job.outputs.deep, "Write also an EXR of samples in depth, one for each sphere in a pixel")
+  command.add_option("--deep", job.outputs.deep, "Also write a deep EXR, with one sample for each sphere in a pixel")
       ->type_name("FILE");
-  command.add_flag("--multipart", job.outputs.exr.multipart, "Give each layer of an EXR a part of its own");
+  command.add_flag("--multipart", job.outputs.exr.multipart, "Write each EXR layer to a separate part");
   command
       .add_option("--disk-limit", job.resources.disk_limit,
-                  "Refuse pictures that need more than this, e.g. 8G; default: the free space of their disk")
+                  "Disk limit for the estimated need, e.g. 8G; default: the free space")
       ->transform(byte_size())
       ->type_name("SIZE");
-  command.add_flag("--reproducible", job.outputs.reproducible, "Leave out of headers what changes between runs");
+  command.add_flag("--reproducible", job.outputs.reproducible, "Omit everything that varies between runs from headers");
 }
 
 void PictureOptions::finish(job::Job& job) const {

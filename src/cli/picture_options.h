@@ -10,13 +10,16 @@
 
 namespace orrery::cli {
 
-/// Flags that say what files a job writes, and how.
+/// Heading of these options in the help.
+inline constexpr const char* kImageOptions = "Image options";
+
+/// The options that select a job's image files and their formats.
 class PictureOptions {
  public:
-  /// Domain     called once; neither this nor `job` moves until the command line is read
+  /// Domain     called once; neither this nor `job` moves until the command line is parsed
   void add_to(Command& command, job::Job& job);
 
-  /// Converts the options that are no members of a job.
+  /// Converts the options that are not members of a job.
   ///
   /// Errors     base::Error(kUsage) for a file with an unknown extension
   void finish(job::Job& job) const;

@@ -12,7 +12,7 @@
 namespace orrery::cli {
 namespace {
 
-/// Columns of the terminal; 80 where it does not tell.
+/// Columns of the terminal; 80 if unknown.
 int columns_of(std::FILE* terminal) {
   winsize size{};
   return ioctl(fileno(terminal), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
@@ -60,7 +60,7 @@ void ProgressPrinter::note(const std::string& text) {
   if (bar_shown_) std::fputs("\r\033[K", to_);
   std::fputs(text.c_str(), to_);
   std::fflush(to_);
-  tell_log(text);
+  log_message(text);
   bar_shown_ = false;
 }
 
@@ -85,13 +85,13 @@ void ProgressPrinter::print_bar() {
 void ProgressPrinter::print_line() {
   const std::string line = progress_line(style_, state_) + "\n";
   std::fputs(line.c_str(), to_);
-  tell_log(line);
+  log_message(line);
   std::fflush(to_);
   last_percent_ = state_.percent();
   last_line_ = std::chrono::steady_clock::now();
 }
 
-/// Says the last word again whenever nothing was said for too long.
+/// Repeats the last line whenever a heartbeat has passed without one.
 void ProgressPrinter::beat() {
   std::unique_lock lock(mutex_);
   while (!finished_) {

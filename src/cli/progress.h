@@ -12,29 +12,29 @@
 
 namespace orrery::cli {
 
-/// A supervisor that hears nothing for longer takes a render for hung.
+/// Maximum time between two lines of progress, so that a supervisor does not take a render for hung.
 inline constexpr std::chrono::milliseconds kHeartbeat{60'000};
 
-/// Tells how far a render is: one line with a bar, or a line whenever the whole percent changes and at the latest when
-/// the heartbeat's time has passed, also while the scene is read and while a tile takes its time.
+/// Prints the progress of a render: a bar, or a line whenever the whole percent changes and at least once per
+/// heartbeat, also while the scene is read and during a long tile.
 class ProgressPrinter {
  public:
-  /// Domain     `to` stays open as long as this lives
+  /// Domain     `to` outlives this
   ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat = kHeartbeat);
   ~ProgressPrinter();
   ProgressPrinter(const ProgressPrinter&) = delete;
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
-  /// To be called from any thread.
+  /// Thread-safe.
   void update(const ProgressState& state);
 
-  /// What is done of building the hierarchy, 0..1, where a bar is shown; lines are of samples only. From any thread.
+  /// Shows the finished fraction of the BVH build, 0..1, in the bar; lines show samples only. Thread-safe.
   void building(double fraction);
 
-  /// A message of whole lines between two of progress, or above the bar; from any thread.
+  /// Prints a message of whole lines between progress lines, or above the bar. Thread-safe.
   void note(const std::string& text);
 
-  /// Takes the bar away, so that the next message has its line, and ends the heartbeat.
+  /// Clears the bar and ends the heartbeat.
   void finish();
 
  private:
@@ -45,7 +45,7 @@ class ProgressPrinter {
   ProgressStyle style_;
   std::FILE* to_;
   std::chrono::milliseconds heartbeat_;
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards all members below
   std::condition_variable wake_;
   ProgressState state_;
   int last_percent_ = -1;

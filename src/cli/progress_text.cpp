@@ -3,51 +3,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/core.h>
 
 namespace orrery::cli {
 namespace {
 
-/// A bar of fewer cells says less than the percent beside it.
-constexpr int kFewestCells = 8;
-constexpr int kMostCells = 40;
+/// Limits of the bar's length. A shorter bar would be coarser than the percentage.
+constexpr int kMinCells = 8;
+constexpr int kMaxCells = 40;
 
 std::string time_text(double seconds) {
   constexpr double kLongest = 359999;  // 99:59:59
   const auto s = static_cast<long>(std::ceil(std::min(seconds, kLongest)));
-  char out[32];
-  if (s >= 3600) {
-    std::snprintf(out, sizeof(out), "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
-  } else {
-    std::snprintf(out, sizeof(out), "%ld:%02ld", s / 60, s % 60);
-  }
-  return out;
+  if (s >= 3600) return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
 std::string rate_text(double per_second) {
-  char out[40];
-  if (per_second >= 1e6) {
-    std::snprintf(out, sizeof(out), "%.1f M samples/s", per_second / 1e6);
-  } else if (per_second >= 1e3) {
-    std::snprintf(out, sizeof(out), "%.1f k samples/s", per_second / 1e3);
-  } else {
-    std::snprintf(out, sizeof(out), "%.0f samples/s", per_second);
-  }
-  return out;
+  if (per_second >= 1e6) return fmt::format("{:.1f} M samples/s", per_second / 1e6);
+  if (per_second >= 1e3) return fmt::format("{:.1f} k samples/s", per_second / 1e3);
+  return fmt::format("{:.0f} samples/s", per_second);
 }
 
 std::string json_line(const ProgressState& state) {
-  char out[200];
-  int length = std::snprintf(out, sizeof(out),
-                             "{\"progress\": %d, \"samples_done\": %llu, \"samples_total\": %llu, \"seconds\": %.1f",
-                             state.percent(), static_cast<unsigned long long>(state.done),
-                             static_cast<unsigned long long>(state.total), state.seconds);
-  std::string line(out, static_cast<std::size_t>(length));
-  if (state.seconds_left() >= 0) {
-    length = std::snprintf(out, sizeof(out), ", \"samples_per_second\": %.0f, \"seconds_left\": %.1f",
-                           state.samples_per_second(), state.seconds_left());
-    line.append(out, static_cast<std::size_t>(length));
-  }
+  std::string line = fmt::format("{{\"progress\": {}, \"samples_done\": {}, \"samples_total\": {}, \"seconds\": {:.1f}",
+                                 state.percent(), state.done, state.total, state.seconds);
+  if (state.seconds_left() >= 0)
+    line += fmt::format(", \"samples_per_second\": {:.0f}, \"seconds_left\": {:.1f}", state.samples_per_second(),
+                        state.seconds_left());
   if (!state.goal.empty()) line += ", \"goal\": \"" + state.goal + "\"";
   return line + "}";
 }
@@ -77,28 +61,25 @@ double ProgressState::seconds_left() const {
 }
 
 std::string progress_line(ProgressStyle style, const ProgressState& state) {
-  const std::string percent = std::to_string(state.percent());
   switch (style) {
-    case ProgressStyle::kAlf: return "ALF_PROGRESS " + percent + "%";
-    case ProgressStyle::kOpenJd: return "openjd_progress: " + percent;
+    case ProgressStyle::kAlf: return fmt::format("ALF_PROGRESS {}%", state.percent());
+    case ProgressStyle::kOpenJd: return fmt::format("openjd_progress: {}", state.percent());
     case ProgressStyle::kJson: return json_line(state);
     case ProgressStyle::kArnold:
     case ProgressStyle::kAuto:
     case ProgressStyle::kBar:
     case ProgressStyle::kNone: break;
   }
-  return percent + "% done";
+  return fmt::format("{}% done", state.percent());
 }
 
 std::string progress_bar(const ProgressState& state, int columns) {
-  char percent[8];
-  std::snprintf(percent, sizeof(percent), "%3d %%", state.percent());
-  std::string text = std::string(percent) + "  " + rate_text(state.samples_per_second());
+  std::string text = fmt::format("{:3} %  {}", state.percent(), rate_text(state.samples_per_second()));
   if (state.seconds_left() >= 0) text += "  " + time_text(state.seconds_left()) + " left";
   if (!state.goal.empty()) text += "  " + state.goal;
-  // Brackets, a space, and the last column, in which some terminals begin a new line.
-  const int cells = std::min(kMostCells, columns - static_cast<int>(text.size()) - 4);
-  if (cells < kFewestCells) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
+  // Room for brackets, a space, and the last column, after which some terminals wrap.
+  const int cells = std::min(kMaxCells, columns - static_cast<int>(text.size()) - 4);
+  if (cells < kMinCells) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
   std::string bar(static_cast<std::size_t>(state.fraction() * cells), '#');
   bar.resize(static_cast<std::size_t>(cells), '.');
   return "[" + bar + "] " + text;

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "farm/batch.h"
 #include "base/error.h"
 #include "base/frames.h"
@@ -24,7 +26,7 @@
 namespace orrery::cli {
 namespace {
 
-/// A part of fewer pixels than this many parts leave is not worth a process.
+/// More shards than are worth a process each.
 constexpr int kMaxShards = 65536;
 
 struct RenderOptions {
@@ -35,7 +37,7 @@ struct RenderOptions {
   bool quiet = false, verbose = false, strict = false, fail_fast = false;
 };
 
-/// Quiet is about what people read; a farm manager that asked for its lines gets them.
+/// --quiet does not suppress progress in an explicit style, which a farm manager parses.
 ProgressStyle style_of(const RenderOptions& options) {
   const ProgressStyle style = progress_style(options.progress);
   return options.quiet && style == ProgressStyle::kAuto ? ProgressStyle::kNone : style;
@@ -43,10 +45,10 @@ ProgressStyle style_of(const RenderOptions& options) {
 
 [[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
 
-/// Two whole numbers with something between them; nothing where they are not.
+/// Parses two whole numbers with a separator.
 template <class Number>
-std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char between) {
-  const std::size_t at = text.find(between);
+std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char separator) {
+  const std::size_t at = text.find(separator);
   std::pair<Number, Number> out;
   const auto parse = [](const char* begin, const char* end, Number& number) {
     const auto [stopped, error] = std::from_chars(begin, end, number);
@@ -62,20 +64,20 @@ void read_shard(const RenderOptions& options, job::Job& job) {
   if (const auto text = options.scene.sample_range()) {
     const auto range = pair_of<std::uint32_t>(*text, ':');
     if (!range || range->first >= range->second || range->second > std::numeric_limits<std::int32_t>::max())
-      refuse("--samples: `" + *text +
-             "` is no range of samples; 0:100 are the first hundred, 100:200 those after them");
+      refuse(fmt::format("--samples: `{}` is not a range of samples; write A:B, e.g. 0:100 and 100:200 for two shards",
+                         *text));
     job.sampling.sample_begin = range->first;
     job.sampling.sample_end = range->second;
   }
   if (options.shard.empty()) return;
   const auto shard = pair_of<int>(options.shard, '/');
   if (!shard || shard->first < 1 || shard->first > shard->second || shard->second > kMaxShards)
-    refuse("--shard: `" + options.shard + "` is not a shard; write I/N, as 1/4, 2/4, 3/4 and 4/4 for four shards");
+    refuse(fmt::format("--shard: `{}` is not a shard; write I/N, e.g. 1/2 and 2/2 for two shards", options.shard));
   job.sampling.shard = {shard->first - 1, shard->second};
   job.as_shard = true;
 }
 
-/// A batch is one render to whoever watches it: all jobs' samples in a row, as many each.
+/// Progress of a batch as one render: the samples of all jobs, as if each had the same number.
 class BatchProgress {
  public:
   explicit BatchProgress(ProgressPrinter& printer) : printer_(printer) {}
@@ -88,7 +90,7 @@ class BatchProgress {
     if (count_ <= 1) return printer_.update({p.samples_done, p.samples_total, p.seconds, p.goal});
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
     printer_.update({index_ * p.samples_total + p.samples_done, count_ * p.samples_total, seconds,
-                     std::to_string(index_ + 1) + " of " + std::to_string(count_)});
+                     fmt::format("{} of {}", index_ + 1, count_)});
   }
 
  private:
@@ -98,14 +100,13 @@ class BatchProgress {
   Clock::time_point start_ = Clock::now();
 };
 
-/// What came of many jobs, and the exit status that stands for it: that of the first failure.
+/// Prints the summary of a batch. Returns the exit status of the first failure, or 0.
 int print_summary(const farm::BatchReport& report, bool quiet) {
-  std::string text = std::to_string(report.rendered) + " of " + std::to_string(report.jobs) + " rendered, " +
-                     std::to_string(report.skipped) + " were there, " + std::to_string(report.failures.size()) +
-                     " failed\n";
+  std::string text = fmt::format("{} of {} rendered, {} skipped, {} failed\n", report.rendered, report.jobs,
+                                 report.skipped, report.failures.size());
   for (const farm::BatchReport::Failure& failure : report.failures)
-    text += "failed: " + failure.name + ": " + failure.error.what() + "\n";
-  if (!quiet || !report.failures.empty()) tell(text);
+    text += fmt::format("failed: {}: {}\n", failure.name, failure.error.what());
+  if (!quiet || !report.failures.empty()) print_message(text);
   return report.failures.empty() ? 0 : base::exit_status(report.failures.front().error.kind());
 }
 
@@ -114,7 +115,7 @@ int render(RenderOptions& options) {
   job::Job& job = batch.job;
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
     if (batch.scenes[i].extension() != ".toml")
-      refuse("`" + batch.scenes[i].string() + "` is one argument too many; files to write are named by -o");
+      refuse("unexpected argument `" + batch.scenes[i].string() + "`; name output files with -o");
   job.scene.overrides = options.scene.overrides();
   options.picture.finish(job);
   read_shard(options, job);
@@ -130,19 +131,20 @@ int render(RenderOptions& options) {
   int status = 0;
   job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };
   job.hooks.on_build = [&](double fraction) { printer.building(fraction); };
-  const auto note = [&](const std::string& text) {  // the log has what nobody wants to see
-    options.quiet ? tell_log(text) : printer.note(text);
+  const auto note = [&](const std::string& text) {  // --quiet messages still go to the log
+    options.quiet ? log_message(text) : printer.note(text);
   };
   job.hooks.on_warning = [&](const base::Diagnostic& warning) { note(base::formatted(warning)); };
   job.hooks.on_note = [&](const std::string& text) { printer.note(text + "\n"); };
   batch.on_begin = [&](const job::Job& one, std::size_t index, std::size_t count) {
     progress.begin(index, count);
-    tell_log("begins: " + farm::job_name(batch, one) + "\n");
+    log_message("rendering " + farm::job_name(batch, one) + "\n");
   };
   batch.on_end = [&](const job::Job& one, const job::JobReport& report) {
     if (!is_many) printer.finish();
-    const std::string text = report.was_skipped ? "skipped " + farm::job_name(batch, one) + ": its files are there\n"
-                                                : report_text(one, report, options.verbose);
+    const std::string text = report.was_skipped
+                                 ? "skipped " + farm::job_name(batch, one) + ": its files are up to date\n"
+                                 : report_text(one, report, options.verbose);
     note(text);
     if (report.target_missed.empty()) return;
     if (!options.quiet || options.strict)
@@ -151,7 +153,7 @@ int render(RenderOptions& options) {
   };
   batch.on_failure = [&](const job::Job&, const base::Error& error) { printer.note(error_text(error)); };
   const std::vector<job::Job> jobs = farm::jobs_of(batch);
-  if (!batch.log.empty()) open_log(batch.log);  // not before it is known to be no input
+  if (!batch.log.empty()) open_log(batch.log);  // only now is it known not to be an input
   const farm::BatchReport report = farm::run_batch(batch, jobs);
   printer.finish();
   if (!is_many) return status;
@@ -163,74 +165,74 @@ int render(RenderOptions& options) {
 
 void add_render(Command& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
-  Command& command = *program.add_subcommand("render", "Render a scene into one or more picture files");
-  command.add_option("SCENE", options->batch.scenes, "Scene file; several: their outputs are named with {scene}")
+  Command& command = *program.add_subcommand("render", "Render a scene to image files");
+  command.add_option("SCENE", options->batch.scenes, "Scene file; with several, use {scene} in the names of outputs")
       ->required()
       ->type_name("FILE");
   options->picture.add_to(command, options->batch.job);
   options->scene.add_to(command, true);
-  command.add_option("--shard", options->shard, "Render only the I-th of N shards of the pixels, to merge later")
+  command.add_option("--shard", options->shard, "Render the I-th of N shards of the pixels, for orrery merge")
       ->type_name("I/N");
   command
       .add_option("--frames", options->frames,
-                  "Frames to render, as 1-48, 1-48x2 or 1,3,7-9; names of files have a place for them: shot.####.exr")
+                  "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9; name outputs like shot.####.exr")
       ->type_name("RANGE");
   command.add_flag("--skip-existing", options->batch.job.skip_existing,
-                   "Leave out what is there already, whole, and made of this scene with these settings");
-  command.add_flag("--fail-fast", options->fail_fast, "End at the first of several frames or scenes that fails");
+                   "Skip images that exist, are intact, and are of this scene and settings");
+  command.add_flag("--fail-fast", options->fail_fast, "Stop at the first frame or scene that fails");
   command.add_flag("--resume", options->batch.job.checkpoint.resume,
-                   "Go on from the checkpoint that a stopped render has left");
+                   "Continue from the checkpoint of a stopped render, if there is one");
   command
       .add_option("--checkpoint", options->batch.job.checkpoint.interval_s,
-                  "Write a checkpoint so often, as 5m; one is written anyway when INT or TERM stops the render")
+                  "Checkpoint interval, e.g. 5m; default: only when a signal stops the render")
       ->transform(duration())
       ->type_name("TIME");
-  command
-      .add_option("--noise", options->batch.job.sampling.noise,
-                  "Target noise: error of the picture relative to what a display shows, e.g. 0.01")
+  command.add_option("--noise", options->batch.job.sampling.noise, "Target noise (relative display error), e.g. 0.01")
       ->transform(real_number(1e-6, 1))
       ->type_name("X");
   command
       .add_option("--time", options->batch.job.sampling.seconds,
-                  "Sample for so long, where it helps most: 90s, 5m, 1.5h")
+                  "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
       ->transform(duration())
       ->type_name("TIME");
   command.add_flag("--strict", options->strict, "Exit with 75 if --noise was not reached or could not be judged");
   command
       .add_option("-t,--threads", options->batch.job.resources.threads,
-                  "Threads; default: as many as this process may use")
+                  "Number of threads; default: all that this process may use")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command
       .add_option("--traversal", options->traversal,
-                  "How rays go through the hierarchy: auto, the default, measures what is quicker; packet or single")
+                  "BVH traversal: packet, single, or auto, which measures the faster one; default: auto")
       ->check(one_of({"auto", "packet", "single"}))
-      ->type_name("WAY");
+      ->type_name("MODE");
   command
       .add_option("--isa", options->batch.job.resources.isa,
                   "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
   command
       .add_option("--memory-limit", options->batch.job.resources.memory_limit,
-                  "Refuse what needs more, as 8G; default: what is free")
+                  "Memory limit for the estimated need, e.g. 8G; default: the free memory")
       ->transform(byte_size())
       ->type_name("SIZE");
-  command.add_option("--progress", options->progress, "auto, bar, alf, openjd, arnold, json or none")
+  command
+      .add_option("--progress", options->progress,
+                  "Progress format: auto, bar, alf, openjd, arnold, json or none; default: auto")
       ->check(one_of(progress_style_names()))
       ->type_name("STYLE");
-  command.add_option("--stats", options->batch.job.outputs.statistics, "Write what the render did as JSON")
+  command.add_option("--stats", options->batch.job.outputs.statistics, "Write statistics of the render as JSON")
       ->type_name("FILE");
-  command.add_option("--log", options->batch.log, "Append all messages to this file, too, with the time")
+  command.add_option("--log", options->batch.log, "Append all messages to a log file, with the time")
       ->type_name("FILE");
-  command.add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
-  command.add_flag("-v,--verbose", options->verbose, "Say what was done and how long it took");
+  command.add_flag("-q,--quiet", options->quiet, "Print only errors");
+  command.add_flag("-v,--verbose", options->verbose, "Also print phases and their times");
   command.footer(
       "Examples:\n"
       "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"
       "  orrery render scene.toml -o test.png --samples 20 --set camera.vfov=30\n"
       "  orrery render scene.toml -o final.exr --noise 0.01 --time 10m\n"
       "  orrery render shot.toml -o shot.####.exr --frames 1-240 --resume --skip-existing\n"
-      "  orrery render shot.toml -o part.2.exr --samples 100:200\n"
+      "  orrery render shot.toml -o shard.2.exr --samples 100:200\n"
       "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");
   command.callback([options, &action] { action = [options] { return render(*options); }; });
 }

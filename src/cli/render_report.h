@@ -7,7 +7,7 @@
 
 namespace orrery::cli {
 
-/// What somebody should know before trusting the picture, and what was done; whole lines.
+/// Warnings about an image and a summary of its render, as whole lines.
 std::string report_text(const job::Job& job, const job::JobReport& report, bool verbose);
 
 }  // namespace orrery::cli

@@ -29,26 +29,31 @@ void configure(CLI::App& program) {
   program.set_help_flag("-h,--help", "Print this help message and exit");
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
-  // What a script says after its own defaults shall count.
+  // The last value wins, so that scripts can append options to their defaults.
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  program.footer("orrery COMMAND --help tells more, with examples.");
+  program.footer("orrery COMMAND --help lists the options of a command, with examples.");
 }
 
 void add_commands(Command& program, Action& action) {
+  program.heading("Render");
   add_render(program, action);
   add_merge(program, action);
   add_submit(program, action);
-  add_info(program, action);
+  program.heading("Inspect");
   add_check(program, action);
-  add_generate(program, action);
-  add_develop(program, action);
-  add_bake(program, action);
+  add_info(program, action);
   add_compare(program, action);
+  program.heading("Measure");
   add_bench(program, action);
   add_study(program, action);
+  program.heading("Scenes");
+  add_generate(program, action);
+  program.heading("Colour");
+  add_develop(program, action);
+  add_bake(program, action);
 }
 
-/// What --help and --version print.
+/// Prints the text of --help or --version.
 int print_success(const CLI::App& program, const CLI::Success& success) {
   std::ostringstream text, nothing;
   program.exit(success, text, nothing);
@@ -63,7 +68,7 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error, con
 }
 
 int parse_and_act(int argc, const char* const* argv) {
-  CLI::App program("orrery renders scenes made of spheres, fast and right.", "orrery");
+  CLI::App program("orrery is a path tracer for scenes made of spheres.", "orrery");
   configure(program);
   Command commands(program);
   Action action;
@@ -89,9 +94,9 @@ int run(int argc, const char* const* argv) {
   } catch (const base::Error& error) {
     return print_error(error);
   } catch (const std::bad_alloc&) {
-    std::fputs("orrery: out of memory; orrery info SCENE tells how much a scene needs\n", stderr);
+    std::fputs("orrery: out of memory; orrery info SCENE prints how much a scene needs\n", stderr);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "orrery: internal failure: %s\n", error.what());
+    std::fprintf(stderr, "orrery: internal error: %s\n", error.what());
   }
   return base::exit_status(base::ErrorKind::kInternal);
 }

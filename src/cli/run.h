@@ -3,7 +3,7 @@
 
 namespace orrery::cli {
 
-/// The whole program: reads argv, runs a command, prints what there is to say.
+/// The whole program: parses argv, runs the command, prints errors.
 ///
 /// Result     the exit status; see base/exit_status.h
 int run(int argc, const char* const* argv);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What looks at scenes without rendering them: info and check.
+// The commands that inspect scenes without rendering: info and check.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <set>
 #include <utility>
+
+#include <fmt/core.h>
 
 #include "app/info.h"
 #include "base/error.h"
@@ -49,7 +51,7 @@ int info(const InfoOptions& options) {
   return 0;
 }
 
-/// That this machine is too small is no fault of the scene's.
+/// A warning if the scene does not fit into memory, which another machine may have.
 std::string memory_warning(const app::SceneInfo& info) {
   try {
     job::require_memory(info.memory, 0);
@@ -59,12 +61,12 @@ std::string memory_warning(const app::SceneInfo& info) {
   }
 }
 
-/// Checks the frames of one scene. What is wrong with several frames in the same words is printed once.
+/// Checks the frames of one scene. Prints equal messages of several frames once.
 class FrameChecks {
  public:
   explicit FrameChecks(job::SceneRequest request) : request_(std::move(request)) {}
 
-  /// The exit status.
+  /// Result     the exit status
   int run(const std::vector<int>& frames) {
     for (const int frame : frames) {
       request_.source.frame = frame;
@@ -74,23 +76,25 @@ class FrameChecks {
       } catch (const base::Error& error) {
         if (status_ == 0) status_ = base::exit_status(error.kind());
         print_once(error_text(error));
-        if (error.diagnostics().empty()) return status_;  // not of the scene: the other frames would say the same
+        if (error.diagnostics().empty()) return status_;  // not an error of the scene; it would repeat in other frames
         bad_.push_back(frame);
       }
     }
     if (frames.size() > 1 && !bad_.empty())
-      std::fprintf(stderr, "orrery: %s: %zu of %zu frames have errors: %s\n", request_.source.file.c_str(), bad_.size(),
-                   frames.size(), base::frames_text(bad_).c_str());
+      std::fputs(fmt::format("orrery: {}: {} of {} frames have errors: {}\n", request_.source.file.string(),
+                             bad_.size(), frames.size(), base::frames_text(bad_))
+                     .c_str(),
+                 stderr);
     return status_;
   }
 
  private:
   void print_once(const std::string& text) {
-    if (!text.empty() && printed_.size() < kMostTexts && printed_.insert(text).second) std::fputs(text.c_str(), stderr);
+    if (!text.empty() && printed_.size() < kMaxTexts && printed_.insert(text).second) std::fputs(text.c_str(), stderr);
   }
 
-  /// Of a thousand frames without their files it is enough to see some.
-  static constexpr std::size_t kMostTexts = 100;
+  /// Limits the output, e.g. for a thousand frames without their files.
+  static constexpr std::size_t kMaxTexts = 100;
 
   job::SceneRequest request_;
   std::set<std::string> printed_;
@@ -98,7 +102,7 @@ class FrameChecks {
   int status_ = 0;
 };
 
-/// All scenes are looked at, whatever is wrong with the first; the worst of them decides the status.
+/// Checks all scenes, even if some have errors. Returns the largest exit status.
 int check(const CheckOptions& options) {
   const std::vector<int> frames =
       options.frames.empty() ? std::vector<int>{format::kFirstFrame} : base::parse_frames(options.frames);
@@ -107,11 +111,11 @@ int check(const CheckOptions& options) {
     job::SceneRequest request;
     request.source.file = scene;
     request.source.overrides = options.overrides.overrides();
-    request.develops = true;  // what a render to a display format would refuse, too
+    request.develops = true;  // also find what a render to a display format would reject
     const int own = FrameChecks(std::move(request)).run(frames);
     status = std::max(status, own);
-    const std::string count = frames.size() > 1 ? ", " + std::to_string(frames.size()) + " frames" : "";
-    if (own == 0 && !options.quiet) print_result(scene.string() + ": ok" + count + "\n");
+    const std::string count = frames.size() > 1 ? fmt::format(", {} frames", frames.size()) : "";
+    if (own == 0 && !options.quiet) print_result(fmt::format("{}: ok{}\n", scene.string(), count));
   }
   return status;
 }
@@ -120,13 +124,13 @@ int check(const CheckOptions& options) {
 
 void add_info(Command& program, Action& action) {
   const auto options = std::make_shared<InfoOptions>();
-  Command& command = *program.add_subcommand("info", "Tell what a scene is, what it requires, and what is left out");
+  Command& command = *program.add_subcommand("info", "Print what a scene contains, requires and leaves out");
   command.add_option("SCENE", options->scene, "Scene file")->required()->type_name("FILE");
   options->overrides.add_to(command);
   options->overrides.add_frame_to(command);
-  command.add_flag("--measure", options->measure, "Measure what leaving out saves; takes some seconds");
-  auto* json = command.add_flag("--json", options->json, "As JSON, with all settings");
-  command.add_flag("--settings", options->settings, "Every setting, its value and where it came from")->excludes(json);
+  command.add_flag("--measure", options->measure, "Measure what the left-out features save; takes some seconds");
+  auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings");
+  command.add_flag("--settings", options->settings, "Print every setting, its value and its origin")->excludes(json);
   command.footer(
       "Examples:\n"
       "  orrery info scenes/book/final.toml\n"

@@ -3,6 +3,8 @@
 
 #include <string_view>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/option_checks.h"
@@ -10,25 +12,25 @@
 namespace orrery::cli {
 
 void SceneOptions::add_to(Command& command, bool allows_range) {
+  const OptionGroup group(command, "Scene options");
   allows_range_ = allows_range;
-  command.add_option("--set", set_, "Override a key of the scene file: --set camera.vfov=30; can be repeated")
+  command.add_option("--set", set_, "Override a key of the scene file, e.g. camera.vfov=30; can be repeated")
       ->type_name("KEY=VALUE")
       ->repeatable();
   const auto add = [&](const char* flag, const char* key, const char* type, const std::string& what) {
     Short& option = short_forms_.emplace_back(Short{flag, key, {}, nullptr, false});
-    option.flag = command.add_option(flag, option.value, what + "; as --set " + key)->type_name(type);
+    option.flag = command.add_option(flag, option.value, fmt::format("{} ({})", what, key))->type_name(type);
   };
   add("--samples", "render.samples", allows_range ? "N or A:B" : "N",
-      allows_range ? "Samples per pixel, or of the scene's only those from A to before B, as a part"
-                   : "Samples per pixel");
-  add("--width", "image.width", "N", "Width of the picture in pixels");
-  add("--height", "image.height", "N", "Height of the picture in pixels");
+      allows_range ? "Samples per pixel, or a shard with samples A to B-1 of each pixel" : "Samples per pixel");
+  add("--width", "image.width", "N", "Image width in pixels");
+  add("--height", "image.height", "N", "Image height in pixels");
   add("--seed", "render.seed", "N", "Seed of the random numbers");
-  add("--max-depth", "render.max_depth", "N", "Most rays of a path, the camera ray included");
-  add("--precision", "render.precision", "NAME", "exact, fast or book");
-  add("--accelerator", "render.accelerator", "NAME", "embree or list");
+  add("--max-depth", "render.max_depth", "N", "Maximum rays per path, including the camera ray");
+  add("--precision", "render.precision", "NAME", "Arithmetic: exact, fast or book");
+  add("--accelerator", "render.accelerator", "NAME", "Acceleration structure: embree or list");
   add("--layers", "output.layers", "NAMES",
-      "Layers of EXR files beside the beauty, e.g. Z,N,diffuse; all: every layer of this scene; \"\": none");
+      "Additional EXR layers, e.g. Z,N,diffuse; all: every layer of the scene; \"\": none");
   short_forms_.back().is_list = true;
 }
 
@@ -62,8 +64,9 @@ int SceneOptions::frame() const {
   if (frame_.empty()) return format::kFirstFrame;
   const std::vector<int> frames = base::parse_frames(frame_);
   if (frames.size() != 1)
-    throw base::Error(base::ErrorKind::kUsage, "--frame " + frame_ + " is " + std::to_string(frames.size()) +
-                                                   " frames; this command takes one, and orrery check takes many");
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("--frame {} is {} frames; this command takes one; orrery check takes several", frame_,
+                                  frames.size()));
   return frames.front();
 }
 

@@ -11,26 +11,25 @@
 
 namespace orrery::cli {
 
-/// Flags that change the scene: --set, and short forms of the most used keys.
+/// The options that override scene keys: --set, and short forms of frequent keys.
 class SceneOptions {
  public:
-  /// Domain     called once; neither this moves nor `command` goes until overrides() was asked
-  ///
   /// `allows_range`  --samples may be A:B
+  /// Domain     called once; this does not move, and `command` exists, until the last call of overrides()
   void add_to(Command& command, bool allows_range = false);
 
-  /// What --samples says, where that is a range, A:B, of the scene's samples; then it overrides nothing.
+  /// The value of --samples if it is a range A:B of the scene's samples, which overrides no key.
   std::optional<std::string> sample_range() const;
 
-  /// All of them, in an order in which --set wins over the short forms.
+  /// All overrides, short forms first, so that --set wins.
   std::vector<format::Override> overrides() const;
 
-  /// Adds --frame, for a command that looks at one frame.
+  /// Adds --frame, for a command that uses one frame.
   void add_frame_to(Command& command);
 
-  /// What --frame says; without it the frame that a render without --frames gives.
+  /// The frame of --frame; by default the frame of a render without --frames.
   ///
-  /// Errors     base::Error(kUsage) for what is not one frame
+  /// Errors     base::Error(kUsage) if --frame is not a single frame
   int frame() const;
 
  private:
@@ -39,14 +38,14 @@ class SceneOptions {
     const char* key;
     std::string value;
     const Option* flag;
-    bool is_list;  ///< words between commas
+    bool is_list;  ///< comma-separated words
   };
   bool is_range(const Short& option) const;
 
   bool allows_range_ = false;
   std::vector<std::string> set_;
   std::string frame_;
-  std::deque<Short> short_forms_;  ///< a deque: the parser holds on to where the values are
+  std::deque<Short> short_forms_;  ///< a deque: the parser keeps pointers to the values
 };
 
 }  // namespace orrery::cli

@@ -10,17 +10,17 @@ namespace orrery::cli {
 namespace {
 
 std::atomic<bool> stop{false}, snapshot{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
 void on_signal(int signal) {
   if (!stop.exchange(true)) return;
   base::remove_unfinished_files();
-  _exit(128 + signal);  // as a shell reports a process that a signal ended
+  _exit(128 + signal);  // as a shell reports a process ended by a signal
 }
 
 void on_snapshot(int) { snapshot.store(true, std::memory_order_relaxed); }
 
-/// Handles a signal unless the process was started with it ignored.
+/// Installs a handler, unless the signal was ignored at the start of the process.
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action {
   }, before{};

@@ -5,25 +5,21 @@
 
 namespace orrery::cli {
 
-/// The first thing that a run does. From then on a pipe that nobody reads any more and a limit on the size of files are
-/// failed writes, not the end of the process; USR1 asks for a snapshot. All commands take USR1, since a supervisor
-/// sends it to whatever is running. What a parent has blocked is unblocked.
-///
-/// Signals that the process was started with ignored stay so.
+/// Sets up signals at the start of the program. Writing to a closed pipe or beyond the file size limit becomes a failed
+/// write. USR1 requests a snapshot; all commands handle it, since a supervisor sends it to whatever is running.
+/// Unblocks signals that the parent blocked. Signals ignored at the start of the process stay ignored.
 void prepare_signals();
 
-/// From now on INT, TERM and HUP ask whoever looks at the result to stop; a second one ends the process at once with
-/// 128 + its number, without a torn or temporary file.
+/// Makes INT, TERM and HUP request a stop. A second one ends the process at once with status 128 + its number, and
+/// leaves no partial or temporary file. Signals ignored at the start of the process, e.g. HUP by nohup, stay ignored.
 ///
-/// Signals that the process was started with ignored, as nohup does with HUP, stay so.
-///
-/// Result     true once a signal has come
+/// Result     becomes true with the first signal
 const std::atomic<bool>& stop_on_signals();
 
-/// The same for what cannot be asked to stop: the first signal ends the process.
+/// As stop_on_signals, for commands that cannot stop midway: the first signal ends the process.
 void end_on_signals();
 
-/// True once USR1 has come; whoever looks at it sets it to false again.
+/// Becomes true with USR1; the reader resets it to false.
 std::atomic<bool>& snapshot_request();
 
 }  // namespace orrery::cli

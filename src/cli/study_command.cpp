@@ -25,9 +25,8 @@ struct StudyOptions {
 
 void check_report_name(const std::filesystem::path& file) {
   if (file.extension() != ".html" && file.extension() != ".htm")
-    throw base::Error(base::ErrorKind::kUsage, file.string() +
-                                                   " is not the name of an HTML page; a report is one, so "
-                                                   "name it .html, or print the figures with --json");
+    throw base::Error(base::ErrorKind::kUsage,
+                      file.string() + ": the report is an HTML file; name it .html, or print numbers with --json");
 }
 
 int run(StudyOptions& options) {
@@ -58,26 +57,30 @@ int run(StudyOptions& options) {
 
 void add_study(Command& program, Action& action) {
   const auto options = std::make_shared<StudyOptions>();
-  Command& command = *program.add_subcommand("study", "Measure what time buys in accuracy on a scene, and recommend");
+  Command& command =
+      *program.add_subcommand("study", "Measure the trade-off of time and accuracy on a scene, and recommend settings");
   command.add_option("SCENE", options->request.scene.file, "Scene file")->required()->type_name("FILE");
-  command.add_option("-o,--output", options->request.report, "Write a report: one HTML file with plots and pictures")
+  command
+      .add_option("-o,--output", options->request.report,
+                  "Write a report: a self-contained HTML file with plots and images")
       ->type_name("FILE");
   options->scene.add_to(command);
   options->scene.add_frame_to(command);
-  command.add_option("--budget", options->request.budget_s, "Time for all of it, as 90s or 5m; default 2m")
+  command.add_option("--budget", options->request.budget_s, "Time budget of the study, e.g. 90s or 5m; default: 2m")
       ->transform(duration())
       ->type_name("TIME");
-  command.add_option("--noise", options->request.noise, "What the recommendation shall reach; default 0.01")
+  command.add_option("--noise", options->request.noise, "Target noise of the recommendation; default: 0.01")
       ->transform(real_number(1e-4, 1))
       ->type_name("X");
-  command.add_option("-t,--threads", options->request.threads, "Threads; default: as many as this process may use")
+  command
+      .add_option("-t,--threads", options->request.threads, "Number of threads; default: all that this process may use")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command
       .add_option("--isa", options->request.isa,
                   "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
-  command.add_flag("--json", options->json, "As JSON");
+  command.add_flag("--json", options->json, "Print JSON");
   command.add_flag("-q,--quiet", options->quiet, "Show no progress");
   command.footer(
       "Examples:\n"

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
+#include "cli/display_options.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
 #include "cli/picture_options.h"
@@ -20,6 +21,8 @@ struct SubmitOptions {
   std::filesystem::path scene_file;
   bool slurm = false, openjd = false, opencue = false;
   const Option* parallel = nullptr;
+  std::vector<const Option*> passed_on;  ///< besides the image and display options
+  const Command* command = nullptr;
 };
 
 int submit(SubmitOptions& options) {
@@ -31,7 +34,13 @@ int submit(SubmitOptions& options) {
   if (!s.frames_text.empty()) batch.frames = base::parse_frames(s.frames_text);
   if (options.slurm + options.openjd + options.opencue + static_cast<int>(options.parallel->count()) != 1)
     throw base::Error(base::ErrorKind::kUsage,
-                      "say who shall run it, by one of --slurm, --openjd, --opencue and --parallel N");
+                      "select the engine with one of --slurm, --openjd, --opencue and --parallel N");
+  s.arguments = options.command->arguments(kImageOptions);
+  const auto pass_on = [&](const std::vector<std::string>& words) {
+    s.arguments.insert(s.arguments.end(), words.begin(), words.end());
+  };
+  pass_on(options.command->arguments(kDisplayOptions));
+  for (const Option* option : options.passed_on) pass_on(option->arguments());
   s.engine = options.slurm     ? farm::Engine::kSlurm
              : options.openjd  ? farm::Engine::kOpenJd
              : options.opencue ? farm::Engine::kOpenCue
@@ -47,27 +56,34 @@ void add_submit(Command& program, Action& action) {
   farm::Submission& s = options->submission;
   Command& command = *program.add_subcommand("submit", "Print a job for Slurm, OpenJD, OpenCue or GNU parallel");
   command.add_option("SCENE", options->scene_file, "Scene file")->required()->type_name("FILE");
-  command.add_flag("--slurm", options->slurm, "A shell script that calls sbatch");
-  command.add_flag("--openjd", options->openjd, "An Open Job Description template, jobtemplate-2023-09");
-  command.add_flag("--opencue", options->opencue, "A job of OpenCue's specification language, cjsl-1.12");
+  command.add_flag("--slurm", options->slurm, "Print a shell script that calls sbatch");
+  command.add_flag("--openjd", options->openjd, "Print an Open Job Description template, jobtemplate-2023-09");
+  command.add_flag("--opencue", options->opencue, "Print a job in OpenCue's specification language, cjsl-1.12");
   options->parallel =
-      command.add_option("--parallel", s.jobs_at_a_time, "A shell script that calls GNU parallel, N tasks at a time")
+      command
+          .add_option("--parallel", s.jobs_at_a_time, "Print a shell script that calls GNU parallel, N tasks at a time")
           ->transform(whole_number(1, kMaxThreads))
           ->type_name("N");
   options->picture.add_to(command, s.batch.job);
   options->scene.add_to(command);
-  command.add_option("--frames", s.frames_text, "Frames to render, as 1-48, 1-48x2 or 1,3,7-9")->type_name("RANGE");
-  command.add_option("--shards", s.shards, "Shards that each frame is split into and merged from; default: 1")
+  command.add_option("--frames", s.frames_text, "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9")->type_name("RANGE");
+  command.add_option("--shards", s.shards, "Number of shards per frame, merged at the end; default: 1")
       ->transform(whole_number(1, 1000))
       ->type_name("N");
-  command.add_option("--noise", s.batch.job.sampling.noise, "As of orrery render; only without --shards")
-      ->transform(real_number(1e-6, 1))
-      ->type_name("X");
-  command.add_option("--time", s.batch.job.sampling.seconds, "As of orrery render; only without --shards")
-      ->transform(duration())
-      ->type_name("TIME");
-  command.add_option("--stats", s.batch.job.outputs.statistics, "Write what each frame did as JSON")->type_name("FILE");
-  command.add_option("--program", s.program, "The program that the engine calls; default: orrery")->type_name("FILE");
+  Option* const noise =
+      command.add_option("--noise", s.batch.job.sampling.noise, "Target noise of each frame; not with --shards")
+          ->transform(real_number(1e-6, 1))
+          ->type_name("X");
+  Option* const time =
+      command.add_option("--time", s.batch.job.sampling.seconds, "Time budget of each frame; not with --shards")
+          ->transform(duration())
+          ->type_name("TIME");
+  Option* const stats =
+      command.add_option("--stats", s.batch.job.outputs.statistics, "Write statistics of each frame as JSON")
+          ->type_name("FILE");
+  options->passed_on = {noise, time, stats};
+  options->command = &command;
+  command.add_option("--program", s.program, "Program that the engine runs; default: orrery")->type_name("FILE");
   s.program = "orrery";
   command.footer(
       "Examples:\n"

@@ -28,28 +28,28 @@ std::vector<std::string> command_names(const CLI::App& command) {
 
 std::string unknown_flag(const std::string& flag, const CLI::App& command) {
   const std::string remedy = base::did_you_mean(flag, flag_names(command));
-  return "unknown flag " + flag + (remedy.empty() ? "" : "; " + remedy);
+  return "unknown option " + flag + (remedy.empty() ? "" : "; " + remedy);
 }
 
-/// A word that stands where a command belongs.
+/// The message for a word in place of a command.
 std::string unknown_command(const std::string& word, const CLI::App& command) {
   const std::vector<std::string> commands = command_names(command);
   const std::string remedy = base::did_you_mean(word, commands);
   if (!remedy.empty()) return "unknown command " + word + "; " + remedy;
   if (command.get_parent() == nullptr && word.ends_with(".toml"))
-    return "unknown command " + word + "; to render it: orrery render " + word + " -o picture.png";
-  return "unknown command " + word + "; there are " + base::joined(commands);
+    return "unknown command " + word + "; to render it: orrery render " + word + " -o image.png";
+  return "unknown command " + word + "; use one of " + base::joined(commands);
 }
 
-std::string too_much(const std::string& word, const CLI::App& command) {
+std::string unexpected(const std::string& word, const CLI::App& command) {
   if (word.size() > 1 && word[0] == '-') return unknown_flag(word.substr(0, word.find('=')), command);
   if (!command_names(command).empty()) return unknown_command(word, command);
-  return "`" + word + "` is one argument too many" +
-         (contains(flag_names(command), "--output") ? "; files to write are named by -o" : "");
+  return "unexpected argument `" + word + "`" +
+         (contains(flag_names(command), "--output") ? "; name output files with -o" : "");
 }
 
-/// The first long flag that the command does not have. It is told before whatever else is wrong: a flag that was
-/// mistyped is often why something else is missing.
+/// The first long option that the command does not have. Reported before other errors, since a mistyped option often
+/// causes them.
 std::string first_unknown_flag(const CLI::App& command, const std::vector<std::string>& words) {
   const std::vector<std::string> names = flag_names(command);
   for (const std::string& word : words) {
@@ -77,14 +77,13 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error,
   const CLI::App& command = innermost(program);
   if (const std::string flag = first_unknown_flag(command, words); !flag.empty()) return unknown_flag(flag, command);
   const std::vector<std::string> left = command.remaining();
-  if (!left.empty()) return too_much(left.front(), command);
+  if (!left.empty()) return unexpected(left.front(), command);
   if (const auto commands = command_names(command); !commands.empty())
-    return "a command is missing; there are " + base::joined(commands);
+    return "no command given; use one of " + base::joined(commands);
   const std::string said = error.what();
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
     return said.substr(0, said.find(':')) + " needs a value";
-  // All options check their values before they are converted; what is left are flags: "Could not convert: --quiet =
-  // ...".
+  // Options check their values before conversion, so only flags fail here: "Could not convert: --quiet = ...".
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr)
     if (const std::size_t name = said.find('-'); name != std::string::npos)
       return said.substr(name, said.find(' ', name) - name) + " takes no value";

@@ -8,16 +8,15 @@
 
 namespace orrery::cli {
 
-/// The command that argv has got into, the innermost one that was named; the program itself where none was.
+/// The innermost command that argv names; the program itself if it names none.
 const CLI::App& innermost(const CLI::App& program);
 
-/// "orrery generate final": what has to be typed to get to a command.
+/// The full name of a command: "orrery generate final".
 std::string full_name(const CLI::App& command);
 
-/// What is wrong with a command line, in words that name the remedy. The library says that something is too much;
-/// people want to know what they should have typed.
+/// The message for a wrong command line: what is wrong and what to type instead.
 ///
-/// Domain     `words` are argv without the program's name, `error` is what parsing them in `program` threw
+/// Domain     `words` are argv without the program's name; parsing them in `program` threw `error`
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error, const std::vector<std::string>& words);
 
 }  // namespace orrery::cli

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "farm/batch.h"
 
+#include <fmt/core.h>
+
 #include "job/job_files.h"
 #include "base/frames.h"
 
@@ -11,18 +13,18 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
 
-constexpr const char* kScenePlace = "{scene}";
+constexpr const char* kScenePattern = "{scene}";
 
-bool has_scene_place(const std::string& name) { return name.find(kScenePlace) != std::string::npos; }
+bool has_scene_pattern(const std::string& name) { return name.find(kScenePattern) != std::string::npos; }
 
 std::string with_scene(std::string name, const std::string& stem) {
-  const std::string place = kScenePlace;
-  for (std::size_t at = name.find(place); at != std::string::npos; at = name.find(place, at + stem.size()))
-    name.replace(at, place.size(), stem);
+  const std::string pattern = kScenePattern;
+  for (std::size_t at = name.find(pattern); at != std::string::npos; at = name.find(pattern, at + stem.size()))
+    name.replace(at, pattern.size(), stem);
   return name;
 }
 
-/// All files that a job writes under names of the user's.
+/// All output names that the user chose.
 std::vector<fs::path*> names_of(job::Job& job) {
   std::vector<fs::path*> names;
   for (job::ImageFile& output : job.outputs.images) names.push_back(&output.path);
@@ -32,18 +34,18 @@ std::vector<fs::path*> names_of(job::Job& job) {
 }
 
 void check_name(const Batch& batch, const std::string& name) {
-  const bool has_place = base::has_frame_pattern(name);
-  if (batch.frames.size() > 1 && !has_place)
-    refuse(name + " is one name for " + std::to_string(batch.frames.size()) +
-           " frames; give it a place for the number, as in shot.####.exr or shot.%04d.exr");
-  if (batch.frames.empty() && has_place)
-    refuse(name + " has a place for the number of a frame; say which frames by --frames, as in --frames 1-48");
-  if (batch.scenes.size() > 1 && !has_scene_place(name))
-    refuse(name + " is one name for " + std::to_string(batch.scenes.size()) +
-           " scenes; give it a place for their names, as in {scene}.png");
+  const bool has_pattern = base::has_frame_pattern(name);
+  if (batch.frames.size() > 1 && !has_pattern)
+    refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. shot.####.exr or shot.%04d.exr", name,
+                       batch.frames.size()));
+  if (batch.frames.empty() && has_pattern)
+    refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames 1-48");
+  if (batch.scenes.size() > 1 && !has_scene_pattern(name))
+    refuse(fmt::format("{} is one name for {} scenes; add a scene pattern, e.g. {{scene}}.png", name,
+                       batch.scenes.size()));
 }
 
-/// Adds what a scene names, where it can be parsed; its job reports what is wrong with one that cannot.
+/// Adds the files that a scene names, if it can be parsed. Otherwise its job reports the errors.
 void add_readable_files(const job::SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
   try {
     job::add_named_files(scene, frames, files);
@@ -77,14 +79,16 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
       jobs.push_back(std::move(job));
     }
   }
-  // A job alone checks what its scene names once it is read; by then another one, or the log, may have overwritten it.
+  // A single job checks its scene's files when it reads the scene. Here, another job or the log could overwrite them
+  // before that.
   if (jobs.size() > 1 || !batch.log.empty())
     for (const fs::path& scene : batch.scenes) add_readable_files({scene, common.scene.overrides}, frames, files);
   return jobs;
 }
 
 std::string job_name(const Batch& batch, const job::Job& job) {
-  return (batch.frames.empty() ? "" : "frame " + std::to_string(job.scene.frame) + " of ") + job.scene.file.string();
+  const std::string scene = job.scene.file.string();
+  return batch.frames.empty() ? scene : fmt::format("frame {} of {}", job.scene.frame, scene);
 }
 
 BatchReport run_batch(const Batch& batch, const std::vector<job::Job>& jobs) {

@@ -12,28 +12,27 @@
 
 namespace orrery::farm {
 
-/// Frames and scenes to render by one call.
+/// Frames and scenes to render with one command.
 struct Batch {
-  job::Job job;  ///< what all have in common; its files' names have places for the frame and the scene
+  job::Job job;  ///< the settings that all jobs share; its file names have patterns for the frame and the scene
   std::vector<std::filesystem::path> scenes;
-  std::vector<int> frames;    ///< empty: each scene as it is, one picture
-  std::filesystem::path log;  ///< that the caller writes messages to; empty: none
-  bool keep_going = false;    ///< after a job that fails
+  std::vector<int> frames;    ///< empty: one still image per scene
+  std::filesystem::path log;  ///< file that the caller writes messages to; empty: none
+  bool keep_going = false;    ///< continue after a job that fails
 
   std::function<void(const job::Job&, std::size_t index, std::size_t count)> on_begin;
   std::function<void(const job::Job&, const job::JobReport&)> on_end;
   std::function<void(const job::Job&, const base::Error&)> on_failure;
 };
 
-/// One job for each frame of each scene. Names are filled in: `####` and `%04d` by the frame, `{scene}` by the scene's
-/// file name without its extension.
+/// Creates one job per frame and scene. In file names, replaces `####` and `%04d` by the frame, and `{scene}` by the
+/// scene's file name without its extension. The jobs share one set of files, which detects conflicts between them.
 ///
-/// No file of theirs is written twice, or is read and overwritten: the jobs share one set of all their files.
-///
-/// Errors     base::Error(kUsage) where they do, or frames have names without need
+/// Errors     base::Error(kUsage) if a file would be written twice, if an output is an input, or if a name lacks a
+///            needed pattern or has a frame pattern without frames
 std::vector<job::Job> jobs_of(const Batch& batch);
 
-/// What came of a batch.
+/// The result of a batch.
 struct BatchReport {
   std::size_t jobs = 0, rendered = 0, skipped = 0;
   struct Failure {
@@ -43,13 +42,13 @@ struct BatchReport {
   std::vector<Failure> failures;
 };
 
-/// Runs the jobs one after the other. A failure of one is told and, where the batch keeps going, not the end of all.
+/// Runs the jobs one after another. If the batch keeps going, reports failures and continues.
 ///
 /// `jobs`     jobs_of(batch)
-/// Errors     kStopped of a job that was stopped; the failure itself where the batch does not keep going
+/// Errors     kStopped if a job was stopped; the first failure if the batch does not keep going
 BatchReport run_batch(const Batch& batch, const std::vector<job::Job>& jobs);
 
-/// "frame 7 of shot.toml"; of a batch without frames the scene alone.
+/// "frame 7 of shot.toml"; without frames, "shot.toml".
 std::string job_name(const Batch& batch, const job::Job& job);
 
 }  // namespace orrery::farm

@@ -10,33 +10,35 @@ namespace orrery::farm {
 
 enum class Engine { kSlurm, kOpenJd, kOpenCue, kParallel };
 
-/// What `orrery submit` was asked for.
+/// A request to `orrery submit`.
 struct Submission {
-  Batch batch;  ///< one scene; its frames; what the pictures shall be
+  Batch batch;  ///< one scene, its frames, and the job of each
   Engine engine = Engine::kSlurm;
-  int shards = 1;           ///< parts that each frame is split into, by tiles
-  int jobs_at_a_time = 1;   ///< kParallel
-  std::string program;      ///< that the engine shall call
-  std::string frames_text;  ///< as the user wrote them; empty: one picture
+  int shards = 1;                      ///< per frame, by pixels
+  int jobs_at_a_time = 1;              ///< for kParallel
+  std::string program;                 ///< command that the engine runs
+  std::string frames_text;             ///< as the user wrote them; empty: one still image
+  std::vector<std::string> arguments;  ///< of the command that writes the images: "-o", "shot.####.exr", "--bits", "16"
 };
 
-/// The commands that a submission comes to, the same for every engine.
+/// The commands of a submission, the same for every engine.
 struct Commands {
-  std::string name;             ///< of the job: the scene's, letters, digits, - and _
-  std::filesystem::path parts;  ///< folder of parts, and of logs
+  std::string name;              ///< of the job: the scene's name in letters, digits, - and _
+  std::filesystem::path folder;  ///< of shards and logs
   std::vector<int> frames;
-  /// Words of the command that renders a part of a frame; kFrame and kShard stand for its numbers.
-  std::vector<std::string> render;
-  std::vector<std::string> merge;  ///< of the one that joins a frame's parts; empty where there is but one
+  std::vector<std::string> render;  ///< renders a shard; kFrame and kShard stand for its numbers
+  std::vector<std::string> merge;   ///< merges the shards of a frame; empty without shards
 
   static constexpr const char* kFrame = "@FRAME@";
   static constexpr const char* kShard = "@SHARD@";
 };
 
-/// Errors     base::Error: kUsage as jobs_of, and for what cannot be split; those of reading the scene
+/// Reads and checks the scene, and composes the commands.
+///
+/// Errors     base::Error: kUsage as jobs_of, and for settings that exclude shards; those of load_scene
 Commands commands_of(const Submission& submission);
 
-/// The whole job as text that the engine takes, and that a person can read and edit.
+/// The whole job as text for the engine, which a person can read and edit.
 ///
 /// Errors     as commands_of
 std::string submission_text(const Submission& submission);

@@ -49,7 +49,7 @@ CameraMatrices camera_matrices(const scene::Camera& camera, const scene::Image& 
                        1};
   const double tangent = std::tan(camera.vfov / 360 * std::numbers::pi);
   const double aspect = image.width * image.pixel_aspect / image.height;
-  // x / w = (X / (Z tangent aspect) + 1) / 2, y / w = (1 - Y / (Z tangent)) / 2, z / w = 1: depth stands in layers.
+  // x / w = (X / (Z tangent aspect) + 1) / 2, y / w = (1 - Y / (Z tangent)) / 2, z / w = 1: layers hold the depth.
   const Matrix projection = {0.5 / (tangent * aspect), 0, 0, 0, 0, -0.5 / tangent, 0, 0, 0.5, 0.5, 1, 1, 0, 0, 0, 0};
   return {as_float(view), as_float(product(view, projection))};
 }

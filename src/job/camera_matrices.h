@@ -7,7 +7,7 @@
 
 namespace orrery::job {
 
-/// A camera as EXR headers tell it: row vectors times these matrices, row by row.
+/// The camera matrices of an EXR header, in row-major order, for row vectors.
 struct CameraMatrices {
   std::array<float, 16> world_to_camera;  ///< x to the right, y up, +z forward (left-handed); scene units
   std::array<float, 16> world_to_ndc;     ///< after division by w: x 0..1 from the left, y 0..1 from the top

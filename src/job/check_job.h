@@ -6,17 +6,18 @@
 
 namespace orrery::job {
 
-/// Everything that can be known to fail before hours are spent, but for the scene.
+/// Finds everything in a request that would make the job fail, except errors that depend on the scene: formats, bit
+/// depths, files that cannot be created, compression, instruction set.
 ///
 /// Errors     base::Error: kUsage, kCannotCreate
 void check_request(const Job& job);
 
-/// The same of what only the scene can tell.
+/// Checks that --samples A:B is within the scene's sample count.
 ///
 /// Errors     base::Error(kUsage)
 void check_samples(const Job& job, const compile::CompiledScene& compiled);
 
-/// Checks that the formats of a job's files take a picture of this size.
+/// Checks that the formats of the image files hold an image of this size.
 ///
 /// Errors     base::Error(kUsage)
 void check_sizes(const Job& job, const compile::CompiledScene& compiled);

@@ -36,12 +36,12 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
     const image::Provenance found = image::read_provenance(file_);
     if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())
       throw base::Error(base::ErrorKind::kBadData,
-                        file_.string() + " is of " + wrong + "; delete it, or render without --resume to begin anew");
+                        file_.string() + " has " + wrong + "; delete it, or render without --resume to start again");
     image::PartialFile file = image::read_partial(file_, width_px, height_px);
     is_ours_ = true;
     return std::move(file.partial);
   } catch (const base::Error&) {
-    // Another process that renders the same picture removes the checkpoint when it finishes.
+    // Another process that renders the same image may have finished and removed the checkpoint.
     if (!std::filesystem::exists(file_)) return {};
     throw;
   }
@@ -53,15 +53,15 @@ bool Checkpoint::is_due() const {
 }
 
 void Checkpoint::write_snapshot(const film::Partial& partial) {
-  const bool was_asked = hooks_.snapshot != nullptr && hooks_.snapshot->exchange(false);
+  const bool was_requested = hooks_.snapshot != nullptr && hooks_.snapshot->exchange(false);
   try {
     write(partial);
-    if (was_asked && hooks_.on_note) hooks_.on_note("wrote " + file_.string());
+    if (was_requested && hooks_.on_note) hooks_.on_note("wrote " + file_.string());
   } catch (const base::Error& error) {
     base::Diagnostic diagnostic;
     diagnostic.severity = base::Severity::kWarning;
     diagnostic.file = file_.string();
-    diagnostic.text = std::string("no checkpoint: ") + error.what();
+    diagnostic.text = std::string("checkpoint not written: ") + error.what();
     if (hooks_.on_warning) hooks_.on_warning(diagnostic);
   }
   next_ = Clock::now() + interval(settings_);

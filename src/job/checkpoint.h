@@ -12,20 +12,20 @@
 
 namespace orrery::job {
 
-/// Where a job that writes this picture keeps what is rendered of it: shot.0007.exr has shot.0007.checkpoint.exr. A
-/// name that would be too long is shortened.
+/// The checkpoint file of a job with this first output: shot.0007.checkpoint.exr for shot.0007.exr. A name that would
+/// be too long is shortened.
 std::filesystem::path checkpoint_file(const std::filesystem::path& first_output);
 
 /// When checkpoints are written and read.
 struct CheckpointSettings {
-  bool resume = false;    ///< continue from the checkpoint, if there is one
+  bool resume = false;    ///< continue from the checkpoint if it exists
   double interval_s = 0;  ///< 0: only when the job is stopped
 };
 
-/// The checkpoint of one job: when it is due, what is in it, and when it has done its work.
+/// The checkpoint of one job: decides when it is due, reads, writes and removes it.
 class Checkpoint {
  public:
-  /// Writes a partial under a name.
+  /// Writes a partial film to a file.
   using Write = std::function<void(const std::filesystem::path& file, const film::Partial& partial)>;
 
   /// Domain     `settings` and `hooks` outlive this
@@ -34,23 +34,23 @@ class Checkpoint {
 
   const std::filesystem::path& file() const { return file_; }
 
-  /// What an earlier run has left, where the job wants to go on from it and there is something.
+  /// Reads the checkpoint of an earlier run, if the job resumes and the file exists.
   ///
-  /// Errors     base::Error(kBadData) where it is damaged or of another scene, setting or version
+  /// Errors     base::Error(kBadData) if it is damaged or from another scene, setting or version
   std::optional<film::Partial> load(int width_px, int height_px);
 
-  /// True from time to time, as the job wants it, and when it is asked by signal. From any thread.
+  /// True once per interval, and if a signal requests a checkpoint. Thread-safe.
   bool is_due() const;
 
-  /// Writes a checkpoint while rendering; a failure is a warning, since the render can still end well.
+  /// Writes a checkpoint during rendering. A failure is only a warning, since the render can still succeed.
   void write_snapshot(const film::Partial& partial);
 
-  /// Writes a checkpoint because the render stops.
+  /// Writes a checkpoint when the render stops.
   ///
   /// Errors     base::Error: kCannotCreate, kIo
   void write(const film::Partial& partial);
 
-  /// The pictures are written: a checkpoint that this job has written or gone on from goes.
+  /// Removes the checkpoint if this job wrote it or resumed from it. Call after the images are written.
   void remove();
 
  private:

@@ -9,7 +9,8 @@ namespace orrery::job {
 
 void choose_isa(const std::string& name) {
   if (kernel::limit_isa(name)) return;
-  throw base::Error(base::ErrorKind::kUsage, "no instruction set " + name + " here; this processor and program have " +
+  throw base::Error(base::ErrorKind::kUsage, "instruction set " + name +
+                                                 " is not available; this processor and program have " +
                                                  base::joined(kernel::available_isas()));
 }
 

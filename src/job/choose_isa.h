@@ -5,9 +5,9 @@
 
 namespace orrery::job {
 
-/// Limits kernel and tracers to this instruction set; empty: the best one.
+/// Limits kernel and accelerators to this instruction set; empty: the best available.
 ///
-/// Errors     base::Error(kUsage) if program or processor lack it; names the available ones
+/// Errors     base::Error(kUsage) if the program or the processor lacks it; lists the available ones
 void choose_isa(const std::string& name);
 
 }  // namespace orrery::job

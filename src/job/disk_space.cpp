@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "job/text.h"
 #include "base/error.h"
 #include "image/format.h"
@@ -11,27 +13,26 @@
 namespace orrery::job {
 namespace {
 
-// Measured on the book's final scene, 480 x 270, at 4 samples per pixel, and rounded up: noise is what compresses
-// least.
+// Measured on the book's final scene, 480 x 270, at 4 samples per pixel, and rounded up: noise compresses worst.
 
-/// The part of its size in memory that a channel of an EXR keeps.
-double kept_by(const std::string& compression, bool is_float) {
+/// Compressed size of an EXR channel as a fraction of its size in memory.
+double compressed_fraction(const std::string& compression, bool is_float) {
   if (compression == "none") return 1;
   if (compression == "rle") return is_float ? 0.9 : 0.65;
   if (compression.rfind("dwa", 0) == 0) return 0.3;
   return is_float ? 0.7 : 0.5;
 }
 
-/// Bytes of a pixel of exact sums, with a preview; what layers add to them; of samples in depth.
-constexpr double kPartBytes = 27, kPartLayerBytes = 130, kDeepBytes = 24;
+/// Bytes per pixel: of a shard with its preview, of the layers of a shard, of deep samples.
+constexpr double kShardBytes = 27, kShardLayerBytes = 130, kDeepBytes = 24;
 
 double bytes_per_pixel(const Outputs& outputs, bool is_shard, image::Format format, std::size_t layer_planes) {
   const image::ExrOptions& exr = outputs.exr;
   switch (format) {
     case image::Format::kExr:
-      if (is_shard) return kPartBytes + (layer_planes > 0 ? kPartLayerBytes : 0);
-      return 4 * (exr.as_float ? 4 : 2) * kept_by(exr.compression, exr.as_float) +
-             4 * static_cast<double>(layer_planes) * kept_by(exr.compression, true);
+      if (is_shard) return kShardBytes + (layer_planes > 0 ? kShardLayerBytes : 0);
+      return 4 * (exr.as_float ? 4 : 2) * compressed_fraction(exr.compression, exr.as_float) +
+             4 * static_cast<double>(layer_planes) * compressed_fraction(exr.compression, true);
     case image::Format::kHdr: return 3;
     case image::Format::kJpeg: return 0.8;
     case image::Format::kPng:
@@ -63,12 +64,14 @@ void require_disk_space(const Outputs& outputs, bool is_shard, const ImageSize& 
     const std::filesystem::space_info space = std::filesystem::space(folder, failed);
     const std::uint64_t allowed = limit > 0 ? limit : space.available;
     if ((failed && limit == 0) || static_cast<double>(allowed) >= bytes) continue;
-    const std::string need =
-        "the pictures need about " + base::bytes_text(static_cast<std::uint64_t>(bytes)) + ", and ";
-    throw base::Error(base::ErrorKind::kCannotCreate,
-                      limit > 0 ? need + base::bytes_text(allowed) + " is what --disk-limit allows; allow more"
-                                : need + folder.string() + " has room for " + base::bytes_text(allowed) +
-                                      "; make some, or say --disk-limit to try nevertheless");
+    const std::string need = base::bytes_text(static_cast<std::uint64_t>(bytes));
+    throw base::Error(
+        base::ErrorKind::kCannotCreate,
+        limit > 0
+            ? fmt::format("the images need about {}, and --disk-limit allows {}; raise it", need,
+                          base::bytes_text(allowed))
+            : fmt::format("the images need about {}, and {} has {} free; free some, or override with --disk-limit",
+                          need, folder.string(), base::bytes_text(allowed)));
   }
 }
 

@@ -16,17 +16,17 @@ struct ImageSize {
   std::size_t layer_planes = 0;  ///< besides R, G, B, A
 };
 
-/// Bytes that the files of a job take in each folder, at the compression measured for noisy images.
+/// Estimates the bytes that a job writes to each folder, with compression as measured for noisy images.
 ///
 /// `is_shard` an EXR holds a shard, not an image
 /// Precision  test JobDiskSpace.TheEstimateIsNearTheFiles
 std::map<std::filesystem::path, double> estimate_disk_space(const Outputs& outputs, bool is_shard,
                                                             const ImageSize& size);
 
-/// Refuses a job whose files do not fit on the disk. Files that they replace stay until then, and so free no space.
+/// Checks that a job's files fit on the disk. Files to be replaced free no space, since they exist until then.
 ///
-/// `limit`    bytes per folder, in place of the free space; 0: the free space
-/// Errors     base::Error(kCannotCreate) with both figures
+/// `limit`    bytes per folder that replace the free space; 0: the free space
+/// Errors     base::Error(kCannotCreate) with the needed and the allowed size
 void require_disk_space(const Outputs& outputs, bool is_shard, const ImageSize& size, std::uint64_t limit);
 
 }  // namespace orrery::job

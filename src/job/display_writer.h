@@ -10,8 +10,8 @@
 
 namespace orrery::job {
 
-/// Writes one picture into files for a display; it is developed once for all that need the same channels. PNG and TIFF
-/// keep the alpha of a transparent picture.
+/// Writes one image to display formats. The display transform runs once for all files with the same channels. PNG and
+/// TIFF keep the alpha of a transparent image.
 class DisplayWriter {
  public:
   /// Domain     the arguments outlive this; bits 8 or 16

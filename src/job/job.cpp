@@ -5,6 +5,8 @@
 #include <chrono>
 #include <optional>
 
+#include <fmt/core.h>
+
 #include "job/check_job.h"
 #include "job/checkpoint.h"
 #include "job/disk_space.h"
@@ -43,7 +45,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-void stop_if_asked(const Job& job) {
+void stop_if_cancelled(const Job& job) {
   if (job.hooks.cancel != nullptr && job.hooks.cancel->load(std::memory_order_relaxed)) stop_job();
 }
 
@@ -55,12 +57,12 @@ void require_bits(const display::Choice& display, const Job& job) {
   for (const ImageFile& output : job.outputs.images) {
     if (display.is_hdr && image::is_display_format(output.format) && image::most_bits(output.format) < 16)
       throw base::Error(base::ErrorKind::kUsage, output.path.string() +
-                                                     " holds 8 bits in a channel, too few for display " +
+                                                     " holds 8 bits per channel, too few for display " +
                                                      display.display + "; PNG and TIFF hold 16");
   }
 }
 
-/// The scene, checked for the files that the job will write.
+/// Loads the scene and checks it against the job's output formats.
 LoadedScene load(const Job& job, JobReport& report) {
   const SceneRequest request{job.scene, job.outputs.display, job.outputs.has_display_format()};
   LoadedScene loaded = load_scene(request);
@@ -84,7 +86,7 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
       case image::Format::kExr: {
         image::Header own = header;
         own.matte_attributes = matte_attributes(mattes, output);
-        write_manifests(mattes, output);  // first: no picture shall name a file that is not there
+        write_manifests(mattes, output);  // first, so that no image refers to a missing file
         add(image::write_exr(output, picture, own, job.outputs.exr));
         break;
       }
@@ -97,7 +99,7 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
   }
 }
 
-/// The layers that some file of the job will hold; what no file holds is not computed.
+/// The layers that an output of the job holds; others are not computed.
 Layers layers_for(const Job& job, const scene::Scene& scene, const compile::CompiledScene& compiled) {
   Layers layers = choose_layers(scene, compiled);
   layers.request.deep = !job.outputs.deep.empty();
@@ -106,7 +108,7 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Comp
   const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
   if (job.merge.shards.empty() && !scene.output.layers.empty() &&
       std::any_of(job.scene.overrides.begin(), job.scene.overrides.end(), is_explicit))
-    throw base::Error(base::ErrorKind::kUsage, "layers were asked for, and no output can hold them; add -o FILE.exr");
+    throw base::Error(base::ErrorKind::kUsage, "no output can hold the requested layers; add -o FILE.exr");
   Layers none;
   none.request.coverage = layers.request.coverage;
   none.request.deep = layers.request.deep;
@@ -126,19 +128,17 @@ void count_bad_values(const film::Picture& picture, JobReport& report) {
 
 std::string missed_target(const Job& job, const render::Statistics& statistics) {
   std::string out;
+  const bool ended_by_time = statistics.ended_by == "time";
   if (job.sampling.noise > 0 && statistics.noise && *statistics.noise > job.sampling.noise)
-    base::append(
-        out, "noise %.3g instead of %.3g: %s", *statistics.noise, job.sampling.noise,
-        statistics.ended_by == "time" ? "time was over" : "every pixel that needs more has had all its samples");
+    out = fmt::format("noise {:.3g} instead of {:.3g}: {}", *statistics.noise, job.sampling.noise,
+                      ended_by_time ? "the time budget ended" : "the pixels that need more samples reached the limit");
   if (job.sampling.noise > 0 && statistics.unjudged_pixels > 0)
-    base::append(
-        out, "%sthe noise of %llu pixels cannot be judged: too few paths have found light around them; allow more %s",
-        out.empty() ? "" : "; ", static_cast<unsigned long long>(statistics.unjudged_pixels),
-        statistics.ended_by == "time" ? "time" : "samples");
+    out += fmt::format("{}the noise of {} pixels cannot be judged: too few paths found light near them; allow more {}",
+                       out.empty() ? "" : "; ", statistics.unjudged_pixels, ended_by_time ? "time" : "samples");
   return out;
 }
 
-/// The way data takes.
+/// Read, check, compile, render or merge, develop, write.
 void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
   LoadedScene loaded = load(job, report);
@@ -148,7 +148,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   if (loaded.choice)
     for (const std::string& table : loaded.choice->files) files.add_input(table, "table of the OCIO config");
   report.phases.read_s = watch.lap();
-  stop_if_asked(job);
+  stop_if_cancelled(job);
 
   const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   check_samples(job, compiled);
@@ -161,20 +161,20 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   const image::Provenance provenance = provenance_of(job, compiled, layers);
   const std::string stamp = stamp_of(job, provenance, display);
   report.scene_hash = provenance.at("sceneHash");
-  report.was_skipped = job.skip_existing && is_there(job, compiled, provenance, stamp);
+  report.was_skipped = job.skip_existing && is_up_to_date(job, compiled, provenance, stamp);
   if (report.was_skipped) return;
   require_disk_space(job.outputs, is_shard(job),
                      {compiled.width, compiled.height, film::planes_of(layers.request).size()},
                      job.resources.disk_limit);
   require_memory(estimate_memory(memory_needs(compiled, layers.request, job.sampling.is_adaptive())),
                  job.resources.memory_limit);
-  read.scene.points = {};  // ten million spheres need not be there twice while the tree is built
+  read.scene.points = {};  // keep no second copy of ten million spheres during the BVH build
   report.hosts = {provenance.at("host")};
   report.width = compiled.width;
   report.height = compiled.height;
   report.spheres = compiled.spheres.size();
   report.phases.compile_s = watch.lap();
-  stop_if_asked(job);
+  stop_if_cancelled(job);
 
   render::Settings settings;
   settings.threads = job.resources.threads > 0 ? job.resources.threads : default_threads();
@@ -211,8 +211,8 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.phases.write_s = watch.lap();
 }
 
-/// Whether a failure may be written to the statistics file. It may not where the request was wrong, since that may be
-/// about this very file, nor where the scene names it, which is known only of a scene that was read.
+/// True if a failure may be written to the statistics file. It may not if the request is invalid, since the error may
+/// concern this very file, nor if the scene reads the file, which is known only after parsing it.
 bool may_report(const Job& job, const JobReport& report, const base::Error& error, base::FileSet& files) {
   if (error.kind() == base::ErrorKind::kUsage) return false;
   if (!report.scene_hash.empty()) return true;
@@ -225,7 +225,7 @@ bool may_report(const Job& job, const JobReport& report, const base::Error& erro
   }
 }
 
-/// What went wrong is written down as far as that still works; the error itself is what the caller shall hear.
+/// Writes the failure to the statistics file, if possible. Errors of writing are dropped: the caller gets `error`.
 void write_failure(const Job& job, const JobReport& report, const base::Error& error) {
   if (job.outputs.statistics.empty()) return;
   const bool stopped = error.kind() == base::ErrorKind::kStopped;

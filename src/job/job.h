@@ -31,7 +31,7 @@ struct Resources {
   int threads = 0;                            ///< 0: default_threads()
   std::uint64_t memory_limit = 0;             ///< bytes; 0: the free memory
   std::uint64_t disk_limit = 0;               ///< bytes per file system; 0: its free space
-  std::string isa;                            ///< "avx2": no better instruction set; empty: the processor's best
+  std::string isa;                            ///< best instruction set to use, "avx2"; empty: the processor's best
   std::optional<accel::Traversal> traversal;  ///< as render::Settings
 };
 
@@ -62,18 +62,16 @@ bool is_limited(const Job& job);
 /// True if the output is a shard, not an image.
 inline bool is_shard(const Job& job) { return job.as_shard || job.sampling.is_partial(); }
 
-/// Renders a scene into files, or joins parts of its picture: read, check, compile, render, develop, write.
+/// Renders a scene to files, or merges shards: read, check, compile, render or merge, develop, write.
 ///
-/// A part is an EXR of sums. A job that is stopped writes a checkpoint, of the same kind, and one that resumes ends
-/// with the bits of one that was never stopped.
+/// A shard is an EXR of exact sums; so is the checkpoint of a stopped job. A resumed job gives the same bits as one
+/// that was never stopped. No output replaces an input, including the scene's points files and OCIO configs.
 ///
-/// No output replaces an input, the points files and OCIO configs of the scene included.
+/// Before rendering starts, the job checks that its files can be created and that formats, compression, display and
+/// view exist. The statistics file is also written if the job is stopped or fails after these checks.
 ///
-/// That the files can be written, and that formats, compression, display and view exist, is known before rendering
-/// starts. A statistics file is written also where it was stopped or failed later.
-///
-/// Domain     one output at least
-/// Errors     base::Error of every kind; kStopped where `cancel` stopped it, and then no picture was written
+/// Domain     at least one output
+/// Errors     base::Error of every kind; kStopped if `cancel` stopped the job, in which case no image was written
 JobReport run_job(const Job& job);
 
 }  // namespace orrery::job

@@ -27,7 +27,7 @@ std::vector<OutputFile> outputs_of(const Job& job) {
 
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner) {
   files.add_input(job.scene.file, "scene");
-  for (const ShardFile& part : job.merge.shards) files.add_input(part.file, "part");
+  for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
   add_ocio_configs(job.outputs.display.config, files);
   for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
 }

@@ -11,7 +11,7 @@
 
 namespace orrery::job {
 
-/// A file that a job writes, and why.
+/// A file that a job writes, and its role.
 struct OutputFile {
   std::filesystem::path path;
   std::string role;  ///< "-o", "--stats", "checkpoint"
@@ -20,23 +20,23 @@ struct OutputFile {
 /// All files that a job writes, except those that depend on the scene: Cryptomatte manifests.
 std::vector<OutputFile> outputs_of(const Job& job);
 
-/// Adds what a job reads and writes as far as its command line says it.
+/// Adds the files that a job reads and writes according to its command line.
 ///
-/// `owner`    for messages about several scenes: " of shot.toml"
+/// `owner`    appended to roles in messages about several scenes: " of shot.toml"
 /// Errors     base::Error(kUsage) for an output that is an input or another output
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner = {});
 
-/// Adds what a scene names at these frames. It is not read for this, only parsed.
+/// Adds the files that a scene names at these frames. Parses the scene file without reading points files.
 ///
 /// Errors     as add_job_files; those of format::named_files
 void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files);
 
-/// The same of a scene that was read.
+/// Adds the files that an already read scene names.
 ///
 /// Errors     as add_job_files
 void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files);
 
-/// Adds the OCIO config of --ocio or of a scene, and that of $OCIO, where these are files.
+/// Adds an OCIO config, from --ocio or a scene, and the config in $OCIO, if they are files.
 ///
 /// Errors     as add_job_files
 void add_ocio_configs(const std::string& config, base::FileSet& files);

@@ -35,7 +35,7 @@ struct JobReport {
   display::Choice display;           ///< if a display format was written
   std::filesystem::path checkpoint;  ///< written because the job was stopped; empty: none
   bool was_resumed = false;          ///< from a checkpoint
-  std::string missing;               ///< samples that no merged shard has, in words; empty: none
+  std::string missing;               ///< samples that no merged shard has, as text; empty: none
   std::vector<std::string> hosts;    ///< that rendered it
   bool was_skipped = false;          ///< its files existed and were up to date
 };

@@ -11,7 +11,7 @@
 namespace orrery::job {
 namespace {
 
-/// Spheres in the order of their ids, as runs that are one thing each.
+/// Matte id of each sphere, run-length encoded over sphere indices.
 class Runs {
  public:
   void add(std::size_t spheres, std::uint32_t id) {
@@ -33,12 +33,12 @@ class Runs {
   std::vector<std::uint32_t> ends_, ids_;
 };
 
-/// Collects the things of one matte.
+/// Collects the names of one matte.
 class MatteMaker {
  public:
   explicit MatteMaker(std::string layer) { names_.layer = std::move(layer); }
 
-  /// The next spheres are this thing; an empty name: none.
+  /// Assigns the next spheres to this name; an empty name: to no matte.
   void add(std::size_t spheres, const std::string& name) { runs_->add(spheres, id_of(name)); }
 
   std::uint32_t id_of(const std::string& name) {
@@ -58,7 +58,7 @@ class MatteMaker {
  private:
   MatteNames names_;
   std::set<std::string> known_;
-  std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // shared: a function is copied
+  std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // shared, since std::function copies its target
 };
 
 void add_object_matte(const scene::Scene& scene, Layers& layers) {
@@ -77,7 +77,8 @@ void add_group_matte(const scene::Scene& scene, Layers& layers) {
   maker.finish(layers);
 }
 
-/// Calls `f(authored material, compiled material)` for every sphere: compiled ones are fewer, and glass may be two.
+/// Calls `f(authored material, compiled material)` for every sphere. Compilation merges equal materials and may split
+/// glass in two.
 template <class F>
 void each_material(const scene::Scene& scene, const compile::CompiledScene& compiled, F f) {
   std::size_t sphere = 0;
@@ -87,7 +88,7 @@ void each_material(const scene::Scene& scene, const compile::CompiledScene& comp
       f(p.materials.empty() ? p.material : p.materials[i], compiled.sphere_materials[sphere++]);
 }
 
-/// The authored material behind each compiled one.
+/// The authored material of each compiled material.
 std::vector<std::uint32_t> authored_materials(const scene::Scene& scene, const compile::CompiledScene& compiled) {
   std::vector<std::uint32_t> authored(compiled.materials.size());
   each_material(scene, compiled, [&](std::uint32_t from, std::uint32_t to) { authored[to] = from; });
@@ -109,16 +110,16 @@ Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& co
   Layers out;
   film::LayerRequest& r = out.request;
   const std::vector<std::string> names = scene::requested_layers(scene);
-  const auto asked = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
-  for (const film::LayerType& layer : film::kLayerTypes) r.*layer.requested = asked(layer.name);
+  const auto requested = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  for (const film::LayerType& layer : film::kLayerTypes) r.*layer.requested = requested(layer.name);
   r.coverage = scene.background.alpha == 0;
-  if (asked("CryptoObject")) add_object_matte(scene, out);
-  if (r.material_id || asked("CryptoMaterial")) {
+  if (requested("CryptoObject")) add_object_matte(scene, out);
+  if (r.material_id || requested("CryptoMaterial")) {
     const std::vector<std::uint32_t> authored = authored_materials(scene, compiled);
     for (const std::uint32_t material : authored) r.material_numbers.push_back(material + 1);
-    if (asked("CryptoMaterial")) add_material_matte(scene, compiled, authored, out);
+    if (requested("CryptoMaterial")) add_material_matte(scene, compiled, authored, out);
   }
-  if (asked("CryptoGroup")) add_group_matte(scene, out);
+  if (requested("CryptoGroup")) add_group_matte(scene, out);
   return out;
 }
 

@@ -12,21 +12,21 @@
 
 namespace orrery::job {
 
-/// A Cryptomatte as its header tells it: what the things are called.
+/// A Cryptomatte's names, as in its EXR header.
 struct MatteNames {
   std::string layer;                                          ///< "CryptoObject"
-  std::vector<std::pair<std::string, std::uint32_t>> things;  ///< names and their ids, each once
+  std::vector<std::pair<std::string, std::uint32_t>> things;  ///< unique names and their ids
 };
 
-/// The layers that a scene asks for.
+/// The layers that a scene requests.
 struct Layers {
   film::LayerRequest request;
-  std::vector<MatteNames> mattes;  ///< one for each of the request
+  std::vector<MatteNames> mattes;  ///< one for each matte of the request
 };
 
-/// The request and the mattes for the names in [output]. Of a scene without groups CryptoGroup is empty.
+/// The layer request and the mattes for the names in [output]. CryptoGroup is empty for a scene without groups.
 ///
-/// Domain     the scene is valid, the world was compiled from it and outlives the result
+/// Domain     the scene is valid; `compiled` was compiled from it and outlives the result
 Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled);
 
 }  // namespace orrery::job

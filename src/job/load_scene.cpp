@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "job/working_space.h"
 #include "base/error.h"
 #include "display/look_up.h"
@@ -39,45 +41,45 @@ bool names_anything(const display::Settings& settings, const scene::Color& color
          !settings.display.empty() || !settings.view.empty() || !settings.look.empty();
 }
 
-/// Who gave a name: the option, the scene's key, or neither.
-struct Giver {
+/// Where a name comes from: an option, a key of the scene, or neither.
+struct Origin {
   std::string option, key;
 };
 
-Giver giver_of(display::Name name, const display::Settings& options, const scene::Color& color) {
-  const auto giver = [](const std::string& given, const char* option, bool is_in_scene, const char* key) {
-    return !given.empty() ? Giver{option, {}} : is_in_scene ? Giver{{}, key} : Giver{};
+Origin origin_of(display::Name name, const display::Settings& options, const scene::Color& color) {
+  const auto origin = [](const std::string& value, const char* option, bool is_in_scene, const char* key) {
+    return !value.empty() ? Origin{option, {}} : is_in_scene ? Origin{{}, key} : Origin{};
   };
   switch (name) {
-    case display::Name::kConfig: return giver(options.config, "--ocio", !color.config.empty(), "color.config");
+    case display::Name::kConfig: return origin(options.config, "--ocio", !color.config.empty(), "color.config");
     case display::Name::kSpace: return {{}, "color.space"};
     case display::Name::kWorkingSpace: return {{}, "color.working"};
-    case display::Name::kDisplay: return giver(options.display, "--display", !color.display.empty(), "color.display");
-    case display::Name::kView: return giver(options.view, "--view", !color.view.empty(), "color.view");
-    case display::Name::kLook: return giver(options.look, "--look", !color.look.empty(), "color.look");
+    case display::Name::kDisplay: return origin(options.display, "--display", !color.display.empty(), "color.display");
+    case display::Name::kView: return origin(options.view, "--view", !color.view.empty(), "color.view");
+    case display::Name::kLook: return origin(options.look, "--look", !color.look.empty(), "color.look");
   }
   return {};
 }
 
-/// Looks up the names of one scene's [color] and of the command line.
+/// Looks up the colour names of a scene's [color] and of the command line.
 class ColorCheck {
  public:
   explicit ColorCheck(const SceneRequest& request) : request_(request) {}
 
-  /// What is wrong with the scene's names.
+  /// Errors in the scene's names.
   std::vector<scene::SceneDiagnostic> operator()(const scene::Scene& scene) {
     const display::Settings settings = settings_of(request_, scene.color);
     std::vector<scene::SceneDiagnostic> diagnostics;
     if (!request_.develops && !names_anything(settings, scene.color)) return diagnostics;
     display::LookUp found = display::look_up(settings, scene.color.space);
     for (const display::NameFault& fault : found.faults) {
-      const Giver giver = giver_of(fault.name, request_.display, scene.color);
-      if (!giver.key.empty()) {
+      const Origin origin = origin_of(fault.name, request_.display, scene.color);
+      if (!origin.key.empty()) {
         const bool is_missing = fault.error.kind() == base::ErrorKind::kMissingInput;
-        diagnostics.push_back({base::Severity::kError, giver.key, fault.error.what(),
+        diagnostics.push_back({base::Severity::kError, origin.key, fault.error.what(),
                                is_missing ? base::ErrorKind::kMissingInput : base::ErrorKind::kBadData});
       } else if (!other_) {
-        const std::string begin = giver.option.empty() ? "" : giver.option + ": ";
+        const std::string begin = origin.option.empty() ? "" : origin.option + ": ";
         other_.emplace(fault.error.kind(), begin + fault.error.what());
       }
     }
@@ -85,9 +87,9 @@ class ColorCheck {
     return diagnostics;
   }
 
-  /// What was chosen.
+  /// The chosen display transform.
   ///
-  /// Errors     base::Error for what is wrong with other names than the scene's
+  /// Errors     base::Error for a wrong name that is not the scene's
   std::optional<display::Choice> take() {
     if (other_) throw base::Error(*other_);
     return std::move(choice_);
@@ -112,10 +114,10 @@ LoadedScene load_scene(const SceneRequest& request) {
   out.warnings = std::move(out.read.warnings);
   if (out.choice)
     for (const std::string& text : out.choice->warnings) out.warnings.push_back(warning(out.choice->config, text));
-  if (const int moved = to_working_space(out.display.config, scene); moved > 0)
-    out.warnings.push_back(
-        warning(request.source.file.string(), std::to_string(moved) + " colours are out of range in " +
-                                                  scene.color.working_space() + " and were moved to its edge"));
+  if (const int clamped = to_working_space(out.display.config, scene); clamped > 0)
+    out.warnings.push_back(warning(
+        request.source.file.string(),
+        fmt::format("{} colours are out of range in {} and were clamped", clamped, scene.color.working_space())));
   return out;
 }
 

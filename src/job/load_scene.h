@@ -12,28 +12,27 @@
 
 namespace orrery::job {
 
-/// A scene to load, and what its pictures will be shown with.
+/// A scene to load, and the display transform of its images.
 struct SceneRequest {
   SceneSource source;
-  display::Settings display;  ///< of the command line; what is empty there the scene decides
-  bool develops = false;      ///< display formats will be written
+  display::Settings display;  ///< from the command line; the scene's [color] replaces empty values
+  bool develops = false;      ///< true if display formats will be written
 };
 
 struct LoadedScene {
   format::ReadResult read;                ///< colours are in the working space
-  display::Settings display;              ///< of the command line and the scene together
-  std::optional<display::Choice> choice;  ///< where a display, or anything in [color], is asked for
+  display::Settings display;              ///< from the command line and the scene
+  std::optional<display::Choice> choice;  ///< if `develops`, or if a colour name is set
   std::vector<base::Diagnostic> warnings;
 };
 
-/// Reads a scene, checks everything that a render would refuse of it, and brings its colours into the working space.
-/// All commands that take a scene load it here, so that what one accepts no other refuses.
+/// Reads a scene, checks everything that a render would reject, and converts its colours to the working space. All
+/// commands load scenes here, so that they accept the same scenes.
 ///
-/// Names in [color] are looked up where there are any, whatever is to be written; a config that nobody named is not
-/// loaded unless `develops`.
+/// Names in [color] are always looked up. A default config is loaded only if `develops`.
 ///
-/// Errors     of format::read_scene, with unknown names in [color] among its findings; base::Error: kUsage for an
-///            unknown name of the command line, kMissingInput and kBadData for a config of the command line or $OCIO
+/// Errors     of format::read_scene, with unknown names in [color] among its diagnostics; base::Error: kUsage for an
+///            unknown name from the command line, kMissingInput and kBadData for a config from there or from $OCIO
 LoadedScene load_scene(const SceneRequest& request);
 
 }  // namespace orrery::job

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "job/merge_shards.h"
 #include "job/provenance.h"
 #include "base/error.h"
@@ -16,8 +18,8 @@
 namespace orrery::job {
 namespace {
 
-/// The limits of a render that begins this long after the job. The scene's sample count limits adaptive sampling only
-/// if an override sets it.
+/// The sampling limits of a render that starts this many seconds after its job. The scene's sample count limits
+/// adaptive sampling only if an override sets it.
 render::SamplingLimits limits_of(const Job& job, double seconds_so_far) {
   constexpr double kShortest = 1e-3;  // 0 would be no limit
   render::SamplingLimits out = job.sampling;
@@ -29,7 +31,7 @@ render::SamplingLimits limits_of(const Job& job, double seconds_so_far) {
 }  // namespace
 
 void stop_job(const std::string& remedy) {
-  throw base::Error(base::ErrorKind::kStopped, "stopped; no picture was written" + remedy);
+  throw base::Error(base::ErrorKind::kStopped, "stopped; no image was written" + remedy);
 }
 
 film::Picture preview(const compile::CompiledScene& compiled, const film::Partial& partial) {
@@ -46,18 +48,18 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   // Other formats do not hold the layers that the shards may have.
   if (job.outputs.has_exr()) keys.push_back("layers");
   if (const std::string wrong = difference(first.provenance, provenance, keys); !wrong.empty())
-    throw base::Error(base::ErrorKind::kBadData, first.file.string() + " is of " + wrong + ", which " +
-                                                     job.scene.file.string() +
-                                                     " comes to now; the scene has changed, or --scene names another");
-  MergedShards joined =
+    throw base::Error(base::ErrorKind::kBadData,
+                      fmt::format("{} has {} as {}; the scene has changed, or --scene names another one",
+                                  first.file.string(), wrong, job.scene.file.string()));
+  MergedShards merged =
       merge_shards(job.merge.shards, compiled.width, compiled.height, static_cast<std::uint32_t>(compiled.samples),
                    compiled.spheres.size(), job.merge.allow_missing);
-  for (const base::Diagnostic& diagnostic : joined.left_out)
+  for (const base::Diagnostic& diagnostic : merged.left_out)
     if (job.hooks.on_warning) job.hooks.on_warning(diagnostic);
-  report.missing = joined.missing;
-  report.hosts = joined.hosts;
-  const film::RenderWork work = joined.partial.work;
-  const auto [fewest, most] = std::minmax_element(joined.partial.counts.begin(), joined.partial.counts.end());
+  report.missing = merged.missing;
+  report.hosts = merged.hosts;
+  const film::RenderWork work = merged.partial.work;
+  const auto [fewest, most] = std::minmax_element(merged.partial.counts.begin(), merged.partial.counts.end());
   render::Statistics statistics;
   statistics.fewest_samples = *fewest;
   statistics.most_samples = *most;
@@ -66,21 +68,21 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   statistics.bad_samples = work.bad_samples;
   statistics.render_s = work.seconds;
   statistics.ended_by = "samples";
-  if (!layers.request.any()) joined.partial.layers.clear();
-  if (joined.partial.layers.empty() && layers.request.any())
-    throw base::Error(base::ErrorKind::kBadData, "the parts were rendered without the layers that are asked for");
-  render::Result result = render::finished(compiled, layers.request, std::move(joined.partial));
+  if (!layers.request.any()) merged.partial.layers.clear();
+  if (merged.partial.layers.empty() && layers.request.any())
+    throw base::Error(base::ErrorKind::kBadData, "the shards were rendered without the requested layers");
+  render::Result result = render::finished(compiled, layers.request, std::move(merged.partial));
   result.statistics = statistics;
   return result;
 }
 
-bool is_there(const Job& job, const compile::CompiledScene& compiled, const image::Provenance& provenance,
-              const std::string& stamp) {
+bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const image::Provenance& provenance,
+                   const std::string& stamp) {
   if (is_shard(job)) {
     try {
-      const image::PartialFile part =
+      const image::PartialFile shard =
           image::read_partial(job.outputs.images.front().path, compiled.width, compiled.height);
-      return difference(part.provenance, provenance, keys_of_checkpoints()).empty() && is_finished(part);
+      return difference(shard.provenance, provenance, keys_of_checkpoints()).empty() && is_finished(shard);
     } catch (const base::Error&) {
       return false;
     }
@@ -106,10 +108,11 @@ render::Result render_job(const Job& job, const compile::CompiledScene& compiled
   report.phases.finish_s = result.statistics.finish_s;
   if (result.completed) return result;
   if (!result.partial)
-    stop_job(report.was_resumed ? "; " + checkpoint.file().string() + " still keeps what was rendered before" : "");
+    stop_job(report.was_resumed ? "; " + checkpoint.file().string() + " still holds the samples of the earlier run"
+                                : "");
   checkpoint.write(*result.partial);
   report.checkpoint = checkpoint.file();
-  stop_job("; " + checkpoint.file().string() + " keeps what was rendered, and --resume goes on from there");
+  stop_job("; " + checkpoint.file().string() + " holds the samples so far; continue with --resume");
 }
 
 }  // namespace orrery::job

@@ -12,27 +12,27 @@
 
 namespace orrery::job {
 
-/// Renders, going on from a checkpoint where there is one, and leaves one behind where it is stopped.
+/// Renders, from the checkpoint if there is one, and writes a checkpoint if stopped.
 ///
-/// `settings` those of the machine; what the job asks for is added
+/// `settings` threads, traversal, layers and callbacks; the job's sampling limits are added
 /// Errors     base::Error: kStopped; those of Checkpoint::load and write
 render::Result render_job(const Job& job, const compile::CompiledScene& compiled, render::Settings settings,
                           Checkpoint& checkpoint, double seconds_so_far, JobReport& report);
 
-/// Adds up the parts instead of rendering.
+/// Merges shards instead of rendering.
 ///
-/// Errors     base::Error(kBadData) where the scene has changed since; those of merge_shards
+/// Errors     base::Error(kBadData) if the scene has changed since; those of merge_shards
 render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const Layers& layers,
                          const image::Provenance& provenance, JobReport& report);
 
-/// What can be seen of a picture so far.
+/// The beauty image of a partial render.
 film::Picture preview(const compile::CompiledScene& compiled, const film::Partial& partial);
 
-/// Whether all files of a job are there, whole, and what it would write again.
-bool is_there(const Job& job, const compile::CompiledScene& compiled, const image::Provenance& provenance,
-              const std::string& stamp);
+/// True if all files of a job exist, are intact, and are what it would write again.
+bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const image::Provenance& provenance,
+                   const std::string& stamp);
 
-/// Ends a job because somebody wants to.
+/// Ends a cancelled job.
 ///
 /// Errors     base::Error(kStopped)
 [[noreturn]] void stop_job(const std::string& remedy = "");

@@ -11,8 +11,8 @@
 namespace orrery::job {
 namespace {
 
-/// {"name":"13851a76",...}, in the order of the scene file. Written directly: an ordered object of the JSON library
-/// searches all names for each that is added.
+/// {"name":"13851a76",...}, in scene order. Written directly, since the JSON library's ordered object searches all
+/// names on every insertion.
 std::string manifest(const MatteNames& matte) {
   std::string out = "{";
   for (const auto& [name, id] : matte.things) {
@@ -22,7 +22,7 @@ std::string manifest(const MatteNames& matte) {
   return out + '}';
 }
 
-bool is_large(const MatteNames& matte) { return matte.things.size() > kMostNamesInHeader; }
+bool is_large(const MatteNames& matte) { return matte.things.size() > kMaxNamesInHeader; }
 
 std::filesystem::path manifest_file(const MatteNames& matte, const std::filesystem::path& picture) {
   return picture.parent_path() / base::companion_name(picture.stem().string(), "." + matte.layer + ".json");

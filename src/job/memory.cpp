@@ -5,6 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include <fmt/core.h>
+
 #include "job/text.h"
 #include "base/error.h"
 #include "film/layer_film.h"
@@ -15,20 +17,20 @@
 namespace orrery::job {
 namespace {
 
-/// Embree's user geometry while it is built, one primitive a sphere, on top of the sphere itself. Measured on clouds of
-/// one and three million: peak_memory_bytes of --stats with embree less that with list.
+/// Embree's user geometry during the BVH build, one primitive per sphere, in addition to the sphere itself. Measured on
+/// clouds of one and three million spheres: peak_memory_bytes of --stats with embree minus that with list.
 constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
 
-/// A sphere, and the index of its material.
+/// A sphere and its material index.
 constexpr std::uint64_t kBytesPerSphere = sizeof(kernel::Sphere) + sizeof(std::uint32_t);
 
-/// A pixel's sum, and the four floats of the finished picture.
+/// A pixel's sum and the four floats of the finished image.
 constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
 
-/// A layer's value, and its copy that is handed to the encoder.
+/// A layer's value and its copy for the encoder.
 constexpr std::uint64_t kBytesPerLayerPlane = 2 * sizeof(float);
 
-/// The number after a line's key, in a file of "key number unit" lines; of a file of one number: `key` is empty.
+/// The number after `key` in a file of "key number unit" lines. An empty key reads a file of one number.
 std::optional<std::uint64_t> number_in(const std::filesystem::path& file, const std::string& key) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -41,12 +43,12 @@ std::optional<std::uint64_t> number_in(const std::filesystem::path& file, const 
   return {};
 }
 
-/// What one control group still grants; nothing where it has no limit.
-std::optional<std::uint64_t> granted_by(const std::filesystem::path& group) {
+/// Bytes that a control group still allows; empty if it has no limit.
+std::optional<std::uint64_t> group_allowance(const std::filesystem::path& group) {
   const auto limit = number_in(group / "memory.max", "");  // "max" is no number
   const auto used = number_in(group / "memory.current", "");
   if (!limit || !used) return {};
-  // Files that were read count as used, and go as soon as somebody needs the memory.
+  // The page cache counts as used, but is evicted when memory is needed.
   const std::uint64_t files = number_in(group / "memory.stat", "inactive_file").value_or(0);
   const std::uint64_t held = *used - std::min(files, *used);
   return *limit - std::min(held, *limit);
@@ -55,19 +57,19 @@ std::optional<std::uint64_t> granted_by(const std::filesystem::path& group) {
 }  // namespace
 
 MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
-  // The picture; a sample count and a goal; with layers the sums of the pixel's paths; with adaptive sampling a second
-  // sum and seven numbers for the noise estimate.
-  const std::uint64_t a_pixel = kFilmBytesPerPixel + needs.layer_planes * kBytesPerLayerPlane +
-                                2 * sizeof(std::uint32_t) + (needs.layers ? sizeof(film::LayerPixel) : 0) +
-                                (needs.in_rounds ? sizeof(kernel::PixelSum) + 7 * sizeof(float) : 0);
+  // Image; sample count and target count; with layers, the sums of their pixel; with adaptive sampling, a second sum
+  // and seven numbers for the noise estimate.
+  const std::uint64_t bytes_per_pixel = kFilmBytesPerPixel + needs.layer_planes * kBytesPerLayerPlane +
+                                        2 * sizeof(std::uint32_t) + (needs.layers ? sizeof(film::LayerPixel) : 0) +
+                                        (needs.is_adaptive ? sizeof(kernel::PixelSum) + 7 * sizeof(float) : 0);
   MemoryEstimate m;
-  m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * a_pixel;
+  m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * bytes_per_pixel;
   m.spheres = needs.spheres * kBytesPerSphere;
   m.accelerator = needs.embree ? needs.spheres * kAcceleratorBytesPerSphere : 0;
   return m;
 }
 
-MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers, bool in_rounds) {
+MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers, bool is_adaptive) {
   MemoryNeeds needs;
   needs.width = compiled.width;
   needs.height = compiled.height;
@@ -75,7 +77,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.layer_planes = film::planes_of(layers).size();
   needs.layers = layers.any();
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
-  needs.in_rounds = in_rounds;
+  needs.is_adaptive = is_adaptive;
   return needs;
 }
 
@@ -86,13 +88,13 @@ std::optional<std::uint64_t> available_memory(const std::filesystem::path& root)
   };
   if (const auto kib = number_in(root / "proc/meminfo", "MemAvailable:")) at_most(*kib * 1024);
 
-  // "0::/a/b": this process is in /a/b, and in every group above it.
+  // "0::/a/b": this process belongs to /a/b and to every group above it.
   std::ifstream groups(root / "proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {
     if (line.rfind("0::/", 0) != 0) continue;
     const std::filesystem::path top = root / "sys/fs/cgroup";
     std::filesystem::path group = line.substr(4);
-    for (at_most(granted_by(top / group)); !group.empty(); at_most(granted_by(top / group)))
+    for (at_most(group_allowance(top / group)); !group.empty(); at_most(group_allowance(top / group)))
       group = group.parent_path();
   }
   return least;
@@ -101,13 +103,13 @@ std::optional<std::uint64_t> available_memory(const std::filesystem::path& root)
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit) {
   const std::uint64_t allowed = limit > 0 ? limit : available_memory().value_or(needed.total());
   if (needed.total() <= allowed) return;
-  std::string text;
-  base::append(text, "the render needs about %s (spheres %s, accelerator %s, film %s), and %s %s; ",
-               base::bytes_text(needed.total()).c_str(), base::bytes_text(needed.spheres).c_str(),
-               base::bytes_text(needed.accelerator).c_str(), base::bytes_text(needed.film).c_str(),
-               base::bytes_text(allowed).c_str(), limit > 0 ? "is what --memory-limit allows" : "is free");
-  text += limit > 0 ? "allow more" : "free some, or say --memory-limit to try nevertheless";
-  throw base::Error(base::ErrorKind::kNoMemory, text);
+  using base::bytes_text;
+  throw base::Error(
+      base::ErrorKind::kNoMemory,
+      fmt::format("the render needs about {} (spheres {}, accelerator {}, film {}), and {}", bytes_text(needed.total()),
+                  bytes_text(needed.spheres), bytes_text(needed.accelerator), bytes_text(needed.film),
+                  limit > 0 ? "--memory-limit allows " + bytes_text(allowed) + "; raise it"
+                            : bytes_text(allowed) + " is free; free some, or override with --memory-limit"));
 }
 
 }  // namespace orrery::job

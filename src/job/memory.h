@@ -11,41 +11,41 @@
 
 namespace orrery::job {
 
-/// What a render will hold at its fullest, found without building anything. Bytes.
+/// Estimated peak memory of a render, in bytes, computed without building anything.
 struct MemoryEstimate {
   std::uint64_t film = 0, spheres = 0, accelerator = 0;
 
   std::uint64_t total() const { return film + spheres + accelerator; }
 };
 
-/// What decides how much memory a render needs.
+/// What the memory of a render depends on.
 struct MemoryNeeds {
   int width = 0, height = 0;       ///< px
-  std::uint64_t spheres = 0;       ///< of tables and of points files
-  std::uint64_t layer_planes = 0;  ///< beside R, G, B, A
-  bool layers = false;             ///< any layers, also those without planes of their own
-  bool embree = true;              ///< and not the list
-  bool in_rounds = false;          ///< by --noise or --time: a second half of each pixel's samples, and its error
+  std::uint64_t spheres = 0;       ///< from tables and points files
+  std::uint64_t layer_planes = 0;  ///< besides R, G, B, A
+  bool layers = false;             ///< any layers, including those without planes
+  bool embree = true;              ///< false: the list
+  bool is_adaptive = false;        ///< --noise or --time: a second sum and an error estimate per pixel
 };
 
-/// The one estimate: of `info`, of `study`, and of the check before a render.
+/// Estimates memory for `info`, `study` and the check before a render.
 MemoryEstimate estimate_memory(const MemoryNeeds& needs);
 
-/// The needs of a render of this world.
+/// The needs of a render of this scene.
 MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
-                         bool in_rounds = false);
+                         bool is_adaptive = false);
 
-/// Bytes that this process may still take: what the machine has free or can free at once, and no more than its control
-/// group still grants. Nothing where neither can be told.
+/// Bytes that this process may still allocate: the machine's available memory, limited by the process's control groups.
+/// Empty if neither is known.
 ///
-/// Source     proc_meminfo(5); the kernel's documentation of control groups, version 2, memory.max
-/// Domain     `root` is "/", or a folder that stands for it in tests
+/// Domain     `root` is "/", or a folder in its place in tests
+/// Reference  proc_meminfo(5); the kernel's documentation of control groups, version 2, memory.max
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
-/// Refuses what does not fit, before it is begun.
+/// Checks that a render fits into memory.
 ///
-/// Domain     `limit` is what the user allows; 0: what available_memory() says
-/// Errors     base::Error(kNoMemory) with both figures and the remedy
+/// `limit`    bytes; 0: available_memory()
+/// Errors     base::Error(kNoMemory) with the needed and the allowed size
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit);
 
 }  // namespace orrery::job

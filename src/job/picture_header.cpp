@@ -4,6 +4,8 @@
 #include <cmath>
 #include <ctime>
 
+#include <fmt/core.h>
+
 #include "job/camera_matrices.h"
 #include "job/version.h"
 #include "compile/camera_basis.h"
@@ -30,7 +32,8 @@ std::string settings_lines(const std::vector<format::Setting>& settings, bool re
   return lines;
 }
 
-/// Whole rates as they are, 23.976 and its like as multiples of 1000/1001, others in thousandths.
+/// Frame rate as a fraction: whole rates exactly, NTSC rates such as 23.976 as multiples of 1000/1001, others in
+/// thousandths.
 std::array<int, 2> rational(double rate) {
   const double whole = std::round(rate);
   if (std::abs(rate - whole) < 1e-9 && whole >= 1) return {static_cast<int>(whole), 1};
@@ -39,7 +42,7 @@ std::array<int, 2> rational(double rate) {
   return {static_cast<int>(std::lround(rate * 1000)), 1000};
 }
 
-/// Per pixel; where pixels differ their mean.
+/// Samples per pixel; with adaptive sampling, their mean.
 int mean_samples(const compile::CompiledScene& compiled, const JobReport& report) {
   if (!report.render.noise) return compiled.samples;
   return static_cast<int>(std::lround(static_cast<double>(report.render.paths) / compiled.width / compiled.height));
@@ -71,17 +74,16 @@ image::Header picture_header(const format::ReadResult& read, const compile::Comp
     if (setting.key == "render.precision" || setting.key == "render.shading" || setting.key == "render.sampler")
       header.attributes.push_back({"orrery/" + setting.key.substr(7), scene::unquoted(setting.value)});
   for (const auto& [layer, bad] : report.bad_layers)
-    header.attributes.push_back({"orrery/badValues/" + layer, std::to_string(bad.nan) + " nan, " +
-                                                                  std::to_string(bad.infinite) + " infinite, " +
-                                                                  std::to_string(bad.negative) + " negative, " +
-                                                                  std::to_string(bad.above_half) + " above half"});
+    header.attributes.push_back(
+        {"orrery/badValues/" + layer, fmt::format("{} nan, {} infinite, {} negative, {} above half", bad.nan,
+                                                  bad.infinite, bad.negative, bad.above_half)});
   if (!report.display.config_id.empty()) header.attributes.push_back({"orrery/ocioConfigId", report.display.config_id});
   header.attributes.push_back({"orrery/settings", settings_lines(read.settings, reproducible)});
   if (!report.missing.empty()) header.attributes.push_back({"orrery/missing", report.missing});
   if (reproducible) return header;
   header.capture_date = local_time();
   header.attributes.push_back({"orrery/renderSeconds", static_cast<float>(report.phases.render_s)});
-  if (report.render.accelerator.empty()) return header;  // joined of parts, which may have had several
+  if (report.render.accelerator.empty()) return header;  // merged from shards, which may differ
   header.attributes.push_back({"orrery/accelerator", report.render.accelerator});
   header.attributes.push_back({"orrery/isa", report.render.isa});
   return header;

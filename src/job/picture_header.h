@@ -7,9 +7,9 @@
 
 namespace orrery::job {
 
-/// What a compositor, and whoever wonders a year later, finds in the header of a picture.
+/// The header of a job's images: camera, colour space, settings, statistics.
 ///
-/// With `reproducible`, two renders of one scene have the same header, whatever the machine, threads and accelerator.
+/// `reproducible` gives every render of a scene the same header on any machine, thread count and accelerator.
 image::Header picture_header(const format::ReadResult& read, const compile::CompiledScene& compiled,
                              const JobReport& report, bool reproducible);
 

@@ -7,23 +7,24 @@
 #include <cstdio>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "job/scene_hash.h"
-#include "job/text.h"
 #include "job/version.h"
 #include "film/layer_film.h"
 
 namespace orrery::job {
 namespace {
 
-/// Names and channels of all layers, and what they depend on beside the scene's hash.
+/// Channels of all layers, and what they depend on besides the scene hash.
 std::string layers_text(const Layers& layers) {
   std::string out;
   for (const film::Plane& plane : film::planes_of(layers.request)) out += (out.empty() ? "" : " ") + plane.name;
   if (layers.request.coverage) out += " coverage";
   if (layers.request.deep) out += " deep";
   for (const MatteNames& matte : layers.mattes)
-    for (const auto& [name, id] : matte.things) base::append(out, " %08x", id);
-  // Of ten thousand things in a matte nobody reads the list; the same list is the same hash.
+    for (const auto& [name, id] : matte.things) out += fmt::format(" {:08x}", id);
+  // A hash replaces the rest of a long list, such as that of a matte with ten thousand names.
   constexpr std::size_t kLongest = 200;
   if (out.size() > kLongest) out = out.substr(0, kLongest) + "... " + text_hash(out);
   return out;
@@ -37,9 +38,9 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
   image::Provenance out;
   out["version"] = program_version();
   out["sceneHash"] = scene_hash(compiled);
-  out["samples"] = std::to_string(job.sampling.sample_begin) + ":" + std::to_string(end);
-  out["shard"] = std::to_string(job.sampling.shard.index + 1) + "/" + std::to_string(job.sampling.shard.count);
-  base::append(out["noise"], "%.17g", job.sampling.noise);
+  out["samples"] = fmt::format("{}:{}", job.sampling.sample_begin, end);
+  out["shard"] = fmt::format("{}/{}", job.sampling.shard.index + 1, job.sampling.shard.count);
+  out["noise"] = fmt::format("{:.17g}", job.sampling.noise);
   out["time"] = job.sampling.seconds > 0 ? "yes" : "no";
   out["limit"] = is_limited(job) ? "yes" : "no";
   out["layers"] = layers_text(layers);
@@ -56,14 +57,14 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display) {
   std::string all;
   for (const std::string& key : keys_of_checkpoints()) all += key + " " + provenance.at(key) + "\n";
-  base::append(all, "%.17g s, frame %d, %d bits, float %d, multipart %d, reproducible %d, exposure %.17g\n",
-               job.sampling.seconds, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
-               job.outputs.exr.multipart, job.outputs.reproducible, display.exposure.value_or(0));
+  all += fmt::format("{:.17g} s, frame {}, {} bits, float {:d}, multipart {:d}, reproducible {:d}, exposure {:.17g}\n",
+                     job.sampling.seconds, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
+                     job.outputs.exr.multipart, job.outputs.reproducible, display.exposure.value_or(0));
   for (const std::string& word : {job.outputs.exr.compression, display.config, display.display, display.view,
                                   display.look, display.working_space})
     all += word + "\n";
   for (const format::Override& setting : job.scene.overrides)
-    if (!setting.sets("render.accelerator")) all += setting.text + "\n";  // either gives the same bits
+    if (!setting.sets("render.accelerator")) all += setting.text + "\n";  // the accelerator changes no bits
   return text_hash(all);
 }
 
@@ -73,8 +74,8 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
     return found == p.end() ? std::string() : found->second;
   };
   static const std::vector<std::pair<std::string, std::string>> names = {
-      {"version", "orrery "}, {"sceneHash", "scene hash "}, {"samples", "--samples "},         {"shard", "--shard "},
-      {"noise", "--noise "},  {"time", "a time limit: "},   {"limit", "a limit of samples: "}, {"layers", "layers "}};
+      {"version", "orrery version "}, {"sceneHash", "scene hash "}, {"samples", "--samples "},   {"shard", "--shard "},
+      {"noise", "--noise "},          {"time", "time budget: "},    {"limit", "sample limit: "}, {"layers", "layers "}};
   for (const auto& [key, name] : names) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end() || value(a, key) == value(b, key)) continue;
     return name + (value(a, key).empty() ? "none" : value(a, key)) + ", not " +
@@ -83,7 +84,7 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
   return {};
 }
 
-const std::vector<std::string>& keys_of_parts() {
+const std::vector<std::string>& keys_of_shards() {
   static const std::vector<std::string> keys = {"version", "sceneHash", "noise", "time", "layers"};
   return keys;
 }
@@ -94,12 +95,12 @@ const std::vector<std::string>& keys_of_checkpoints() {
   return keys;
 }
 
-bool is_finished(const image::PartialFile& part) {
-  const SampleRange range = sample_range(part.provenance);
+bool is_finished(const image::PartialFile& shard) {
+  const SampleRange range = sample_range(shard.provenance);
   const std::vector<bool> owned =
-      render::pixels_of(pixel_shard(part.provenance), part.partial.film.width(), part.partial.film.height());
+      render::pixels_of(pixel_shard(shard.provenance), shard.partial.film.width(), shard.partial.film.height());
   for (std::size_t i = 0; i < owned.size(); ++i)
-    if (owned[i] && part.partial.counts[i] != range.end - range.begin) return false;
+    if (owned[i] && shard.partial.counts[i] != range.end - range.begin) return false;
   return true;
 }
 

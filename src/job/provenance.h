@@ -11,26 +11,26 @@
 
 namespace orrery::job {
 
-/// What a partial of this job says of itself: the program's version, the scene, and every setting that its sums depend
-/// on, so that nothing is joined or gone on with that does not belong together.
+/// The provenance of a shard or checkpoint of this job: program version, scene, and every setting that its sums depend
+/// on. It prevents merging or resuming files that do not belong together.
 image::Provenance provenance_of(const Job& job, const compile::CompiledScene& compiled, const Layers& layers);
 
-/// A name for the files of a job: whoever finds it in a picture's header knows that it would come out as it is.
+/// A hash of everything that the images of a job depend on. An image with the same stamp in its header is up to date.
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display);
 
-/// Why something of one provenance does not belong to the other: "scene hash 1234, not 5678"; empty where it does.
+/// The first difference of two provenances, as text: "scene hash 1234, not 5678"; empty: none.
 ///
-/// `keys`     what must be the same
+/// `keys`     the keys to compare
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys);
 
-/// What must be the same for parts of one picture, and for a render that goes on.
-const std::vector<std::string>& keys_of_parts();
+/// The keys that must be equal in all shards of an image, and in a checkpoint and the job that resumes from it.
+const std::vector<std::string>& keys_of_shards();
 const std::vector<std::string>& keys_of_checkpoints();
 
-/// True where each pixel of a part's share has all the samples of its range.
-bool is_finished(const image::PartialFile& part);
+/// True if every pixel of a shard has all samples of the shard's range.
+bool is_finished(const image::PartialFile& shard);
 
-/// "0:500" as numbers.
+/// A half-open range of samples per pixel, stored as "0:500".
 struct SampleRange {
   std::uint32_t begin = 0, end = 0;
 };

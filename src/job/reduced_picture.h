@@ -5,8 +5,8 @@
 
 namespace orrery::job {
 
-/// Reduces the picture of a scene that was read, when the shutter opens and when it closes, to at most this many pixels
-/// of the same view. Crop and overscan are dropped.
+/// Reduces the resolution of a scene to at most this many pixels with the same view, at both shutter times. Drops crop
+/// and overscan.
 ///
 /// Domain     pixels >= 1
 void reduce_picture(format::ReadResult& scene, double pixels);

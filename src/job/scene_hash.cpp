@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_hash.h"
 
-#include <cstdio>
 #include <cstring>
+
+#include <fmt/core.h>
 
 namespace orrery::job {
 namespace {
 
-/// As FNV-1a, but over 64-bit words, whose high bits are folded down: a product carries only upwards.
+/// FNV-1a over 64-bit words. Folds high bits down, since the product carries only upwards.
 class Hash {
  public:
   void add(double x) {
@@ -19,11 +20,7 @@ class Hash {
     state_ = (state_ ^ bits) * 0x100000001b3u;
     state_ ^= state_ >> 29;
   }
-  std::string text() const {
-    char out[17];
-    std::snprintf(out, sizeof(out), "%016llx", static_cast<unsigned long long>(state_));
-    return out;
-  }
+  std::string text() const { return fmt::format("{:016x}", state_); }
 
  private:
   std::uint64_t state_ = 0xcbf29ce484222325u;

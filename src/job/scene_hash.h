@@ -8,13 +8,13 @@
 
 namespace orrery::job {
 
-/// Sixteen hexadecimal digits that name what is rendered: spheres, materials, camera, background, samples, seed. Not
-/// names, comments or the accelerator, which change no bit of the picture. It identifies; it protects from nobody.
+/// Hash of everything that determines the image, as sixteen hexadecimal digits: spheres, materials, camera, background,
+/// samples, seed. Excludes names, comments and the accelerator, which change no bit of the image. Not cryptographic.
 ///
 /// Reference  fnv
 std::string scene_hash(const compile::CompiledScene& compiled);
 
-/// The same of a text.
+/// The same hash of a text.
 std::string text_hash(std::string_view text);
 
 }  // namespace orrery::job

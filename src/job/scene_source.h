@@ -8,7 +8,7 @@
 
 namespace orrery::job {
 
-/// The scene that a command was given: its file, the settings that replace the file's, and a frame of its animation.
+/// A scene as a command names it: file, overrides, and a frame of its animation.
 struct SceneSource {
   std::filesystem::path file;
   std::vector<format::Override> overrides;  ///< "camera.vfov=30"

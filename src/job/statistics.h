@@ -12,18 +12,18 @@ namespace orrery::job {
 struct Outcome {
   std::string reason = "completed";  ///< "completed", "stopped", "failed"
   int exit_status = 0;               ///< of the program
-  std::string error;                 ///< what it says then; empty where all went well
+  std::string error;                 ///< message; empty: none
 };
 
-/// What a render did, as JSON; docs/statistics.md is the schema, "orrery.stats/1".
+/// Statistics of a job as JSON, schema "orrery.stats/1": docs/statistics.md.
 std::string statistics_json(const JobReport& report, const Outcome& outcome);
 
-/// The same into a file.
+/// Writes statistics_json to a file.
 ///
 /// Errors     base::Error: kCannotCreate, kIo
 void write_statistics(const std::filesystem::path& file, const JobReport& report, const Outcome& outcome);
 
-/// The largest resident memory of this process so far, bytes.
+/// Peak resident memory of this process, in bytes.
 std::size_t peak_memory();
 
 }  // namespace orrery::job

@@ -9,11 +9,10 @@
 
 namespace orrery::job {
 
-using base::append;
 using base::bytes_text;
 
-/// JSON for people and programs: indented, ended by a newline. Bytes of file names that are no UTF-8, which JSON cannot
-/// hold, become replacement characters.
+/// JSON, indented, with a final newline. Bytes that are not UTF-8, as file names may have, become replacement
+/// characters.
 std::string json_text(const nlohmann::json& value);
 
 }  // namespace orrery::job

@@ -11,7 +11,7 @@
 namespace orrery::job {
 namespace {
 
-/// What a scheduler grants; 0 where the variable is not set or holds no number above 0.
+/// Threads that a scheduler grants; 0 if the variable is unset or not a positive integer.
 int granted_by(const char* variable) {
   const char* const text = std::getenv(variable);
   if (text == nullptr) return 0;

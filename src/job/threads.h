@@ -3,8 +3,8 @@
 
 namespace orrery::job {
 
-/// Threads to use where nobody says: the smallest of the affinity mask, SLURM_CPUS_PER_TASK and CUE_THREADS. A variable
-/// that holds no whole number above 0 counts as not set.
+/// Default thread count: the minimum of the affinity mask's CPUs, SLURM_CPUS_PER_TASK and CUE_THREADS. A variable that
+/// is not a positive integer is ignored.
 int default_threads();
 
 }  // namespace orrery::job

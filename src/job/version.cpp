@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/version.h"
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "accel/accel.h"
@@ -21,9 +22,9 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
           {"OpenColorIO", display::ocio_version()},
           {"Highway", kernel::highway_version()},
           {"toml++", format::toml_version()},
-          {"nlohmann-json", std::to_string(NLOHMANN_JSON_VERSION_MAJOR) + "." +
-                                std::to_string(NLOHMANN_JSON_VERSION_MINOR) + "." +
-                                std::to_string(NLOHMANN_JSON_VERSION_PATCH)}};
+          {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+          {"nlohmann-json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                                        NLOHMANN_JSON_VERSION_PATCH)}};
 }
 
 }  // namespace orrery::job

@@ -11,19 +11,19 @@
 namespace orrery::job {
 namespace {
 
-/// Rounding on the way is no colour out of range.
+/// Tolerance for rounding in the conversion.
 constexpr double kSlack = 1e-6;
 
-/// A colour of the scene, and the largest value that it may have.
-struct Colored {
+/// A colour of the scene and the maximum of its components.
+struct BoundedColor {
   math::Vec3d* color;
-  double most;
+  double maximum;
 };
 
-std::vector<Colored> colors_of(scene::Scene& scene) {
+std::vector<BoundedColor> colors_of(scene::Scene& scene) {
   constexpr double kNoLimit = std::numeric_limits<double>::max();
   scene::Background& sky = scene.background;
-  std::vector<Colored> out = {{&sky.bottom, kNoLimit}, {&sky.top, kNoLimit}, {&sky.color, kNoLimit}};
+  std::vector<BoundedColor> out = {{&sky.bottom, kNoLimit}, {&sky.top, kNoLimit}, {&sky.color, kNoLimit}};
   for (scene::Material& material : scene.materials)
     std::visit(
         [&](auto& model) {
@@ -36,29 +36,29 @@ std::vector<Colored> colors_of(scene::Scene& scene) {
 }  // namespace
 
 std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color) {
-  // OpenColorIO's own configs, "ocio://...", are no files.
+  // OpenColorIO's built-in configs, "ocio://...", are not files.
   const bool is_file = !color.config.empty() && color.config.string().rfind("ocio://", 0) != 0;
   return is_file ? (scene_file.parent_path() / color.config).string() : color.config.string();
 }
 
 int to_working_space(const std::string& ocio, scene::Scene& scene) {
   if (scene.color.working_space() == scene.color.space) return 0;
-  const std::vector<Colored> colors = colors_of(scene);
+  const std::vector<BoundedColor> colors = colors_of(scene);
   std::vector<std::array<double, 3>> values;
-  for (const Colored& c : colors) values.push_back({c.color->x, c.color->y, c.color->z});
+  for (const BoundedColor& c : colors) values.push_back({c.color->x, c.color->y, c.color->z});
   display::convert_colors(ocio, scene.color.space, scene.color.working, values);
-  int moved = 0;
+  int clamped = 0;
   for (std::size_t i = 0; i < colors.size(); ++i) {
     bool out_of_range = false;
     for (double& v : values[i]) {
-      const double fit = std::clamp(v, 0.0, colors[i].most);
+      const double fit = std::clamp(v, 0.0, colors[i].maximum);
       out_of_range = out_of_range || v < fit - kSlack || v > fit + kSlack;
       v = fit;
     }
     *colors[i].color = {values[i][0], values[i][1], values[i][2]};
-    moved += out_of_range ? 1 : 0;
+    clamped += out_of_range ? 1 : 0;
   }
-  return moved;
+  return clamped;
 }
 
 }  // namespace orrery::job

@@ -8,15 +8,13 @@
 
 namespace orrery::job {
 
-/// The OCIO config that a scene names, as display::Settings has it; empty: none.
+/// The OCIO config that a scene names, in the form of display::Settings; empty: none.
 std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color);
 
-/// Brings all colours of a scene into its working space. A reflectance that is beyond 0..1 there, and light below 0,
-/// become the nearest that a surface and a sky can have.
+/// Converts all colours of a scene to its working space. Clamps reflectances to 0..1 and radiances to 0 or more.
 ///
-/// `ocio` is an OCIO config's file as display::Settings has it. Where both spaces are the same nothing is looked up.
-///
-/// Result     colours that had to be moved
+/// `ocio`     OCIO config, in the form of display::Settings; not loaded if both spaces are the same
+/// Result     number of clamped colours
 /// Errors     base::Error, as display::convert_colors
 int to_working_space(const std::string& ocio, scene::Scene& scene);
 

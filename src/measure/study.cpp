@@ -253,7 +253,7 @@ class Runner {
     }
     job::MemoryNeeds needs = memory_needs_;
     needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
-    needs.in_rounds = choice.noise > 0;
+    needs.is_adaptive = choice.noise > 0;
     point.memory = job::estimate_memory(needs).total();
     const Errors e = errors_of(pair, reference_);
     point.noise = point.error = e.noise;

@@ -67,16 +67,16 @@ TEST_F(BatchFrames, SkipExistingSkipsCompleteMatchingFiles) {
   ASSERT_EQ(run(command + " -q --stats s.##.json").status, 0);
   EXPECT_FALSE(exists("s.01.json"));  // nothing was rendered; an earlier run's statistics must survive
   const std::string first = text_of(folder_ / "s.01.exr"), second = text_of(folder_ / "s.02.exr");
-  EXPECT_NE(run(command).err.find("0 of 3 rendered, 3 were there"), std::string::npos);
+  EXPECT_NE(run(command).err.find("0 of 3 rendered, 3 skipped"), std::string::npos);
   EXPECT_EQ(text_of(folder_ / "s.01.exr"), first);
 
   // Truncated, mismatched and missing files are rendered again. The others stay.
   write("s.02.exr", second.substr(0, second.size() / 2));
-  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 were there"), std::string::npos);
+  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 skipped"), std::string::npos);
   write("s.02.png", text_of(folder_ / "s.03.png"));
-  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 were there"), std::string::npos);
+  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 skipped"), std::string::npos);
   std::filesystem::remove(folder_ / "s.03.jpg");
-  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 were there"), std::string::npos);
+  EXPECT_NE(run(command).err.find("1 of 3 rendered, 2 skipped"), std::string::npos);
   EXPECT_EQ(text_of(folder_ / "s.01.exr"), first);
 
   // Other settings give another image, even those that no EXR pixel depends on.
@@ -98,7 +98,7 @@ TEST_F(BatchFrames, FailedFrameIsReportedAndTheOthersRender) {
   EXPECT_FALSE(exists("c.02.png"));
   EXPECT_TRUE(exists("c.03.png"));
   EXPECT_NE(r.err.find("cloud.2.ply"), std::string::npos) << r.err;
-  EXPECT_NE(r.err.find("2 of 3 rendered, 0 were there, 1 failed\nfailed: frame 2 of cloud.toml"), std::string::npos)
+  EXPECT_NE(r.err.find("2 of 3 rendered, 0 skipped, 1 failed\nfailed: frame 2 of cloud.toml"), std::string::npos)
       << r.err;
   std::filesystem::remove(folder_ / "c.03.png");
   EXPECT_EQ(run("render cloud.toml -o c.##.png --frames 1-3 --fail-fast").status, 66);
@@ -123,7 +123,7 @@ TEST_F(BatchFrames, LogHasTimestampsAndMessagesHiddenByQuiet) {
   ASSERT_EQ(run("render shot.toml -o s.##.png --frames 1-2 --log log -q").status, 0);
   ASSERT_EQ(run("render nothing.toml -o s.png --log log").status, 66);
   const std::string log = text_of(folder_ / "log");
-  EXPECT_NE(log.find("begins: frame 2 of shot.toml"), std::string::npos) << log;
+  EXPECT_NE(log.find("rendering frame 2 of shot.toml"), std::string::npos) << log;
   EXPECT_NE(log.find("wrote s.02.png"), std::string::npos) << log;
   EXPECT_NE(log.find("cannot open nothing.toml"), std::string::npos) << log;
   EXPECT_EQ(log.substr(0, 2), "20");

@@ -86,13 +86,13 @@ TEST_F(BatchShards, MismatchedShardsAreNamed) {
   render("a.exr", "--samples 0:10");
   render("b.exr", "--samples 10:35");
   render("b1.exr", "--samples 9:35");
-  expect_refused(merge({"a.exr"}), 65, {"samples 10:35 of all pixels are in no part"});
-  expect_refused(run("merge a.exr b1.exr -o merged.exr"), 65, {"b1.exr: error: has samples that a.exr has, too"});
+  expect_refused(merge({"a.exr"}), 65, {"samples 10:35 of all pixels are in no shard"});
+  expect_refused(run("merge a.exr b1.exr -o merged.exr"), 65, {"b1.exr: error: has samples that a.exr has too"});
   render("foreign.exr", "--samples 10:35 --seed 8");
   render("other.exr", "--samples 10:35 --layers Z");
   expect_refused(
       run("merge a.exr foreign.exr other.exr nothing.exr whole.exr -o merged.exr"), 65,
-      {"foreign.exr: error: is of scene hash", "other.exr: error: is of layers", "nothing.exr: error: cannot open",
+      {"foreign.exr: error: has scene hash", "other.exr: error: has layers", "nothing.exr: error: cannot open",
        "whole.exr: error: whole.exr is not a checkpoint or shard", "4 errors"});
   expect_refused(run("merge a.exr nothing.exr -o merged.exr"), 66, {"nothing.exr"});
   const std::string bytes = text_of(folder_ / "b.exr");
@@ -104,7 +104,7 @@ TEST_F(BatchShards, MismatchedShardsAreNamed) {
   expect_refused(run("merge a.exr a.exr -o merged.exr"), 2, {"a.exr is given twice"});
   render("t1.exr", "--shard 1/3");
   render("t3.exr", "--shard 3/3");
-  expect_refused(run("merge t1.exr t3.exr -o merged.exr"), 65, {"there is no part with --samples 0:35 --shard 2/3"});
+  expect_refused(run("merge t1.exr t3.exr -o merged.exr"), 65, {"there is no shard with --samples 0:35 --shard 2/3"});
   EXPECT_EQ(run("merge a.exr b.exr -o a.exr").status, 2);  // an input
   EXPECT_EQ(text_of(folder_ / "b.exr"), bytes);
 }

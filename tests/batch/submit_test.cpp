@@ -136,6 +136,17 @@ TEST_F(BatchSubmit, ScriptsAreValidShellAndCallTheGivenProgram) {
   }
 }
 
+TEST_F(BatchSubmit, PassesOutputOptionsOnAsTyped) {
+  const std::string text = submit(
+      "-o s.exr -o s.png --stats s.json --time 90s --bits 16 --exposure -1.5 --disk-limit 8G --multipart "
+      "--compression dwaa:45 --type float --parallel 1");
+  EXPECT_NE(
+      text.find("-o s.exr -o s.png --type float --compression dwaa:45 --multipart --disk-limit 8G --exposure -1.5 "
+                "--bits 16 --time 90s --stats s.json --resume"),
+      std::string::npos)
+      << text;
+}
+
 TEST_F(BatchSubmit, InvalidJobsFailAtSubmission) {
   const auto expect = [&](const std::string& words, int status, const std::string& word) {
     const Outcome r = run("submit " + words);

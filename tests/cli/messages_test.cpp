@@ -13,17 +13,17 @@ struct Case {
 
 const Case kCases[] = {
     {"", 2,
-     "orrery: a command is missing; there are render, merge, submit, info, check, generate, develop, bake, compare, "
-     "bench, study\n"
+     "orrery: no command given; use one of render, merge, submit, check, info, compare, bench, study, generate, "
+     "develop, bake\n"
      "Try orrery --help.\n"},
     {"rendr good.toml", 2,
      "orrery: unknown command rendr; did you mean `render`?\n"
      "Try orrery --help.\n"},
     {"good.toml", 2,
-     "orrery: unknown command good.toml; to render it: orrery render good.toml -o picture.png\n"
+     "orrery: unknown command good.toml; to render it: orrery render good.toml -o image.png\n"
      "Try orrery --help.\n"},
     {"render good.toml -o a.png --samlpes 3", 2,
-     "orrery: unknown flag --samlpes; did you mean `--samples`?\n"
+     "orrery: unknown option --samlpes; did you mean `--samples`?\n"
      "Try orrery render --help.\n"},
     {"render good.toml", 2,
      "orrery: --output is required\n"
@@ -31,8 +31,7 @@ const Case kCases[] = {
     {"render -o a.png", 2,
      "orrery: SCENE is required\n"
      "Try orrery render --help.\n"},
-    {"render good.toml -o a.png b.png", 2,
-     "orrery: `b.png` is one argument too many; files to write are named by -o\n"},
+    {"render good.toml -o a.png b.png", 2, "orrery: unexpected argument `b.png`; name output files with -o\n"},
     {"render good.toml -o a.png -t many", 2,
      "orrery: --threads: must be a whole number from 1 to 4096, not `many`\n"
      "Try orrery render --help.\n"},
@@ -43,7 +42,7 @@ const Case kCases[] = {
      "orrery: --exposure needs a value\n"
      "Try orrery render --help.\n"},
     {"render good.toml -o a.png --progress jsno", 2,
-     "orrery: --progress: there is no `jsno`; did you mean `json`?\n"
+     "orrery: --progress: unknown value `jsno`; did you mean `json`?\n"
      "Try orrery render --help.\n"},
     {"render good.toml -o a.png --quiet=maybe", 2,
      "orrery: --quiet takes no value\n"
@@ -65,7 +64,7 @@ const Case kCases[] = {
     {"--version > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
     {"check good.toml > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
     {"generate", 2,
-     "orrery: a command is missing; there are final, cloud\n"
+     "orrery: no command given; use one of final, cloud\n"
      "Try orrery generate --help.\n"},
     {"generate fianl -o a.toml", 2,
      "orrery: unknown command fianl; did you mean `final`?\n"
@@ -80,12 +79,12 @@ const Case kCases[] = {
      "orrery: b.exr is scene-linear, but the other image is display-encoded; develop it first: orrery develop b.exr "
      "-o developed.png\n"},
     {"compare a.exr b.exr --fail-above rsme=1", 2,
-     "orrery: --fail-above rsme=1: there is no such metric; did you mean `rmse`?\n"},
-    {"compare a.exr b.exr --fail-above rmse", 2, "orrery: --fail-above rmse: write METRIC=VALUE, as in rmse=0.001\n"},
+     "orrery: --fail-above rsme=1: unknown metric; did you mean `rmse`?\n"},
+    {"compare a.exr b.exr --fail-above rmse", 2, "orrery: --fail-above rmse: write METRIC=VALUE, e.g. rmse=0.001\n"},
     {"compare a.exr b.exr --fail-above rmse=-1", 2,
-     "orrery: --fail-above rmse=-1: the value must be a number of 0 or more\n"},
+     "orrery: --fail-above rmse=-1: the value must be a number, 0 or more\n"},
     {"compare a.exr b.exr --fail-above psnr=40", 2,
-     "orrery: --fail-above psnr=40: psnr falls as pictures differ more; limit rmse or flip instead\n"},
+     "orrery: --fail-above psnr=40: psnr decreases with the error; limit rmse or flip instead\n"},
 };
 
 class CliMessages : public ProgramTest, public testing::WithParamInterface<Case> {};

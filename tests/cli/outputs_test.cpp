@@ -124,10 +124,10 @@ TEST_F(CliOutputs, OtherCommandsDoNotOverwriteTheirInputs) {
   expect_refused("compare a.exr b.exr --heat c.png --flip ./c.png", "are the same file");
   std::filesystem::create_symlink("a.exr", folder_ / "soft.png");
   expect_refused("develop a.exr -o soft.png", "would overwrite");
-  ASSERT_EQ(run("render good.toml -o part.exr --samples 0:2 -q").status, 0);
-  expect_refused("merge part.exr -o part.exr --allow-missing", "part.exr (part)");
-  expect_refused("merge part.exr -o m.exr --allow-missing --stats good.toml", "scene");
-  expect_refused("merge part.exr ./part.exr -o m.exr --allow-missing", "given twice");
+  ASSERT_EQ(run("render good.toml -o shard.exr --samples 0:2 -q").status, 0);
+  expect_refused("merge shard.exr -o shard.exr --allow-missing", "shard.exr (shard)");
+  expect_refused("merge shard.exr -o m.exr --allow-missing --stats good.toml", "scene");
+  expect_refused("merge shard.exr ./shard.exr -o m.exr --allow-missing", "given twice");
 }
 
 TEST_F(CliOutputs, SizeBeyondTheFormatIsRejectedBeforeRendering) {
@@ -158,7 +158,7 @@ TEST_F(CliOutputs, LongestFileNamesWorkAndLongerOnesExit73) {
 TEST_F(CliOutputs, DiskLimitIsEnforced) {
   const Outcome r = run("render good.toml -o a.exr --samples 1000000000 --disk-limit 1K");
   EXPECT_EQ(r.status, 73) << r.err;
-  EXPECT_NE(r.err.find("1.0 KiB is what --disk-limit allows"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("--disk-limit allows 1.0 KiB; raise it"), std::string::npos) << r.err;
   EXPECT_EQ(run("render good.toml -o a.exr -q --disk-limit 1G").status, 0);
 }
 

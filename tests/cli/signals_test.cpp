@@ -26,7 +26,7 @@ TEST_F(CliSignals, TermIntAndHupStopTheRenderAndLeaveACheckpoint) {
     EXPECT_EQ(render.wait(), 75) << number;
     EXPECT_EQ(file_count(), 1);
     EXPECT_TRUE(std::filesystem::remove(folder_ / "a.checkpoint.exr"));
-    EXPECT_NE(render.text().find("no picture was written; a.checkpoint.exr"), std::string::npos) << render.text();
+    EXPECT_NE(render.text().find("no image was written; a.checkpoint.exr"), std::string::npos) << render.text();
   }
 }
 

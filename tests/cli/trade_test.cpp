@@ -27,7 +27,7 @@ TEST_F(CliTrade, MissedTargetNoiseIsReported) {
   const Outcome r = run("render good.toml -o a.exr --noise 0.0001 --samples 32 --stats s.json --progress none");
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.err.find("warning: noise 0.00"), std::string::npos) << r.err;
-  EXPECT_NE(r.err.find(" instead of 0.0001: every pixel that needs more has had all its samples\n"), std::string::npos);
+  EXPECT_NE(r.err.find(" instead of 0.0001: the pixels that need more samples reached the limit\n"), std::string::npos);
   EXPECT_NE(stats()["target_missed"], "");
   const Outcome strict = run("render good.toml -o b.exr --noise 0.0001 --samples 32 --strict -q");
   EXPECT_EQ(strict.status, 75);
@@ -53,7 +53,7 @@ TEST_F(CliTrade, PixelsWithoutNoiseEstimateAreReported) {
   const Outcome r = run("render dark.toml -o a.exr --noise 0.3 --samples 64 --stats s.json --progress none");
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.err.find("warning: "), std::string::npos) << r.err;
-  EXPECT_NE(r.err.find(" pixels cannot be judged: too few paths have found light around them; allow more samples\n"),
+  EXPECT_NE(r.err.find(" pixels cannot be judged: too few paths found light near them; allow more samples\n"),
             std::string::npos)
       << r.err;
   const auto s = stats();
@@ -67,7 +67,7 @@ TEST_F(CliTrade, TimeBudgetEndsARenderThatMissesItsTargetNoise) {
   // RenderAdaptiveSampling.TimeBudgetIsKept tests the precision of the budget with a clock that counts samples.
   const Outcome r = run("render good.toml -o a.exr --noise 1e-6 --time 0.5s --stats s.json --progress none");
   EXPECT_EQ(r.status, 0);
-  EXPECT_NE(r.err.find(" instead of 1e-06: time was over\n"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find(" instead of 1e-06: the time budget ended\n"), std::string::npos) << r.err;
   EXPECT_EQ(stats()["ended_by"], "time");
 }
 

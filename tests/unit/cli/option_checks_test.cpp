@@ -6,21 +6,21 @@
 namespace orrery::cli {
 namespace {
 
-/// What a check says to a value; empty: it is fine.
+/// The message of a check; empty: the value is valid.
 std::string verdict(const Check& check, std::string value) { return check(value); }
 
-TEST(CliOptionChecks, OneOfNamesWhatWasMeant) {
+TEST(CliOptionChecks, OneOfSuggestsTheClosestName) {
   const Check check = one_of({"half", "float"});
   EXPECT_EQ(verdict(check, "float"), "");
-  EXPECT_EQ(verdict(check, "flaot"), "there is no `flaot`; did you mean `float`?");
-  EXPECT_EQ(verdict(check, "integer"), "there is no `integer`; there are half, float");
+  EXPECT_EQ(verdict(check, "flaot"), "unknown value `flaot`; did you mean `float`?");
+  EXPECT_EQ(verdict(check, "integer"), "unknown value `integer`; use one of half, float");
 }
 
-TEST(CliOptionChecks, OneOfGuessesNoNumbers) {
-  EXPECT_EQ(verdict(one_of({"8", "16"}), "12"), "there is no `12`; there are 8, 16");
+TEST(CliOptionChecks, OneOfSuggestsNoNumbers) {
+  EXPECT_EQ(verdict(one_of({"8", "16"}), "12"), "unknown value `12`; use one of 8, 16");
 }
 
-TEST(CliOptionChecks, WholeNumbersHaveLimitsAndNothingBehindThem) {
+TEST(CliOptionChecks, WholeNumbersHaveLimitsAndNoTrailingText) {
   const Check check = whole_number(1, 20);
   EXPECT_EQ(verdict(check, "1"), "");
   EXPECT_EQ(verdict(check, "20"), "");
@@ -50,7 +50,7 @@ TEST(CliOptionChecks, SizesAreBytesWithAUnit) {
   }
   for (const char* wrong : {"", "G", "8", "8g", "-1G", "0G", "nanG", "1e300T", "8GB"})
     EXPECT_EQ(verdict(byte_size(), wrong),
-              std::string("must be a size with its unit, as 512M or 1.5G, not `") + wrong + "`");
+              std::string("must be a size with a unit, e.g. 512M or 1.5G, not `") + wrong + "`");
 }
 
 TEST(CliOptionChecks, TimesAreSecondsWithUnits) {
@@ -66,7 +66,7 @@ TEST(CliOptionChecks, TimesAreSecondsWithUnits) {
     EXPECT_EQ(value, seconds) << text;
   }
   EXPECT_EQ(verdict(duration(), "3"), "`3` has no unit; write 3s, 3m or 3h");
-  EXPECT_EQ(verdict(duration(), "1h30"), "`1h30` has no unit at its end; write 1h30m or 1h30s");
+  EXPECT_EQ(verdict(duration(), "1h30"), "`1h30` has no final unit; write 1h30m or 1h30s");
   EXPECT_EQ(verdict(duration(), "0s"), "must be at least 0.01s, not `0s`");
   EXPECT_EQ(verdict(duration(), "8761h"), "must be at most 8760h, not `8761h`");
   for (const char* wrong : {"", "s", "-5s", "5d", "5s5", "1m1h", "5m5m", "1..5s", "5ms", "nans", "1e3s"})

@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Long enough to never beat during a test.
+/// Longer than any test.
 constexpr std::chrono::milliseconds kNever = 24h;
 
 class CliProgress : public testing::Test {
@@ -39,12 +39,12 @@ TEST_F(CliProgress, PrintsALineAtEachWholePercent) {
   EXPECT_EQ(printed(), "0% done\n1% done\n50% done\n99% done\n100% done\n");
 }
 
-TEST_F(CliProgress, AutoIsLinesWhereThereIsNoTerminal) {
+TEST_F(CliProgress, AutoPrintsLinesWithoutATerminal) {
   { ProgressPrinter(ProgressStyle::kAuto, file_, kNever).update({42, 100, 1}); }
   EXPECT_EQ(printed(), "42% done\n");
 }
 
-TEST_F(CliProgress, BuildingStandsWhereTheBarWillBe) {
+TEST_F(CliProgress, BuildProgressIsShownInPlaceOfTheBar) {
   {
     ProgressPrinter printer(ProgressStyle::kBar, file_, kNever);
     for (const double fraction : {0.1, 0.102, 0.05, 0.5}) printer.building(fraction);
@@ -56,17 +56,17 @@ TEST_F(CliProgress, BuildingStandsWhereTheBarWillBe) {
   EXPECT_EQ(text.find("90 %"), std::string::npos) << text;
 }
 
-TEST_F(CliProgress, LinesSayNothingOfBuilding) {
+TEST_F(CliProgress, LinesDoNotShowBuildProgress) {
   { ProgressPrinter(ProgressStyle::kArnold, file_, kNever).building(0.5); }
   EXPECT_EQ(printed(), "");
 }
 
-TEST_F(CliProgress, NoneSaysNothing) {
+TEST_F(CliProgress, NonePrintsNothing) {
   { ProgressPrinter(ProgressStyle::kNone, file_, 1ms).update({42, 100, 1}); }
   EXPECT_EQ(printed(), "");
 }
 
-TEST_F(CliProgress, BarIsOneLineThatIsTakenAway) {
+TEST_F(CliProgress, FinishClearsTheBar) {
   {
     ProgressPrinter printer(ProgressStyle::kBar, file_, kNever);
     printer.update({1, 4, 1});
@@ -87,8 +87,8 @@ TEST_F(CliProgress, NothingIsPrintedAfterTheEnd) {
   EXPECT_EQ(printed(), "50% done\n");
 }
 
-TEST_F(CliProgress, HeartbeatRepeatsTheLastWord) {
-  // No number of beats is expected but that there are some: however slow the machine, they come.
+TEST_F(CliProgress, HeartbeatRepeatsTheLastLine) {
+  // Expects some heartbeats, not a number of them, which depends on the machine.
   ProgressPrinter printer(ProgressStyle::kOpenJd, file_, 2ms);
   printer.update({42, 100, 1});
   std::string text;
@@ -102,7 +102,7 @@ TEST_F(CliProgress, HeartbeatRepeatsTheLastWord) {
   SUCCEED();
 }
 
-TEST_F(CliProgress, HeartbeatBeginsBeforeAnythingIsDone) {
+TEST_F(CliProgress, HeartbeatStartsBeforeTheFirstSample) {
   const ProgressPrinter printer(ProgressStyle::kAlf, file_, 2ms);
   char buffer[64] = {};
   while (::pread(fileno(file_), buffer, sizeof(buffer) - 1, 0) == 0) std::this_thread::sleep_for(5ms);

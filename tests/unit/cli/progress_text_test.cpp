@@ -6,7 +6,7 @@
 namespace orrery::cli {
 namespace {
 
-TEST(CliProgressText, EveryNameIsItsStyle) {
+TEST(CliProgressText, EveryNameSelectsItsStyle) {
   const auto& names = progress_style_names();
   ASSERT_EQ(names.size(), 7u);
   EXPECT_EQ(progress_style("auto"), ProgressStyle::kAuto);
@@ -18,7 +18,7 @@ TEST(CliProgressText, EveryNameIsItsStyle) {
   EXPECT_EQ(progress_style("none"), ProgressStyle::kNone);
 }
 
-TEST(CliProgressText, LinesAreWhatTheSupervisorsParse) {
+TEST(CliProgressText, LinesHaveTheFormatsOfSupervisors) {
   const ProgressState state{42, 100, 10};
   EXPECT_EQ(progress_line(ProgressStyle::kAlf, state), "ALF_PROGRESS 42%");
   EXPECT_EQ(progress_line(ProgressStyle::kOpenJd, state), "openjd_progress: 42");
@@ -33,7 +33,7 @@ TEST(CliProgressText, JsonHasTheRateOnceItIsKnown) {
             R"({"progress": 0, "samples_done": 0, "samples_total": 100, "seconds": 0.0})");
 }
 
-TEST(CliProgressText, OnlyAllIsAHundredPercent) {
+TEST(CliProgressText, OnlyAFinishedRenderIsAtAHundredPercent) {
   EXPECT_EQ((ProgressState{0, 1000, 1}.percent()), 0);
   EXPECT_EQ((ProgressState{9, 1000, 1}.percent()), 0);
   EXPECT_EQ((ProgressState{999, 1000, 1}.percent()), 99);
@@ -57,7 +57,7 @@ TEST(CliProgressText, BarFillsWithTheFraction) {
             "[########################################] 100 %  100 samples/s  0:00 left");
 }
 
-TEST(CliProgressText, BarTellsNoTimeThatItDoesNotKnow) {
+TEST(CliProgressText, BarOmitsAnUnknownTime) {
   EXPECT_EQ(progress_bar({0, 100, 0}, 50), "[............................]   0 %  0 samples/s");
 }
 
@@ -69,7 +69,7 @@ TEST(CliProgressText, BarFitsIntoAnyTerminal) {
   EXPECT_EQ(progress_bar(state, 11), " 50 %  300");
 }
 
-TEST(CliProgressText, RatesHaveTheUnitThatReadsBest) {
+TEST(CliProgressText, RatesHaveTheLargestUnitAboveOne) {
   const auto has = [](std::uint64_t done, const char* rate) {
     return progress_bar({done, 2 * done, 1}, 80).find(rate) != std::string::npos;
   };

@@ -21,9 +21,9 @@ std::vector<std::string> overrides_of(const std::vector<const char*>& words) {
   return texts;
 }
 
-TEST(CliSceneOptions, NothingIsOverriddenByNothing) { EXPECT_TRUE(overrides_of({}).empty()); }
+TEST(CliSceneOptions, NoOptionsGiveNoOverrides) { EXPECT_TRUE(overrides_of({}).empty()); }
 
-TEST(CliSceneOptions, EveryShortFormIsItsKey) {
+TEST(CliSceneOptions, EveryShortFormSetsItsKey) {
   EXPECT_EQ(overrides_of({"--samples", "1", "--width", "2", "--height", "3", "--seed", "4", "--max-depth", "5",
                           "--precision", "fast", "--accelerator", "list"}),
             (std::vector<std::string>{"render.samples=1", "image.width=2", "image.height=3", "render.seed=4",
@@ -39,11 +39,11 @@ TEST(CliSceneOptions, TheLastShortFormCounts) {
   EXPECT_EQ(overrides_of({"--samples", "1", "--samples", "2"}), (std::vector<std::string>{"render.samples=2"}));
 }
 
-TEST(CliSceneOptions, AnEmptyValueIsNotNone) {
+TEST(CliSceneOptions, AnEmptyValueIsAnOverride) {
   EXPECT_EQ(overrides_of({"--samples", ""}), (std::vector<std::string>{"render.samples="}));
 }
 
-TEST(CliSceneOptions, LayersAreWordsBetweenCommas) {
+TEST(CliSceneOptions, LayersAreSeparatedByCommas) {
   EXPECT_EQ(overrides_of({"--layers", "Z,denoise.albedo"}),
             (std::vector<std::string>{"output.layers=[Z,denoise.albedo]"}));
   EXPECT_EQ(overrides_of({"--layers", ""}), (std::vector<std::string>{"output.layers=[]"}));

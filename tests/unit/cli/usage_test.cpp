@@ -8,7 +8,7 @@
 namespace orrery::cli {
 namespace {
 
-/// A program of the shape of ours.
+/// A program with commands like orrery's.
 class CliUsage : public testing::Test {
  protected:
   CliUsage() {
@@ -24,7 +24,7 @@ class CliUsage : public testing::Test {
     generate.add_subcommand("cloud", "");
   }
 
-  /// What is said about a command line; empty: it is fine.
+  /// The message for a command line; empty: it is valid.
   std::string message(const std::vector<std::string>& words) {
     std::vector<const char*> argv = {"orrery"};
     for (const std::string& word : words) argv.push_back(word.c_str());
@@ -43,7 +43,7 @@ class CliUsage : public testing::Test {
   bool quiet_ = false;
 };
 
-TEST_F(CliUsage, NothingIsWrongWithWhatIsRight) {
+TEST_F(CliUsage, ValidCommandLinesHaveNoMessage) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samples", "3"}), "");
   EXPECT_EQ(message({"generate", "final", "--seed=3"}), "");
 }
@@ -54,50 +54,50 @@ TEST_F(CliUsage, ARepeatableOptionTakesOneValueEachTime) {
   EXPECT_EQ(scene_, "a.toml");
 }
 
-TEST_F(CliUsage, UnknownFlagsNameTheOneThatWasMeant) {
+TEST_F(CliUsage, UnknownOptionsGetASuggestion) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes", "3"}),
-            "unknown flag --samlpes; did you mean `--samples`?");
+            "unknown option --samlpes; did you mean `--samples`?");
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes=3"}),
-            "unknown flag --samlpes; did you mean `--samples`?");
-  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--zzzzzz"}), "unknown flag --zzzzzz");
-  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "-x"}), "unknown flag -x");
+            "unknown option --samlpes; did you mean `--samples`?");
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--zzzzzz"}), "unknown option --zzzzzz");
+  EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "-x"}), "unknown option -x");
 }
 
-TEST_F(CliUsage, AnUnknownFlagIsToldBeforeWhatIsMissing) {
-  EXPECT_EQ(message({"render", "--ouptut", "a.png", "a.toml"}), "unknown flag --ouptut; did you mean `--output`?");
+TEST_F(CliUsage, AnUnknownOptionIsReportedBeforeMissingOnes) {
+  EXPECT_EQ(message({"render", "--ouptut", "a.png", "a.toml"}), "unknown option --ouptut; did you mean `--output`?");
 }
 
-TEST_F(CliUsage, FlagsAreThoseOfTheInnermostCommand) {
-  EXPECT_EQ(message({"generate", "final", "--sede", "3"}), "unknown flag --sede; did you mean `--seed`?");
-  EXPECT_EQ(message({"generate", "cloud", "--sede", "3"}), "unknown flag --sede");
+TEST_F(CliUsage, OptionsBelongToTheInnermostCommand) {
+  EXPECT_EQ(message({"generate", "final", "--sede", "3"}), "unknown option --sede; did you mean `--seed`?");
+  EXPECT_EQ(message({"generate", "cloud", "--sede", "3"}), "unknown option --sede");
 }
 
-TEST_F(CliUsage, UnknownCommandsNameTheOneThatWasMeant) {
+TEST_F(CliUsage, UnknownCommandsGetASuggestion) {
   EXPECT_EQ(message({"rendr", "a.toml"}), "unknown command rendr; did you mean `render`?");
-  EXPECT_EQ(message({"paint", "a.toml"}), "unknown command paint; there are render, generate");
+  EXPECT_EQ(message({"paint", "a.toml"}), "unknown command paint; use one of render, generate");
   EXPECT_EQ(message({"generate", "fianl"}), "unknown command fianl; did you mean `final`?");
 }
 
-TEST_F(CliUsage, ASceneAloneTellsHowToRenderIt) {
-  EXPECT_EQ(message({"a.toml"}), "unknown command a.toml; to render it: orrery render a.toml -o picture.png");
+TEST_F(CliUsage, ASceneWithoutACommandShowsHowToRenderIt) {
+  EXPECT_EQ(message({"a.toml"}), "unknown command a.toml; to render it: orrery render a.toml -o image.png");
 }
 
-TEST_F(CliUsage, MissingThingsAreNamed) {
-  EXPECT_EQ(message({}), "a command is missing; there are render, generate");
-  EXPECT_EQ(message({"generate"}), "a command is missing; there are final, cloud");
+TEST_F(CliUsage, MissingArgumentsAreNamed) {
+  EXPECT_EQ(message({}), "no command given; use one of render, generate");
+  EXPECT_EQ(message({"generate"}), "no command given; use one of final, cloud");
   EXPECT_EQ(message({"render"}), "SCENE is required");
   EXPECT_EQ(message({"render", "a.toml"}), "--output is required");
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samples"}), "--samples needs a value");
 }
 
-TEST_F(CliUsage, TooMuchIsNamed) {
+TEST_F(CliUsage, UnexpectedArgumentsAreNamed) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "b.png"}),
-            "`b.png` is one argument too many; files to write are named by -o");
-  EXPECT_EQ(message({"generate", "cloud", "b.png"}), "`b.png` is one argument too many");
+            "unexpected argument `b.png`; name output files with -o");
+  EXPECT_EQ(message({"generate", "cloud", "b.png"}), "unexpected argument `b.png`");
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--quiet=maybe"}), "--quiet takes no value");
 }
 
-TEST_F(CliUsage, NamesOfCommandsAreAsTyped) {
+TEST_F(CliUsage, FullNamesOfCommandsAreAsTyped) {
   EXPECT_EQ(full_name(program_), "orrery");
   EXPECT_EQ(message({"generate", "final"}), "");
   EXPECT_EQ(full_name(innermost(program_)), "orrery generate final");

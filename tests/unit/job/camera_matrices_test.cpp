@@ -16,7 +16,7 @@ struct Point4 {
   double x, y, z, w;
 };
 
-/// A row vector times a matrix that is stored row by row, as OpenEXR has it.
+/// A row vector times a row-major matrix, as in OpenEXR.
 Point4 times(Vec3d p, const std::array<float, 16>& m) {
   const double in[4] = {p.x, p.y, p.z, 1};
   double out[4] = {};
@@ -58,14 +58,14 @@ TEST(JobCameraMatrices, CameraSpaceKeepsDistances) {
   EXPECT_NEAR(target.z, std::sqrt(13 * 13 + 2 * 2 + 3 * 3), 1e-5);
 }
 
-TEST(JobCameraMatrices, WhatIsLookedAtIsInTheMiddle) {
+TEST(JobCameraMatrices, LookAtIsAtTheCentreOfTheImage) {
   const CameraMatrices m = camera_matrices(book_camera(), {1200, 675});
   const Point4 p = times({0, 0, 0}, m.world_to_ndc);
   EXPECT_NEAR(p.x / p.w, 0.5, 1e-6);
   EXPECT_NEAR(p.y / p.w, 0.5, 1e-6);
 }
 
-TEST(JobCameraMatrices, EdgesOfTheViewAreZeroAndOneFromTheUpperLeft) {
+TEST(JobCameraMatrices, NdcGoesFromZeroToOneFromTheUpperLeft) {
   scene::Camera camera;  // looks along -z, 90 degrees high: at distance 1 it sees y -1..1
   const CameraMatrices m = camera_matrices(camera, {1600, 800});
   const Point4 upper_left = times({-2 * 3, 1 * 3, -3}, m.world_to_ndc);
@@ -76,7 +76,7 @@ TEST(JobCameraMatrices, EdgesOfTheViewAreZeroAndOneFromTheUpperLeft) {
   EXPECT_NEAR(lower_right.y / lower_right.w, 1, 1e-6);
 }
 
-TEST(JobCameraMatrices, PointsLandInThePixelWhoseRaysMeetThem) {
+TEST(JobCameraMatrices, PointsProjectToThePixelWhoseRaysHitThem) {
   const scene::Camera camera = book_camera();
   const scene::Image image{1200, 675};
   const CameraMatrices m = camera_matrices(camera, image);

@@ -19,7 +19,7 @@ class JobDiskSpace : public testing::Test {
     job_.scene.overrides = {"image.width=200", "image.height=112", "render.samples=4"};
   }
 
-  /// Estimated size of a file by its actual one.
+  /// Ratio of the estimated to the actual size of a file.
   double ratio(const std::string& name, std::size_t layer_planes = 0) {
     job_.outputs.images = {folder_ / name};
     run_job(job_);
@@ -35,7 +35,7 @@ class JobDiskSpace : public testing::Test {
 TEST_F(JobDiskSpace, TheEstimateIsNearTheFiles) {
   for (const char* name : {"a.exr", "a.hdr", "a.png", "a.tif", "a.jpg", "a.ppm"}) {
     const double r = ratio(name);
-    EXPECT_GT(r, 0.8) << name;  // a header counts for much in so small a picture
+    EXPECT_GT(r, 0.8) << name;  // the header is a large part of so small a file
     EXPECT_LT(r, 1.6) << name;
   }
   for (const char* compression : {"none", "rle", "zip", "piz", "dwaa"}) {
@@ -45,17 +45,17 @@ TEST_F(JobDiskSpace, TheEstimateIsNearTheFiles) {
   }
   job_.outputs.exr.compression = "zips";
   job_.sampling.sample_end = 2;
-  EXPECT_GT(ratio("part.exr"), 0.8);
-  EXPECT_LT(ratio("part.exr"), 1.6);
+  EXPECT_GT(ratio("shard.exr"), 0.8);
+  EXPECT_LT(ratio("shard.exr"), 1.6);
 }
 
-TEST_F(JobDiskSpace, LayersCount) {
+TEST_F(JobDiskSpace, LayersIncreaseTheEstimate) {
   job_.scene.overrides.push_back("output.layers=[\"Z\", \"N\", \"variance\"]");
   EXPECT_GT(ratio("a.exr", 7), 0.8);
   EXPECT_LT(ratio("b.exr", 7), 3);  // distances compress better than noise
 }
 
-TEST_F(JobDiskSpace, ALimitCountsInPlaceOfTheRoom) {
+TEST_F(JobDiskSpace, ALimitReplacesTheFreeSpace) {
   Outputs outputs;
   outputs.images = {folder_ / "a.exr"};
   const ImageSize size{65536, 65536, 0};  // 16 GiB

@@ -44,14 +44,14 @@ class JobJob : public testing::Test {
     job_.hooks.on_progress = [this](const render::Progress&) { rendered_ = true; };
   }
 
-  /// The error that the job ends with.
+  /// The error of the job.
   base::Error error() {
     try {
       run_job(job_);
     } catch (const base::Error& error) {
       return error;
     }
-    ADD_FAILURE() << "the job went through";
+    ADD_FAILURE() << "the job succeeded";
     return {base::ErrorKind::kInternal, ""};
   }
 
@@ -62,11 +62,11 @@ class JobJob : public testing::Test {
   bool rendered_ = false;
 };
 
-TEST_F(JobJob, WritesEveryOutputAndTellsWhatItDid) {
+TEST_F(JobJob, WritesEveryOutputAndTheStatistics) {
   job_.outputs.images = {folder_ / "a.exr", folder_ / "a.png", folder_ / "a.hdr"};
   const JobReport report = run_job(job_);
   for (const ImageFile& output : job_.outputs.images) EXPECT_EQ(image::read(output.path).width, 24) << output.path;
-  EXPECT_EQ(folder_.count(), 5u) << "the scene, three pictures, statistics";
+  EXPECT_EQ(folder_.count(), 5u) << "the scene, three images, statistics";
   EXPECT_EQ(report.render.paths, 24u * 16 * 2);
   EXPECT_EQ(report.spheres, 1u);
   EXPECT_EQ(report.display.config, "built-in");
@@ -76,17 +76,17 @@ TEST_F(JobJob, WritesEveryOutputAndTellsWhatItDid) {
   EXPECT_EQ(statistics().count("error"), 0u);
 }
 
-TEST_F(JobJob, LooksForNoDisplayWhereNoneIsNeeded) {
+TEST_F(JobJob, LooksUpADisplayOnlyForDisplayFormats) {
   job_.outputs.images = {folder_ / "a.exr"};
   ::setenv("OCIO", (folder_ / "nowhere.ocio").c_str(), 1);
   const JobReport report = run_job(job_);
   ::unsetenv("OCIO");
   EXPECT_EQ(report.display.display, "");
   job_.outputs.display.config = folder_ / "nowhere.ocio";
-  EXPECT_EQ(error().kind(), base::ErrorKind::kMissingInput) << "somebody named it";
+  EXPECT_EQ(error().kind(), base::ErrorKind::kMissingInput) << "named explicitly";
 }
 
-TEST_F(JobJob, WhatTheRequestGetsWrongIsKnownBeforeRendering) {
+TEST_F(JobJob, RejectsInvalidRequestsBeforeRendering) {
   const auto kind_of_error = [&](const char* output) {
     job_.outputs.images = {folder_ / output};
     return error().kind();
@@ -108,7 +108,7 @@ TEST_F(JobJob, WhatTheRequestGetsWrongIsKnownBeforeRendering) {
   EXPECT_FALSE(rendered_);
 }
 
-TEST_F(JobJob, StoppedBeforeItBeganItWritesNothing) {
+TEST_F(JobJob, WritesNoImageIfStoppedBeforeRendering) {
   const std::atomic<bool> cancel{true};
   job_.hooks.cancel = &cancel;
   job_.outputs.images = {folder_ / "a.exr"};
@@ -119,7 +119,7 @@ TEST_F(JobJob, StoppedBeforeItBeganItWritesNothing) {
   EXPECT_EQ(statistics()["exit_status"], 75);
 }
 
-TEST_F(JobJob, StoppedWhileRenderingItLeavesACheckpointAndResumesToTheSameBytes) {
+TEST_F(JobJob, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
   job_.outputs.reproducible = true;
@@ -148,7 +148,7 @@ TEST_F(JobJob, StoppedWhileRenderingItLeavesACheckpointAndResumesToTheSameBytes)
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
-TEST_F(JobJob, ACheckpointOfSomethingElseIsRefused) {
+TEST_F(JobJob, RejectsACheckpointOfAnotherRender) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300"};
   std::atomic<bool> cancel{false};
@@ -179,7 +179,7 @@ TEST_F(JobJob, ACheckpointOfSomethingElseIsRefused) {
   EXPECT_EQ(error().kind(), base::ErrorKind::kBadData);
 }
 
-TEST_F(JobJob, CheckpointsComeFromTimeToTime) {
+TEST_F(JobJob, WritesCheckpointsAtTheInterval) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=64", "image.height=64", "render.samples=64"};
   job_.checkpoint.interval_s = 0.01;
@@ -187,7 +187,7 @@ TEST_F(JobJob, CheckpointsComeFromTimeToTime) {
   bool seen = false;
   job_.hooks.on_progress = [&](const render::Progress&) {
     seen = seen || std::filesystem::exists(folder_ / "a.checkpoint.exr");
-    // The one thread that renders waits until a checkpoint is due, whatever its speed.
+    // The single render thread waits until a checkpoint is due, at any speed.
     if (!seen) std::this_thread::sleep_for(std::chrono::milliseconds(11));
   };
   run_job(job_);
@@ -195,14 +195,14 @@ TEST_F(JobJob, CheckpointsComeFromTimeToTime) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
-TEST_F(JobJob, AFailedWriteIsInTheStatistics) {
+TEST_F(JobJob, ReportsAFailedWriteInTheStatistics) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=512", "image.height=512", "render.samples=1"};
   job_.outputs.exr.compression = "none";
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit small{100'000, before.rlim_max};  // the picture has 2 MB, the statistics less than 2 kB
+  const rlimit small{100'000, before.rlim_max};  // the image has 2 MB, the statistics less than 2 kB
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
   const base::Error failed = error();
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
@@ -224,7 +224,7 @@ TEST_F(JobJob, WarningsReachTheCaller) {
   EXPECT_EQ(warnings[0].severity, base::Severity::kWarning);
 }
 
-TEST_F(JobJob, TheSceneChoosesTheDisplayAndFlagsWin) {
+TEST_F(JobJob, OptionsOverrideTheDisplayOfTheScene) {
   support::write_bytes(folder_ / "scene.toml",
                        std::string(kScene) + "[color]\ndisplay = \"Gamma 2.0 Rec.709\"\nexposure = -2\n");
   job_.outputs.images = {folder_ / "a.png"};
@@ -237,7 +237,7 @@ TEST_F(JobJob, TheSceneChoosesTheDisplayAndFlagsWin) {
   EXPECT_EQ(run_job(job_).display.display, "sRGB");
 }
 
-TEST_F(JobJob, AConfigOfTheSceneIsBesideTheScene) {
+TEST_F(JobJob, AConfigPathIsRelativeToTheScene) {
   support::write_bytes(folder_ / "scene.toml", std::string(kScene) + "[color]\nconfig = \"none.ocio\"\n");
   job_.outputs.images = {folder_ / "a.png"};
   const base::Error missing = error();
@@ -247,7 +247,7 @@ TEST_F(JobJob, AConfigOfTheSceneIsBesideTheScene) {
   EXPECT_FALSE(rendered_);
 }
 
-TEST_F(JobJob, LayersAreInTheExrAndCostNothingWhereThereIsNone) {
+TEST_F(JobJob, LayersNeedAnExrOutput) {
   job_.scene.overrides = {"output.layers=[\"Z\", \"CryptoObject\"]"};
   job_.outputs.images = {folder_ / "a.exr", folder_ / "a.png"};
   job_.outputs.deep = folder_ / "deep.exr";
@@ -259,11 +259,11 @@ TEST_F(JobJob, LayersAreInTheExrAndCostNothingWhereThereIsNone) {
   job_.outputs.deep = folder_ / "deep.png";
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
   job_.outputs.deep.clear();
-  job_.outputs.images = {folder_ / "a.png"};  // who asks for layers in so many words wants to have them
+  job_.outputs.images = {folder_ / "a.png"};  // explicit layers need an EXR
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
 }
 
-TEST_F(JobJob, LossOfDataIsRefusedBeforeRendering) {
+TEST_F(JobJob, RejectsLossyCompressionOfDataBeforeRendering) {
   job_.scene.overrides = {"output.layers=[\"CryptoObject\"]"};
   job_.outputs.images = {folder_ / "a.exr"};
   job_.outputs.exr.compression = "dwaa";
@@ -271,11 +271,11 @@ TEST_F(JobJob, LossOfDataIsRefusedBeforeRendering) {
   EXPECT_FALSE(rendered_);
 }
 
-TEST_F(JobJob, ADisplayOfHighDynamicRangeHasSixteenBits) {
+TEST_F(JobJob, AnHdrDisplayHasSixteenBits) {
   job_.outputs.display.display = "Rec.2100-PQ";
   job_.outputs.images = {folder_ / "a.png"};
   run_job(job_);
-  bool between = false;  // of 8 bits
+  bool between = false;  // two 8-bit levels
   for (const float v : image::read(folder_ / "a.png").planes[0].values)
     between = between || std::abs(v * 255 - std::round(v * 255)) > 0.01f;
   EXPECT_TRUE(between);

@@ -20,7 +20,7 @@ namespace orrery::job {
 namespace {
 
 Layers layers_of(const scene::Scene& scene) {
-  static std::vector<std::unique_ptr<compile::CompiledScene>> worlds;  // layers point into them
+  static std::vector<std::unique_ptr<compile::CompiledScene>> worlds;  // layers refer to them
   worlds.push_back(std::make_unique<compile::CompiledScene>(compile::compile(scene)));
   return choose_layers(scene, *worlds.back());
 }
@@ -31,7 +31,7 @@ scene::Scene with_layers(std::vector<std::string> layers) {
   return s;
 }
 
-TEST(JobLayers, EachNameOfTheSchemaIsALayer) {
+TEST(JobLayers, EveryNameOfTheSchemaIsALayer) {
   for (const scene::Table& table : scene::tables())
     for (const auto& key : table.keys)
       for (const std::string& name : table.name == "output" ? key.choices : std::vector<std::string>{}) {
@@ -42,17 +42,17 @@ TEST(JobLayers, EachNameOfTheSchemaIsALayer) {
   EXPECT_FALSE(layers_of(with_layers({})).request.any());
 }
 
-TEST(JobLayers, AnEmptyBackgroundAsksForCoverage) {
+TEST(JobLayers, ATransparentBackgroundRequestsCoverage) {
   scene::Scene s = with_layers({});
   s.background.alpha = 0;
   EXPECT_TRUE(layers_of(s).request.coverage);
 }
 
-TEST(JobLayers, ObjectsAreNamedSpheresNumberedSpheresAndFiles) {
+TEST(JobLayers, ObjectsAreNamedAfterSpheresIndicesAndFiles) {
   scene::Scene s = with_layers({"CryptoObject"});
   s.spheres.resize(3);
   s.spheres[1].name = "bunny";
-  s.spheres[2].name = "bunny";  // one thing of two spheres
+  s.spheres[2].name = "bunny";  // one name for two spheres
   scene::Points points;
   points.file = "cloud/dust.ply";
   points.centers.resize(2);
@@ -72,7 +72,7 @@ TEST(JobLayers, ObjectsAreNamedSpheresNumberedSpheresAndFiles) {
   for (std::uint32_t i = 0; i < 7; ++i) EXPECT_EQ(id_of(i), film::matte_id(wanted[i])) << i;
 }
 
-TEST(JobLayers, GroupsHoldOnlyThoseThatHaveOne) {
+TEST(JobLayers, GroupsHoldOnlySpheresWithAGroup) {
   scene::Scene s = with_layers({"CryptoGroup"});
   s.spheres[1].group = "left";
   s.spheres[3].group = "left";
@@ -84,8 +84,8 @@ TEST(JobLayers, GroupsHoldOnlyThoseThatHaveOne) {
   EXPECT_EQ(layers.request.mattes[0].id_of_sphere(3), film::matte_id("left"));
 }
 
-/// Glass inside out is another material to the kernel, and the same to its author.
-TEST(JobLayers, MaterialsAreTheAuthors) {
+/// Inverted glass is a second material in the kernel, but not in the scene.
+TEST(JobLayers, MaterialMattesUseAuthoredMaterials) {
   const Layers layers = layers_of(with_layers({"CryptoMaterial", "material_id"}));
   const scene::Scene s = test::everything();
   for (std::uint32_t i = 0; i < s.spheres.size(); ++i)
@@ -95,7 +95,7 @@ TEST(JobLayers, MaterialsAreTheAuthors) {
     EXPECT_EQ(layers.request.material_numbers[compiled.sphere_materials[i]], s.spheres[i].material + 1) << i;
 }
 
-TEST(JobMatteManifest, SaysHowNamesBecameNumbers) {
+TEST(JobMatteManifest, NamesTheHashAndTheConversion) {
   const std::vector<image::Attribute> attributes = matte_attributes(
       {{"CryptoObject", {{"bunny", film::matte_id("bunny")}, {"a \"b\"", film::matte_id("a \"b\"")}}}}, "x/shot.exr");
   ASSERT_EQ(attributes.size(), 4u);
@@ -110,7 +110,7 @@ TEST(JobMatteManifest, SaysHowNamesBecameNumbers) {
   EXPECT_TRUE(manifest.contains("a \"b\""));
 }
 
-/// Processor seconds that the header of so many names takes: the least of three tries.
+/// CPU seconds to write a header with so many names: the minimum of three runs.
 double seconds_of_header(std::size_t names) {
   MatteNames matte;
   matte.layer = "CryptoObject";
@@ -125,27 +125,27 @@ double seconds_of_header(std::size_t names) {
   return least;
 }
 
-TEST(JobMatteManifest, TakesTimeInProportionToItsNames) {
-  // Sixteen times the names: 16 times as long, and 256 times where each name is held against all others.
+TEST(JobMatteManifest, TakesTimeProportionalToTheNumberOfNames) {
+  // Sixteen times the names take 16 times as long, or 256 times if each name is compared with all others.
   const std::size_t few = 12'000;
   EXPECT_LT(seconds_of_header(16 * few), 80 * seconds_of_header(few));
 }
 
-TEST(JobMatteManifest, ManifestsAreFilesOfLargeMattesInExr) {
+TEST(JobMatteManifest, LargeMattesOfExrFilesHaveManifestFiles) {
   MatteNames small, large;
   small.layer = "CryptoMaterial";
   large.layer = "CryptoObject";
-  large.things.resize(kMostNamesInHeader + 1);
+  large.things.resize(kMaxNamesInHeader + 1);
   Outputs outputs;
   outputs.images = image_files({"a/shot.exr", "shot.png", "b.exr"});
   const std::vector<std::filesystem::path> files = manifest_files({small, large}, outputs);
   EXPECT_EQ(files, (std::vector<std::filesystem::path>{"a/shot.CryptoObject.json", "b.CryptoObject.json"}));
 }
 
-TEST(JobMatteManifest, ManyNamesStandInAFileBesideThePicture) {
+TEST(JobMatteManifest, LargeManifestsAreFilesNextToTheImage) {
   MatteNames matte;
   matte.layer = "CryptoObject";
-  for (std::size_t i = 0; i <= kMostNamesInHeader; ++i) {
+  for (std::size_t i = 0; i <= kMaxNamesInHeader; ++i) {
     const std::string name = "sphere." + std::to_string(i);
     matte.things.emplace_back(name, film::matte_id(name));
   }
@@ -156,7 +156,7 @@ TEST(JobMatteManifest, ManyNamesStandInAFileBesideThePicture) {
   EXPECT_EQ(std::get<std::string>(attributes[3].value), "shot.CryptoObject.json");
   write_manifests({matte}, folder / "shot.exr");
   const auto manifest = nlohmann::json::parse(support::file_bytes(folder / "shot.CryptoObject.json"));
-  EXPECT_EQ(manifest.size(), kMostNamesInHeader + 1);
+  EXPECT_EQ(manifest.size(), kMaxNamesInHeader + 1);
   EXPECT_EQ(manifest["sphere.7"], film::matte_id_text(film::matte_id("sphere.7")));
 
   matte.things.pop_back();

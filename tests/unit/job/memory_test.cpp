@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kMega = 1 << 20;
 
-/// A machine made of files.
+/// A machine simulated by files.
 class JobMemory : public testing::Test {
  protected:
   void write(const std::string& file, const std::string& text) {
@@ -23,14 +23,14 @@ class JobMemory : public testing::Test {
   support::TempDir root_;
 };
 
-TEST_F(JobMemory, NothingIsKnownWhereNothingIsTold) { EXPECT_FALSE(available().has_value()); }
+TEST_F(JobMemory, AvailableMemoryIsEmptyIfUnknown) { EXPECT_FALSE(available().has_value()); }
 
-TEST_F(JobMemory, TheMachineTellsWhatIsFree) {
+TEST_F(JobMemory, ReadsTheAvailableMemoryOfTheMachine) {
   write("proc/meminfo", "MemTotal:       8192 kB\nMemFree:  1024 kB\nMemAvailable:   4096 kB\n");
   EXPECT_EQ(available(), 4 * kMega);
 }
 
-TEST_F(JobMemory, TheTightestGroupCounts) {
+TEST_F(JobMemory, TheTightestControlGroupLimits) {
   write("proc/meminfo", "MemAvailable:   1048576 kB\n");
   write("proc/self/cgroup", "0::/job/step\n");
   write("sys/fs/cgroup/job/step/memory.max", "max\n");
@@ -40,12 +40,12 @@ TEST_F(JobMemory, TheTightestGroupCounts) {
   write("sys/fs/cgroup/job/memory.current", "62914560\n");
   EXPECT_EQ(available(), 40 * kMega);
   write("sys/fs/cgroup/job/memory.stat", "anon 5\ninactive_file 20971520\n");
-  EXPECT_EQ(available(), 60 * kMega) << "files that were read can go";
+  EXPECT_EQ(available(), 60 * kMega) << "the page cache can be evicted";
   write("sys/fs/cgroup/job/memory.current", "209715200\n");
-  EXPECT_EQ(available(), 0u) << "nothing, not a huge number";
+  EXPECT_EQ(available(), 0u) << "zero, without wrapping";
 }
 
-TEST_F(JobMemory, TheGroupOfTheWholeMachineCountsToo) {
+TEST_F(JobMemory, TheRootControlGroupLimitsToo) {
   write("proc/self/cgroup", "0::/\n");
   write("sys/fs/cgroup/memory.max", "10485760\n");
   write("sys/fs/cgroup/memory.current", "0\n");
@@ -53,7 +53,7 @@ TEST_F(JobMemory, TheGroupOfTheWholeMachineCountsToo) {
 }
 
 MemoryEstimate estimate(int width, std::uint64_t spheres, bool embree, std::uint64_t layer_planes = 0,
-                        bool in_rounds = false) {
+                        bool is_adaptive = false) {
   MemoryNeeds needs;
   needs.width = width;
   needs.height = 10;
@@ -61,7 +61,7 @@ MemoryEstimate estimate(int width, std::uint64_t spheres, bool embree, std::uint
   needs.embree = embree;
   needs.layer_planes = layer_planes;
   needs.layers = layer_planes > 0;
-  needs.in_rounds = in_rounds;
+  needs.is_adaptive = is_adaptive;
   return estimate_memory(needs);
 }
 
@@ -74,7 +74,7 @@ TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
   EXPECT_EQ(estimate(1, 100, true).accelerator, 100 * estimate(1, 1, true).accelerator);
 }
 
-TEST(JobMemoryEstimate, WhatDoesNotFitIsRefusedWithTheFigure) {
+TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {
   const MemoryEstimate million = estimate(1, 1'000'000, true);
   EXPECT_NO_THROW(require_memory(million, million.total()));
   try {

@@ -10,7 +10,7 @@
 namespace orrery::job {
 namespace {
 
-/// What is said about such files; nothing where all is well.
+/// The error message for these files; empty: none.
 std::string verdict(const std::vector<std::filesystem::path>& pictures, int bits = 0) {
   try {
     check_bits(image_files(pictures), bits);
@@ -21,7 +21,7 @@ std::string verdict(const std::vector<std::filesystem::path>& pictures, int bits
   return {};
 }
 
-TEST(JobOutputs, UnknownExtensionsAreUsage) { EXPECT_NE(verdict({"a.png", "a.webp"}), ""); }
+TEST(JobOutputs, UnknownExtensionsAreUsageErrors) { EXPECT_NE(verdict({"a.png", "a.webp"}), ""); }
 
 TEST(JobOutputs, BitsMustFitTheFormat) {
   EXPECT_EQ(verdict({"a.png", "a.exr"}, 16), "");

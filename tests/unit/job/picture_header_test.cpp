@@ -22,7 +22,7 @@ image::Header header_of(const scene::Scene& scene, bool reproducible = true,
   return picture_header({scene, {}, settings}, compile::compile(scene), report, reproducible);
 }
 
-/// The text of an attribute; "none" where it is not there.
+/// The text of an attribute; "none" if it is missing.
 std::string text_of(const image::Header& header, const std::string& name) {
   for (const image::Attribute& attribute : header.attributes)
     if (attribute.name == name) {
@@ -33,7 +33,7 @@ std::string text_of(const image::Header& header, const std::string& name) {
   return "none";
 }
 
-TEST(JobPictureHeader, NamesWhatWasRendered) {
+TEST(JobPictureHeader, IdentifiesTheRender) {
   scene::Scene scene;
   scene.render.seed = 4'000'000'000u;
   scene.render.samples = 7;
@@ -59,7 +59,7 @@ TEST(JobPictureHeader, HoldsTheSettings) {
             "camera.vfov = 20\nrender.precision = \"fast\"\n");
 }
 
-TEST(JobPictureHeader, KnowsTheUsualColourSpaces) {
+TEST(JobPictureHeader, HasTheInteropIdsOfKnownColourSpaces) {
   const image::Header rec709 = header_of({});
   EXPECT_EQ(rec709.color_interop_id, "lin_rec709_scene");
   ASSERT_TRUE(rec709.chromaticities);
@@ -71,21 +71,21 @@ TEST(JobPictureHeader, KnowsTheUsualColourSpaces) {
   EXPECT_EQ(header_of(scene).chromaticities->at(0), 0.713f);
 }
 
-TEST(JobPictureHeader, GuessesNoUnknownColourSpace) {
+TEST(JobPictureHeader, OmitsUnknownColourSpaces) {
   scene::Scene scene;
   scene.color.space = "my_camera_log";
   EXPECT_EQ(header_of(scene).color_interop_id, "");
   EXPECT_FALSE(header_of(scene).chromaticities);
 }
 
-TEST(JobPictureHeader, ReproducibleLeavesOutWhatChanges) {
+TEST(JobPictureHeader, ReproducibleOmitsWhatVaries) {
   const image::Header header = header_of({}, true);
   EXPECT_EQ(header.capture_date, "");
   for (const char* name : {"orrery/renderSeconds", "orrery/accelerator", "orrery/isa"})
     EXPECT_EQ(text_of(header, name), "none");
 }
 
-TEST(JobPictureHeader, OtherwiseTimeAndMachineAreTold) {
+TEST(JobPictureHeader, HasTimeAndMachineByDefault) {
   const image::Header header = header_of({}, false);
   EXPECT_TRUE(std::regex_match(header.capture_date, std::regex(R"(\d{4}:\d\d:\d\d \d\d:\d\d:\d\d)")))
       << header.capture_date;

@@ -16,14 +16,14 @@ scene::Scene small_scene() { return generate::make_final_scene({1, 2}); }
 
 std::string hash_of(const scene::Scene& scene) { return scene_hash(compile::compile(scene)); }
 
-TEST(JobSceneHash, IsSixteenDigitsAndTheSameEachTime) {
+TEST(JobSceneHash, IsSixteenDigitsAndReproducible) {
   const std::string hash = hash_of(small_scene());
   EXPECT_EQ(hash.size(), 16u);
   EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos);
   EXPECT_EQ(hash, hash_of(small_scene()));
 }
 
-TEST(JobSceneHash, ChangesWithWhateverChangesThePicture) {
+TEST(JobSceneHash, ChangesWithEverythingThatChangesTheImage) {
   using Change = std::function<void(scene::Scene&)>;
   const std::vector<Change> changes = {
       [](scene::Scene&) {},
@@ -39,7 +39,7 @@ TEST(JobSceneHash, ChangesWithWhateverChangesThePicture) {
       [](scene::Scene& s) { s.render.precision = scene::Precision::kFast; },
       [](scene::Scene& s) { s.render.shading = scene::Shading::kNormal; },
       [](scene::Scene& s) { s.spheres[0].center.y = 0.25; },
-      [](scene::Scene& s) { s.spheres[s.spheres.size() - 3].radius *= -1; },  // the glass turned inside out
+      [](scene::Scene& s) { s.spheres[s.spheres.size() - 3].radius *= -1; },  // inverts the glass
       [](scene::Scene& s) { s.spheres[1].radius *= 2; },
       [](scene::Scene& s) { std::swap(s.spheres[1], s.spheres[2]); },
       [](scene::Scene& s) { s.spheres.pop_back(); },
@@ -62,7 +62,7 @@ TEST(JobSceneHash, ChangesWithWhateverChangesThePicture) {
   }
 }
 
-TEST(JobSceneHash, StaysWhereThePictureStays) {
+TEST(JobSceneHash, IgnoresWhatDoesNotChangeTheImage) {
   scene::Scene scene = small_scene();
   scene.render.accelerator = scene::Accelerator::kList;
   scene.spheres[0].name = "renamed";
@@ -70,8 +70,8 @@ TEST(JobSceneHash, StaysWhereThePictureStays) {
   EXPECT_EQ(hash_of(scene), hash_of(small_scene()));
 }
 
-TEST(JobSceneHash, SpheresDoNotCancelOut) {
-  // Each change alone touches only the topmost bits of a double.
+TEST(JobSceneHash, ChangesOfSeveralSpheresDoNotCancel) {
+  // Each change affects only the highest bits of a double.
   std::set<std::string> hashes;
   for (int i = 0; i < 512; ++i) {
     scene::Scene scene = small_scene();

@@ -10,7 +10,7 @@
 namespace orrery::job {
 namespace {
 
-TEST(JobStatistics, RatesAreOverTheTimeOfRendering) {
+TEST(JobStatistics, RatesAreOverTheRenderTime) {
   JobReport report;
   report.render.paths = 600;
   report.render.rays = 1500;
@@ -22,7 +22,7 @@ TEST(JobStatistics, RatesAreOverTheTimeOfRendering) {
   EXPECT_EQ(json["seconds"]["write"], 100);
 }
 
-TEST(JobStatistics, NothingIsDividedByNoTime) {
+TEST(JobStatistics, RatesAreZeroWithoutRenderTime) {
   const auto json = nlohmann::json::parse(statistics_json({}, {}));
   EXPECT_EQ(json["paths_per_second"], 0);
   EXPECT_EQ(json["rays_per_second"], 0);
@@ -44,7 +44,7 @@ TEST(JobStatistics, HasEveryKeyOfTheSchema) {
 }
 
 TEST(JobStatistics, PeakMemoryIsInBytes) {
-  // This program alone has more than a mebibyte, and no test machine has a pebibyte.
+  // The test program has more than 1 MiB, and no test machine has 1 PiB.
   EXPECT_GT(peak_memory(), std::size_t{1} << 20);
   EXPECT_LT(peak_memory(), std::size_t{1} << 50);
 }

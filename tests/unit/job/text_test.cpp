@@ -17,7 +17,7 @@ TEST(JobText, AppendTakesAnyLength) {
   EXPECT_EQ(out, "a " + word + " 42");
 }
 
-TEST(JobText, BytesHaveTheUnitThatReadsBest) {
+TEST(JobText, BytesHaveTheLargestUnitAboveOne) {
   EXPECT_EQ(base::bytes_text(0), "0.0 KiB");
   EXPECT_EQ(base::bytes_text(1536), "1.5 KiB");
   EXPECT_EQ(base::bytes_text(1024 * 1024), "1.0 MiB");
@@ -25,7 +25,7 @@ TEST(JobText, BytesHaveTheUnitThatReadsBest) {
   EXPECT_EQ(base::bytes_text(5ull << 50), "5120.0 TiB");
 }
 
-TEST(JobText, JsonTakesFileNamesThatAreNoUtf8) {
+TEST(JobText, JsonAcceptsFileNamesThatAreNotUtf8) {
   const std::string text = json_text({{"file", "a\xff.toml"}});
   EXPECT_EQ(text, "{\n  \"file\": \"a\xEF\xBF\xBD.toml\"\n}\n");
 }

@@ -20,9 +20,9 @@ class JobThreads : public testing::Test {
   const int all_ = render::available_threads();
 };
 
-TEST_F(JobThreads, DefaultIsWhatTheProcessMayUse) { EXPECT_EQ(default_threads(), all_); }
+TEST_F(JobThreads, DefaultIsTheAffinityMask) { EXPECT_EQ(default_threads(), all_); }
 
-TEST_F(JobThreads, SchedulersGrantLess) {
+TEST_F(JobThreads, SchedulersLimitTheDefault) {
   ::setenv("SLURM_CPUS_PER_TASK", "1", 1);
   EXPECT_EQ(default_threads(), 1);
   ::unsetenv("SLURM_CPUS_PER_TASK");
@@ -30,12 +30,12 @@ TEST_F(JobThreads, SchedulersGrantLess) {
   EXPECT_EQ(default_threads(), 1);
 }
 
-TEST_F(JobThreads, SchedulersGrantNoMoreThanThereIs) {
+TEST_F(JobThreads, SchedulersCannotExceedTheAffinityMask) {
   ::setenv("SLURM_CPUS_PER_TASK", "100000", 1);
   EXPECT_EQ(default_threads(), all_);
 }
 
-TEST_F(JobThreads, WhatIsNoNumberGrantsNothing) {
+TEST_F(JobThreads, InvalidVariablesAreIgnored) {
   for (const char* text : {"", "abc", "0", "-1", "1x", "99999999999999999999"}) {
     ::setenv("SLURM_CPUS_PER_TASK", text, 1);
     EXPECT_EQ(default_threads(), all_) << text;

@@ -16,7 +16,7 @@ class JobWorkingSpace : public testing::Test {
   void SetUp() override { ::unsetenv("OCIO"); }
 };
 
-TEST_F(JobWorkingSpace, OneSpaceChangesNothingAndLooksNothingUp) {
+TEST_F(JobWorkingSpace, EqualSpacesNeedNoConversionOrConfig) {
   scene::Scene s = test::everything();
   s.color.space = s.color.working = "no such space";
   EXPECT_EQ(to_working_space("no such config", s), 0);
@@ -24,7 +24,7 @@ TEST_F(JobWorkingSpace, OneSpaceChangesNothingAndLooksNothingUp) {
   EXPECT_EQ(to_working_space("no such config", s), 0);
 }
 
-/// Grey has no colour in any of them; red gains green and blue in wider primaries, by the matrix of both.
+/// Grey stays grey in every space; red gains green and blue in wider primaries, by the matrix between the spaces.
 TEST_F(JobWorkingSpace, ColoursAreConverted) {
   scene::Scene s = test::everything();
   s.color.working = "ACEScg";
@@ -40,7 +40,7 @@ TEST_F(JobWorkingSpace, ColoursAreConverted) {
   EXPECT_EQ(std::get<scene::Dielectric>(s.materials[4].model).ior, 1.5);
 }
 
-TEST_F(JobWorkingSpace, WhatTheWorkingSpaceCannotHoldIsMovedAndCounted) {
+TEST_F(JobWorkingSpace, ClampsAndCountsColoursOutOfRange) {
   scene::Scene s = test::everything();
   s.color.space = "ACEScg";
   s.color.working = "lin_rec709";
@@ -51,7 +51,7 @@ TEST_F(JobWorkingSpace, WhatTheWorkingSpaceCannotHoldIsMovedAndCounted) {
   EXPECT_EQ(green.y, 1);
 }
 
-TEST_F(JobWorkingSpace, ASpaceThatHoldsNoLightIsRefused) {
+TEST_F(JobWorkingSpace, RejectsSpacesThatAreNotSceneLinear) {
   scene::Scene s = test::everything();
   for (const char* name : {"acescct", "raw", "srgb_texture"}) {
     s.color.working = name;
