@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Searches for the matrices kSobolOrders of src/kernel/sobol_columns.h and prints them. Takes some seconds.
+// Searches the matrices of src/kernel/sobol_columns.h, kSobolOrders, and prints them. Takes two minutes.
 //   c++ -std=c++20 -O2 -Isrc tools/sobol_orders.cpp -o build/sobol_orders && build/sobol_orders
 //
 // Vertex v of a path uses the points of one two-dimensional sequence in the order index -> A_v index, where A_v is a
@@ -132,6 +132,7 @@ class Search {
     pinhole_ = camera_only.pinhole_;
     earlier_ = camera_only.earlier_;
     orders_.push_back(best(1, 1, Kind::kRough, 0));
+    add_second_points(camera_only);
     for (const SobolOrder& order : orders_) {
       std::printf("    {");
       for (std::size_t j = 0; j < kSobolBits; ++j) std::printf("%s%#x", j == 0 ? "" : ", ", order[j]);
@@ -140,10 +141,33 @@ class Search {
   }
 
  private:
-  /// For nets of 4 to 1024 points: the sum of the logarithms of their variances, with and without a lens, relative to
-  /// independent points; plus the excess variance of products of two numbers at different vertices.
-  ///
-  /// Result     a lower bound if it is `most` or more
+  /// A vertex's second point goes together with the numbers that have led there, the camera's and those of the first
+  /// points of the vertices before; and it must not go wrong together with any other.
+  void add_second_points(const Search& camera_only) {
+    const auto first_orders = orders_;
+    with_lens_ = camera_only.with_lens_;
+    pinhole_ = camera_only.pinhole_;
+    earlier_.clear();
+    for (std::size_t vertex = 0; vertex < kSobolVertices; ++vertex)
+      for (int dimension = 0; dimension < 2; ++dimension)
+        earlier_.push_back(covariances(first_orders[vertex], dimension, Kind::kSmooth));
+    double weight = kDecay;
+    for (std::size_t vertex = 0; vertex < kSobolVertices; ++vertex) {
+      const SobolOrder order = best(2, 1, Kind::kSmooth, kSobolFreeBits);
+      for (int dimension = 0; dimension < 2; ++dimension) {
+        earlier_.push_back(covariances(order, dimension, Kind::kSmooth));
+        if (vertex == 0) continue;
+        const Covariances c = covariances(first_orders[vertex], dimension, Kind::kSmooth);
+        with_lens_.add(c, weight);
+        pinhole_.add(c, weight);
+      }
+      if (vertex > 0) weight *= kDecay;
+      orders_.push_back(order);
+    }
+  }
+
+  /// Of nets of 4 .. 1024 points: the sum of the logarithms of their variances, with and without a lens, each relative
+  /// to independent points. And what products of two numbers of different vertices vary more than independent ones.
   double cost(const SobolOrder& order, int dimensions, double weight, Kind kind, double most) const {
     Covariances own(kJudged, 1.0);
     double one = 1;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernel/render_tile.h"
+#include "support/tile_functions.h"
 #include "support/workload.h"
 
 namespace orrery::bench {
@@ -34,7 +35,9 @@ void run(benchmark::State& state, Precision precision, Render render) {
 }
 
 void in_double(benchmark::State& state, Precision precision, Lanes lanes) {
-  run<kernel::RayPacket, kernel::PathStream>(state, precision, kernel::render_tile_function({}, precision, lanes));
+  run<kernel::RayPacket, kernel::PathStream>(
+      state, precision,
+      lanes == Lanes::kOne ? test::one_lane_tile_function({}, precision) : kernel::render_tile_function({}, precision));
 }
 void in_float(benchmark::State& state) {
   run<kernel::RayPacketFast, kernel::PathStreamFast>(state, Precision::kFast, kernel::render_tile_fast_function({}));

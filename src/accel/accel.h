@@ -14,55 +14,56 @@
 
 namespace orrery::accel {
 
-/// Finds the nearest hit of rays among a scene's spheres.
+/// Finds the closest hits and the occlusion of rays among a scene's spheres.
 ///
-/// All ways of finding it give the same hits: nearest distance by the kernel's own arithmetic, then smaller id.
+/// All implementations give the same results: the smallest distance by the kernel's own arithmetic, then the smallest
+/// id; and occlusion by the same intersections.
 class Accel {
  public:
   virtual ~Accel() = default;
 
-  /// What the kernel calls for each packet; valid as long as this Accel lives.
+  /// The queries that the kernel calls; valid during the lifetime of this Accel.
   virtual kernel::Tracer tracer() const noexcept = 0;
 
-  /// Goes on this way from now on; not while rays are traced. A list has but one way.
+  /// Sets the traversal; not while rays are traced. Lists ignore it.
   virtual void use(Traversals) noexcept {}
 
-  /// "embree 3.13.5", "list".
+  /// For example "embree 3.13.5" or "list".
   virtual std::string name() const = 0;
 
-  /// Bytes that were allocated for it, as far as they are known.
+  /// Allocated bytes, as far as they are known.
   virtual std::size_t bytes() const noexcept = 0;
 };
 
-/// The naive traversal: one ray after the other against one sphere after the other, one lane. For comparison.
+/// The naive list: intersects each ray with each sphere in turn, with one lane. For comparison.
 ///
 /// Domain     the view's spheres outlive the result
 std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precision precision);
 
-/// The naive traversal with a ray in each lane: what the hierarchy has to beat. For comparison.
+/// The naive list with a ray in each lane, which the BVH has to beat. For comparison.
 ///
 /// Domain     the view's spheres outlive the result
 std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision);
 
-/// Hears how far a build is, 0..1, from any of its threads, and says whether to go on.
+/// Receives the progress of a build, 0..1, on any of its threads. Returns false to cancel the build.
 using BuildMonitor = std::function<bool(double fraction)>;
 
 /// Spheres as Embree user geometry.
 ///
 /// Domain     the view's spheres outlive the result
-/// Errors     base::Error(kInternal) where Embree fails or would drop a sphere, kStopped where the monitor said so
+/// Errors     base::Error(kInternal) if Embree fails or would drop a sphere, kStopped if the monitor cancelled the
+/// build
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor = {});
 
-/// Embree's own sphere points, one ray at a time, in float, as a renderer has them that writes no intersection of its
-/// own. Only rays of the fast kernel can be traced; hits are Embree's, not ours, so no picture is made of them. For
-/// comparison.
+/// Embree's built-in sphere points, traced one ray at a time in float, as in a renderer without its own intersection.
+/// Traces float packets only. Hits are Embree's, not the kernel's, so no image is rendered with them. For comparison.
 ///
-/// Domain     1 sphere or more, which fit into floats
-/// Errors     base::Error(kInternal) where Embree fails
+/// Domain     at least one sphere; coordinates representable as float
+/// Errors     base::Error(kInternal) if Embree fails
 std::unique_ptr<Accel> make_native_points(const kernel::SceneView& scene);
 
-/// The version of Embree that is loaded, "3.13.5".
+/// Embree's version, for example "3.13.5".
 std::string embree_version();
 
 }  // namespace orrery::accel

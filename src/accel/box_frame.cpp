@@ -8,11 +8,11 @@
 namespace orrery::accel {
 namespace {
 
-/// Share of the largest coordinate by which boxes grow. Derived worst case: 14 x 2^-24 for the rounding of origin,
-/// direction, reciprocal and box in Embree's slab test; 2^-20 is the next power of two.
+/// Padding of boxes as a fraction of the largest coordinate. The derived worst case is 14 x 2^-24, from the rounding of
+/// origin, direction, reciprocal and box in Embree's slab test; 2^-20 is the next power of two.
 constexpr double kPadding = 0x1p-20;
 
-/// A ray starts at most this many `reach`es from the middle on every axis (box_ray): sqrt(2), rounded up.
+/// Bound on a ray origin's distance from the centre on each axis, in units of `reach` (box_ray): sqrt(2), rounded up.
 constexpr double kFarthestStart = 1.5;
 
 float rounded_down(double x) {
@@ -46,15 +46,15 @@ BoxFrame::BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_
     }
   });
   for (int axis = 0; axis < 3; ++axis) middle[axis] = lower[axis] / 2 + upper[axis] / 2;
-  // Measured from the rounded middle: far from the world's origin that is not where the corners said.
+  // Measured from the rounded centre, which far from the world's origin differs from that of the corners.
   double half = 0;
   each([&](const kernel::Sphere& s) {
     half = std::max({half, std::abs(s.x - middle[0]) + s.radius, std::abs(s.y - middle[1]) + s.radius,
                      std::abs(s.z - middle[2]) + s.radius});
   });
   scale = std::ldexp(1.0, -std::ilogb(half));
-  reach = half * scale * 1.8;  // sqrt(3) for the box's corners, and room for the padding
-  // Embree finds a box between two others in single precision, too: some bits more of the largest coordinate.
+  reach = half * scale * 1.8;  // sqrt(3) for the box's corners, plus room for the padding
+  // Embree also interpolates motion-blurred bounds in single precision, which costs some more bits.
   padding = kPadding * reach * kFarthestStart * (moving_count > 0 ? 2 : 1);
 }
 

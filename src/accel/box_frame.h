@@ -8,21 +8,21 @@
 
 namespace orrery::accel {
 
-/// The space in which a box hierarchy in single precision holds the scene's spheres: recentred on their middle and
-/// scaled by a power of two to about one, so that neither the scene's place nor its size costs a bit.
+/// The space of a single-precision BVH: the spheres recentred on the origin and scaled by a power of two to about one,
+/// so that neither the scene's position nor its size costs precision.
 ///
-/// Boxes are padded by what rounding rays and boxes to floats can move them apart, hence no hit is ever lost:
-/// boxes are a hint, the hit itself is computed from the authored doubles.
+/// Boxes are padded by the worst rounding error of rays and boxes in float, so no hit is lost. Boxes only select
+/// candidates; the hit itself is computed from the authored doubles.
 class BoxFrame {
  public:
   BoxFrame() = default;
 
-  /// `motion`   of the spheres below moving_count, which are then held with all the way they go
+  /// `motion`   of the spheres below moving_count; the frame then encloses their whole motion
   /// Domain     `ids` not empty
   BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
            std::size_t moving_count = 0);
 
-  /// Corners of a sphere's padded box.
+  /// A sphere's padded bounding box.
   struct Box {
     float lower[3], upper[3];
   };
@@ -30,7 +30,7 @@ class BoxFrame {
 
   double middle[3] = {0, 0, 0};  ///< world space
   double scale = 1;              ///< box space = (world - middle) * scale; a power of two
-  double reach = 1;              ///< box space: radius of a sphere around the origin that holds all boxes
+  double reach = 1;              ///< box space: radius of a sphere around the origin that encloses all boxes
   double padding = 0;            ///< box space
 };
 

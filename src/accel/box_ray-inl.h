@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays as a box hierarchy in single precision sees them. Compiled once per instruction set.
+// Rays of a single-precision BVH. Compiled once per instruction set.
 #if defined(ORRERY_ACCEL_BOX_RAY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_BOX_RAY_INL_H_
 #undef ORRERY_ACCEL_BOX_RAY_INL_H_
@@ -18,16 +18,16 @@ namespace orrery::accel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace k = kernel::HWY_NAMESPACE;
 
-/// Rays in box space, moved on to where the boxes begin.
+/// Rays in box space, advanced to where the boxes begin.
 template <class D>
 struct BoxRays {
   math::HWY_NAMESPACE::Vec3<hn::Vec<D>> origin;
-  hn::Vec<D> start;     ///< how far each was moved on, in box space
-  hn::Mask<D> reaches;  ///< false: it passes all boxes by
+  hn::Vec<D> start;     ///< distance by which each was advanced, box space
+  hn::Mask<D> reaches;  ///< false: the ray misses all boxes
 };
 
-/// A ray from far away would give its floats to the distance: it is moved on, in the packet's precision, to the sphere
-/// that holds all boxes.
+/// Transforms rays to box space. Rays from far away would lose their float precision to the distance, so they are first
+/// advanced, in the packet's precision, to the sphere that encloses all boxes.
 ///
 /// Domain     unit directions
 template <class D>
@@ -48,7 +48,7 @@ HWY_INLINE BoxRays<D> to_box_space(D d, const k::Rays<D>& ray, const BoxFrame& f
 
   const auto closest = hn::Neg(dot(origin, ray.direction));
   const auto passing = mul_add(ray.direction, closest, origin) + low;
-  // The margin covers what rounding `closest` does to a ray from 1e12 reaches away.
+  // The margin covers the rounding of `closest` for a ray from 1e12 reaches away.
   const auto nearest_square = reach * reach * hn::Set(d, static_cast<T>(1.001));
   const auto misses = hn::Or(dot(passing, passing) > nearest_square, closest < zero);
   const auto start = hn::IfThenElseZero(outside, hn::Max(closest - reach, zero));

@@ -9,16 +9,16 @@
 
 namespace orrery::accel {
 
-/// Ids, ascending, of spheres that coincide with an earlier one: the same centre and the same radius in the numbers
-/// that this precision computes with, all the while the shutter is open.
+/// Ids, ascending, of spheres that coincide with an earlier one: equal centre and radius, in the number type of this
+/// precision, throughout the shutter interval.
 ///
-/// No accelerator holds them. A ray that leaves a sphere has its own root excluded by the sphere's id; a second sphere
-/// in the same place would be hit again at a distance of some rounding errors.
+/// Accelerators leave them out. Root exclusion is by the id of the sphere that a ray leaves, so a coincident second
+/// sphere would be hit again at a distance of a few rounding errors.
 ///
 /// Cost       see base::find_repeated
 std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision);
 
-/// The spheres of a scene, and which of them no ray meets.
+/// A scene, and the ids of its duplicate spheres, which are never hit.
 struct DistinctSpheres {
   kernel::SceneView view;
   std::vector<std::uint32_t> duplicates;

@@ -15,16 +15,16 @@
 namespace orrery::accel {
 namespace {
 
-/// At most so many spheres stand apart: every ray tests each of them.
+/// Maximum number of outliers: every ray tests each of them.
 constexpr std::size_t kMostApart = 4;
 
-/// A sphere stands apart when it is so many times larger than all that is smaller: a ground under a scene. Its box
-/// would hold every other sphere, and its size would decide the padding of theirs.
+/// A sphere is an outlier if it is this many times larger than the bounds of all smaller ones, such as a ground under a
+/// scene. Its box would enclose every other sphere, and its size would determine their padding.
 constexpr double kApartRatio = 4;
 
-/// Ids of all spheres but some.
+/// Ids of all spheres except those in `without`.
 ///
-/// Domain     `without` ascends
+/// Domain     `without` is ascending
 std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, std::size_t count) {
   std::vector<std::uint32_t> rest;
   rest.reserve(count - without.size());
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, st
   return rest;
 }
 
-/// Ids, ascending, of spheres that dwarf the box around the rest; duplicates are neither.
+/// Ids, ascending, of the outliers; duplicates count neither as outliers nor as the rest.
 std::vector<std::uint32_t> find_outliers(const kernel::Sphere* spheres, std::size_t count,
                                          const std::vector<std::uint32_t>& duplicates) {
   std::vector<std::uint32_t> largest = all_but(duplicates, count);
@@ -48,7 +48,7 @@ std::vector<std::uint32_t> find_outliers(const kernel::Sphere* spheres, std::siz
                     [&](std::uint32_t a, std::uint32_t b) {
                       return spheres[a].radius != spheres[b].radius ? spheres[a].radius > spheres[b].radius : a < b;
                     });
-  // The more are set apart, the smaller the rest: take the most for which even the smallest of them dwarfs it.
+  // Take the largest set whose smallest member dwarfs the rest.
   std::size_t take = 0;
   for (std::size_t n = candidates; n > 0 && take == 0; --n) {
     const std::vector<std::uint32_t> rest(largest.begin() + static_cast<std::ptrdiff_t>(n), largest.end());
@@ -61,7 +61,7 @@ std::vector<std::uint32_t> find_outliers(const kernel::Sphere* spheres, std::siz
   return outliers;
 }
 
-/// Ids of the spheres that have boxes.
+/// Ids of the spheres in the BVH.
 std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
   std::vector<std::uint32_t> without;
   std::set_union(scene.outliers.begin(), scene.outliers.end(), scene.duplicates.begin(), scene.duplicates.end(),
@@ -69,7 +69,7 @@ std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
   return all_but(without, count);
 }
 
-/// Where a sphere is at Embree's time step, 0 or 1.
+/// A sphere at Embree's time step 0 or 1.
 kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsigned step) {
   kernel::Sphere s = scene.spheres[id];
   if (step == 0 || id >= scene.moving_count) return s;
@@ -80,7 +80,7 @@ kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsign
 struct BuildState {
   const EmbreeScene* scene;
   std::uint32_t geometry;
-  std::atomic<std::uint64_t> refused{0};  ///< boxes that Embree would drop without a word
+  std::atomic<std::uint64_t> refused{0};  ///< boxes that Embree would drop silently
 };
 
 void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
@@ -89,7 +89,7 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
   const std::uint32_t id = scene.sphere_id(state.geometry, arguments->primID);
   RTCBounds& out = *arguments->bounds_o;
   if (std::binary_search(scene.duplicates.begin(), scene.duplicates.end(), id)) {
-    // Embree leaves out primitives with an empty box.
+    // Embree skips primitives with an empty box.
     out.lower_x = out.lower_y = out.lower_z = std::numeric_limits<float>::infinity();
     out.upper_x = out.upper_y = out.upper_z = -std::numeric_limits<float>::infinity();
     return;
@@ -114,7 +114,7 @@ class Embree final : public Accel {
     if (primitives > 0) build(primitives, monitor);
   }
 
-  kernel::Tracer tracer() const noexcept override { return functions_.tracer(scene_); }
+  kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }
   void use(Traversals traversals) noexcept override { scene_.traversals = traversals; }
   std::string name() const override { return "embree " + embree_version(); }
   std::size_t bytes() const noexcept override { return embree_.bytes(); }
@@ -134,7 +134,7 @@ class Embree final : public Accel {
     return scene;
   }
 
-  /// What moves has a geometry of its own: the others need no second time step.
+  /// Moving spheres get a separate geometry, since the others need no second time step.
   void build(std::size_t primitives, const BuildMonitor& monitor) {
     BuildState moving{&scene_, 0}, resting{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
     if (scene_.moving_primitives > 0) add_geometry(scene_.moving_primitives, 2, moving);
@@ -148,9 +148,8 @@ class Embree final : public Accel {
     embree_.commit();
     rtcSetSceneProgressMonitorFunction(embree_.get(), nullptr, nullptr);
     if (moving.refused + resting.refused > 0)
-      throw base::Error(
-          base::ErrorKind::kInternal,
-          "Embree would drop " + std::to_string(moving.refused + resting.refused) + " spheres without a word");
+      throw base::Error(base::ErrorKind::kInternal,
+                        "Embree would silently drop " + std::to_string(moving.refused + resting.refused) + " spheres");
     scene_.scene = embree_.get();
   }
 
@@ -161,6 +160,7 @@ class Embree final : public Accel {
     rtcSetGeometryUserData(geometry, &state);
     rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, functions_.intersect);
+    rtcSetGeometryOccludedFunction(geometry, functions_.occluded);
     rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
     embree_.attach(geometry);
   }
@@ -170,7 +170,7 @@ class Embree final : public Accel {
   OwnedScene embree_;
 };
 
-/// Every sphere stands apart, and no hierarchy is left.
+/// Treats every sphere as an outlier, without a BVH.
 class SimdList final : public Accel {
  public:
   SimdList(const kernel::SceneView& view, kernel::Precision precision)
@@ -181,7 +181,7 @@ class SimdList final : public Accel {
     scene_.outliers = all_but(duplicates(view, precision), view.sphere_count);
   }
 
-  kernel::Tracer tracer() const noexcept override { return functions_.tracer(scene_); }
+  kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }
   std::string name() const override { return "SIMD list"; }
   std::size_t bytes() const noexcept override { return scene_.outliers.size() * sizeof(scene_.outliers[0]); }
 
@@ -198,7 +198,7 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor) {
-  if (scene.sphere_count == 0) return make_list(scene, precision);  // nothing to build a hierarchy of
+  if (scene.sphere_count == 0) return make_list(scene, precision);  // there is nothing to build a BVH of
   return std::make_unique<Embree>(scene, precision, monitor);
 }
 

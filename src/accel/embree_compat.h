@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place that knows that there are two Embrees: 3.13 (Debian 12) and 4 (Debian 13).
+// The API differences between Embree 3.13 (Debian 12) and 4 (Debian 13).
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -39,6 +39,29 @@ inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) {
   rtcIntersect1(scene, &ray, &arguments);
 }
 
+/// Tests a packet of 4, 8 or 16 rays, by the type of `rays`, for occlusion.
+template <class Rays>
+inline void occluded(const int* valid, RTCScene scene, EmbreeContext& context, Rays& rays) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  if constexpr (sizeof(Rays) == sizeof(RTCRay16)) {
+    rtcOccluded16(valid, scene, &rays, &arguments);
+  } else if constexpr (sizeof(Rays) == sizeof(RTCRay8)) {
+    rtcOccluded8(valid, scene, &rays, &arguments);
+  } else {
+    rtcOccluded4(valid, scene, &rays, &arguments);
+  }
+}
+
+/// Tests one ray for occlusion.
+inline void occluded(RTCScene scene, EmbreeContext& context, RTCRay& ray) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  rtcOccluded1(scene, &ray, &arguments);
+}
+
 #else
 
 using EmbreeContext = RTCIntersectContext;
@@ -57,6 +80,19 @@ inline void intersect(const int* valid, RTCScene scene, EmbreeContext& context, 
 }
 
 inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
+
+template <class Rays>
+inline void occluded(const int* valid, RTCScene scene, EmbreeContext& context, Rays& rays) {
+  if constexpr (sizeof(Rays) == sizeof(RTCRay16)) {
+    rtcOccluded16(valid, scene, &context, &rays);
+  } else if constexpr (sizeof(Rays) == sizeof(RTCRay8)) {
+    rtcOccluded8(valid, scene, &context, &rays);
+  } else {
+    rtcOccluded4(valid, scene, &context, &rays);
+  }
+}
+
+inline void occluded(RTCScene scene, EmbreeContext& context, RTCRay& ray) { rtcOccluded1(scene, &context, &ray); }
 
 #endif
 

@@ -14,22 +14,22 @@
 
 namespace orrery::accel {
 
-/// What tracing a packet needs: Embree's scene, and the spheres that stand outside of it.
+/// The data behind a packet query: Embree's scene, and the spheres outside of it.
 struct EmbreeScene {
-  RTCScene scene = nullptr;  ///< null where every sphere stands apart
+  RTCScene scene = nullptr;  ///< null if every sphere is an outlier
   const kernel::Sphere* spheres = nullptr;
-  const kernel::Sphere* motion = nullptr;  ///< as kernel::SceneView has it
+  const kernel::Sphere* motion = nullptr;  ///< as in kernel::SceneView
   std::size_t moving_count = 0;
-  /// Embree's geometry 0 has two time steps where there are such, and geometry 1 has the rest. Else there is but one.
+  /// If not 0, these are Embree's geometry 0, with two time steps, and geometry 1 has the rest. Else there is only one.
   std::uint32_t moving_primitives = 0;
   BoxFrame frame;
-  /// Spheres so much larger than the rest that a box around them would hold everything (a ground): ascending ids,
-  /// tested by every ray before the hierarchy is entered, which they shorten.
+  /// Ascending ids of spheres so much larger than the rest that their boxes would enclose everything (a ground). Every
+  /// ray tests them first, so that their hits limit the traversal.
   std::vector<std::uint32_t> outliers;
-  std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that no ray meets: their boxes are empty
+  std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
   Traversals traversals;
 
-  /// The sphere behind a primitive: ids count all spheres, primitives those that do not stand apart.
+  /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.
   std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
     primitive += geometry * moving_primitives;
     for (const std::uint32_t id : outliers) primitive += primitive >= id ? 1u : 0u;
@@ -37,28 +37,33 @@ struct EmbreeScene {
   }
 };
 
-/// One call into Embree: some lanes of a packet. Embree hands the context back to the callback, which finds the packet
-/// behind it and writes the hit there, in the packet's own precision; Embree's own hit record is not used.
+/// One call into Embree with some lanes of a packet. Embree passes the context to the callback, which finds the packet
+/// behind it and stores the result there, in the packet's precision. Embree's hit record is not used.
 template <class Packet>
 struct EmbreeQuery {
-  EmbreeContext context;  // first: Embree's pointer to it is a pointer to all
+  EmbreeContext context;  // first member, so that Embree's pointer to it points to the query
   const EmbreeScene* scene;
   Packet* packet;
-  int first;  ///< lane of the packet that is Embree's lane 0
-  /// Box space: distance that a far ray was moved on, by Embree's lane.
+  int first;  ///< the packet's lane that is Embree's lane 0
+  /// Distance by which each ray was advanced, by Embree's lane, box space.
   alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
 };
 
-/// The functions that were compiled for this processor and are right for a precision, and for spheres that move or
-/// that all rest.
+/// The instances for this processor, a precision, and a scene that moves or rests.
 struct EmbreeFunctions {
   RTCIntersectFunctionN intersect = nullptr;
-  void (*trace)(const void* scene, kernel::RayPacket& packet) = nullptr;
-  void (*trace_fast)(const void* scene, kernel::RayPacketFast& packet) = nullptr;
-  std::int64_t target = 0;  ///< instruction set that they were compiled for, HWY_AVX2 etc.
+  RTCOccludedFunctionN occluded = nullptr;
+  kernel::Tracer tracer;  ///< `self` is not set
 
-  kernel::Tracer tracer(const EmbreeScene& scene) const noexcept { return {trace, trace_fast, &scene, target}; }
+  kernel::Tracer tracer_of(const EmbreeScene& scene) const noexcept {
+    kernel::Tracer t = tracer;
+    t.self = &scene;
+    return t;
+  }
 };
 EmbreeFunctions embree_functions(kernel::Precision precision, bool moves);
+
+/// Sets the occlusion functions.
+void add_occlusion_functions(EmbreeFunctions& functions, kernel::Precision precision, bool moves);
 
 }  // namespace orrery::accel

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets through Embree, and the callback that Embree makes for each sphere. Compiled once per instruction set.
+// Closest hits of packets by Embree, and its callback for each sphere. Compiled once per instruction set.
 #include <algorithm>
-#include <cstddef>
-#include <limits>
 
 #include "accel/embree_scene.h"
 
@@ -12,27 +10,21 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
-#include "accel/box_ray-inl.h"
-#include "kernel/intersect-inl.h"
+#include "accel/embree_rays-inl.h"
 #include "math/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
 
-// Rays that Embree takes at a time: as many floats as a register holds.
-constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
 using EmbreeRays =
     std::conditional_t<kWidth == 16, RTCRayHit16, std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit4>>;
 
-template <class Packet>
-using DistanceOf = std::remove_cvref_t<decltype(Packet::distance[0])>;
-
-/// The nearest hits so far.
+/// The closest hits so far.
 template <class D>
 struct ClosestHit {
   hn::Vec<D> distance;
   hn::Vec<k::IdTag<D>> ids;
-  hn::Mask<D> is_new;  ///< lanes that were found since it was loaded
+  hn::Mask<D> is_new;  ///< lanes whose hit has changed since load()
 
   template <class Packet>
   static HWY_INLINE ClosestHit load(D d, const Packet& packet, int first) {
@@ -43,7 +35,7 @@ struct ClosestHit {
     hn::Store(distance, d, packet.distance + first);
     hn::Store(ids, k::IdTag<D>(), packet.hit + first);
   }
-  /// Takes what is nearer; of two at the same place the smaller id.
+  /// Keeps the closer hit; of two at the same distance, that with the smaller id.
   HWY_INLINE void take(D d, const k::Distances<D>& found, hn::Vec<k::IdTag<D>> found_ids, hn::Mask<D> lanes) {
     const auto same_place = hn::And(found.value == distance, hn::RebindMask(d, ids > found_ids));
     const auto nearer = hn::And(hn::And(lanes, found.mask), hn::Or(found.value < distance, same_place));
@@ -53,44 +45,13 @@ struct ClosestHit {
   }
 };
 
-/// Some rays, one a lane, against one sphere.
+/// Intersects rays, one per lane, with one sphere.
 template <class D, kernel::Precision kPrecision>
 HWY_INLINE void meet(D d, const k::Rays<D>& ray, const k::Spheres<D>& sphere, std::uint32_t id, hn::Mask<D> lanes,
                      ClosestHit<D>& nearest) {
   const auto ids = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(id));
   const auto is_self = hn::RebindMask(d, ray.self == ids);
   nearest.take(d, k::nearest<D, kPrecision>(d, ray, sphere, is_self), ids, lanes);
-}
-
-/// Distances along rays as Embree's far limits: never below what the numbers say, so that boxes of other spheres at the
-/// same place are still entered. What is beyond all floats becomes infinite.
-template <class D>
-HWY_INLINE hn::Vec<D> far_limits(D d, hn::Vec<D> distance, double scale, hn::Vec<D> start) {
-  using T = hn::TFromD<D>;
-  constexpr T kUlp = sizeof(T) == 8 ? T(0x1p-50) : T(0x1p-21);
-  const auto at = distance * hn::Set(d, static_cast<T>(scale));
-  return (hn::MulAdd(at, hn::Set(d, kUlp), at) - start) * hn::Set(d, static_cast<T>(1 + 0x1p-20)) +
-         hn::Set(d, static_cast<T>(std::numeric_limits<float>::min()));
-}
-
-/// Stores lanes as floats.
-template <class D>
-HWY_INLINE void store_float(D d, hn::Vec<D> value, float* to) {
-  const hn::Rebind<float, D> df;
-  if constexpr (sizeof(hn::TFromD<D>) == 8) {
-    hn::StoreU(hn::DemoteTo(df, value), df, to);
-  } else {
-    hn::StoreU(value, df, to);
-  }
-  (void)d;
-}
-
-/// A bit a lane.
-template <class D>
-HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
 }
 
 /// Embree's callback for one ray.
@@ -113,7 +74,7 @@ void intersect_single(const RTCIntersectFunctionNArguments* arguments, const Emb
   RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, 1), 1, 0) = static_cast<float>(hn::GetLane(limit));
 }
 
-/// Embree's callback: some rays of the query against one sphere.
+/// Embree's callback: intersects some rays of the query with one sphere.
 template <class Packet, kernel::Precision kPrecision, bool kMoves>
 void intersect(const RTCIntersectFunctionNArguments* arguments) {
   using T = DistanceOf<Packet>;
@@ -128,14 +89,9 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
   const int n = static_cast<int>(arguments->N), step = static_cast<int>(hn::Lanes(d));
   float* const to_limit = &RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0);
   for (int v = 0; v < n; v += step) {
-    const auto valid_int = hn::LoadU(di, arguments->valid + v);
-    if (hn::AllFalse(di, valid_int < hn::Zero(di))) continue;
-    hn::Mask<D> valid;
-    if constexpr (sizeof(T) == 8) {
-      valid = hn::RebindMask(d, hn::PromoteTo(hn::RebindToSigned<D>(), valid_int) < hn::Zero(hn::RebindToSigned<D>()));
-    } else {
-      valid = hn::RebindMask(d, valid_int < hn::Zero(di));
-    }
+    const auto flags = hn::LoadU(di, arguments->valid + v);
+    if (hn::AllFalse(di, flags < hn::Zero(di))) continue;
+    const auto valid = is_valid(d, flags);
     const int first = query.first + v;
     const auto ray = k::load_rays(d, packet, first);
     auto nearest = ClosestHit<D>::load(d, packet, first);
@@ -156,36 +112,25 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
   }
 }
 
-/// Traces some rays of a packet one after the other.
+/// Traces rays of a packet one by one.
 template <class Packet>
 HWY_INLINE void trace_one_by_one(const int* valid, const EmbreeRays& rays, EmbreeQuery<Packet>& query) {
   const int first = query.first;
   alignas(64) DistanceOf<Packet> start[kWidth];
   std::copy_n(query.start, kWidth, start);
   RTCRayHit ray;
-  ray.ray.tnear = 0;
-  ray.ray.mask = ~0u;
-  ray.ray.id = 0;
-  ray.ray.flags = 0;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   for (int i = 0; i < kWidth; ++i) {
     if (valid[i] == 0) continue;
-    ray.ray.org_x = rays.ray.org_x[i];
-    ray.ray.org_y = rays.ray.org_y[i];
-    ray.ray.org_z = rays.ray.org_z[i];
-    ray.ray.dir_x = rays.ray.dir_x[i];
-    ray.ray.dir_y = rays.ray.dir_y[i];
-    ray.ray.dir_z = rays.ray.dir_z[i];
-    ray.ray.tfar = rays.ray.tfar[i];
-    ray.ray.time = rays.ray.time[i];
+    ray.ray = one_ray(rays.ray, i);
     query.first = first + i;
     query.start[0] = start[i];
     accel::intersect(query.scene->scene, query.context, ray);
   }
 }
 
-/// Traces a packet: the spheres that stand apart, then the hierarchy.
+/// Traces a packet: the outliers, then the BVH.
 template <class Packet, kernel::Precision kPrecision, bool kMoves>
 void trace(const void* self, Packet& packet) {
   using T = DistanceOf<Packet>;
@@ -210,36 +155,15 @@ void trace(const void* self, Packet& packet) {
   query.scene = &scene;
   query.packet = &packet;
   EmbreeRays rays;
+  set_constants(rays.ray);
   for (int i = 0; i < kWidth; ++i) {
-    rays.ray.tnear[i] = 0;
-    rays.ray.time[i] = 0;
-    rays.ray.mask[i] = ~0u;
-    rays.ray.id[i] = static_cast<unsigned>(i);
-    rays.ray.flags[i] = 0;
     rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
   alignas(64) int valid[kWidth];
   for (int first = 0; first < packet.count; first += kWidth) {
     query.first = first;
-    for (int v = 0; v < kWidth; v += step) {
-      const auto ray = k::load_rays(d, packet, first + v);
-      const auto box = to_box_space(d, ray, scene.frame);
-      const auto limit = far_limits(d, hn::Load(d, packet.distance + first + v), scene.frame.scale, box.start);
-      store_float(d, box.origin.x, rays.ray.org_x + v);
-      store_float(d, box.origin.y, rays.ray.org_y + v);
-      store_float(d, box.origin.z, rays.ray.org_z + v);
-      store_float(d, ray.direction.x, rays.ray.dir_x + v);
-      store_float(d, ray.direction.y, rays.ray.dir_y + v);
-      store_float(d, ray.direction.z, rays.ray.dir_z + v);
-      store_float(d, limit, rays.ray.tfar + v);
-      if constexpr (kMoves) store_float(d, hn::Load(d, packet.time + first + v), rays.ray.time + v);
-      hn::Store(box.start, d, query.start + v);
-      // A known hit before the boxes begin leaves nothing to look for (and Embree wants no negative limit).
-      const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first - v)));
-      const unsigned lanes = bits_of(d, hn::And(hn::And(active, box.reaches), limit > hn::Zero(d)));
-      for (int i = 0; i < step; ++i) valid[v + i] = (lanes >> i & 1) != 0 ? -1 : 0;
-    }
+    set_rays<true, kMoves>(query, rays.ray, valid);
     if (traversal == Traversal::kPacket) {
       accel::intersect(valid, scene.scene, query.context, rays);
     } else {
@@ -252,19 +176,19 @@ template <bool kMoves>
 EmbreeFunctions instance(kernel::Precision precision) {
   using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast;
   EmbreeFunctions f;
-  f.target = HWY_TARGET;
+  f.tracer.target = HWY_TARGET;
   switch (precision) {
     case Precision::kExact:
       f.intersect = intersect<RayPacket, Precision::kExact, kMoves>;
-      f.trace = trace<RayPacket, Precision::kExact, kMoves>;
+      f.tracer.trace = trace<RayPacket, Precision::kExact, kMoves>;
       break;
     case Precision::kBook:
       f.intersect = intersect<RayPacket, Precision::kBook, kMoves>;
-      f.trace = trace<RayPacket, Precision::kBook, kMoves>;
+      f.tracer.trace = trace<RayPacket, Precision::kBook, kMoves>;
       break;
     case Precision::kFast:
       f.intersect = intersect<RayPacketFast, Precision::kFast, kMoves>;
-      f.trace_fast = trace<RayPacketFast, Precision::kFast, kMoves>;
+      f.tracer.trace_fast = trace<RayPacketFast, Precision::kFast, kMoves>;
       break;
   }
   return f;
@@ -283,7 +207,9 @@ namespace orrery::accel {
 HWY_EXPORT(functions);
 
 EmbreeFunctions embree_functions(kernel::Precision precision, bool moves) {
-  return ORRERY_BEST(functions)(precision, moves);
+  EmbreeFunctions all = ORRERY_BEST(functions)(precision, moves);
+  add_occlusion_functions(all, precision, moves);
+  return all;
 }
 
 }  // namespace orrery::accel

@@ -8,7 +8,9 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <memory>
+#include <type_traits>
 
 #include "kernel/intersect-inl.h"
 #include "math/dispatch.h"
@@ -34,8 +36,7 @@ void trace_list(const void* self, Packet& packet) {
             d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
         if (hn::AllFalse(d, found.mask)) continue;
         const T distance = hn::GetLane(found.value);
-        if (distance >= packet.distance[i])
-          continue;  // ids ascend: of two hits at the same distance the smaller was first
+        if (distance >= packet.distance[i]) continue;  // ids ascend, so at equal distance the smaller id was first
         packet.distance[i] = distance;
         packet.hit[i] = static_cast<std::remove_reference_t<decltype(packet.hit[0])>>(id);
       }
@@ -48,14 +49,43 @@ void trace_list(const void* self, Packet& packet) {
   }
 }
 
+template <class T, kernel::Precision kPrecision, bool kMoves, class Packet>
+void occlude_list(const void* self, Packet& packet) {
+  namespace k = kernel::HWY_NAMESPACE;
+  using D = hn::FixedTag<T, 1>;
+  const D d;
+  using Id = std::remove_reference_t<decltype(packet.occluded[0])>;
+  const auto& [scene, duplicates] = *static_cast<const DistinctSpheres*>(self);
+  std::fill_n(packet.occluded, kernel::kPacketSize, Id{0});
+  for (int i = 0; i < packet.count; ++i) {
+    const auto ray = k::load_rays(d, packet, i);
+    auto duplicate = duplicates.begin();
+    for (std::size_t id = 0; id < scene.sphere_count && packet.occluded[i] == 0; ++id) {
+      if (duplicate != duplicates.end() && *duplicate == id) {
+        ++duplicate;
+        continue;
+      }
+      if (packet.target[i] == id) continue;
+      const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
+      const auto found = k::nearest<D, kPrecision>(
+          d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
+      if (!hn::AllFalse(d, found.mask) && hn::GetLane(found.value) < packet.distance[i])
+        packet.occluded[i] = static_cast<Id>(~Id{0});
+    }
+  }
+}
+
 template <bool kMoves>
 kernel::Tracer instance(kernel::Precision precision) {
-  using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast;
+  using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast, kernel::ShadowPacket, kernel::ShadowPacketFast;
   kernel::Tracer t;
   t.target = HWY_TARGET;
   t.trace = precision == Precision::kBook ? trace_list<double, Precision::kBook, kMoves, RayPacket>
                                           : trace_list<double, Precision::kExact, kMoves, RayPacket>;
   t.trace_fast = trace_list<float, Precision::kFast, kMoves, RayPacketFast>;
+  t.occlude = precision == Precision::kBook ? occlude_list<double, Precision::kBook, kMoves, ShadowPacket>
+                                            : occlude_list<double, Precision::kExact, kMoves, ShadowPacket>;
+  t.occlude_fast = occlude_list<float, Precision::kFast, kMoves, ShadowPacketFast>;
   return t;
 }
 

@@ -8,9 +8,24 @@
 namespace orrery::accel {
 namespace {
 
-/// Starts nearer than this do not count, lengths of the direction: without root exclusion a ray meets the sphere it
-/// left.
+/// Minimum hit distance, in lengths of the direction: without root exclusion a ray would hit the sphere that it leaves.
 constexpr float kShortestDistance = 0.001F;
+
+/// One ray of a packet as Embree's ray.
+template <class Packet>
+RTCRay one_ray(const Packet& packet, int lane) {
+  RTCRay ray{};
+  ray.org_x = packet.origin[0][lane];
+  ray.org_y = packet.origin[1][lane];
+  ray.org_z = packet.origin[2][lane];
+  ray.dir_x = packet.direction[0][lane];
+  ray.dir_y = packet.direction[1][lane];
+  ray.dir_z = packet.direction[2][lane];
+  ray.tnear = kShortestDistance;
+  ray.tfar = packet.distance[lane];
+  ray.mask = ~0u;
+  return ray;
+}
 
 void trace_points(const void* self, kernel::RayPacketFast& packet) {
   const auto scene = static_cast<RTCScene>(const_cast<void*>(self));
@@ -18,20 +33,24 @@ void trace_points(const void* self, kernel::RayPacketFast& packet) {
   init(context);
   for (int i = 0; i < packet.count; ++i) {
     RTCRayHit query{};
-    query.ray.org_x = packet.origin[0][i];
-    query.ray.org_y = packet.origin[1][i];
-    query.ray.org_z = packet.origin[2][i];
-    query.ray.dir_x = packet.direction[0][i];
-    query.ray.dir_y = packet.direction[1][i];
-    query.ray.dir_z = packet.direction[2][i];
-    query.ray.tnear = kShortestDistance;
-    query.ray.tfar = packet.distance[i];
-    query.ray.mask = ~0u;
+    query.ray = one_ray(packet, i);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     intersect(scene, context, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
     packet.distance[i] = query.ray.tfar;
     packet.hit[i] = query.hit.primID;
+  }
+}
+
+/// Ignores `target`: without an id test, the maximum distance has to end before the light.
+void occlude_points(const void* self, kernel::ShadowPacketFast& packet) {
+  const auto scene = static_cast<RTCScene>(const_cast<void*>(self));
+  EmbreeContext context;
+  init(context);
+  for (int i = 0; i < packet.count; ++i) {
+    RTCRay ray = one_ray(packet, i);
+    occluded(scene, context, ray);
+    packet.occluded[i] = ray.tfar < 0 ? ~0u : 0;
   }
 }
 
@@ -41,7 +60,13 @@ class NativePoints final : public Accel {
     build_sphere_points(scene_, view.sphere_count, [&](std::size_t i) { return view.spheres[i]; });
   }
 
-  kernel::Tracer tracer() const noexcept override { return {nullptr, trace_points, scene_.get()}; }
+  kernel::Tracer tracer() const noexcept override {
+    kernel::Tracer t;
+    t.trace_fast = trace_points;
+    t.occlude_fast = occlude_points;
+    t.self = scene_.get();
+    return t;
+  }
   std::string name() const override { return "embree " + embree_version() + ", sphere points"; }
   std::size_t bytes() const noexcept override { return scene_.bytes(); }
 

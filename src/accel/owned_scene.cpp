@@ -17,7 +17,7 @@ namespace {
                     what + " (Embree error " + std::to_string(static_cast<int>(code)) + ")");
 }
 
-/// Adds the limit to Embree's settings; without one Embree chooses by itself.
+/// Adds the instruction set limit, if there is one, to Embree's settings.
 std::string with_isa_limit(std::string settings) {
   const std::vector<std::string> available = kernel::available_isas();
   const std::string isa = kernel::isa_name();

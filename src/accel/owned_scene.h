@@ -12,10 +12,10 @@
 
 namespace orrery::accel {
 
-/// An Embree scene with a device of its own, and the count of its bytes.
+/// An Embree scene with its own device and a count of its memory.
 class OwnedScene {
  public:
-  /// `settings` of Embree, such as "threads=1"; it uses no better instruction set than kernel::isa_name().
+  /// `settings` are Embree's, such as "threads=1". Embree is limited to the instruction set kernel::isa_name().
   ///
   /// Errors     base::Error(kInternal) if Embree does not start
   explicit OwnedScene(std::string settings = {});
@@ -27,23 +27,23 @@ class OwnedScene {
   RTCScene get() const noexcept { return scene_; }
   std::size_t bytes() const noexcept;
 
-  /// Hands a finished geometry to the scene, which then owns it.
+  /// Commits a geometry and transfers it to the scene.
   void attach(RTCGeometry geometry);
 
-  /// Builds the hierarchy.
+  /// Builds the BVH.
   ///
-  /// Errors     base::Error(kInternal) with Embree's code, kStopped where a progress monitor said so
+  /// Errors     base::Error(kInternal) with Embree's code, kStopped if a progress monitor cancelled the build
   void commit();
 
  private:
-  std::atomic<std::int64_t> bytes_{0};  // Embree counts until the last release
+  std::atomic<std::int64_t> bytes_{0};  // first: Embree updates it until the last release
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
 };
 
-/// Builds a scene of Embree's own sphere points, rounded to floats. Radii are taken as they are.
+/// Builds a scene of Embree's built-in sphere points, rounded to float; radii are not padded.
 ///
-/// Errors     base::Error(kInternal) where Embree fails
+/// Errors     base::Error(kInternal) if Embree fails
 void build_sphere_points(OwnedScene& scene, std::size_t count,
                          const std::function<kernel::Sphere(std::size_t i)>& sphere_at);
 

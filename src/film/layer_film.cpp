@@ -10,7 +10,7 @@ namespace orrery::film {
 namespace {
 
 using kernel::Int128;
-using kernel::kLightGroups;
+using kernel::kLobes;
 
 double mean(Int128 sum, std::int64_t weight) {
   return weight > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(weight) : 0.0;
@@ -21,7 +21,7 @@ double mean(Int128 sum, std::int64_t weight) {
 /// Each group is rounded to a multiple of the beauty's last bit, and no partial sum exceeds the beauty, so that all
 /// sums are exact. With a filter that has negative lobes a partial sum can exceed it.
 struct Lights {
-  float rgb[kLightGroups][3] = {};
+  float rgb[kLobes][3] = {};
 
   explicit Lights(const LayerPixel& p) {
     for (int c = 0; c < 3; ++c) {
@@ -31,9 +31,9 @@ struct Lights {
       const double last_bit = std::ldexp(1.0, std::ilogb(beauty) - 23);
       double so_far = 0;
       sum = 0;
-      for (int g = 0; g < kLightGroups && beauty != 0; ++g) {
+      for (int g = 0; g < kLobes && beauty != 0; ++g) {
         sum += p.light[g][c];
-        const double next = g + 1 < kLightGroups ? std::nearbyint(mean(sum, p.lit) / last_bit) * last_bit : beauty;
+        const double next = g + 1 < kLobes ? std::nearbyint(mean(sum, p.lit) / last_bit) * last_bit : beauty;
         rgb[g][c] = static_cast<float>(next - so_far);
         so_far = next;
       }
@@ -117,17 +117,17 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Scen
   if (r.albedo) means("albedo", "RGB", kLight, p.albedo);
   if (r.lights()) {
     const Lights lights(p);
-    const auto light = [&](const char* layer, kernel::LightGroup group) {
+    const auto light = [&](const char* layer, kernel::Lobe group) {
       vector(layer, "RGB", kLight, [&](int k) { return lights.rgb[static_cast<int>(group)][k]; });
     };
-    using kernel::LightGroup;
-    if (r.background) light("background", LightGroup::kBackground);
-    if (r.diffuse) light("diffuse_direct", LightGroup::kDiffuseDirect);
-    if (r.diffuse) light("diffuse_indirect", LightGroup::kDiffuseIndirect);
-    if (r.specular) light("specular_direct", LightGroup::kSpecularDirect);
-    if (r.specular) light("specular_indirect", LightGroup::kSpecularIndirect);
-    if (r.transmission) light("transmission_direct", LightGroup::kTransmissionDirect);
-    if (r.transmission) light("transmission_indirect", LightGroup::kTransmissionIndirect);
+    using kernel::Lobe;
+    if (r.background) light("background", Lobe::kBackground);
+    if (r.diffuse) light("diffuse_direct", Lobe::kDiffuseDirect);
+    if (r.diffuse) light("diffuse_indirect", Lobe::kDiffuseIndirect);
+    if (r.specular) light("specular_direct", Lobe::kSpecularDirect);
+    if (r.specular) light("specular_indirect", Lobe::kSpecularIndirect);
+    if (r.transmission) light("transmission_direct", Lobe::kTransmissionDirect);
+    if (r.transmission) light("transmission_indirect", Lobe::kTransmissionIndirect);
   }
   if (r.variance) {
     vector("variance", "RGB", kData, [&](int c) {

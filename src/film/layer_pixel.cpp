@@ -9,10 +9,7 @@ namespace {
 
 using kernel::PathRecord;
 
-bool is_good(const double (&light)[3]) {
-  return std::abs(light[0]) <= kernel::kLargestSample && std::abs(light[1]) <= kernel::kLargestSample &&
-         std::abs(light[2]) <= kernel::kLargestSample;
-}
+bool is_good(const double (&light)[3]) { return kernel::is_good_sample(light[0], light[1], light[2]); }
 
 kernel::Int128 square(double v) {
   const double units = std::min(v * v, kLargestSquare) * (1 / kSquareUnit);
@@ -85,7 +82,6 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   if (is_good(path.light)) {
     lit += path_weight;
     ++paths;
-    if (request.lights() || request.variance) add3(light[static_cast<int>(path.group)], path.light, path_weight);
     if (request.variance) {
       for (int k = 0; k < 3; ++k) {
         const kernel::Int128 squared = square(path.light[k]);
@@ -128,11 +124,15 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   for (int k = 0; k < 3; ++k) position[k] = center[k] + path.offset[k];
 }
 
+void LayerPixel::add(const kernel::PathRecord& path, const kernel::LightEvent& event, std::int64_t path_weight) {
+  if (is_good(path.light)) add3(light[static_cast<int>(event.lobe)], event.value, path_weight);
+}
+
 void LayerPixel::add(const LayerPixel& other) {
   const auto add_all = [](Int128(&to)[3], const Int128(&from)[3]) {
     for (int k = 0; k < 3; ++k) to[k] += from[k];
   };
-  for (int g = 0; g < kernel::kLightGroups; ++g) add_all(light[g], other.light[g]);
+  for (int g = 0; g < kernel::kLobes; ++g) add_all(light[g], other.light[g]);
   add_all(squares, other.squares);
   add_all(negative_light, other.negative_light);
   add_all(negative_squares, other.negative_squares);

@@ -24,15 +24,19 @@ struct SphereCoverage {
 
 /// Layer sums of one pixel. They are integers, so that the order of addition does not change a bit.
 struct LayerPixel {
-  /// Adds a path. Radiance that is not finite or exceeds kernel::kLargestSample is invalid and left out of all sums.
+  /// Adds a path, except its light events. Radiance that is not finite or exceeds kernel::kLargestSample is invalid and
+  /// left out of all sums.
   void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path,
            std::int64_t weight);
+
+  /// Adds one of a path's light events. Ignored if the radiance of the path is invalid.
+  void add(const kernel::PathRecord& path, const kernel::LightEvent& event, std::int64_t weight);
 
   /// Adds further paths of the same pixel. If both nearest hits are equally distant, the first is kept.
   void add(const LayerPixel& other);
 
   using Int128 = kernel::Int128;
-  Int128 light[kernel::kLightGroups][3] = {};
+  Int128 light[kernel::kLobes][3] = {};
   Int128 squares[3] = {};  ///< sums of squared radiance, in units of kSquareUnit
   /// Sums of the radiance and of its square over the paths with negative weight; for the variance only.
   Int128 negative_light[3] = {}, negative_squares[3] = {};

@@ -26,10 +26,11 @@ struct LayerRequest {
   std::vector<std::uint32_t> material_numbers;  ///< material_id of each material of the compiled scene
   std::vector<Matte> mattes;
 
-  bool lights() const;       ///< a light group
-  bool nearest() const;      ///< a property of the nearest hit
-  bool paths_light() const;  ///< the radiance of single paths
-  bool guides() const;       ///< a guide for denoising
+  bool lights() const;                                        ///< a light group
+  bool nearest() const;                                       ///< a property of the nearest hit
+  bool paths_light() const;                                   ///< the radiance of single paths
+  bool light_events() const { return lights() || variance; }  ///< the lobes that radiance came from
+  bool guides() const;                                        ///< a guide for denoising
   bool any() const;
 };
 

@@ -149,7 +149,7 @@ void each_sum(Io& io, Sums& sums) {
 template <class Io, class Layers>
 void each_layer_number(Io& io, Layers& layers) {
   for (int k = 0; k < 3; ++k) {
-    for (int g = 0; g < kernel::kLightGroups; ++g)
+    for (int g = 0; g < kernel::kLobes; ++g)
       io.numbers(
           layers, [=](auto& p) -> auto& { return p.light[g][k]; });
     io.numbers(

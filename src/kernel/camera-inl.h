@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First rays of paths. Compiled once per instruction set.
+// Camera rays. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_CAMERA_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_CAMERA_INL_H_
 #undef ORRERY_KERNEL_CAMERA_INL_H_
@@ -19,14 +19,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// A ray that leaves the camera's origin plus `offset`.
+/// A ray from the camera's origin plus `offset`.
 template <class V>
 struct CameraRay {
   Vec3<V> offset;     ///< on the lens; zero for a pinhole
   Vec3<V> direction;  ///< unit
 };
 
-/// Moves the two numbers that choose a path's place in its pixel to where the filter wants it: 0..1 is the pixel.
+/// Warps the two numbers that place a path in its pixel by the pixel filter; the pixel itself is 0..1.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void filter_place(D d, const PixelFilter& filter, hn::Vec<hn::RebindToUnsigned<D>> samples,
                              Four<V>& random) {
@@ -46,7 +46,7 @@ HWY_INLINE void filter_place(D d, const PixelFilter& filter, hn::Vec<hn::RebindT
     auto x = static_cast<double>(u[0][i]);
     const auto y = static_cast<double>(u[1][i]);
     const double *along_x = filter.above, *along_y = filter.above;
-    // The first number chooses between two parts, and what is left of it the place.
+    // The first number selects one of two parts of the filter and, rescaled, the position in it.
     const auto choose = [&](double share, const double* low_x, const double* low_y, const double* high_x,
                             const double* high_y) {
       const bool low = x < share;
@@ -66,7 +66,7 @@ HWY_INLINE void filter_place(D d, const PixelFilter& filter, hn::Vec<hn::RebindT
   random.v[1] = hn::Load(d, u[1]);
 }
 
-/// A camera's vectors; see Camera.
+/// The vectors of kernel::Camera, one camera per lane.
 template <class V>
 struct CameraVectors {
   Vec3<V> origin, forward, right, down, lens_u, lens_v;
@@ -78,7 +78,7 @@ HWY_INLINE CameraVectors<V> camera_vectors(D d, const Camera& c) {
           set3(d, c.down),   set3(d, c.lens_u),  set3(d, c.lens_v)};
 }
 
-/// The camera at a time within the shutter, one a lane.
+/// The cameras at times within the shutter, one per lane.
 template <class V>
 HWY_INLINE CameraVectors<V> moved(const CameraVectors<V>& a, const CameraVectors<V>& change, V time) {
   return {mul_add(change.origin, time, a.origin), mul_add(change.forward, time, a.forward),
@@ -86,9 +86,9 @@ HWY_INLINE CameraVectors<V> moved(const CameraVectors<V>& a, const CameraVectors
           mul_add(change.lens_u, time, a.lens_u), mul_add(change.lens_v, time, a.lens_v)};
 }
 
-/// The ray of a path through its pixel.
+/// The camera rays of paths through their pixels.
 ///
-/// Space      film coordinates in pixels from the film's middle
+/// Space      pixel_x, pixel_y are pixels of the frame, relative to the rendered window
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE CameraRay<V> camera_ray(D d, const SceneView& scene, const CameraVectors<V>& camera, V pixel_x, V pixel_y,
                                    const Four<V>& random) {

@@ -3,19 +3,19 @@
 
 namespace orrery::kernel {
 
-/// A thin-lens camera as the sampler reads it: the ray through the film point (x, y), in pixels from the film's middle
+/// A thin-lens camera as the kernel reads it. The ray through the film point (x, y), in pixels from the film's centre
 /// with y down, and the lens point (u, v) on the unit disc starts at origin + u lens_u + v lens_v and points to
 /// origin + forward + x right + y down.
 ///
-/// Space      world; the vectors reach to the focus plane, so that all rays of a film point meet there
+/// Space      world; the vectors reach to the focus plane, so all rays of a film point intersect there
 struct Camera {
   double origin[3] = {0, 0, 0};
-  double forward[3] = {0, 0, -1};  ///< to the middle of the focus plane
+  double forward[3] = {0, 0, -1};  ///< to the centre of the focus plane
   double right[3] = {1, 0, 0};     ///< one pixel to the right on the focus plane
   double down[3] = {0, -1, 0};     ///< one pixel down on the focus plane
   double lens_u[3] = {0, 0, 0};    ///< lens radius along right; zero for a pinhole
   double lens_v[3] = {0, 0, 0};    ///< lens radius along up
-  double half_width = 0;           ///< px, from the left edge of the rendered window to the middle of the frame
+  double half_width = 0;           ///< px, from the left edge of the rendered window to the centre of the frame
   double half_height = 0;          ///< px, the same from the upper edge
 };
 

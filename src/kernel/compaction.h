@@ -6,7 +6,7 @@
 
 namespace orrery::kernel {
 
-/// For every set of lanes the order that brings them to the front; what stands behind them does not matter.
+/// For each lane mask, the permutation that moves the set lanes to the front. The remaining entries are unspecified.
 template <class Index, std::size_t kLanes>
 constexpr auto make_compaction_table() {
   std::array<std::array<Index, kLanes>, (std::size_t{1} << kLanes)> table{};

@@ -16,7 +16,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Transposes four consecutive doubles of each lane's own into four vectors.
+/// Loads four consecutive doubles per lane and transposes them into four vectors.
 template <class D, class RowOfLane>
 HWY_INLINE void gather4(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
   using T = hn::TFromD<D>;

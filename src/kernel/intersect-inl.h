@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a ray meets a sphere. Compiled once per instruction set, for any number of lanes, in double or float.
+// Ray-sphere intersection. Compiled once per instruction set, for any number of lanes, in double or float.
 #if defined(ORRERY_KERNEL_INTERSECT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_INTERSECT_INL_H_
 #undef ORRERY_KERNEL_INTERSECT_INL_H_
@@ -19,11 +19,11 @@ namespace orrery::kernel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): one room's lanes in another's text
 
-/// Unsigned lanes as wide as D's: ids and random bits beside the numbers they belong to.
+/// Unsigned lanes as wide as D's, for ids and random bits.
 template <class D>
 using IdTag = hn::RebindToUnsigned<D>;
 
-/// One ray a lane; see RayPacketOf.
+/// One ray per lane; see RaysOf.
 template <class D>
 struct Rays {
   using V = hn::Vec<D>;
@@ -32,7 +32,7 @@ struct Rays {
   hn::Vec<IdTag<D>> self;
 };
 
-/// Lanes `first` .. of a packet.
+/// Loads the rays of a packet from `first` on.
 template <class D, class Packet>
 HWY_INLINE Rays<D> load_rays(D d, const Packet& p, int first) {
   const auto at = [&](const auto& component) {
@@ -46,7 +46,7 @@ HWY_INLINE Rays<D> load_rays(D d, const Packet& p, int first) {
           hn::Load(IdTag<D>(), p.self + first)};
 }
 
-/// One sphere a lane, or the same in all.
+/// One sphere per lane, or the same in all.
 template <class D>
 struct Spheres {
   Vec3<hn::Vec<D>> center;
@@ -60,7 +60,7 @@ HWY_INLINE Spheres<D> broadcast(D d, const Sphere& s) {
           hn::Set(d, static_cast<T>(s.radius))};
 }
 
-/// A sphere at the times of the rays `first` .. of a packet.
+/// A sphere at the times of a packet's rays from `first` on.
 ///
 /// Domain     `scene` has spheres, motion and moving_count as SceneView has them; something moves where kMoves
 template <bool kMoves, class D, class Scene, class Packet>
@@ -72,13 +72,13 @@ HWY_INLINE Spheres<D> sphere_at(D d, const Scene& scene, std::uint32_t id, const
   return {mul_add(change.center, time, at_opening.center), hn::MulAdd(change.radius, time, at_opening.radius)};
 }
 
-/// The chord that a sphere cuts out of a ray's line, seen from the sphere's centre.
+/// The chord along which a ray's line passes through a sphere.
 template <class D>
 struct Chord {
   using V = hn::Vec<D>;
-  V middle;           ///< distance of the chord's middle, in lengths of the direction
-  V discriminant;     ///< radius^2 - |to_center|^2; the line meets the sphere where this is >= 0
-  Vec3<V> to_center;  ///< from the middle to the sphere's centre; perpendicular to the direction
+  V middle;           ///< distance to the chord's midpoint, in lengths of the direction
+  V discriminant;     ///< radius^2 - |to_center|^2; the line intersects the sphere if this is >= 0
+  Vec3<V> to_center;  ///< from the midpoint to the sphere's centre; perpendicular to the direction
 };
 
 template <class D, class V = hn::Vec<D>>
@@ -88,7 +88,7 @@ HWY_INLINE V discriminant(const V& radius, const Vec3<V>& to_center) {
       hn::NegMulAdd(to_center.y, to_center.y, hn::NegMulAdd(to_center.x, to_center.x, radius * radius)));
 }
 
-/// The perpendicular form: only differences are ever squared, so nothing large cancels.
+/// The chord in perpendicular form: only differences are squared, so no large terms cancel.
 ///
 /// Reference  haines2019, ch. 7
 template <class D>
@@ -99,14 +99,14 @@ HWY_INLINE Chord<D> plain_chord(const Rays<D>& ray, const Spheres<D>& sphere) {
   return {middle, discriminant<D>(sphere.radius, to_center), to_center};
 }
 
-/// The same, with what rounding took from the difference, and a second projection.
+/// Refines a plain chord with the rounding error of the difference and a second projection.
 ///
 /// Precision  test Extremes.HitOrMissAndHitPointError, against MPFR
 template <class D>
 HWY_INLINE Chord<D> compensated(const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
   const auto lost = difference_error(sphere.center, ray.origin, sphere.center - ray.origin);
   auto to_center = plain.to_center + (lost - ray.origin_low);
-  // A far origin leaves a component along the ray in what should be perpendicular to it: take it out once more.
+  // With a distant origin, to_center keeps a component along the ray; project it out once more.
   const auto rest = dot(to_center, ray.direction) * ray.inverse_square;
   to_center = neg_mul_add(ray.direction, rest, to_center);
   return {plain.middle + rest, discriminant<D>(sphere.radius, to_center), to_center};
@@ -119,10 +119,10 @@ HWY_INLINE Chord<D> chord(const Rays<D>& ray, const Spheres<D>& sphere) {
   return plain;
 }
 
-/// Lanes whose lines may meet their spheres; the others surely do not, whatever compensation adds.
+/// Lanes whose lines may intersect their spheres. The others miss, whatever compensation adds.
 ///
 /// The plain form errs by less than 2^-47 (|to_sphere|^2 + |center|^2): the difference by 2^-53 of itself and of the
-/// origin, which is no farther from home than both together; the projection by some 2^-51 of the difference.
+/// origin, whose length is at most that of both together; the projection by about 2^-51 of the difference.
 template <class D>
 HWY_INLINE hn::Mask<D> may_meet(D d, const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
   const auto to_sphere = sphere.center - ray.origin;
@@ -131,17 +131,17 @@ HWY_INLINE hn::Mask<D> may_meet(D d, const Rays<D>& ray, const Spheres<D>& spher
   return hn::MulAdd(reach, margin, plain.discriminant) >= hn::Zero(d);
 }
 
-/// Distances along the ray, in lengths of its direction; only lanes in `mask` have one.
+/// Distances along rays, in lengths of their directions; only lanes in `mask` have one.
 template <class D>
 struct Distances {
   hn::Vec<D> value;
   hn::Mask<D> mask;
 };
 
-/// The nearest point beyond the origin where each ray meets its sphere.
+/// The closest intersection of each ray with its sphere beyond the ray's origin.
 ///
-/// A ray that starts on the sphere itself meets it again at one place only, the other end of the chord; its own
-/// start is divided out of the quadratic and can't come back as a rounding error. Every other sphere: strictly > 0.
+/// A ray that starts on the sphere can hit it again only at the other end of the chord: its own start is divided out of
+/// the quadratic and cannot return as a rounding error. For every other sphere the distance is strictly positive.
 template <class D, Precision kPrecision>
 HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self) {
   using T = hn::TFromD<D>;
@@ -163,13 +163,13 @@ HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& spher
   } else {
     auto c = plain_chord(ray, sphere);
     if constexpr (kPrecision == Precision::kExact) {
-      // A ray of the naive list misses nearly all spheres, and compensation takes longer than all that came before.
+      // In the naive list a ray misses nearly all spheres, and compensation costs more than everything before it.
       if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hn::Or(is_self, may_meet(d, ray, sphere, c))))
         return {zero, is_self};
       c = compensated(ray, sphere, c);
     }
     const auto meets = hn::Or(is_self, c.discriminant >= zero);
-    // A ray of the naive list misses nearly all spheres, and a root takes as long as all that came before.
+    // In the naive list a ray misses nearly all spheres, and the root costs as much as everything before it.
     if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, meets)) return {zero, meets};
     const auto half = hn::Sqrt(hn::Max(c.discriminant, zero) * ray.inverse_square);
     const auto entry = c.middle - half;
@@ -180,15 +180,15 @@ HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& spher
   }
 }
 
-/// Where a ray meets its sphere, seen from the sphere's centre.
+/// A hit point relative to the sphere's centre.
 template <class V>
 struct HitPoint {
-  Vec3<V> offset;   ///< to the point; its length is one radius (to rounding)
+  Vec3<V> offset;   ///< from the centre to the point; one radius long, to rounding
   Vec3<V> outward;  ///< the same as a unit vector
 };
 
-/// A distance to the other end of the own chord, as `nearest` computes it, freed of most of its rounding: what is not
-/// perpendicular to the ray in the chord's middle is taken out, as `chord` does for other spheres.
+/// Refines the distance to the other end of a ray's own chord: projects out the component along the ray of the chord's
+/// midpoint, as `compensated` does for other spheres.
 template <class D, Precision kPrecision>
 HWY_INLINE hn::Vec<D> own_distance(D d, const Rays<D>& ray, hn::Vec<D> distance) {
   if constexpr (kPrecision != Precision::kExact) return distance;
@@ -198,9 +198,9 @@ HWY_INLINE hn::Vec<D> own_distance(D d, const Rays<D>& ray, hn::Vec<D> distance)
   return hn::NegMulAdd(rest, hn::Set(d, static_cast<T>(2)), distance);
 }
 
-/// The point that belongs to a distance of `nearest`.
+/// The hit point for a distance from `nearest`.
 ///
-/// Domain     lanes where `nearest` found this sphere
+/// Domain     lanes in which `nearest` hit this sphere
 template <class D, Precision kPrecision>
 HWY_INLINE HitPoint<hn::Vec<D>> hit_point(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self,
                                           hn::Vec<D> distance) {

@@ -27,7 +27,7 @@ struct Isa {
   const char* name;
   std::int64_t target;
 };
-/// Best first; the same that the build leaves enabled.
+/// Best first; those that the build enables.
 constexpr Isa kIsas[] = {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}};
 
 }  // namespace

@@ -8,21 +8,21 @@
 
 namespace orrery::kernel {
 
-/// The instruction set of the kernel and tracer instances that are chosen from now on: "sse4", "avx2", "avx512".
+/// The instruction set of kernel and tracer instances chosen from now on: "sse4", "avx2" or "avx512".
 ///
-/// Result     the name that the chosen instance was compiled with, not the name that was requested
+/// Result     what the chosen instance was compiled for, not what was requested
 std::string isa_name();
 
-/// The name of a Highway target (HWY_AVX2 etc.), such as an instance reports of itself.
+/// The name of a Highway target (HWY_AVX2 etc.), as reported by an instance.
 std::string isa_name(std::int64_t target);
 
-/// The instruction sets that this program was compiled for and this processor has, best first; whatever the limit.
+/// The instruction sets that the program was compiled for and the processor supports, best first, ignoring the limit.
 std::vector<std::string> available_isas();
 
-/// Uses no better instruction set than this one from now on; empty: the best. Call it from one thread, before kernel
-/// and tracer functions are chosen.
+/// Limits kernel and tracer functions chosen from now on to this instruction set; empty removes the limit. Not
+/// thread-safe.
 ///
-/// Result     false, and nothing has changed, where it is not among available_isas()
+/// Result     false, with nothing changed, if `name` is not among available_isas()
 bool limit_isa(std::string_view name);
 
 }  // namespace orrery::kernel

@@ -7,10 +7,10 @@
 
 namespace orrery::kernel {
 
-/// How a path's light came to the camera: what the first surface did with it, and whether the light came there straight
-/// (direct) or by way of another surface (indirect). Light that does no more than pass through glass comes straight.
-enum class LightGroup : std::uint8_t {
-  kBackground,  ///< no surface at all
+/// The light path by its first scattering event, and by whether the light came to that surface straight from its source
+/// (direct) or from another surface (indirect). Light that only passes through glass counts as direct.
+enum class Lobe : std::uint8_t {
+  kBackground,  ///< no surface: the camera sees the source itself
   kDiffuseDirect,
   kDiffuseIndirect,
   kSpecularDirect,
@@ -18,18 +18,33 @@ enum class LightGroup : std::uint8_t {
   kTransmissionDirect,
   kTransmissionIndirect,
 };
-inline constexpr int kLightGroups = 7;
+inline constexpr int kLobes = 7;
 
-/// One path, as layers beside the beauty want to know it. Only a tile that asks for records pays for them.
+/// What the layers beside the beauty need to know of one path. Only tiles that request records pay for them.
 struct PathRecord {
-  double light[3] = {0, 0, 0};        ///< what it brought to its pixel: nothing, unless it left the scene
+  double light[3] = {0, 0, 0};        ///< the path's whole radiance, the sum of its light events
   double offset[3] = {0, 0, 0};       ///< first hit: from the sphere's centre to the point, scene units
   double direction[3] = {0, 0, 0};    ///< of the camera ray that hit it, unit
-  float guide_albedo[3] = {0, 0, 0};  ///< of the first surface that is no sharp mirror or glass, tinted by those before
+  float guide_albedo[3] = {0, 0, 0};  ///< of the first surface that is not delta, times the throughput before it
   float guide_normal[3] = {0, 0, 0};  ///< its normal, unit, against the ray; world space
   std::uint32_t sphere = kNoSphere;   ///< first hit; kNoSphere: the background
-  LightGroup group = LightGroup::kBackground;
-  double time = 0;  ///< 0..1 within the shutter
+  double time = 0;                    ///< 0..1 within the shutter
+};
+
+/// Radiance that a path gained at one point: from the background, or from a light.
+struct LightEvent {
+  double value[3];          ///< emitted radiance times the path's throughput
+  std::uint32_t path;       ///< index of the path's record within the tile
+  std::uint16_t group = 0;  ///< light group of the source; 0: of none
+  Lobe lobe = Lobe::kBackground;
+};
+
+/// The buffer for a tile's light events, which come in no particular order.
+struct LightEvents {
+  LightEvent* next = nullptr;
+  LightEvent* end = nullptr;
+  /// Called when a packet's events might not fit. Must leave room for kPacketSize more and keep those before `next`.
+  void (*make_room)(LightEvents& events) = nullptr;
 };
 
 }  // namespace orrery::kernel

@@ -7,24 +7,25 @@
 
 namespace orrery::kernel {
 
-/// Paths that are traced together: enough to fill packets down to the deeper bounces, few enough to stay in the cache.
+/// Paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
 inline constexpr int kStreamSize = 1024;
 
-/// The state of the paths of a tile between two of their vertices, component by component.
+/// The state of a tile's paths between two vertices, as a structure of arrays.
 ///
-/// The packed end of the arrays is read and written in whole vectors, hence the room for one more packet.
+/// The end of the arrays is read and written in whole vectors, hence the room for one more packet.
 template <class T, class Id>
 struct alignas(64) PathStreamOf {
   static constexpr int kCapacity = kStreamSize + kPacketSize;
   T base[3][kCapacity];        ///< centre of the sphere that the ray leaves
   T offset[3][kCapacity];      ///< from there to the ray's origin
   T direction[3][kCapacity];   ///< unit
-  T throughput[3][kCapacity];  ///< share of each colour that is left
+  T throughput[3][kCapacity];  ///< product of reflectances so far
   Id self[kCapacity];          ///< sphere that the ray leaves
   Id pixel[kCapacity];         ///< y << 16 | x
   Id sample[kCapacity];
-  Id history[kCapacity];      ///< in use only where paths are recorded
-  RayPacketOf<T, Id> packet;  ///< the rays that are being traced
+  Id history[kCapacity];      ///< only in loops that record paths; see record-inl.h
+  RayPacketOf<T, Id> packet;  ///< the rays being traced
+  T radiance[3][kCapacity];   ///< collected so far; only in loops that collect light along the path
 };
 
 using PathStream = PathStreamOf<double, std::uint64_t>;

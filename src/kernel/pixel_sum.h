@@ -8,13 +8,13 @@ namespace orrery::kernel {
 
 __extension__ using Int128 = __int128;
 
-/// Samples of one pixel, added up in fixed point (units of 2^-60), so that no order of adding changes a bit.
+/// The sum of a pixel's samples in fixed point (units of 2^-60), so that the order of addition changes no bit.
 ///
-/// A sum of floating-point numbers depends on its order, and with it on threads, tiles, shards and resumption; a sum
-/// of integers does not. 2^67 is the largest sum: 2^31 samples of at most kLargestSample.
+/// A floating-point sum depends on the order, and with it on threads, tiles, shards and resumption; an integer sum does
+/// not. The maximum is 2^67: 2^31 samples of kLargestSample.
 struct PixelSum {
   Int128 rgb[3] = {0, 0, 0};
-  std::int64_t weight = 0;  ///< of all samples, those left out apart: 1 each, but for PixelFilter's negative ones
+  std::int64_t weight = 0;  ///< of all samples but bad ones: 1 each, or -1 in a PixelFilter's negative lobes
 
   PixelSum& operator+=(const PixelSum& other) noexcept {
     for (int c = 0; c < 3; ++c) rgb[c] += other.rgb[c];
@@ -23,10 +23,15 @@ struct PixelSum {
   }
 };
 
-/// A sample above this is counted as bad: it would not leave room for 2^31 of its kind.
+/// Samples above this count as bad: 2^31 of them would overflow the sum.
 inline constexpr double kLargestSample = 0x1p35;
 
-/// The sample in units of 2^-60, cut towards zero; exact above 2^-8.
+/// Whether a sample is finite and small enough for the sums.
+inline bool is_good_sample(double r, double g, double b) noexcept {
+  return std::abs(r) <= kLargestSample && std::abs(g) <= kLargestSample && std::abs(b) <= kLargestSample;
+}
+
+/// Converts to units of 2^-60, truncating; exact above 2^-8.
 ///
 /// Domain     |value| <= kLargestSample
 inline Int128 to_fixed_point(double value) noexcept {
@@ -36,7 +41,7 @@ inline Int128 to_fixed_point(double value) noexcept {
          static_cast<std::int64_t>((value - static_cast<double>(whole)) * 0x1p60);
 }
 
-/// The nearest double, after one rounding to 53 bits and the exact scaling.
+/// Converts back to the nearest double: one rounding to 53 bits and an exact scaling.
 inline double from_fixed_point(Int128 sum) noexcept { return static_cast<double>(sum) * 0x1p-60; }
 
 }  // namespace orrery::kernel

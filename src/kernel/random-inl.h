@@ -16,13 +16,13 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The halves of a 64-bit product. In 64-bit lanes only the low 32 bits of each count.
+/// The halves of a 64-bit product. In 64-bit lanes each half is in the low 32 bits.
 template <class V>
 struct Halves {
   V high, low;
 };
 
-/// a * multiplier, 32 by 32 bits, lane by lane.
+/// The full 32 x 32 bit products a * multiplier.
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE Halves<V> multiply_wide(DU du, V a, std::uint32_t multiplier) {
   if constexpr (sizeof(hn::TFromD<DU>) == 8) {
@@ -43,9 +43,9 @@ struct Four {
   V v[4];
 };
 
-/// Philox4x32 with seven rounds: four 32-bit numbers for each counter, as good as independent.
+/// Philox4x32 with seven rounds: four 32-bit random numbers for each counter.
 ///
-/// Result     bits; in 64-bit lanes in the low halves, the high halves are not defined
+/// Result     bits; in 64-bit lanes in the low halves, with the high halves undefined
 /// Reference  salmon2011
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE Four<V> philox(DU du, Four<V> counter, std::uint32_t key0, std::uint32_t key1) {
@@ -64,7 +64,8 @@ HWY_INLINE Four<V> philox(DU du, Four<V> counter, std::uint32_t key0, std::uint3
   return {{c0, c1, c2, c3}};
 }
 
-/// The middle of one of 2^32 (double) or 2^23 (float) equal parts of 0..1: never 0, never 1, symmetric about 1/2.
+/// Maps bits to the centre of one of 2^32 (double) or 2^23 (float) equal intervals of 0..1: never 0 or 1, symmetric
+/// about 1/2.
 template <class D>
 HWY_INLINE hn::Vec<D> to_unit(D d, hn::Vec<hn::RebindToUnsigned<D>> bits) {
   const hn::RebindToUnsigned<D> du;
@@ -77,9 +78,9 @@ HWY_INLINE hn::Vec<D> to_unit(D d, hn::Vec<hn::RebindToUnsigned<D>> bits) {
   }
 }
 
-/// Four numbers that have nothing to do with those of any other (seed, pixel, sample, vertex).
+/// Four random numbers, independent of those of any other (seed, pixel, sample, vertex).
 ///
-/// Result     as of philox
+/// Result     as from philox
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE Four<V> independent_at_vertex(DU du, std::uint32_t seed, V pixel, V sample, std::uint32_t vertex) {
   return philox(du, Four<V>{{pixel, sample, hn::Set(du, vertex), hn::Zero(du)}}, seed,

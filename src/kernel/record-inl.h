@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes down what becomes of paths, for layers beside the beauty. Compiled once per instruction set.
+// Recording of paths, for layers beside the beauty. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_RECORD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_RECORD_INL_H_
 #undef ORRERY_KERNEL_RECORD_INL_H_
@@ -15,13 +15,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-// What a path remembers of its way, in the bits of its `history`.
-inline constexpr unsigned kLobeBits = 3;      ///< what the first surface did: 0 as long as there was none, or a Lobe
-inline constexpr unsigned kOnlyDeltaBit = 4;  ///< nothing but sharp mirrors and glass so far
-inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, otherwise than by passing through glass
-enum Lobe : unsigned { kDiffuse = 1, kSpecular = 2, kTransmission = 3 };
+// The bits of a path's `history`.
+inline constexpr unsigned kLobeBits = 3;      ///< a FirstLobe, or 0 before the first surface
+inline constexpr unsigned kOnlyDeltaBit = 4;  ///< only delta materials so far
+inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, other than by passing through glass
+enum FirstLobe : unsigned { kDiffuse = 1, kSpecular = 2, kTransmission = 3 };
 
-/// The records of the lanes of one vector.
+/// Writes the records of one vector of paths.
 template <class D>
 class Recorder {
  public:
@@ -36,14 +36,14 @@ class Recorder {
     (void)d;
   }
 
-  /// Paths begin: whatever the records held is forgotten.
+  /// Resets the records of paths that begin.
   HWY_INLINE void begin(D d, hn::Mask<D> active) {
     each(d, active, [](PathRecord& r, int) { r = {}; });
   }
 
-  /// The surfaces that camera rays have met.
+  /// Records the first hits.
   ///
-  /// `times`    of the rays; null where nothing moves
+  /// `times`    of the rays; null if nothing moves
   HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids spheres, const Vec3<V>& offset, const Vec3<V>& direction,
                             const hn::TFromD<D>* times) {
     const IdTag<D> du;
@@ -60,21 +60,35 @@ class Recorder {
     });
   }
 
-  /// Light that has arrived.
-  HWY_INLINE void light(D d, hn::Mask<D> lanes, const Vec3<V>& light, Ids history) {
+  /// Writes light events for radiance that paths gained.
+  HWY_INLINE void event(D d, hn::Mask<D> lanes, const Vec3<V>& light, Ids history) {
+    if (tile_.events == nullptr) return;
     const IdTag<D> du;
     HWY_ALIGN Id way[kMax];
     Stored rgb(d, light);
     hn::Store(history, du, way);
-    each(d, lanes, [&](PathRecord& r, int i) {
+    LightEvents& events = *tile_.events;
+    if (events.end - events.next < kPacketSize) events.make_room(events);
+    each_lane(d, lanes, [&](int i) {
       const unsigned lobe = static_cast<unsigned>(way[i]) & kLobeBits;
       const bool direct = (static_cast<unsigned>(way[i]) & kIndirectBit) == 0;
-      if (lobe != 0) r.group = static_cast<LightGroup>(2 * lobe - (direct ? 1 : 0));
+      LightEvent& e = *events.next++;
+      for (int k = 0; k < 3; ++k) e.value[k] = static_cast<double>(rgb.v[k][i]);
+      e.path = static_cast<std::uint32_t>(index(i));
+      e.group = 0;
+      e.lobe = lobe != 0 ? static_cast<Lobe>(2 * lobe - (direct ? 1 : 0)) : Lobe::kBackground;
+    });
+  }
+
+  /// Records the total radiance of paths that end.
+  HWY_INLINE void light(D d, hn::Mask<D> lanes, const Vec3<V>& light) {
+    Stored rgb(d, light);
+    each(d, lanes, [&](PathRecord& r, int i) {
       for (int k = 0; k < 3; ++k) r.light[k] = static_cast<double>(rgb.v[k][i]);
     });
   }
 
-  /// What a denoiser is guided by.
+  /// Records the denoiser guides.
   HWY_INLINE void guide(D d, hn::Mask<D> lanes, const Vec3<V>& albedo, const Vec3<V>& normal) {
     Stored color(d, albedo), n(d, normal);
     each(d, lanes, [&](PathRecord& r, int i) {
@@ -95,20 +109,23 @@ class Recorder {
       hn::Store(from.z, d, v[2]);
     }
   };
-  HWY_INLINE PathRecord& record(int lane) {
+  /// The index of a lane's record within the tile.
+  HWY_INLINE std::int64_t index(int lane) const {
     const PixelPlace at = place_of(pixel_[lane], scene_);
     const auto count = static_cast<std::int64_t>(tile_.sample_end - tile_.sample_begin);
     const auto sample = static_cast<std::int64_t>(sample_[lane]) - tile_.sample_begin;
-    return tile_.records[(std::int64_t{at.y - tile_.y} * tile_.width + (at.x - tile_.x)) * count + sample];
+    return (std::int64_t{at.y - tile_.y} * tile_.width + (at.x - tile_.x)) * count + sample;
+  }
+  template <class Do>
+  HWY_INLINE void each_lane(D d, hn::Mask<D> lanes, Do what) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, lanes, bytes);
+    for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8; bits != 0; bits &= bits - 1)
+      what(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
   }
   template <class Do>
   HWY_INLINE void each(D d, hn::Mask<D> lanes, Do what) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, lanes, bytes);
-    for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8; bits != 0; bits &= bits - 1) {
-      const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
-      what(record(lane), lane);
-    }
+    each_lane(d, lanes, [&](int lane) { what(tile_.records[index(lane)], lane); });
   }
 
   const SceneView& scene_;
@@ -117,14 +134,14 @@ class Recorder {
   HWY_ALIGN Id sample_[kMax];
 };
 
-/// Lanes whose surface sends light on in one direction only.
+/// Lanes whose material is delta: a sharp mirror or a dielectric.
 template <class D>
 HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
   const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == hn::Zero(d));
   return hn::Or(mirror, is_kind(d, at.kind, MaterialKind::kDielectric));
 }
 
-/// The history of paths behind the surfaces that they have just left.
+/// Updates the history of paths that a surface has scattered.
 template <class D>
 HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Surface<D>& at,
                                        const Vec3<hn::Vec<D>>& direction, std::uint32_t depth) {

@@ -12,10 +12,10 @@
 
 namespace orrery::kernel {
 
-/// The largest width and height of a picture: a pixel's name is y << 16 | x.
+/// Maximum width and height of an image: pixels are numbered y << 16 | x.
 inline constexpr int kLargestSide = 65536;
 
-/// A pixel by its name, y << 16 | x within the frame, as its place in the rendered window.
+/// A pixel's coordinates within the rendered window, from its number y << 16 | x within the frame.
 struct PixelPlace {
   int x, y;
 };
@@ -24,22 +24,23 @@ inline PixelPlace place_of(std::uint64_t name, const SceneView& scene) noexcept 
           static_cast<int>(((name >> 16) - scene.window_y) & 0xffff)};
 }
 
-/// A rectangle of pixels, or some of them, and the samples that each shall get.
+/// A rectangle of pixels, or some of its pixels, and the range of samples to render.
 struct Tile {
   int x = 0, y = 0;  ///< px, upper left corner, within the rendered window
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
   PixelSum* sums = nullptr;            ///< of the upper left pixel
-  std::int64_t row_stride = 0;         ///< from a pixel's sum to the one below
-  const PixelPlace* chosen = nullptr;  ///< the only pixels that get samples, counted from the upper left one; null: all
+  std::int64_t row_stride = 0;         ///< from a pixel's sum to that of the pixel below
+  const PixelPlace* chosen = nullptr;  ///< the pixels to render, relative to the upper left one; null: all
   int chosen_count = 0;
-  /// A record for every path: the samples of a pixel, then the pixel to the right. Null: nobody asks for them.
+  /// One record per path: the samples of a pixel, then the next pixel of the row. Null: not needed.
   PathRecord* records = nullptr;
-  bool record_light = true;   ///< false: nobody reads light and group of the records
-  bool record_guides = true;  ///< the same of the guides
+  LightEvents* events = nullptr;  ///< where the paths' light events go; null: not needed
+  bool record_light = true;       ///< false: the records' light is not needed
+  bool record_guides = true;      ///< false: the records' guides are not needed
 
   int pixel_count() const noexcept { return chosen != nullptr ? chosen_count : width * height; }
-  /// The i-th pixel that gets samples, counted from the upper left one.
+  /// The i-th pixel to render, relative to the upper left one.
   PixelPlace pixel(int i) const noexcept { return chosen != nullptr ? chosen[i] : PixelPlace{i % width, i / width}; }
   std::uint64_t path_count() const noexcept {
     return static_cast<std::uint64_t>(pixel_count()) * (sample_end - sample_begin);
@@ -48,35 +49,33 @@ struct Tile {
 
 struct TileCounts {
   std::uint64_t rays = 0;
-  std::uint64_t bad_samples = 0;  ///< not finite or above kLargestSample; left out of the sums
+  std::uint64_t bad_samples = 0;  ///< not finite or above kLargestSample; excluded from the sums
   std::int64_t target = 0;        ///< instruction set that the loop was compiled for, HWY_AVX2 etc.
 };
 
-/// Renders a tile into its sums.
+/// Renders a tile and adds its samples to the tile's sums.
 ///
-/// Domain     the tracer finds hits in the view's spheres, in the precision that the function was chosen for
+/// Domain     the tracer intersects the view's spheres, in the precision that the function was chosen for
 using RenderTile = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathStream& stream);
 using RenderTileFast = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile,
                                       PathStreamFast& stream);
 
-/// How many lanes the kernel's text is compiled for.
-enum class Lanes : std::uint8_t {
-  kOne,  ///< the oracle that the others are held against
-  kAll,  ///< as many as the processor has
-};
+/// How many lanes an instance of the kernel's text has. Instances with one lane are compiled into tests and benchmarks
+/// only, as the reference for those with all lanes.
+enum class Lanes : std::uint8_t { kOne, kAll };
 
-/// The path loop for the best instruction set that is enabled on this processor, without what no scene with these
-/// features needs.
+/// The path loop for the best enabled instruction set, specialized to scenes with these features.
 ///
-/// Domain     the scene that is rendered has these features
-/// Result     bit-identical pictures for both lane counts, with records or without, and on every instruction set with
+/// Domain     the scene has these features
+/// Result     bit-identical images for any number of lanes, with records or without, and on every instruction set
+/// with
 ///            fused multiply-add
-RenderTile render_tile_function(const Features& features, Precision precision, Lanes lanes = Lanes::kAll);
+RenderTile render_tile_function(const Features& features, Precision precision);
 RenderTileFast render_tile_fast_function(const Features& features);
 
-/// The same loop, which also fills the tile's records.
+/// The same loop, which also fills the tile's records and events.
 ///
-/// Domain     tiles have records
+/// Domain     the tiles have records
 RenderTile record_tile_function(const Features& features, Precision precision);
 RenderTileFast record_tile_fast_function(const Features& features);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points on the shapes that the renderer samples, from uniform numbers. Compiled once per instruction set.
+// Sampling of shapes from uniform numbers. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_SAMPLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SAMPLE_INL_H_
 #undef ORRERY_KERNEL_SAMPLE_INL_H_
@@ -18,7 +18,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): one room's lanes in another's text
 
-/// A point of the unit sphere's surface, uniform by area.
+/// A point on the unit sphere, uniform by area.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> sample_unit_sphere(D d, V u, V v) {
   using T = hn::TFromD<D>;
@@ -28,7 +28,7 @@ HWY_INLINE Vec3<V> sample_unit_sphere(D d, V u, V v) {
   return {radius * turn.cos, radius * turn.sin, one - (u + u)};
 }
 
-/// A point of the unit disc, uniform by area.
+/// A point on the unit disc, uniform by area.
 template <class D, class V>
 struct DiscPoint {
   V x, y;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers that a path takes at its vertices. Compiled once per instruction set.
+// A path's random numbers. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_SAMPLER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SAMPLER_INL_H_
 #undef ORRERY_KERNEL_SAMPLER_INL_H_
@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// The lower 16 bits, each moved to the bit of twice its place.
+/// Spreads the lower 16 bits: bit i moves to bit 2i.
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE V spread_bits(DU du, V v) {
   using Id = hn::TFromD<DU>;
@@ -31,12 +31,12 @@ HWY_INLINE V spread_bits(DU du, V v) {
   return v;
 }
 
-/// Sobol's points for a pixel's samples at one vertex of their paths.
+/// Sobol points for a pixel's samples at one path vertex.
 ///
-/// `order`    place in kSobolOrders
+/// `order`    index into kSobolOrders
 ///
-/// With blue noise one sequence goes through neighbouring pixels along a curve that keeps neighbours together, so that
-/// their errors cancel rather than add.
+/// With blue noise one sequence runs through neighbouring pixels along the Morton curve, so that their errors cancel
+/// rather than add.
 ///
 /// Reference  burley2020, ahmed2020 (pixels in hierarchical order)
 template <class DU, class V = hn::Vec<DU>>
@@ -47,19 +47,20 @@ HWY_INLINE Four<V> sobol_at_vertex(DU du, const Sampler& sampler, V pixel, V sam
   constexpr Id kMask = (Id{1} << kSobolBits) - 1;
   const V low_bits = hn::Set(du, kMask);
   V index = hn::And(sample, low_bits);
-  V beyond = hn::ShiftRight<kSobolBits>(sample);  // with the half; another sequence for each
+  V beyond = hn::ShiftRight<kSobolBits>(sample);  // includes the half; each value has another sequence
   V place = pixel;
   if (sampler.kind == SamplerKind::kBlueNoise) {
     const V curve =
         hn::Or(spread_bits(du, pixel), hn::ShiftLeft<1>(spread_bits(du, hn::template ShiftRight<16>(pixel))));
-    // A pixel's samples beyond its share of the sequence come from another one.
+    // A pixel's samples beyond its part of the sequence come from another one.
     const int bits = sampler.blue_noise_bits;
     index = hn::And(sample, hn::Set(du, (Id{1} << bits) - 1));
     index = hn::And(hn::Or(hn::ShiftLeftSame(curve, bits), index), low_bits);
     beyond = hn::ShiftRightSame(sample, bits);
     place = hn::ShiftRightSame(curve, kSobolBits - bits);
   }
-  // Odd multiples keep different places different; what is left of coincidences between vertices is by chance.
+  // Odd factors are bijective, so different places get different names; names of different vertices coincide only by
+  // chance.
   const auto times = [&](V v, std::uint32_t factor) {
     return hn::BitCast(du, hn::BitCast(d32, v) * hn::BitCast(d32, hn::Set(du, Id{factor})));
   };
@@ -68,29 +69,54 @@ HWY_INLINE Four<V> sobol_at_vertex(DU du, const Sampler& sampler, V pixel, V sam
   return sobol(du, index, name, order, last_two);
 }
 
+/// A path's four numbers in 0..1 by the sampler's sequence `name`; with Sobol, in the order at `order`.
+template <class D>
+HWY_INLINE Four<hn::Vec<D>> random_of_sequence(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
+                                               hn::Vec<hn::RebindToUnsigned<D>> sample, bool is_independent,
+                                               std::uint32_t name, std::uint32_t order, bool last_two) {
+  const hn::RebindToUnsigned<D> du;
+  const auto bits = is_independent ? independent_at_vertex(du, sampler.seed, pixel, sample, name)
+                                   : sobol_at_vertex(du, sampler, pixel, sample, name, order, last_two);
+  return {{to_unit(d, bits.v[0]), to_unit(d, bits.v[1]), to_unit(d, bits.v[2]), to_unit(d, bits.v[3])}};
+}
+
+/// Far down a path the numbers before have decided so much that well distributed points gain nothing.
+inline bool is_independent_at(const Sampler& sampler, std::uint32_t vertex) {
+  return sampler.kind == SamplerKind::kIndependent || vertex >= kSobolVertices;
+}
+
 /// The four numbers in 0..1 that one path takes at one of its vertices.
 ///
-/// `last_two` false: nobody reads these, and they may be anything.
+/// `last_two` false: the last two are not used and may have any value
 template <class D>
 HWY_INLINE Four<hn::Vec<D>> random_at_vertex(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
                                              hn::Vec<hn::RebindToUnsigned<D>> sample, std::uint32_t vertex,
                                              bool last_two) {
-  const hn::RebindToUnsigned<D> du;
-  // Far down a path so much has been decided already that even points bring nothing.
-  const auto bits = sampler.kind == SamplerKind::kIndependent || vertex >= kSobolVertices
-                        ? independent_at_vertex(du, sampler.seed, pixel, sample, vertex)
-                        : sobol_at_vertex(du, sampler, pixel, sample, vertex, vertex, last_two);
-  return {{to_unit(d, bits.v[0]), to_unit(d, bits.v[1]), to_unit(d, bits.v[2]), to_unit(d, bits.v[3])}};
+  return random_of_sequence(d, sampler, pixel, sample, is_independent_at(sampler, vertex), vertex, vertex, last_two);
 }
 
-/// When a path happens, 0..1 within the shutter; the same at all its vertices.
+/// Four more numbers in 0..1 at the same vertex, in dimensions of their own: for sampling lights, while those of
+/// random_at_vertex sample the BSDF.
 ///
-/// Precision  24 bits, so that a float has it as it is
+/// `last_two` as of random_at_vertex
+/// Domain     vertex < 2^30
+template <class D>
+HWY_INLINE Four<hn::Vec<D>> second_random_at_vertex(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
+                                                    hn::Vec<hn::RebindToUnsigned<D>> sample, std::uint32_t vertex,
+                                                    bool last_two) {
+  constexpr std::uint32_t kSecond = 0x40000000;  // above all vertices
+  return random_of_sequence(d, sampler, pixel, sample, is_independent_at(sampler, vertex), kSecond + vertex,
+                            kSobolSecondOrders + vertex, last_two);
+}
+
+/// A path's time, 0..1 within the shutter; the same at all its vertices.
+///
+/// Precision  24 bits, so that a float holds it exactly
 template <class D>
 HWY_INLINE hn::Vec<D> time_of_path(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
                                    hn::Vec<hn::RebindToUnsigned<D>> sample) {
   using T = hn::TFromD<D>;
-  constexpr std::uint32_t kVertex = 0xfffffffe;  // that no path has
+  constexpr std::uint32_t kVertex = 0xfffffffe;  // above all vertices
   const hn::RebindToUnsigned<D> du;
   const auto bits = sampler.kind == SamplerKind::kIndependent
                         ? independent_at_vertex(du, sampler.seed, pixel, sample, kVertex)

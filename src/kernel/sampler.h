@@ -6,20 +6,20 @@
 namespace orrery::kernel {
 
 enum class SamplerKind : std::uint8_t {
-  kIndependent,  ///< every number by chance
-  kSobol,        ///< the numbers of a pixel's samples spread evenly
-  kBlueNoise,    ///< and those of neighbouring pixels against each other
+  kIndependent,  ///< independent random numbers
+  kSobol,        ///< well distributed over a pixel's samples
+  kBlueNoise,    ///< and over neighbouring pixels, so that their errors cancel
 };
 
-/// Where the numbers come from by which paths choose their ways.
+/// The source of a path's random numbers.
 ///
-/// They are named by (seed, pixel, sample, vertex) alone, so that a picture does not depend on who asks, or when.
-/// Sample numbers from kSecondHalf on are a sequence of their own, independent of the first: two halves of a pixel that
-/// know nothing of each other tell its error.
+/// They are a function of (seed, pixel, sample, vertex) alone, so an image does not depend on the order of rendering.
+/// Samples from kSecondHalf on form a second sequence, independent of the first: the difference between a pixel's two
+/// independent halves estimates its error.
 struct Sampler {
   SamplerKind kind = SamplerKind::kSobol;
   std::uint32_t seed = 1;
-  int blue_noise_bits = 0;  ///< kBlueNoise: so many bits count the samples of a pixel, 0..16
+  int blue_noise_bits = 0;  ///< kBlueNoise: bits of the index that count a pixel's samples, 0..16
 
   static constexpr std::uint32_t kSecondHalf = 0x80000000u;
 };

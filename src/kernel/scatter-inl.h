@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface does with a ray. Compiled once per instruction set.
+// BSDFs: sampling, density and value. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_SCATTER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SCATTER_INL_H_
 #undef ORRERY_KERNEL_SCATTER_INL_H_
@@ -18,11 +18,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// The surface points that a vector of rays has reached, and their materials.
+/// Hit points, one per lane, and their materials.
 template <class D>
 struct Surface {
   using V = hn::Vec<D>;
-  Vec3<V> direction;  ///< of the arriving rays, unit
+  Vec3<V> direction;  ///< of the arriving ray, unit
   Vec3<V> offset;     ///< from the sphere's centre to the point
   Vec3<V> normal;     ///< unit, against the arriving ray
   hn::Mask<D> from_outside;
@@ -31,8 +31,8 @@ struct Surface {
   V r0;   ///< dielectric: Schlick's constant for this side
   hn::Vec<IdTag<D>> kind, fresnel;
 
-  /// Whether a direction points to the side that the ray came from. It asks the very question that the next
-  /// intersection will ask (the sign of direction . offset), so that no ray starts on the wrong side of its sphere.
+  /// Whether a direction points to the side that the ray came from. This is the test of the next intersection (the sign
+  /// of direction . offset), so no ray starts on the wrong side of its sphere.
   HWY_INLINE hn::Mask<D> same_side(D d, const Vec3<V>& w) const {
     const auto outward = dot(w, offset);
     return hn::Or(hn::And(from_outside, outward > hn::Zero(d)), hn::AndNot(from_outside, outward < hn::Zero(d)));
@@ -43,12 +43,14 @@ struct Surface {
   }
 };
 
-/// Where the rays go on.
+/// Sampled directions, one per lane.
 template <class D>
-struct Scattered {
+struct BsdfSample {
   Vec3<hn::Vec<D>> direction;  ///< unit
   hn::Mask<D> alive;           ///< false: absorbed
 };
+
+inline constexpr double kTwoPi = 6.283185307179586476925;
 
 /// Lanes whose id-wide value equals an enumerator.
 template <class D, class E>
@@ -57,21 +59,22 @@ HWY_INLINE hn::Mask<D> is_kind(D d, hn::Vec<IdTag<D>> kinds, E kind) {
   return hn::RebindMask(d, kinds == hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kind)));
 }
 
-/// Cosine-weighted: the tip of a unit vector around the tip of the normal.
+/// Samples the cosine-weighted hemisphere: the normal plus a point of the unit sphere, normalized.
 template <class D>
-HWY_INLINE Vec3<hn::Vec<D>> scatter_lambertian(D d, const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
+HWY_INLINE Vec3<hn::Vec<D>> sample_lambertian(D d, const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
   const auto w = normalized(d, at.normal + on_sphere);
-  // Where the two cancel there is no direction left; the normal is as good as any.
+  // Where the two cancel no direction is left; any one will do.
   return select(at.same_side(d, w), w, at.normal);
 }
 
-/// Uniform over the hemisphere.
+/// Samples the hemisphere uniformly.
 template <class D>
-HWY_INLINE Vec3<hn::Vec<D>> scatter_hemisphere(D d, const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
+HWY_INLINE Vec3<hn::Vec<D>> sample_hemisphere(D d, const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
   const auto w = select(at.same_side(d, on_sphere), on_sphere, negated(on_sphere));
   return select(at.same_side(d, w), w, at.normal);
 }
 
+/// The unit mirror direction of the arriving ray.
 template <class D>
 HWY_INLINE Vec3<hn::Vec<D>> mirrored(D d, const Surface<D>& at) {
   using T = hn::TFromD<D>;
@@ -79,26 +82,26 @@ HWY_INLINE Vec3<hn::Vec<D>> mirrored(D d, const Surface<D>& at) {
   return select(at.same_side(d, w), w, at.normal);
 }
 
-/// Fuzzy reflection: the tip of the unit mirror direction is moved to the surface of a sphere around it, of radius
-/// `fuzz`. Directions below the surface are absorbed.
+/// Samples fuzzy reflection: the direction to a point on the sphere of radius `fuzz` around the tip of the unit mirror
+/// direction. Directions below the surface are absorbed.
 ///
-/// Where fuzz is 1 the sum may vanish; the result is then no number, which is on no side, so the path is absorbed.
+/// If fuzz is 1 the sum may vanish. The direction is then NaN, which is on neither side, so the path is absorbed.
 ///
 /// Reference  shirley2024, "Fuzzy Reflection"
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Scattered<D> scatter_metal(D d, const Surface<D>& at, const Vec3<V>& on_sphere) {
+HWY_INLINE BsdfSample<D> sample_metal(D d, const Surface<D>& at, const Vec3<V>& on_sphere) {
   const auto mirror = mirrored(d, at);
   const auto w = normalized(d, mul_add(on_sphere, at.fuzz, mirror));
   const auto sharp = at.fuzz == hn::Zero(d);
   return {select(sharp, mirror, w), hn::Or(sharp, at.same_side(d, w))};
 }
 
-/// The reflectance of the chosen model; the share of light that does not enter.
+/// The Fresnel reflectance by the material's model.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leaving) {
   using T = hn::TFromD<D>;
   const V one = hn::Set(d, T(1));
-  // Schlick as the book has it: with the arriving ray's cosine, on both sides.
+  // As in the book, Schlick's approximation takes the cosine of the arriving ray on both sides.
   const V x = one - cos_arriving;
   const V x2 = x * x;
   const V schlick = hn::MulAdd(one - at.r0, x2 * x2 * x, at.r0);
@@ -109,11 +112,10 @@ HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leavin
                         hn::IfThenElseZero(is_kind(d, at.fresnel, FresnelKind::kSchlick), schlick));
 }
 
-/// Reflects where u is below the reflectance, refracts elsewhere.
-///
-/// Reference  Snell's law in the form with cos^2 that loses nothing near an index ratio of one
+/// Samples a smooth dielectric: reflects if u is below the reflectance, else refracts. Snell's law is in the form with
+/// cos^2, which does not cancel near an index ratio of one.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> scatter_dielectric(D d, const Surface<D>& at, V u) {
+HWY_INLINE Vec3<V> sample_dielectric(D d, const Surface<D>& at, V u) {
   using T = hn::TFromD<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, T(1));
   const V cos_arriving = hn::Min(hn::Neg(dot(at.direction, at.normal)), one);
@@ -126,24 +128,72 @@ HWY_INLINE Vec3<V> scatter_dielectric(D d, const Surface<D>& at, V u) {
   return select(reflects, mirrored(d, at), refracted);
 }
 
-/// Scatters every ray by its material, with the first two of the vertex's random numbers.
+/// Samples every lane's BSDF with the first two random numbers of its vertex.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Scattered<D> scatter(D d, const Features& features, const Surface<D>& at, const Four<V>& random) {
-  Scattered<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
+HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surface<D>& at, const Four<V>& random) {
+  BsdfSample<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
   const Vec3<V> on_sphere = sample_unit_sphere(d, random.v[0], random.v[1]);
   const auto among = [&](MaterialKind kind) { return is_kind(d, at.kind, kind); };
-  out.direction = select(among(MaterialKind::kLambertian), scatter_lambertian(d, at, on_sphere), out.direction);
+  out.direction = select(among(MaterialKind::kLambertian), sample_lambertian(d, at, on_sphere), out.direction);
   if (features.hemisphere)
-    out.direction = select(among(MaterialKind::kHemisphere), scatter_hemisphere(d, at, on_sphere), out.direction);
+    out.direction = select(among(MaterialKind::kHemisphere), sample_hemisphere(d, at, on_sphere), out.direction);
   const auto metal = among(MaterialKind::kMetal);
   if (!hn::AllFalse(d, metal)) {
-    const auto scattered = scatter_metal(d, at, on_sphere);
-    out.direction = select(metal, scattered.direction, out.direction);
-    out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, scattered.alive));
+    const auto sampled = sample_metal(d, at, on_sphere);
+    out.direction = select(metal, sampled.direction, out.direction);
+    out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, sampled.alive));
   }
   const auto glass = among(MaterialKind::kDielectric);
-  if (!hn::AllFalse(d, glass)) out.direction = select(glass, scatter_dielectric(d, at, random.v[0]), out.direction);
+  if (!hn::AllFalse(d, glass)) out.direction = select(glass, sample_dielectric(d, at, random.v[0]), out.direction);
   return out;
+}
+
+/// The density of sample_metal's directions before absorption, per steradian; zero for fuzz 0.
+///
+/// With c and s the cosine and sine of the angle to the mirror direction and f the fuzz, it is
+/// (c^2 + f^2 - s^2) / (2 pi f sqrt(f^2 - s^2)) inside the cone s < f, c > 0, and zero outside: the two points in
+/// which the line along w intersects the sphere around the tip, each with t^2 / (4 pi f^2 |cosine at the sphere|). It
+/// grows without bound towards the cone's rim and is integrable.
+///
+/// Precision  s^2 from the difference of the two unit vectors, since 1 - c^2 cancels for small fuzz
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
+  using T = hn::TFromD<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+  const auto apart = w - mirrored(d, at);
+  const V versine_twice = dot(apart, apart);  // 2 - 2c
+  const V s2 = versine_twice * hn::NegMulAdd(versine_twice, hn::Set(d, static_cast<T>(0.25)), one);
+  const V rest = hn::NegMulAdd(at.fuzz, at.fuzz, s2);  // s^2 - f^2, negative inside the cone
+  const auto inside = hn::And(rest < zero, versine_twice < hn::Set(d, T(2)));
+  const V density = (one - s2 - rest) / (at.fuzz * hn::Sqrt(hn::Neg(rest)) * hn::Set(d, static_cast<T>(kTwoPi)));
+  return hn::IfThenElseZero(inside, density);
+}
+
+/// The density with which sample_bsdf chooses a direction, per steradian. The directions of delta materials (sharp
+/// metal, dielectric) have none: zero. A fuzzy metal's density integrates to the fraction that is not absorbed.
+///
+/// Space      w unit
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V pdf_bsdf(D d, const Features& features, const Surface<D>& at, const Vec3<V>& w) {
+  using T = hn::TFromD<D>;
+  const auto among = [&](MaterialKind kind) { return is_kind(d, at.kind, kind); };
+  const V cosine = hn::Max(dot(w, at.normal), hn::Zero(d));
+  V pdf = hn::IfThenElseZero(among(MaterialKind::kLambertian), cosine * hn::Set(d, static_cast<T>(2 / kTwoPi)));
+  if (features.hemisphere)
+    pdf = hn::IfThenElse(among(MaterialKind::kHemisphere), hn::Set(d, static_cast<T>(1 / kTwoPi)), pdf);
+  const auto metal = among(MaterialKind::kMetal);
+  if (!hn::AllFalse(d, metal)) pdf = hn::IfThenElse(metal, pdf_metal(d, at, w), pdf);
+  return hn::IfThenElseZero(at.same_side(d, w), pdf);
+}
+
+/// The BSDF times the cosine to the normal. For every material that is not delta this is albedo * pdf_bsdf; for delta
+/// materials it is zero.
+///
+/// Space      w unit
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> evaluate_bsdf(D d, const Features& features, const Surface<D>& at, const Vec3<V>& albedo,
+                                 const Vec3<V>& w) {
+  return albedo * pdf_bsdf(d, features, at, w);
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

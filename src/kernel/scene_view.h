@@ -13,57 +13,65 @@
 
 namespace orrery::kernel {
 
-/// What a ray that leaves the scene sees: bottom + (top - bottom) (y + 1) / 2 of its unit direction.
+/// Background radiance: bottom + (top - bottom) (y + 1) / 2 for the unit direction of a ray that leaves the scene.
 struct Background {
   double bottom[3] = {1, 1, 1};
   double top[3] = {1, 1, 1};
 };
 
+/// Radiance that a material emits to all sides. Fetched as four doubles.
+struct Emission {
+  double radiance[3] = {0, 0, 0};  ///< scene-linear
+  double unused = 0;
+};
+
 enum class Shading : std::uint8_t { kPath, kNormal, kFlat };
 
-/// What this scene asks of the kernel, as far as leaving it out saves time: what is false here is not computed. A
-/// material that no lane of a vector has met is never computed, whatever the scene holds, and needs no bit
+/// Features that the scene uses; the kernel skips those that are false. Only features whose absence saves time have a
+/// bit. Materials need none: one that no lane of a vector has hit is never computed
 /// (docs/decisions/0012-few-feature-bits.md).
 struct Features {
   bool lens = false;        ///< the camera has an aperture
-  bool hemisphere = false;  ///< some sphere's material is of this kind
+  bool hemisphere = false;  ///< some sphere has a hemisphere material
   bool sky = false;         ///< the background depends on the direction
   bool motion = false;      ///< camera or spheres move while the shutter is open
 };
 
-/// Russian roulette leaves paths alone that still have one part in so many of their light: what they save would not
-/// outweigh their noise.
+/// Russian roulette spares paths whose throughput is above 1 / kRouletteGain: ending them would save less than their
+/// noise costs.
 inline constexpr double kRouletteGain = 8;
 
-/// More scattering events than any path has.
+/// A roulette depth that no path reaches.
 inline constexpr std::uint32_t kNoRoulette = 0xffffffffu;
 
-/// The compiled scene as the inner loops see it: pointers into arrays that somebody else owns.
+/// The compiled scene as the inner loops see it. Owns nothing.
 struct SceneView {
   const Sphere* spheres = nullptr;
   const std::uint32_t* sphere_materials = nullptr;  ///< one per sphere, index into `materials`
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
-  /// What becomes of the first spheres until the shutter closes: the change of place and radius. The others rest.
+  /// One per material; null if nothing emits. Read only by loops that collect light along the path.
+  const Emission* emission = nullptr;
+  /// Changes of centre and radius of the first spheres until the shutter closes. The others rest.
   const Sphere* motion = nullptr;
   std::size_t moving_count = 0;
   Camera camera;
-  Camera camera_motion;  ///< the change of its vectors until the shutter closes, where features.motion
+  Camera camera_motion;  ///< change of its vectors until the shutter closes, if features.motion
   Background background;
   Features features;
   Shading shading = Shading::kPath;
-  std::uint32_t max_depth = 50;  ///< rays of a path, the camera ray included; where the last hits there is no light
-  /// Scattering events after which Russian roulette ends paths that have little to bring, and strengthens the others.
+  std::uint32_t max_depth = 50;  ///< maximum rays per path, including the camera ray
+  /// Scattering events after which Russian roulette begins.
   std::uint32_t roulette_depth = kNoRoulette;
   Sampler sampler;
   PixelFilter filter;
-  /// Where the rendered window begins within the frame, modulo 65536. A pixel's name, which chooses its random numbers,
-  /// is its place in the frame, so that a window's pixels are the frame's.
+  /// Origin of the rendered window within the frame, modulo 65536. A pixel's random numbers depend on its position in
+  /// the frame, so a window's pixels equal those of the full frame.
   std::uint32_t window_x = 0, window_y = 0;
-  bool background_visible = true;  ///< false: camera rays that leave the scene bring no light
+  bool background_visible = true;  ///< false: camera rays that leave the scene carry no radiance
 };
 
-/// A sphere at a time between 0, when the shutter opens, and 1, when it closes; as the inner loops compute it.
+/// A sphere at a time between 0 (shutter opens) and 1 (shutter closes), with the arithmetic of the inner loops.
 inline Sphere sphere_at(const SceneView& scene, std::size_t id, double time) noexcept {
   Sphere s = scene.spheres[id];
   if (id >= scene.moving_count) return s;

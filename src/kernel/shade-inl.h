@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens to a traced packet: light is added to pixels, survivors go back into the stream. Compiled once per
-// instruction set.
+// Shading of traced packets. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_SHADE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SHADE_INL_H_
 #undef ORRERY_KERNEL_SHADE_INL_H_
@@ -23,17 +22,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// What a packet's rays carry beside their geometry; the packet's own lanes, in the same order.
+/// Path state of a packet's rays beside their geometry, in the packet's lane order.
 template <class T, class Id>
 struct alignas(64) PathPayload {
   T base[3][kPacketSize];
   T throughput[3][kPacketSize];
   Id pixel[kPacketSize];
   Id sample[kPacketSize];
-  Id history[kPacketSize];  ///< where paths are recorded; see record-inl.h
+  Id history[kPacketSize];     ///< in loops that record paths; see record-inl.h
+  T radiance[3][kPacketSize];  ///< in loops that collect light along the path
 };
 
-/// Adds finished paths to their pixels. A sample that is not a number never enters a sum: it is counted.
+/// What an instance of the path loop is compiled for.
+struct Loop {
+  Precision precision = Precision::kExact;
+  bool records = false;   ///< fills the tile's records
+  bool moves = false;     ///< camera or spheres move
+  bool collects = false;  ///< paths gain light at their vertices, not only where they leave the scene
+};
+
+/// Adds finished paths to their pixels. Bad samples are counted and excluded from the sums.
 template <class D>
 HWY_INLINE void add_light(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, hn::Vec<IdTag<D>> pixels,
                           hn::Vec<IdTag<D>> samples, const SceneView& scene, const Tile& tile, TileCounts& counts) {
@@ -54,7 +62,7 @@ HWY_INLINE void add_light(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light,
     const auto r = static_cast<double>(rgb[0][i]), g = static_cast<double>(rgb[1][i]),
                b = static_cast<double>(rgb[2][i]);
     const bool negative = scene.filter.negative_share != 0 && scene.filter.weight(sample[i], sample[i] + 1) < 0;
-    if (!(std::abs(r) <= kLargestSample && std::abs(g) <= kLargestSample && std::abs(b) <= kLargestSample)) {
+    if (!is_good_sample(r, g, b)) {
       sum.weight -= negative ? -1 : 1;
       ++counts.bad_samples;
     } else if (negative) {
@@ -80,16 +88,31 @@ HWY_INLINE Vec3<V> background(D d, const Background& sky, bool has_gradient, con
   return mul_add(set3(d, sky.top), a, bottom * one_minus_a);
 }
 
-/// A vector of hits, with everything that was looked up lane by lane.
+/// The radiance that the spheres of a vector of hits emit.
+///
+/// Domain     scene.emission is not null
+template <class D>
+HWY_INLINE Vec3<hn::Vec<D>> emitted(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, hn::Mask<D> hit) {
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  HWY_ALIGN Id id[hn::MaxLanes(D())];
+  hn::Store(hn::IfThenElseZero(hn::RebindMask(du, hit), hits), du, id);
+  hn::Vec<D> rgb[4];
+  gather4(
+      d, [&](std::size_t i) { return scene.emission[scene.sphere_materials[id[i]]].radiance; }, rgb);
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+/// Scene data of a vector of hits.
 template <class D>
 struct Lookup {
   Spheres<D> sphere;
-  Surface<D> surface;  ///< offset, normal and side still to be filled
+  Surface<D> surface;  ///< offset, normal and side are set by reach_surface
   Vec3<hn::Vec<D>> albedo;
   hn::Vec<D> eta_outside, eta_inside, r0_outside, r0_inside;
 };
 
-/// Fetches spheres and materials of the lanes that hit something; the others get those of sphere 0.
+/// Loads spheres and materials of the hits; lanes without a hit get those of sphere 0.
 ///
 /// `times`    of the rays; read only where kMoves
 template <class D, bool kMoves>
@@ -134,7 +157,7 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
   return out;
 }
 
-/// Finds point, normal and side of every hit, and the material's constants for that side.
+/// Computes point, normal and side of every hit, and selects the material's constants for that side.
 template <class D, Precision kPrecision, bool kMoves>
 HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
                                    hn::Vec<D> distance, const hn::TFromD<D>* times) {
@@ -151,10 +174,10 @@ HWY_INLINE Lookup<D> reach_surface(D d, const SceneView& scene, const Rays<D>& r
   return at;
 }
 
-/// Writes chosen lanes of many vectors, closed up. May touch whole vectors behind them.
+/// Stores selected lanes of vectors contiguously. May overwrite a whole vector from the destination on.
 ///
-/// The order is looked up once for all vectors. Highway's own CompressStore looks it up each time, and GCC copies its
-/// table to the stack to do so: that was a quarter of all time.
+/// The permutation is looked up once for all vectors. Highway's CompressStore looks it up each time, and GCC copies its
+/// table to the stack to do so, which took a quarter of the time.
 template <class D>
 class Compactor {
  public:
@@ -194,13 +217,14 @@ class Compactor {
   hn::Vec<IdTag<D>> order_{};
 };
 
-/// Stands where nothing is recorded.
+/// Records nothing.
 struct NullRecorder {
   template <class... Any>
   HWY_INLINE explicit NullRecorder(const Any&...) {}
 };
 
-/// Ends paths by chance, the darker the likelier, and makes the others brighter for it: on average nothing is lost.
+/// Russian roulette: ends paths with a probability that rises as their throughput falls and divides the throughput of
+/// the others by their survival probability, which keeps the estimate unbiased.
 ///
 /// Reference  arvo1990
 template <class D, class V = hn::Vec<D>>
@@ -214,12 +238,14 @@ HWY_INLINE hn::Mask<D> survives_roulette(D d, V u, Vec3<V>& throughput) {
   return survives;
 }
 
-/// Shades a traced packet: what left the scene adds its light, what goes on is appended to the stream.
+/// Shades a traced packet: adds the radiance of paths that end to their pixels and appends the others to the stream.
 ///
 /// Result     number of paths in the stream, `alive` before the call
-template <class D, Precision kPrecision, bool kRecords, bool kMoves, class Stream, class Carried>
+template <class D, Loop kLoop, class Stream, class Carried>
 HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_t depth, const Carried& carried,
                      Stream& stream, int alive, TileCounts& counts) {
+  constexpr Precision kPrecision = kLoop.precision;
+  constexpr bool kRecords = kLoop.records, kMoves = kLoop.moves;
   const IdTag<D> du;
   using T = hn::TFromD<D>;
   using Id = hn::TFromD<IdTag<D>>;
@@ -237,27 +263,58 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     [[maybe_unused]] hn::Vec<IdTag<D>> history;
     [[maybe_unused]] hn::Mask<D> guided;
     [[maybe_unused]] std::conditional_t<kRecords, Recorder<D>, NullRecorder> record(d, scene, tile, pixels, samples);
+    [[maybe_unused]] Vec3<hn::Vec<D>> radiance;
+    if constexpr (kLoop.collects)
+      radiance = load3(d, carried.radiance[0] + v, carried.radiance[1] + v, carried.radiance[2] + v);
     if constexpr (kRecords) {
       history = hn::Load(du, carried.history + v);
       const auto only_delta = hn::Set(du, static_cast<Id>(kOnlyDeltaBit));
       guided = hn::RebindMask(d, hn::And(history, only_delta) == only_delta);
       if (depth == 0) record.begin(d, active);
     }
-    if (!hn::AllFalse(d, missed) && (depth > 0 || scene.background_visible)) {
-      const auto sky = background(d, scene.background, scene.features.sky, ray.direction);
-      const Vec3<hn::Vec<D>> light = {sky.x * throughput.x, sky.y * throughput.y, sky.z * throughput.z};
-      add_light(d, missed, light, pixels, samples, scene, tile, counts);
-      if constexpr (kRecords) {
-        const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
-        if (tile.record_light) record.light(d, missed, light, history);
-        if (tile.record_guides)
-          record.guide(d, hn::And(missed, guided),
-                       {hn::Min(light.x, one), hn::Min(light.y, one), hn::Min(light.z, one)}, {zero, zero, zero});
+    // Deposits a path's total radiance, once, so that a bad value costs the path its weight once.
+    const auto end = [&](hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light) {
+      add_light(d, lanes, light, pixels, samples, scene, tile, counts);
+      if constexpr (kRecords)
+        if (tile.record_light) record.light(d, lanes, light);
+    };
+    const auto gain = [&](hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light) {
+      if constexpr (kRecords)
+        if (tile.record_light) record.event(d, lanes, light, history);
+      if constexpr (kLoop.collects) radiance = select(lanes, radiance + light, radiance);
+    };
+    const auto gain_and_end = [&](hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light) {
+      gain(lanes, light);
+      if constexpr (kLoop.collects) {
+        end(lanes, radiance);
+      } else {
+        end(lanes, light);
+      }
+    };
+    if (!hn::AllFalse(d, missed)) {
+      if (depth > 0 || scene.background_visible) {
+        const auto sky = background(d, scene.background, scene.features.sky, ray.direction);
+        const Vec3<hn::Vec<D>> light = {sky.x * throughput.x, sky.y * throughput.y, sky.z * throughput.z};
+        gain_and_end(missed, light);
+        if constexpr (kRecords) {
+          const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
+          if (tile.record_guides)
+            record.guide(d, hn::And(missed, guided),
+                         {hn::Min(light.x, one), hn::Min(light.y, one), hn::Min(light.z, one)}, {zero, zero, zero});
+        }
       }
     }
     if (hn::AllFalse(d, hit)) continue;
 
+    if constexpr (kLoop.collects) {
+      if (scene.emission != nullptr && scene.shading == Shading::kPath) {
+        const auto glow = emitted(d, scene, hits, hit);
+        gain(hit, {glow.x * throughput.x, glow.y * throughput.y, glow.z * throughput.z});
+      }
+    }
     const bool ends = scene.shading == Shading::kPath && depth + 1 >= scene.max_depth;
+    if constexpr (kLoop.collects)
+      if (ends) end(hit, radiance);
     if (ends && !(kRecords && depth == 0)) continue;
     const auto at =
         reach_surface<D, kPrecision, kMoves>(d, scene, ray, hits, hn::Load(d, packet.distance + v), packet.time + v);
@@ -272,18 +329,17 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     }
     if (scene.shading != Shading::kPath) {
       const auto half = hn::Set(d, static_cast<T>(0.5));
-      const auto shown =
-          scene.shading == Shading::kFlat ? at.albedo : mul_add(at.surface.normal, half, {half, half, half});
-      add_light(d, hit, shown, pixels, samples, scene, tile, counts);
-      if constexpr (kRecords) record.light(d, hit, shown, history);
+      gain_and_end(hit,
+                   scene.shading == Shading::kFlat ? at.albedo : mul_add(at.surface.normal, half, {half, half, half}));
       continue;
     }
     const bool plays_roulette = depth + 1 >= scene.roulette_depth;
     const auto random = random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, plays_roulette);
-    const auto scattered = scatter(d, scene.features, at.surface, random);
+    const auto scattered = sample_bsdf(d, scene.features, at.surface, random);
     throughput = tinted;
     auto goes_on = hn::And(hit, scattered.alive);
     if (plays_roulette) goes_on = hn::And(goes_on, survives_roulette(d, random.v[2], throughput));
+    if constexpr (kLoop.collects) end(hn::AndNot(goes_on, hit), radiance);
     const Compactor<D> compactor(d, goes_on);
     compactor.store3(d, at.sphere.center, stream.base, alive);
     compactor.store3(d, at.surface.offset, stream.offset, alive);
@@ -292,6 +348,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     compactor.store_ids(d, hits, stream.self + alive);
     compactor.store_ids(d, pixels, stream.pixel + alive);
     compactor.store_ids(d, samples, stream.sample + alive);
+    if constexpr (kLoop.collects) compactor.store3(d, radiance, stream.radiance, alive);
     if constexpr (kRecords)
       compactor.store_ids(d, continued(d, history, at.surface, scattered.direction, depth), stream.history + alive);
     alive += compactor.count();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sobol's sequence with Owen scrambling by hashing, four dimensions a vertex. Compiled once per instruction set.
+// The Sobol sequence with hash-based Owen scrambling, four dimensions per vertex. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_SOBOL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_SOBOL_INL_H_
 #undef ORRERY_KERNEL_SOBOL_INL_H_
@@ -16,7 +16,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The bits of each 32-bit lane in opposite order.
+/// Reverses the bits of each 32-bit lane.
 template <class D32, class V = hn::Vec<D32>>
 HWY_INLINE V reversed_bits(D32 d32, V v) {
   if constexpr (hn::MaxLanes(D32()) * 4 >= 16) {
@@ -43,8 +43,7 @@ HWY_INLINE V reversed_bits(D32 d32, V v) {
   }
 }
 
-/// Flips every bit by chance, the chance named by the seed and the bits below it: Owen's scrambling of the number that
-/// is `v` with its bits in opposite order.
+/// Owen scrambling of bit-reversed numbers: flips every bit by a hash of the seed and the bits below it.
 ///
 /// Reference  laine2011 (the idea), vegdahl2021 (these constants)
 template <class D32, class V = hn::Vec<D32>>
@@ -56,7 +55,7 @@ HWY_INLINE V flipped_by_lower_bits(D32 d32, V v, V seed) {
   return hn::Xor(v, v * hn::Set(d32, 0x53a22864u));
 }
 
-/// All bits of a number stirred into all.
+/// Hashes 32 bits.
 ///
 /// Reference  appleby2011, the end of MurmurHash3
 template <class D32, class V = hn::Vec<D32>>
@@ -66,7 +65,7 @@ HWY_INLINE V stirred(D32 d32, V v) {
   return hn::Xor(v, hn::ShiftRight<16>(v));
 }
 
-/// The product of a 16 x 16 matrix over two elements and the low bits of each lane.
+/// The product over GF(2) of a 16 x 16 matrix and the low bits of each lane.
 ///
 /// Domain     v < 2^kSobolBits
 template <class D32, class V = hn::Vec<D32>>
@@ -83,24 +82,24 @@ HWY_INLINE V ordered(D32 d32, const SobolOrder& order, V v) {
   return out;
 }
 
-/// Point `index`, in the order of a vertex, of the sequence that `name` names: four coordinates as 32-bit fractions.
+/// Point `index`, in the given order, of the sequence `name`: four coordinates as 32-bit fractions.
 ///
-/// `name` chooses the scrambling; points of different names are independent. In the camera's order points
-/// 2^k n .. 2^k (n + 1) are a net in base 2 in the first two coordinates, and nearly one in all four, for every n and
-/// k; in the others' from k = kSobolFreeBits on. Where a name is that of a sample's pixel and vertex, coordinates of
-/// different vertices are a net together, too.
+/// `name` seeds the scrambling; points of different names are independent. In the camera's order points
+/// 2^k n .. 2^k (n + 1) are a (0, k, 2)-net in base 2 in the first two coordinates, and nearly a net in all four, for
+/// every n and k; in the other orders from k = kSobolFreeBits on. If names are those of a sample's pixel and vertex,
+/// coordinates of different vertices form a net together, too.
 ///
-/// `order`    place in kSobolOrders
-/// `last_two` false: these are 0, and the time for them is saved
+/// `order`    index into kSobolOrders
+/// `last_two` false: these are 0, and are not computed
 ///
 /// Domain     index < 2^kSobolBits; in 64-bit lanes both in the low halves, the high ones 0
-/// Result     in 64-bit lanes in the low halves, the high ones 0
+/// Result     in 64-bit lanes in the low halves, with the high ones 0
 /// Reference  joe2008 (directions), burley2020 (scrambling by a hash)
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE Four<V> sobol(DU du, V index, V name, std::uint32_t order, bool last_two) {
   const hn::Repartition<std::uint32_t, DU> d32;
   using V32 = hn::Vec<decltype(d32)>;
-  // 64-bit lanes hold two coordinates at a time, one in each half.
+  // A 64-bit lane holds two coordinates, one in each half.
   constexpr bool kPaired = sizeof(hn::TFromD<DU>) == 8;
   const auto both = [&](V v) {
     if constexpr (kPaired)
@@ -117,9 +116,8 @@ HWY_INLINE Four<V> sobol(DU du, V index, V name, std::uint32_t order, bool last_
   const V32 seed = stirred(d32, both(name));
   const V32 at = order == 0 ? both(index) : ordered(d32, kSobolOrders[order], both(index));
 
-  // Coordinates with their bits in opposite order. The first is the index itself; in the second bit j of it stands for
-  // the polynomial (1 + t)^j over two elements, and since (1 + t)^(2^b) is 1 + t^(2^b), a step for each bit of j does
-  // it.
+  // Bit-reversed coordinates. The first is the index itself. In the second, bit j of the index stands for the
+  // polynomial (1 + t)^j over GF(2); since (1 + t)^(2^b) = 1 + t^(2^b), one step per bit of j suffices.
   V32 second = at;
   const auto expand = [&](auto shift, std::uint32_t mask) {
     second = hn::Xor(second, hn::ShiftRight<decltype(shift)::value>(hn::And(second, hn::Set(d32, mask))));
@@ -129,10 +127,10 @@ HWY_INLINE Four<V> sobol(DU du, V index, V name, std::uint32_t order, bool last_
   expand(std::integral_constant<int, 4>(), 0xf0f0f0f0u);
   expand(std::integral_constant<int, 8>(), 0xff00ff00u);
   static_assert(kSobolBits <= 16, "one more step");
-  // Any four numbers far from each other.
+  // Four arbitrary, different numbers.
   constexpr std::uint32_t kSeeds[4] = {0x9e3779b1u, 0x7feb352du, 0xb5297a4du, 0x68e31da5u};
   const auto scrambled = [&](V32 v, int low, int high) {
-    // Stirred twice: the first points would show what is left in common.
+    // Hashed twice, since one hash leaves correlations that the first points show.
     const V32 own = stirred(d32, seed + pair(kSeeds[low], kSeeds[high]));
     return reversed_bits(d32, flipped_by_lower_bits(d32, v, own));
   };

@@ -7,16 +7,16 @@
 
 namespace orrery::kernel {
 
-/// Points of one scrambled sequence; what comes after them is a sequence of another name.
+/// Index bits of one scrambled sequence. Samples beyond it use a sequence of another name.
 inline constexpr int kSobolBits = 16;
 
-/// What each bit of a point's index adds (without carry) to its coordinates, whose bits stand in opposite order: bit 0
-/// is worth a half. The first two dimensions need no table.
+/// Generator matrices by columns: what each bit of a point's index adds (XOR) to the bit-reversed coordinate, in which
+/// bit 0 is worth a half. The first two dimensions need no table.
 struct SobolColumns {
   std::array<std::uint32_t, kSobolBits> third{}, fourth{};
 };
 
-/// Sobol's recurrence for a primitive polynomial t^degree + a1 t^(degree - 1) + ... + 1.
+/// Sobol's recurrence for the primitive polynomial t^degree + a1 t^(degree - 1) + ... + 1.
 ///
 /// `inner` holds a1 ... as bits, `m` the first `degree` direction numbers.
 constexpr std::array<std::uint32_t, kSobolBits> sobol_columns(int degree, std::uint32_t inner,
@@ -41,22 +41,25 @@ constexpr std::array<std::uint32_t, kSobolBits> sobol_columns(int degree, std::u
 
 inline constexpr SobolColumns kSobolColumns{sobol_columns(2, 1, {1, 3, 0}), sobol_columns(3, 1, {1, 3, 1})};
 
-/// A matrix over two elements: what each bit of a sample's index adds (without carry) to the index of its point.
+/// A matrix over GF(2) by columns: what each bit of a sample's index adds (XOR) to the index of its point.
 using SobolOrder = std::array<std::uint32_t, kSobolBits>;
 
-/// Vertices of a path, the camera the first, that share one sequence; numbers of later ones are independent.
+/// Path vertices, the camera first, that share one sequence. Later vertices have independent numbers.
 inline constexpr std::uint32_t kSobolVertices = 8;
 
-/// Bits at the low end of an index that an order mixes at will; above them a bit changes lower bits only. So points
-/// 2^k n .. 2^k (n + 1) are the same at every vertex, in another order, for all k from here on.
+/// Low bits of an index that an order mixes freely. Above them a bit changes only lower bits, so points
+/// 2^k n .. 2^k (n + 1) are the same set at every vertex, in another order, for all k from here on.
 inline constexpr std::size_t kSobolFreeBits = 4;
 
-/// The place of the time's order in kSobolOrders, behind those of the vertices.
+/// Index of the time's order in kSobolOrders, after those of the vertices' first points.
 inline constexpr std::uint32_t kSobolTimeOrder = kSobolVertices;
 
-/// The order in which each vertex, and then the time, takes the points. tools/sobol_orders.cpp has chosen them: numbers
-/// of different vertices fill space evenly together.
-inline constexpr std::array<SobolOrder, kSobolVertices + 1> kSobolOrders{{
+/// Index of the order of vertex 0's second point; those of the other vertices follow.
+inline constexpr std::uint32_t kSobolSecondOrders = kSobolTimeOrder + 1;
+
+/// The order in which each vertex, then the time, then each vertex's second point takes the points. Chosen by
+/// tools/sobol_orders.cpp so that numbers of different vertices are well distributed together.
+inline constexpr std::array<SobolOrder, kSobolSecondOrders + kSobolVertices> kSobolOrders{{
     {0x1, 0x2, 0x4, 0x8, 0x10, 0x20, 0x40, 0x80, 0x100, 0x200, 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000},
     {0x5, 0xe, 0xf, 0xd, 0x1c, 0x3a, 0x74, 0xbb, 0x1c6, 0x339, 0x659, 0xca5, 0x1e14, 0x206d, 0x6d42, 0xf225},
     {0xc, 0x6, 0x1, 0x2, 0x1f, 0x3f, 0x52, 0xb0, 0x146, 0x23e, 0x502, 0xf98, 0x19ff, 0x33da, 0x52b2, 0xb28d},
@@ -66,6 +69,14 @@ inline constexpr std::array<SobolOrder, kSobolVertices + 1> kSobolOrders{{
     {0x5, 0xd, 0xa, 0x9, 0x10, 0x38, 0x50, 0xa6, 0x169, 0x22c, 0x74b, 0xd6d, 0x184d, 0x254a, 0x5f05, 0x9c8c},
     {0xc, 0x9, 0x3, 0x8, 0x18, 0x36, 0x5e, 0xf9, 0x106, 0x2fe, 0x5a2, 0x98c, 0x19de, 0x3ded, 0x5bbc, 0xcc4c},
     {0x1, 0x2, 0x7, 0xe, 0x1c, 0x33, 0x49, 0xa5, 0x12e, 0x32f, 0x4ef, 0xc67, 0x1382, 0x2e16, 0x56de, 0xd311},
+    {0x2, 0xf, 0xb, 0xe, 0x19, 0x2e, 0x5c, 0x9f, 0x187, 0x23d, 0x6bb, 0xc66, 0x1827, 0x35be, 0x6adf, 0x8db4},
+    {0x1, 0x9, 0xf, 0xa, 0x15, 0x24, 0x7c, 0xb7, 0x13d, 0x2af, 0x63c, 0xd9a, 0x1420, 0x2b4f, 0x41dc, 0x84ac},
+    {0x8, 0xf, 0x9, 0xb, 0x1f, 0x2e, 0x52, 0xab, 0x13b, 0x21c, 0x6f9, 0x80e, 0x1cd5, 0x3ab4, 0x791b, 0x9d3b},
+    {0xe, 0x4, 0x5, 0xc, 0x18, 0x20, 0x67, 0x8c, 0x1dd, 0x259, 0x6cd, 0x9b7, 0x1b60, 0x24b1, 0x63af, 0x9afa},
+    {0x3, 0x7, 0xa, 0x1, 0x11, 0x39, 0x68, 0xb7, 0x1ea, 0x2ba, 0x728, 0x83a, 0x1dc2, 0x2a94, 0x410e, 0x9bb9},
+    {0x3, 0xa, 0x7, 0x8, 0x1e, 0x3f, 0x4a, 0xc3, 0x124, 0x2b4, 0x66f, 0xd69, 0x1a10, 0x240e, 0x5576, 0xa4a6},
+    {0xf, 0xb, 0x3, 0x9, 0x18, 0x35, 0x4f, 0x9e, 0x16c, 0x310, 0x76f, 0x8e5, 0x15ca, 0x3ae0, 0x5bb6, 0xb5ec},
+    {0x9, 0xf, 0xa, 0x4, 0x1b, 0x3b, 0x5e, 0xb3, 0x1cf, 0x2af, 0x7e4, 0x8a9, 0x1386, 0x2f1f, 0x513c, 0xd4cc},
 }};
 
 }  // namespace orrery::kernel

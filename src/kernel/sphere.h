@@ -5,15 +5,15 @@
 
 namespace orrery::kernel {
 
-/// One sphere as every inner loop reads it: four doubles, half a cache line.
+/// A sphere as the inner loops read it: four doubles, half a cache line.
 ///
-/// The radius is positive: an authored negative radius has become a material that is turned inside out (compile).
+/// The radius is positive: `compile` turns an authored negative radius into a material with its sides swapped.
 struct alignas(32) Sphere {
   double x = 0, y = 0, z = 0;  ///< centre, scene units
   double radius = 1;           ///< scene units, > 0
 };
 
-/// The id of no sphere: a ray that leaves the camera, a ray that hits nothing.
+/// The id of no sphere: for camera rays and for rays that hit nothing.
 inline constexpr std::uint32_t kNoSphere = 0xffffffffu;
 
 }  // namespace orrery::kernel

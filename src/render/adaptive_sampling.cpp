@@ -15,18 +15,18 @@
 namespace orrery::render {
 namespace {
 
-/// Sides of the squares that are rendered in one go, px.
+/// Side of the squares that are rendered as one tile, px.
 constexpr int kSide = 16;
 
-/// Samples of a half before anything is judged by them: fewer would miss what is rare in a pixel and leave it at that.
+/// Minimum samples of a half before errors are estimated: with fewer, rare light in a pixel would be missed for good.
 constexpr std::uint32_t kFirstSamples = 8;
 
-/// No half has more: its numbers begin where the first's end.
+/// Maximum samples of a half: the second half's sample numbers begin where the first's end.
 constexpr std::uint32_t kMostSamples = kernel::Sampler::kSecondHalf - 1;
 
-/// Of the time that is left, what a round may take: what is known of the speed is known from the rounds before.
+/// The fraction of the remaining time that an iteration may take, since the speed is known only from earlier ones.
 constexpr double kShareOfTime = 0.5;
-/// Of all time: with less than this left there is no other round.
+/// With less than this fraction of the time budget left, no further iteration starts.
 constexpr double kTimeToSpare = 0.01;
 
 std::string noise_text(double reached, double wanted) {
@@ -55,8 +55,8 @@ class AdaptiveSampling {
   }
 
   bool run() {
-    if (!state_.goals.empty() && !run_round()) return false;  // that in which an earlier run was stopped
-    // With a time limit the first round is the smallest there is: it tells the speed.
+    if (!state_.goals.empty() && !run_round()) return false;  // the iteration in which an earlier run was interrupted
+    // With a time budget the first iteration is as small as possible: it measures the speed.
     std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
     for (n = n > 0                            ? next_of_all(n)
              : settings_.sampling.seconds > 0 ? 1
@@ -106,13 +106,13 @@ class AdaptiveSampling {
     return true;
   }
 
-  /// Of a half; how many the next of the first rounds brings every pixel to. 0: those rounds are over.
+  /// The next uniform sample count of a half; 0: the initial, uniform iterations are over.
   std::uint32_t next_of_all(std::uint32_t n) const {
     const std::uint32_t next = std::min({2 * n, kFirstSamples, most_});
     return next > n && affordable(kShareOfTime) >= std::uint64_t{next - n} * pixels_.samples.size() ? next : 0;
   }
 
-  /// Samples of a half that a share of the remaining time allows; both are rendered.
+  /// Samples of a half that can be rendered, together with those of the other, in a fraction of the remaining time.
   std::uint64_t affordable(double share) const {
     if (settings_.sampling.seconds <= 0) return std::numeric_limits<std::uint64_t>::max();
     const double left = settings_.sampling.seconds - progress_.seconds();
@@ -130,12 +130,12 @@ class AdaptiveSampling {
     }
   }
 
-  /// Brings all pixels to their goals.
+  /// Renders all pixels up to their goals.
   bool run_round() {
     if (!passes_.run(kSide, [this](int x, int y) { update(x, y); })) return false;
     state_.goals.clear();
-    // What the last round has shown counts most: pixels that go on are not like the others. The time that choosing them
-    // took is part of the round.
+    // The last iteration counts most, since the pixels that continue are unlike the others. Its time includes choosing
+    // them.
     const double seconds = progress_.seconds() - round_begin_;
     if (seconds > 0) {
       const double speed = static_cast<double>(progress_.done() - round_begin_samples_) / seconds;
@@ -152,7 +152,7 @@ class AdaptiveSampling {
     pixels_.samples[i] = state_.counts[i];
     pixels_.light[i] = static_cast<float>(std::max(halves.light, 0.0));
     pixels_.variance[i] = static_cast<float>(halves.variance);
-    // Where the background is transparent, what meets no sphere is black.
+    // With a transparent background, pixels in which no path hits a sphere are black.
     if (settings_.layers.coverage) pixels_.known_black[i] = state_.layers[i].covered == 0 ? 1 : 0;
   }
 

@@ -10,14 +10,14 @@
 
 namespace orrery::render {
 
-/// Samples in rounds: after each the pixels are chosen that shall double theirs, until the picture is as good as asked
-/// for, the time is over, or the samples are.
+/// Adaptive sampling: each iteration chooses the pixels that double their samples, until the image reaches the target
+/// noise or the time budget or the samples are used up.
 ///
-/// Every pixel has two halves of samples that are independent of each other; how much they differ tells its error.
-/// Choices depend on sums that no order of adding changes: without a time limit neither does the picture.
+/// Every pixel has two independent halves of samples, whose difference estimates its error. The choices depend only on
+/// sums that are exact in any order of addition, so without a time budget the image is deterministic.
 ///
-/// `state`    has halves; what is in it is gone on from, in the middle of a round, too
-/// Result     false where the settings' `cancel` stopped it
+/// `state`    has halves; rendering continues from it, even within an iteration
+/// Result     false if cancelled by the settings' `cancel`
 bool render_adaptively(const compile::CompiledScene& compiled, const Settings& settings,
                        const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
                        film::Partial& state, Statistics& statistics);

@@ -10,11 +10,12 @@
 namespace orrery::render {
 namespace {
 
-/// A round brings at least this part of the samples that there are: choosing the pixels takes time, too.
+/// An iteration adds at least this fraction of the existing samples, since choosing the pixels takes time, too.
 constexpr double kLeastRound = 1.0 / 64;
 
-/// Pixels by what their next sample takes away of the picture's squared error, in sixteen even steps to an octave. Of
-/// a number's own exponent and fraction, since a library's logarithm may differ in its last bit, and with it pictures.
+/// A histogram of pixels by gain: how much their next sample reduces the image's squared error. Sixteen linear steps
+/// per octave from the number's exponent and fraction, since libraries' logarithms differ in their last bit, and the
+/// images would differ with them.
 class Ranking {
  public:
   static constexpr int kStepsPerOctave = 16;
@@ -22,7 +23,7 @@ class Ranking {
 
   static constexpr double kLeast = 0x1p-130;
 
-  /// The bin of a gain; the larger, the more. Gains of kLeast and less are none.
+  /// The bin of a gain, ascending; -1 for gains of kLeast and below.
   static int bin_of(double gain) {
     if (!(gain > kLeast)) return -1;
     int octave = 0;
@@ -35,15 +36,15 @@ class Ranking {
   }
 
   struct Bin {
-    double error = 0;         ///< squared, of its pixels as they are
-    double root = 0;          ///< of the squared errors of one sample, added up
-    double samples = 0;       ///< that its pixels have had
-    std::uint64_t price = 0;  ///< samples that doubling costs
+    double error = 0;         ///< sum of the pixels' present squared errors
+    double root = 0;          ///< sum of the roots of the squared errors of one sample
+    double samples = 0;       ///< that its pixels have
+    std::uint64_t price = 0;  ///< samples needed to double them
   };
   std::array<Bin, kBins> bins{};
 };
 
-/// Adds the pixels that lack evidence where all of them can be paid for.
+/// Adds the pixels that lack evidence if all of them are affordable.
 void add_due(const std::vector<std::uint32_t>& samples, const std::vector<std::uint8_t>& lacks_evidence,
              const RoundGoal& goal, Round& round) {
   const auto price_of = [&](std::size_t i) {
@@ -71,7 +72,7 @@ Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector
   Round round;
   auto ranking = std::make_unique<Ranking>();
   std::vector<std::int16_t> bin_of(samples.size(), -1);
-  double error = 0;  // squared, of all pixels
+  double error = 0;  // sum of the squared errors of all pixels
   double all = 0;    // samples
   for (std::size_t i = 0; i < bin_of.size(); ++i) {
     const auto n = static_cast<double>(samples[i]);
@@ -93,8 +94,8 @@ Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector
   }
   const double wanted = error * goal.error_ratio;
 
-  // Down from the pixels with the largest gain: where the level lies at which the goal is reached if all above it go
-  // on until they are down at it, and how far doubling leads.
+  // From the largest gain down: find the level at which the goal is reached if all pixels above are sampled down to it,
+  // and how far doubling leads.
   double left = error, roots = 0, had = 0, after_doubling = error;
   std::uint64_t price = 0;
   int level = 0, doubling = Ranking::kBins, affordable = Ranking::kBins;
@@ -118,7 +119,7 @@ Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector
     }
     if (level_found && after_doubling <= wanted && static_cast<double>(price) >= all * kLeastRound) break;
   }
-  // Pixels that need less than 1.4 times their samples wait, unless there are no others.
+  // Pixels that need less than 1.4 times their samples wait unless there are no others.
   const int worth_doubling = std::min(level + Ranking::kStepsPerOctave, Ranking::kBins - 1);
   const auto choose_from = [&](int lowest) {
     round.chosen.assign(bin_of.size(), false);

@@ -7,18 +7,18 @@
 namespace orrery::render {
 namespace {
 
-/// Sides of a block, px: windows reach over its edges, so that larger ones repeat less; this one's planes stay in the
+/// Side of a block, px. Windows extend beyond its edges, so larger blocks repeat less work; this size stays in the
 /// cache.
 constexpr int kSide = 128;
 
-/// Windows reach 2^1 .. 2^kRadii pixels to each side.
+/// Windows extend 2^1 .. 2^kRadii pixels to each side.
 constexpr int kRadii = 4;
 constexpr int kReach = 1 << kRadii;
 
-/// Added to squares of light where they divide: a thousandth of a thousandth of white is black.
+/// Added to squared radiance in denominators; a thousandth of white, squared.
 constexpr float kNoLight = 1e-12f;
 
-/// A block with kReach pixels around it; 0 outside the picture and in the excluded class.
+/// A block with a border of kReach pixels; 0 outside the image and in the excluded class.
 struct Padded {
   int width, height;
   std::vector<float> values;
@@ -33,8 +33,8 @@ struct Padded {
 };
 
 /// Sums over windows of 2^(k + 1) + 1 pixels along the rows of a padded block, of its inner columns and all its rows.
-/// Sums of 2, 4, 8 .. pixels are added up in pairs: nothing is ever subtracted, so that dark pixels beside bright ones
-/// keep their digits, and the order is the same everywhere.
+/// Sums of 2, 4, 8 .. pixels are built by pairwise addition. Nothing is subtracted, so dark pixels beside bright ones
+/// keep their precision, and the order is the same everywhere.
 using RowSums = std::array<std::vector<float>, kRadii>;
 
 RowSums sums_along_rows(const Padded& p, int radii) {
@@ -62,7 +62,7 @@ RowSums sums_along_rows(const Padded& p, int radii) {
   return out;
 }
 
-/// The same down the columns: sums over whole windows of the inner pixels.
+/// The same along the columns: sums over whole windows of the inner pixels.
 std::vector<float> sums_down_columns(const std::vector<float>& rows, int width, int height, int k) {
   const int radius = 2 << k, inner = height - 2 * kReach;
   const auto w = static_cast<std::ptrdiff_t>(width);

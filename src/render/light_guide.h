@@ -7,15 +7,15 @@
 
 namespace orrery::render {
 
-/// What two independent halves of each pixel's samples tell, row by row.
+/// Statistics of each pixel from its two independent halves of samples, in row-major order.
 struct PixelStatistics {
   PixelStatistics(int width_px, int height_px);
 
   int width, height;                   ///< px
   std::vector<std::uint32_t> samples;  ///< of each half, above 0
-  std::vector<float> light;            ///< mean of the three channels, both halves together, at least 0
-  std::vector<float> variance;         ///< of the pixel's estimate of its light, mean of the three channels
-  /// 1: no path met anything that could send light, so that black is what the pixel is; empty: not known of any.
+  std::vector<float> light;            ///< mean over both halves and the three channels, at least 0
+  std::vector<float> variance;         ///< variance of `light`, mean of the three channels
+  /// 1: no path reached anything that could emit, so the pixel is black; empty: unknown for all.
   std::vector<std::uint8_t> known_black;
 
   bool is_known_black(std::size_t i) const { return !known_black.empty() && known_black[i] != 0; }
@@ -24,43 +24,43 @@ struct PixelStatistics {
   }
 };
 
-/// Pixels in nine interleaved classes, (x mod 3, y mod 3): no two of a class are within a square of five by five.
+/// Pixels belong to nine interleaved classes, (x mod 3, y mod 3): a pixel's 5 x 5 window has no other of its class.
 inline constexpr int kClasses = 9;
-/// In place of a class: all pixels are used.
+/// No class is excluded: all pixels are used.
 inline constexpr int kNoClass = -1;
 
 inline int class_of(int x, int y) { return x % 3 + y % 3 * 3; }
 
-/// A rectangle of pixels that is processed in one go.
+/// A rectangle of pixels that is processed at once.
 struct PixelBlock {
   int x, y, width, height;  ///< px
 };
 
-/// The blocks of a picture, in a fixed order.
+/// The blocks of an image, in a fixed order.
 std::vector<PixelBlock> blocks_of(int width_px, int height_px);
 
-/// Pixels within `reach` of each other along an axis and within the picture: how many, and how many of them have the
-/// remainder `remainder` by three; below 0: none.
+/// The number of pixels within `reach` of `at` along an axis of the image; with `remainder`, of those whose coordinate
+/// modulo three equals it, none if it is negative.
 int count_within(int at, int reach, int size);
 int count_within(int at, int reach, int size, int remainder);
 
-/// An estimate of the light of every pixel that borrows from its neighbours as far as its own samples are uncertain.
+/// An estimate of every pixel's radiance that borrows from its neighbours as far as its own samples are uncertain.
 ///
-/// A pixel's error is relative to its light, and its own estimate of that is useless where light is rare: no hit says
-/// no light, and a single hit says that the error is half the light, however rare such hits are. So the mean of the
-/// whole picture is refined by those of smaller and smaller windows, each as far as its own variance allows (its
-/// light is expected to vary by as much as it is), and at last by the pixel's own value, as far as the pixels of five
-/// by five differ by more than their variance (Wiener's filter).
+/// Errors are relative to the pixel's radiance, but the pixel's own estimate of it fails if light is rare: without a
+/// hit it is zero, and with a single hit the relative error is one half, however rare such hits are. So the mean of the
+/// whole image is refined by the means of ever smaller windows, each weighted by its variance (the expected variation
+/// of the radiance is the radiance itself), and finally by the pixel's own value, as far as the pixels of a 5 x 5
+/// window differ by more than their variance (Wiener filter).
 ///
 /// Reference  lee1980
 class LightGuide {
  public:
-  /// Leaves out the pixels of `excluded_class`, so that the result does not depend on them.
+  /// Ignores the pixels of `excluded_class`, so that the result does not depend on them.
   ///
   /// Domain     the statistics outlive this
   LightGuide(const PixelStatistics& statistics, int excluded_class);
 
-  /// The guide of a block's pixels, row by row. The values of pixels of the excluded class mean nothing.
+  /// The guide of a block's pixels in row-major order; undefined for pixels of the excluded class.
   std::vector<float> of(const PixelBlock& block) const;
 
  private:

@@ -11,25 +11,24 @@
 namespace orrery::render {
 namespace {
 
-/// Windows reach so many pixels to each side: those in which errors are averaged, the second where the errors of fewer
-/// than kFewest pixels make up the mean of the first, and those in which evidence is looked for.
+/// Half-widths of windows, px: for averaging errors; the same if effectively fewer than kFewest pixels make up the mean
+/// of the first; and for finding evidence.
 constexpr int kReach = 2, kWideReach = 4, kEvidenceReach = 3;
 constexpr double kFewest = 3;
 
-/// Errors are sparse where less than one pixel in so many makes up the mean.
+/// Errors are sparse if effectively less than one pixel in kSparse makes up the mean.
 constexpr double kSparse = 64;
 
-/// Pixels along the side of a cell. Sums over cells make up the windows beyond kWideReach: three by three cells around
-/// the pixel's own, and nine by nine.
+/// Side of a cell, px. Windows larger than kWideReach are 3 x 3 and 9 x 9 cells around the pixel's own.
 constexpr int kCell = 16;
 
-/// A pixel's error is taken to be at least this part of the whole picture's: one that differs from all around it must
-/// not be left behind for ever.
+/// Lower bound of a pixel's error as a fraction of the image's, so that a pixel unlike its neighbours is never
+/// abandoned.
 constexpr float kLeastError = 1.0f / 64;
 
-/// Paths in a window that must have found light before its error is believed.
+/// Paths in a window that must have found light before its error is trusted.
 constexpr double kHits = 4;
-/// Keeps squares of errors within float: no error of interest is near.
+/// Keeps squared errors within the range of float; far above any error of interest.
 constexpr float kLargestError = 0x1p50f;
 
 void run(TilePool& pool, std::size_t count, const std::function<void(std::size_t)>& work) {
@@ -43,7 +42,7 @@ float relative(float variance, float light) {
   return std::min(variance / (shown * shown), kLargestError);
 }
 
-/// Errors of single samples of all pixels but one class's, and their sums.
+/// Errors of single samples of all pixels except one class's, and their sums.
 class ErrorsOfOthers {
  public:
   struct Sums {
@@ -62,7 +61,7 @@ class ErrorsOfOthers {
         values_(s.samples.size()),
         cells_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {}
 
-  /// Computes those of a block, whose sides are whole cells but at the picture's border.
+  /// Computes the errors of a block, whose sides are whole cells except at the image's border.
   void fill(const PixelBlock& b, const std::vector<float>& guide, int excluded_class) {
     for (int y = b.y; y < b.y + b.height; y += kCell)
       for (int x = b.x; x < b.x + b.width; x += kCell) cell(x / kCell, y / kCell) = {};
@@ -82,9 +81,9 @@ class ErrorsOfOthers {
     }
   }
 
-  /// The mean around a pixel of the excluded class: that of the smallest window in which enough pixels count. Where
-  /// only few in a wide window have nearly all of its error, any pixel may be another of them: the wide mean is the
-  /// least that is assumed.
+  /// The mean around a pixel of the excluded class, over the smallest window in which enough pixels contribute. If a
+  /// few pixels of a wide window have nearly all of its error, any pixel may be another of them, so the wide mean is a
+  /// lower bound.
   float around(int x, int y) const {
     Sums wide = of_cells(x, y, 1);
     if (!wide.is_enough()) wide = of_cells(x, y, 4);
@@ -131,7 +130,7 @@ class ErrorsOfOthers {
   std::vector<Sums> cells_;
 };
 
-/// Whether the others around a pixel have found enough light, or black that is to be believed.
+/// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
 bool has_evidence(const PixelStatistics& s, int x, int y) {
   const double n = s.samples[s.at(x, y)];
   if (n >= kSamplesForEvidence) return true;
@@ -148,9 +147,9 @@ bool has_evidence(const PixelStatistics& s, int x, int y) {
       ++count;
     }
   }
-  if (count == 0 || n * count > 2 * samples) return true;  // its own samples are no evidence: it is the others' turn
-  if (2 * dark >= count) return false;                     // light beside a dark area proves nothing there
-  return light * light >= kHits * variance;                // where all hits are equally bright: their number
+  if (count == 0 || n * count > 2 * samples) return true;  // its own samples are no evidence; its neighbours need more
+  if (2 * dark >= count) return false;                     // light beside a dark area is no evidence within it
+  return light * light >= kHits * variance;                // the number of hits if all are equally bright
 }
 
 }  // namespace
@@ -170,7 +169,7 @@ NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
     std::size_t k = 0;
     for (int y = b.y; y < b.y + b.height; ++y) {
       for (int x = b.x; x < b.x + b.width; ++x, ++k) {
-        // The guide may take a dark pixel at an edge for a bright one, the pixel's own light not more than it has.
+        // At an edge the guide may overestimate a dark pixel; the pixel's own radiance does not.
         const std::size_t at = s.at(x, y);
         out.of_pixel[at] = relative(s.variance[at], std::min(light[k], s.light[at]));
         const auto e = static_cast<double>(out.of_pixel[at]);

@@ -9,38 +9,38 @@
 
 namespace orrery::render {
 
-/// The squared error of a picture as --noise means it.
+/// The squared relative display error of an image, as in --noise.
 struct NoiseEstimate {
   double mean_square = 0;     ///< over the pixels
   double standard_error = 0;  ///< of mean_square
   std::vector<float> of_pixel;
 
-  /// What the squared error of the picture rarely exceeds.
+  /// An upper confidence bound (two standard errors) of the image's squared error.
   double upper() const { return mean_square + 2 * standard_error; }
 };
 
-/// Estimates the noise of the picture as it is.
+/// Estimates the noise of the present image.
 NoiseEstimate estimate_noise(const PixelStatistics& statistics, TilePool& pool);
 
-/// Pixels around which too few paths have found light for any estimate to be relied on.
+/// Pixels around which too few paths have found light for a reliable estimate.
 struct MissingEvidence {
-  std::vector<std::uint8_t> of_pixel;  ///< 1: it needs more samples whatever its error seems to be
+  std::vector<std::uint8_t> of_pixel;  ///< 1: needs more samples whatever its estimated error
   std::uint64_t count = 0;
 };
 
-/// Looks for light around every pixel, its own samples left out.
+/// Looks for light around every pixel, excluding the pixel's own samples.
 ///
-/// A window without any light may be black, or its light may be rare. It is believed to be black after
-/// 2 * kSamplesForEvidence samples of a pixel, and the errors of windows in which few paths found light are believed
-/// then, too.
+/// A window without light may be black, or its light may be rare. It is assumed to be black after
+/// 2 * kSamplesForEvidence samples per pixel. From then on the errors of windows in which few paths found light are
+/// trusted, too.
 MissingEvidence find_missing_evidence(const PixelStatistics& statistics, TilePool& pool);
 
-/// Samples of a half.
+/// Samples of a half per pixel.
 inline constexpr std::uint32_t kSamplesForEvidence = 512;
 
-/// The squared error that a single sample of each pixel would have, relative as --noise means it, estimated from the
-/// pixels around it: its own samples have no influence, so that a choice by the result cannot favour samples that
-/// happen to be bright, dark or alike. Docs: decision 16.
+/// The squared relative error of a single sample of each pixel, as in --noise, estimated from the pixels around it. The
+/// pixel's own samples have no influence, so choosing pixels by the result cannot favour samples that happen to be
+/// bright, dark or alike (decision 16).
 ///
 /// `noise`    of the same statistics
 std::vector<float> errors_of_one_sample(const PixelStatistics& statistics, const NoiseEstimate& noise, TilePool& pool);

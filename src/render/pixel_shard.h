@@ -5,17 +5,17 @@
 
 namespace orrery::render {
 
-/// One of several parts of a picture, made of squares that are dealt out like cards: neighbouring ones, which cost
-/// about the same, go to different parts.
+/// A shard of an image's pixels. Squares are dealt out in turn, so that neighbouring ones, which cost about the same,
+/// go to different shards.
 struct PixelShard {
   int index = 0;  ///< from 0
-  int count = 1;  ///< of all parts
+  int count = 1;  ///< number of shards
 };
 
-/// Sides of the squares, px.
+/// Side of the squares, px.
 inline constexpr int kShardSide = 16;
 
-/// Which pixels belong to a shard, row by row. The shares of one count have every pixel once among them.
+/// Which pixels belong to a shard, in row-major order. The shards of one count partition the image.
 std::vector<bool> pixels_of(const PixelShard& shard, int width_px, int height_px);
 
 }  // namespace orrery::render

@@ -11,22 +11,23 @@
 
 namespace orrery::render {
 
-/// Reports progress to the caller, from whichever thread has just done some of it: at each whole percent, and between
-/// these ten times a second at most.
+/// Reports progress to the caller, from the rendering threads: at each whole percent, and at most ten times a second in
+/// between.
 class ProgressReporter {
  public:
-  /// `total` samples are to be done, as far as is known; `before` was done by earlier runs.
+  /// `total`    samples to render, as far as known
+  /// `before`   work of earlier runs
   ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before = {})
       : settings_(settings), seconds_before_(before.seconds), done_(before.paths), total_(total) {}
 
-  /// Samples were done.
+  /// Counts rendered samples.
   void add(std::uint64_t samples);
 
-  /// A better guess of the samples that will be needed, and what ends the render; between rounds only. What was told
-  /// before is not taken back: a bar that went backwards would say less than one that waits.
+  /// Updates the estimated total of samples and what will end the render. Only between iterations. Reported progress
+  /// never decreases.
   void expect(std::uint64_t total, std::string goal);
 
-  /// Of rendering, those of earlier runs among them.
+  /// Rendering time, including earlier runs.
   double seconds() const;
   std::uint64_t done() const { return done_.load(std::memory_order_relaxed); }
 
@@ -36,12 +37,12 @@ class ProgressReporter {
   const Settings& settings_;
   double seconds_before_;
   std::atomic<std::uint64_t> done_;
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards the members below
   std::uint64_t total_;
   std::string goal_;
   double most_told_ = 0;   ///< 0..1
-  double last_ = 0;        ///< report, seconds
-  int last_percent_ = -1;  ///< that was reported
+  double last_ = 0;        ///< time of the last report, seconds
+  int last_percent_ = -1;  ///< last reported
   Clock::time_point start_ = Clock::now();
 };
 

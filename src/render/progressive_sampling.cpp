@@ -10,15 +10,15 @@ namespace {
 
 using kernel::Sampler;
 
-/// Sides of a square: neighbouring pixels share what they look at, so up to here.
+/// Maximum side of a square, px: neighbouring pixels see the same spheres.
 constexpr int kLargestSide = 32;
 constexpr int kSmallestSide = 4;
 
-/// Paths in a square: some milliseconds of work.
+/// Paths in a square: a few milliseconds of work.
 constexpr double kPathsPerSquare = 65536;
 
-/// Samples of a pixel in the first pass, by which they grow from pass to pass, and in the largest: a square of the
-/// smallest side shall be done before somebody who wants to stop loses patience.
+/// Samples per pixel of the first pass, growth from pass to pass, and maximum: a square of the smallest side must
+/// finish soon enough for an interactive stop.
 constexpr std::uint32_t kFirstPass = 16, kGrowth = 4, kLargestPass = 4096;
 
 int side_for(std::uint32_t samples) {
@@ -65,7 +65,7 @@ std::vector<kernel::PixelPlace> ProgressiveSampling::unfinished_squares(int side
   return out;
 }
 
-/// Pixels of a square that have had as many samples, and shall have as many, go together.
+/// Pixels of a square with equal sample counts and equal goals are rendered together.
 void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel& on_pixel, TileWorker& worker) {
   struct Group {
     std::uint32_t have, want;
@@ -140,7 +140,7 @@ bool render_progressively(const compile::CompiledScene& compiled, const Settings
     state.goals.resize(state.pixel_count());
     for (std::size_t i = 0; i < state.goals.size(); ++i) state.goals[i] = owned[i] ? goal : 0;
     const bool completed = passes.run(side_for(goal - done));
-    state.goals.clear();  // nobody has to know them in order to go on
+    state.goals.clear();  // not needed to resume
     if (!completed) return false;
     done = goal;
     pass = std::min(pass * kGrowth, kLargestPass);

@@ -15,10 +15,10 @@
 
 namespace orrery::render {
 
-/// Renders the samples that pixels lack, over all threads, and stops at any time without losing one.
+/// Renders the samples that pixels lack, on all threads. Can be stopped at any time without losing samples.
 class ProgressiveSampling {
  public:
-  /// Called with every pixel that has got samples, from the thread that rendered them.
+  /// Called for every pixel that has received samples, on the thread that rendered them.
   using OnPixel = std::function<void(int x, int y)>;
 
   /// Domain     all arguments outlive this
@@ -26,14 +26,14 @@ class ProgressiveSampling {
                       ProgressReporter& progress, film::Partial& state)
       : settings_(settings), render_tile_(render_tile), pool_(pool), progress_(progress), state_(state) {}
 
-  /// Brings every pixel to as many samples as the state's goals say, in squares of `side` pixels; in both halves, where
-  /// there are two. Snapshots are handed out meanwhile where the settings want them.
+  /// Renders every pixel up to the state's goals, in squares of `side` pixels, in both halves if there are two. Takes
+  /// snapshots if the settings request them.
   ///
-  /// Result     false where the settings' `cancel` stopped it; then each pixel has its old count or its goal
+  /// Result     false if cancelled by the settings' `cancel`; each pixel then has its old count or its goal
   bool run(int side, const OnPixel& on_pixel = {});
 
  private:
-  /// Upper left corners of those where some pixel has not yet as many samples as it shall have.
+  /// Upper left corners of the squares with pixels below their goals.
   std::vector<kernel::PixelPlace> unfinished_squares(int side) const;
   void render_square(int x0, int y0, int side, const OnPixel& on_pixel, TileWorker& worker);
   void render_group(kernel::Tile& tile, std::uint32_t have, std::uint32_t want, TileWorker& worker);
@@ -45,12 +45,12 @@ class ProgressiveSampling {
   film::Partial& state_;
 };
 
-/// What was done before, and by this pool since.
+/// The work of earlier runs plus that of this pool.
 film::RenderWork work_so_far(const film::RenderWork& before, const TilePool& pool, const ProgressReporter& progress);
 
-/// All samples of all pixels of the settings' share, in passes that grow: the first soon show the whole picture.
+/// Renders all samples of the settings' pixel shard, in passes of growing size: the first soon show the whole image.
 ///
-/// Result     false where the settings' `cancel` stopped it
+/// Result     false if cancelled by the settings' `cancel`
 bool render_progressively(const compile::CompiledScene& compiled, const Settings& settings,
                           const TileRenderer& render_tile, TilePool& pool, ProgressReporter& progress,
                           film::Partial& state, Statistics& statistics);

@@ -8,7 +8,7 @@
 namespace orrery::render {
 namespace {
 
-/// Stands between the kernel and the traversal, and writes down what passes.
+/// Forwards queries to the tracer and keeps the traced packets.
 template <class Packet>
 struct Recorder {
   kernel::Tracer tracer;
@@ -21,7 +21,7 @@ struct Recorder {
 };
 
 void trace(const void* self, kernel::RayPacket& packet) {
-  // Tracers are const to the kernel, which a recorder can't be.
+  // The kernel passes `self` as const, but a recorder changes.
   auto& recorder = *static_cast<Recorder<kernel::RayPacket>*>(const_cast<void*>(self));
   recorder.tracer.trace(recorder.tracer.self, packet);
   recorder.keep(packet);
@@ -32,11 +32,22 @@ void trace_fast(const void* self, kernel::RayPacketFast& packet) {
   recorder.keep(packet);
 }
 
+template <class Packet>
+const kernel::Tracer& recorded(const void* self) {
+  return static_cast<const Recorder<Packet>*>(self)->tracer;
+}
+void occlude(const void* self, kernel::ShadowPacket& packet) {
+  kernel::occlude(recorded<kernel::RayPacket>(self), packet);
+}
+void occlude_fast(const void* self, kernel::ShadowPacketFast& packet) {
+  kernel::occlude(recorded<kernel::RayPacketFast>(self), packet);
+}
+
 template <class Packet, class Stream, class RenderTile>
 RecordedRays<Packet> record(const kernel::SceneView& view, const accel::Accel& accel,
                             const std::vector<kernel::Tile>& tiles, RenderTile render_tile) {
   Recorder<Packet> recorder{accel.tracer(), {}};
-  const kernel::Tracer tap{trace, trace_fast, &recorder};
+  const kernel::Tracer tap{trace, trace_fast, occlude, occlude_fast, &recorder};
   const auto stream = std::make_unique<Stream>();
   std::vector<kernel::PixelSum> sums;
   for (kernel::Tile tile : tiles) {

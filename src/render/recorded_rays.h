@@ -11,8 +11,8 @@
 
 namespace orrery::render {
 
-/// The packets of a render, in the order in which they were traced: the rays that a traversal meets in earnest, not
-/// ones that somebody thought up. `hit` and `distance` are as traced.
+/// The packets of a render in tracing order: representative rays for measuring traversal. `hit` and `distance` are the
+/// results.
 template <class Packet>
 struct RecordedRays {
   std::vector<Packet> camera;
@@ -20,16 +20,16 @@ struct RecordedRays {
   std::uint64_t paths = 0;
 };
 
-/// Renders tiles of a picture, in one thread, and keeps every packet; nothing is added to the tiles' sums.
+/// Renders tiles of an image on one thread and keeps every packet; the tiles' sums stay unchanged.
 ///
-/// Domain     `accel` is made for the view, in the precision
-/// Cost       about 2 KB for 16 rays, 1 KB in `fast`
+/// Domain     `accel` was built for the view, in the precision
+/// Cost       about 2 KB per 16 rays, 1 KB in `fast`
 RecordedRays<kernel::RayPacket> record_rays(const kernel::SceneView& view, const accel::Accel& accel,
                                             kernel::Precision precision, const std::vector<kernel::Tile>& tiles);
 RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& view, const accel::Accel& accel,
                                                      const std::vector<kernel::Tile>& tiles);
 
-/// Traces packets once more and does nothing else: what a renderer whose shading costs nothing would need.
+/// Times tracing the packets again, without shading.
 ///
 /// Result     seconds
 double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket>& packets);

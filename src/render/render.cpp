@@ -44,7 +44,7 @@ void count_samples(const compile::CompiledScene& compiled, const Settings& setti
   statistics.fewest_samples = std::min(statistics.fewest_samples, statistics.most_samples);
 }
 
-/// Where a render begins: nothing done.
+/// The state of a render that has not begun.
 film::Partial fresh_state(const compile::CompiledScene& compiled, const Settings& settings) {
   film::Partial state(compiled.width, compiled.height);
   if (settings.sampling.is_adaptive()) state.second = film::Film(compiled.width, compiled.height);

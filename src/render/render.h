@@ -19,65 +19,66 @@
 
 namespace orrery::render {
 
+/// Settings of a render that are not part of the scene.
 struct Settings {
   int threads = 0;  ///< 0: as many as available_threads()
-  /// Traversal of all rays. Empty: the faster one in this scene, measured separately for camera and scattered rays.
+  /// Traversal of all rays. Empty: the faster one in this scene, measured separately for camera and bounced rays.
   std::optional<accel::Traversal> traversal;
-  film::LayerRequest layers;  ///< beside the beauty; none cost nothing
+  film::LayerRequest layers;  ///< beside the beauty
   SamplingLimits sampling;
-  /// Called from one thread at a time: at each whole percent, and ten times a second at most between these.
+  /// Called from one thread at a time: at each whole percent, and at most ten times a second in between.
   std::function<void(const Progress&)> on_progress;
-  /// Seconds that rendering so many samples takes. For tests, which must not depend on the machine's speed; empty: the
-  /// steady clock is read. From any thread.
+  /// Replaces the clock: seconds as a function of rendered samples, so that tests do not depend on the machine's speed.
+  /// Empty: the steady clock. Called from any thread.
   std::function<double(std::uint64_t samples_done)> clock;
-  /// Called while the hierarchy is built, with what is done of it, 0..1, from any thread.
+  /// Called from any thread with the progress of the BVH build, 0..1.
   std::function<void(double fraction)> on_build;
-  const std::atomic<bool>* cancel = nullptr;  ///< looked at while building and between tiles; true stops the render
-  /// Asked often, from any thread: true has the threads wait while `on_snapshot` gets what there is so far.
+  const std::atomic<bool>* cancel = nullptr;  ///< polled during the build and between tiles; true stops the render
+  /// Polled often, from any thread. If true, the threads wait while `on_snapshot` receives the present state.
   std::function<bool()> snapshot_is_due;
   std::function<void(const film::Partial&)> on_snapshot;
-  bool keep_partial = false;  ///< the result shall have what it was made of
+  bool keep_partial = false;  ///< also return the partial in the result
 };
 
+/// Result of a render.
 struct Result {
-  film::Picture picture;   ///< planes R, G, B, A, then the layers; empty when not completed
-  film::DeepPicture deep;  ///< empty unless it was asked for
+  film::Picture picture;   ///< planes R, G, B, A, then the layers; empty if not completed
+  film::DeepPicture deep;  ///< empty unless requested
   Statistics statistics;
   bool completed = false;  ///< false: stopped by `cancel`
-  /// Where it was stopped while rendering, what it can go on from; completed, where the settings say so.
+  /// If stopped while rendering, the state to resume from; if completed, present on request (keep_partial).
   std::optional<film::Partial> partial;
 };
 
-/// Threads this process may use: the processors in its affinity mask.
+/// The number of processors in the process's affinity mask.
 int available_threads();
 
-/// Builds what finds hits, as the world's accelerator and precision ask for it.
+/// Builds the scene's accelerator for its precision.
 ///
-/// Domain     the world's spheres outlive the result
-/// Errors     base::Error(kInternal) where it cannot be built, kStopped where the monitor said so
+/// Domain     the compiled scene's spheres outlive the result
+/// Errors     base::Error(kInternal) if it cannot be built, kStopped if the monitor cancelled the build
 std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int threads,
                                     const accel::BuildMonitor& monitor = {});
 
-/// Renders a whole picture with hits of an `accel` that was built for this world's spheres and precision.
+/// Renders an image with an accelerator that was built for this scene and precision.
 ///
-/// `from`     a partial of this world and these settings, to go on from; none: from the beginning
-/// Result     completed == false where `cancel` stopped it; build_s is 0
+/// `from`     a partial of the same scene and settings to resume from
+/// Result     completed == false if stopped by `cancel`; build_s is 0
 Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings,
               std::optional<film::Partial> from = {});
 
-/// Builds, and renders a whole picture.
+/// Builds the accelerator and renders an image.
 ///
-/// The picture's bits depend on the world alone, not on threads, tiles, accelerator, or how often it was stopped on the
-/// way.
+/// The image's bits depend only on the scene, not on threads, tiles, accelerator or interruptions.
 ///
-/// Result     completed == false where `cancel` stopped it
-/// Errors     base::Error(kInternal) where the acceleration structure cannot be built
+/// Result     completed == false if stopped by `cancel`
+/// Errors     base::Error(kInternal) if the accelerator cannot be built
 Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from = {});
 
-/// Samples of a pixel that the settings ask for.
+/// Samples per pixel that the settings request.
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings);
 
-/// The picture that a partial comes to as it is, where a pixel without samples is black.
+/// Converts a partial to an image; pixels without samples are black.
 Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, film::Partial partial);
 
 }  // namespace orrery::render

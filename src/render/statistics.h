@@ -7,24 +7,23 @@
 
 namespace orrery::render {
 
-/// What a render did.
+/// Statistics of a render.
 struct Statistics {
   std::uint64_t paths = 0;
   std::uint64_t rays = 0;
-  std::uint64_t bad_samples = 0;  ///< not finite; counted and left out of their pixel's mean
-  double build_s = 0;             ///< acceleration structure
+  std::uint64_t bad_samples = 0;  ///< not finite or too large; excluded from their pixel's mean
+  double build_s = 0;             ///< building the acceleration structure
   double render_s = 0;
-  double finish_s = 0;      ///< from sums to the finished picture and its layers
-  std::string isa;          ///< instruction set that the kernel ran with, "avx2"
-  std::string accelerator;  ///< "embree 3.13.5", "list"
-  std::string traversal;    ///< "packet, bounced single": of camera rays, and of bounced ones where it differs
+  double finish_s = 0;      ///< from sums to the finished image and its layers
+  std::string isa;          ///< the kernel's instruction set, e.g. "avx2"
+  std::string accelerator;  ///< e.g. "embree 3.13.5" or "list"
+  std::string traversal;    ///< e.g. "packet, bounced single": of camera rays, and of bounced rays if different
   int threads = 0;
-  std::uint64_t fewest_samples = 0, most_samples = 0;  ///< of a pixel
-  /// Where noise or seconds were given: the noise that the picture is expected to have, and what it rarely exceeds,
-  /// which is what ends the render.
+  std::uint64_t fewest_samples = 0, most_samples = 0;  ///< per pixel
+  /// Of adaptive sampling: the expected noise of the image, and its upper confidence bound, which ends the render.
   std::optional<double> expected_noise, noise;
-  std::uint64_t unjudged_pixels = 0;  ///< around which too few paths found light for these estimates
-  std::string ended_by;               ///< "samples", "noise" or "time", whichever came first
+  std::uint64_t unjudged_pixels = 0;  ///< pixels around which too few paths found light for these estimates
+  std::string ended_by;               ///< "samples", "noise" or "time"
 };
 
 }  // namespace orrery::render

@@ -12,7 +12,7 @@
 namespace orrery::render {
 
 struct TilePool::Impl {
-  // Without the limit TBB makes no more threads than there are processors.
+  // Raises the limit: by default TBB uses no more threads than processors.
   tbb::global_control limit;
   tbb::task_arena arena;
   tbb::enumerable_thread_specific<TileWorker> workers;

@@ -12,22 +12,22 @@
 
 namespace orrery::render {
 
-/// Threads that share out tiles, and what each of them keeps from one tile to the next.
+/// A thread pool for tiles, with buffers that each thread keeps from tile to tile.
 class TilePool {
  public:
   explicit TilePool(int threads);
   ~TilePool();
 
-  /// Calls `work(i, worker)` for i = 0 .. count - 1, in any order and from all threads, until `shall_stop` says so.
+  /// Calls `work(i, worker)` for i = 0 .. count - 1, in any order and on all threads, until `shall_stop` returns true.
   ///
-  /// Result     false where some were left out
+  /// Result     false if some were not called
   bool run(std::size_t count, const std::function<void(std::size_t i, TileWorker& worker)>& work,
            const std::function<bool()>& shall_stop);
 
-  /// Runs something with these threads.
+  /// Runs `work` within the pool, so that its parallel loops use these threads.
   void execute(const std::function<void()>& work);
 
-  /// Of all tiles so far.
+  /// Counts of all tiles so far.
   kernel::TileCounts counts() const;
 
  private:

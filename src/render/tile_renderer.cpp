@@ -7,10 +7,10 @@
 namespace orrery::render {
 namespace {
 
-/// Paths whose records a thread holds at a time: a few megabytes.
+/// Maximum path records that a thread holds at a time: a few megabytes.
 constexpr std::uint32_t kMostRecords = 65536;
 
-/// The picture must not depend on what a host program did to a thread's rounding.
+/// Restores the default rounding mode for its lifetime: the image must not depend on that of a host program.
 class DefaultRounding {
  public:
   DefaultRounding() {
@@ -26,6 +26,21 @@ class DefaultRounding {
 };
 
 }  // namespace
+
+void LightEventBuffer::reset(std::size_t paths) {
+  storage_.resize(std::max(storage_.size(), paths + kernel::kPacketSize));
+  next = storage_.data();
+  end = next + storage_.size();
+  make_room = grow;
+}
+
+void LightEventBuffer::grow(kernel::LightEvents& events) {
+  auto& self = static_cast<LightEventBuffer&>(events);
+  const auto used = self.next - self.storage_.data();
+  self.storage_.resize(2 * self.storage_.size());
+  self.next = self.storage_.data() + used;
+  self.end = self.storage_.data() + self.storage_.size();
+}
 
 TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel,
                            const film::LayerRequest& request)
@@ -80,6 +95,10 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, fi
     const std::uint32_t samples = part.sample_end - begin;
     worker.records.resize(pixels * samples);
     part.records = worker.records.data();
+    if (request_.light_events()) {
+      worker.events.reset(worker.records.size());
+      part.events = &worker.events;
+    }
     trace(part, worker);
     for (int i = 0; i < tile.pixel_count(); ++i) {
       const kernel::PixelPlace at = tile.pixel(i);
@@ -88,6 +107,13 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, fi
       const kernel::PathRecord* record = part.records + within * samples;
       for (std::uint32_t s = begin; s < part.sample_end; ++s)
         pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1));
+    }
+    if (part.events == nullptr) continue;
+    for (const kernel::LightEvent* event = worker.events.begin(); event != worker.events.next; ++event) {
+      const auto within = static_cast<int>(event->path / samples);
+      const std::uint64_t s = begin + event->path % samples;
+      layers[place_in_picture({within % tile.width, within / tile.width})].add(part.records[event->path], *event,
+                                                                               view_.filter.weight(s, s + 1));
     }
   }
 }

@@ -12,21 +12,34 @@
 
 namespace orrery::render {
 
-/// One thread's own: nothing in the kernel's loop allocates.
+/// A growing buffer of a tile's light events.
+class LightEventBuffer : public kernel::LightEvents {
+ public:
+  /// Clears the buffer and reserves one event per path, which is all that a scene without lights has.
+  void reset(std::size_t paths);
+  const kernel::LightEvent* begin() const { return storage_.data(); }
+
+ private:
+  static void grow(kernel::LightEvents& events);
+  std::vector<kernel::LightEvent> storage_;
+};
+
+/// Buffers of one thread, so that the kernel's loop does not allocate.
 struct TileWorker {
   std::unique_ptr<kernel::PathStream> stream;
   std::unique_ptr<kernel::PathStreamFast> stream_fast;
   std::vector<kernel::PathRecord> records;
+  LightEventBuffer events;
   kernel::TileCounts counts;
 };
 
-/// Runs one tile in the precision of the world, and hands its paths to the layers where there are any.
+/// Renders tiles in the scene's precision and adds their paths to the layers, if there are any.
 class TileRenderer {
  public:
   /// Domain     all arguments outlive this
   TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const film::LayerRequest& request);
 
-  /// `layers`   of the picture, row by row; null where the request is empty
+  /// `layers`   of the image, row-major; null if the request is empty
   void operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const;
 
  private:
@@ -38,7 +51,7 @@ class TileRenderer {
   const film::LayerRequest& request_;
   int width_;
   kernel::RenderTile render_ = nullptr;
-  kernel::RenderTileFast render_fast_ = nullptr;  ///< in use where it is not null
+  kernel::RenderTileFast render_fast_ = nullptr;  ///< used if not null
 };
 
 }  // namespace orrery::render

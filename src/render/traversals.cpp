@@ -10,18 +10,18 @@
 namespace orrery::render {
 namespace {
 
-/// A trial path costs about five ordinary ones: it is rendered, and its rays are traced twice both ways.
+/// A trial path costs about five ordinary ones: it is rendered, and its rays are traced twice by each traversal.
 constexpr double kTrialShare = 0.002;
 constexpr double kMostTrialPaths = 32 * 1024;
 
-/// Fewer tiles than this would see one corner of the picture only.
+/// Fewer tiles than this would sample only a corner of the image.
 constexpr int kFewestTrialTiles = 4;
 
-/// Without a trial: bounced rays of larger scenes part too soon for packets.
+/// Without a trial: in larger scenes bounced rays diverge too soon for packets.
 constexpr std::size_t kManySpheres = 1000;
 
-/// Tiles all over the picture, the same ones in every run. Each is one stream of paths: fewer would leave bounced
-/// packets emptier than they are in a render. As in a render, a packet of camera rays holds as many pixels as it needs.
+/// Tiles all over the image, the same in every run. Each fills one stream of paths: with fewer paths bounced packets
+/// would be emptier than in a render. As in a render, a packet of camera rays spans as many pixels as it needs.
 std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
   const double paths = static_cast<double>(compiled.width) * compiled.height * compiled.samples;
   const int count = static_cast<int>(std::min(paths * kTrialShare, kMostTrialPaths) / kernel::kStreamSize);
@@ -31,7 +31,7 @@ std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
   if (count < kFewestTrialTiles) return tiles;
   for (int i = 0; i < count; ++i) {
     kernel::Tile tile;
-    // Down the picture in even steps, across it by the golden ratio's fraction, which never comes near itself.
+    // Evenly spaced vertically, and horizontally by multiples of the golden ratio, which spread well.
     const double across = 0.6180339887498949 * i;
     tile.x = static_cast<int>((across - static_cast<int>(across)) * (compiled.width - width + 1));
     tile.y = static_cast<int>((i + 0.5) / count * compiled.height);
@@ -43,7 +43,7 @@ std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
   return tiles;
 }
 
-/// The quicker way for these packets; each way has two tries, in turn, of which the better counts.
+/// The faster traversal for these packets, each by the better of two alternating runs.
 template <class Packet>
 accel::Traversal quicker(accel::Accel& accel, std::vector<Packet>& packets) {
   double best[2] = {1e300, 1e300};

@@ -10,18 +10,18 @@
 
 namespace orrery::render {
 
-/// How the rays of a world had best go through its hierarchy.
+/// Chooses the BVH traversal for a scene.
 ///
-/// Unless one is requested, some thousandths of the picture's paths are rendered, and their rays traced both ways
-/// against the clock; where the picture has too few paths for that to pay, the number of spheres decides. Hits do not
-/// depend on the choice, so neither does the picture.
+/// Unless a traversal is requested, some thousandths of the image's paths are rendered and the tracing of their rays is
+/// timed with both traversals. If the image has too few paths for that to pay, the number of spheres decides. Hits, and
+/// with them the image, do not depend on the choice.
 accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel,
                                     std::optional<accel::Traversal> requested);
 
-/// What can be said before anything is built: "packet" and the like, "list", or that a trial will choose.
+/// Description of the traversal before anything is built: "packet", "single", "list", or that a trial will choose.
 std::string planned_traversal(const compile::CompiledScene& compiled);
 
-/// "packet", "single", "packet, bounced single".
+/// Name of the traversals, e.g. "packet" or "packet, bounced single".
 std::string name_of(accel::Traversals traversals);
 
 }  // namespace orrery::render

@@ -17,6 +17,11 @@ struct ChiSquare {
 /// Reference  wilson1931
 ChiSquare chi_square_of_equal_bins(const std::vector<std::uint64_t>& counts);
 
+/// Pearson's test of counts against expected counts. Bins with fewer than five expected counts are pooled.
+///
+/// Domain     both of the same length and with the same sum
+ChiSquare chi_square(const std::vector<std::uint64_t>& counts, const std::vector<double>& expected);
+
 /// Threshold on |z|. A correct sampler exceeds it once in ten million tests; the suite has a few dozen.
 inline constexpr double kLargestZ = 5.2;
 

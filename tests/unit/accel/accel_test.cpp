@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "kernel/isa.h"
+#include "support/accel_rays.h"
 #include "support/intersect_batch.h"
 
 namespace orrery::accel {
@@ -24,128 +25,17 @@ namespace {
 using kernel::kNoSphere;
 using kernel::kPacketSize;
 using kernel::Sphere;
-
-struct Random {
-  std::mt19937_64 engine{11};
-  double uniform(double a, double b) { return a + (b - a) * static_cast<double>(engine() >> 11) * 0x1p-53; }
-  bool coin() { return (engine() & 1) != 0; }
-};
+using test::aim;
+using test::normalize;
+using test::Random;
+using test::scattered;
+using test::Scene;
+using test::scenes;
+using test::step_back;
 
 long ray_count() {
   const char* wanted = std::getenv("ORRERY_ACCEL_RAYS");
   return wanted != nullptr ? static_cast<long>(std::atof(wanted)) : 1'000'000;
-}
-
-struct Scene {
-  const char* name;
-  std::vector<Sphere> spheres;
-  double camera_distance;  ///< from the target sphere, scene units
-};
-
-std::vector<Sphere> scattered(Random& random, int count, double spread, double radius, double offset) {
-  std::vector<Sphere> out;
-  out.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i)
-    out.push_back({offset + random.uniform(-spread, spread), random.uniform(-spread, spread),
-                   offset + random.uniform(-spread, spread), radius * random.uniform(0.1, 1)});
-  return out;
-}
-
-std::vector<Scene> scenes() {
-  Random random;
-  std::vector<Scene> list;
-  list.push_back({"one sphere", {{0, 0, 0, 1}}, 10});
-  list.push_back({"cloud", scattered(random, 200, 1, 0.2, 0), 5});
-  std::vector<Sphere> book = scattered(random, 150, 8, 0.2, 0);
-  book.push_back({0, -1000, 0, 1000});
-  list.push_back({"a ground of radius 1000", book, 15});
-  std::vector<Sphere> planet = scattered(random, 100, 2, 0.3, 0);
-  planet.insert(planet.begin() + 3, {0, -1e9, 0, 1e9});
-  list.push_back({"a ground of radius 1e9", planet, 6});
-  list.push_back({"offset 1e6", scattered(random, 100, 3, 0.5, 1e6), 10});
-  list.push_back({"tiny", scattered(random, 100, 1e-12, 2e-13, 0), 1e-11});
-  list.push_back({"seen from 1e9", scattered(random, 100, 1, 0.3, 0), 1e9});
-  std::vector<Sphere> mixed;
-  mixed.reserve(60);
-  for (int i = 0; i < 60; ++i)
-    mixed.push_back(
-        {random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5), std::exp(random.uniform(-12, 1))});
-  list.push_back({"radii over five decades", mixed, 20});
-  list.push_back({"coincident", std::vector<Sphere>(40, {1, 2, 3, 0.5}), 4});
-  return list;
-}
-
-void normalize(double (&d)[3]) {
-  const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  for (double& x : d) x /= length;
-}
-
-/// A ray tangent, or nearly so, to a sphere at one of the six points where the sphere touches its bounding box.
-void graze_pole(Random& random, const Scene& scene, const Sphere& s, kernel::RayPacket& packet, int lane) {
-  const int axis = static_cast<int>(random.uniform(0, 3)), across = (axis + 1) % 3, other = (axis + 2) % 3;
-  const double turn = random.coin() ? 0 : random.uniform(0, 6.28);
-  double direction[3] = {0, 0, 0}, base[3] = {s.x, s.y, s.z};
-  direction[across] = std::cos(turn);
-  direction[other] = std::sin(turn);
-  base[axis] += (random.coin() ? 1 : -1) * s.radius * (1 - std::exp(random.uniform(-30, -10)));
-  for (int i = 0; i < 3; ++i) base[i] -= direction[i] * scene.camera_distance;
-  test::set_ray(packet, lane, base, {0, 0, 0}, direction, kNoSphere);
-}
-
-/// Aims most rays at points where boxes and spheres separate: poles, rims, corners of boxes.
-void aim(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
-  const auto pick = [&] {
-    return static_cast<std::size_t>(random.uniform(0, static_cast<double>(scene.spheres.size())));
-  };
-  const Sphere& target = scene.spheres[pick()];
-  if (random.uniform(0, 1) < 0.4) return graze_pole(random, scene, target, packet, lane);
-  const double center[3] = {target.x, target.y, target.z};
-  double base[3], offset[3] = {0, 0, 0}, direction[3], point[3];
-  std::uint64_t self = kNoSphere;
-  if (random.coin()) {  // starts on a sphere
-    self = pick();
-    const Sphere& s = scene.spheres[self];
-    const double c[3] = {s.x, s.y, s.z};
-    double n[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-    normalize(n);
-    for (int i = 0; i < 3; ++i) {
-      base[i] = c[i];
-      offset[i] = n[i] * s.radius;
-    }
-  } else {
-    double away[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-    normalize(away);
-    for (int i = 0; i < 3; ++i) base[i] = center[i] + away[i] * scene.camera_distance;
-  }
-  double side[3] = {0, 0, 0};
-  const double kind = random.uniform(0, 1);
-  if (kind < 0.25) {  // a pole, where the sphere touches its box
-    side[static_cast<int>(random.uniform(0, 3))] = random.coin() ? 1 : -1;
-    for (double& x : side) x *= 1 + random.uniform(-1e-9, 1e-9);
-  } else if (kind < 0.5) {  // a rim or a corner
-    for (double& x : side) x = random.coin() ? 1 : -1;
-    if (random.coin()) normalize(side);
-  } else {
-    for (double& x : side) x = random.uniform(-1, 1);
-  }
-  for (int i = 0; i < 3; ++i) {
-    point[i] = center[i] + side[i] * target.radius;
-    direction[i] = (point[i] - base[i]) - offset[i];
-  }
-  normalize(direction);
-  if (!std::isfinite(direction[0])) direction[0] = 1, direction[1] = direction[2] = 0;
-  test::set_ray(packet, lane, base, offset, direction, self);
-}
-
-/// Moves a ray's origin backwards by up to a thousand times the camera distance.
-void step_back(Random& random, const Scene& scene, kernel::RayPacket& packet, int lane) {
-  const double by = scene.camera_distance * std::exp(random.uniform(0, 7));
-  double base[3], direction[3];
-  for (int i = 0; i < 3; ++i) {
-    direction[i] = packet.direction[i][lane];
-    base[i] = packet.origin[i][lane] - direction[i] * by;
-  }
-  test::set_ray(packet, lane, base, {0, 0, 0}, direction, kNoSphere);
 }
 
 /// An accelerator and traversal whose hits must agree with the list's.

@@ -30,11 +30,16 @@ class FilmLayerFilm : public testing::Test {
     path.offset[2] = 1;
     path.direction[2] = -1;
     std::fill_n(path.light, 3, light);
-    path.group = kernel::LightGroup::kDiffuseDirect;
     return path;
   }
 
-  void add(const kernel::PathRecord& path, std::int64_t weight = 1) { pixel_.add(request_, view_, path, weight); }
+  void add(const kernel::PathRecord& path, std::int64_t weight = 1, kernel::Lobe lobe = kernel::Lobe::kDiffuseDirect) {
+    pixel_.add(request_, view_, path, weight);
+    kernel::LightEvent event{};
+    std::copy_n(path.light, 3, event.value);
+    event.lobe = lobe;
+    pixel_.add(path, event, weight);
+  }
 
   /// An image of one pixel from the paths added so far.
   Picture picture() {
@@ -123,8 +128,7 @@ TEST_F(FilmLayerFilm, LightGroupsAddUpToTheBeautyInAnyOrder) {
     for (int i = 0; i < paths; ++i) {
       kernel::PathRecord path = path_to(0);
       for (double& v : path.light) v = uniform(random) < 0.2 ? 0 : std::exp2(exponent(random));
-      path.group = static_cast<kernel::LightGroup>(uniform(random) * kernel::kLightGroups);
-      add(path);
+      add(path, 1, static_cast<kernel::Lobe>(uniform(random) * kernel::kLobes));
     }
     const Picture p = picture();
     std::vector<float> groups;

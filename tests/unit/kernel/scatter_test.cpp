@@ -50,8 +50,8 @@ void scatter_case(ScatterCase& c) {
     to[1] = hn::GetLane(v.y);
     to[2] = hn::GetLane(v.z);
   };
-  store(scatter_dielectric(d, at, hn::Set(d, c.u)), c.glass);
-  const auto metal = scatter_metal(d, at, set3(d, c.on_sphere));
+  store(sample_dielectric(d, at, hn::Set(d, c.u)), c.glass);
+  const auto metal = sample_metal(d, at, set3(d, c.on_sphere));
   store(metal.direction, c.metal);
   c.metal_alive = !hn::AllFalse(d, metal.alive);
   const double sin_leaving = c.eta * arriving[0];

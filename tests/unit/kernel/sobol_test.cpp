@@ -41,13 +41,15 @@ void points_32(std::uint32_t name, std::uint32_t order, std::uint32_t first, std
   points<std::uint32_t>(name, order, first, count, out);
 }
 
-/// Random numbers at a vertex, computed in one lane: four per sample of a pixel.
-void numbers(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, std::uint32_t first, std::size_t count,
-             double* out) {
+/// Numbers of one lane: four for each sample of a pixel at a vertex, or of its second point.
+void numbers(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, bool second, std::uint32_t first,
+             std::size_t count, double* out) {
   const hn::FixedTag<double, 1> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto four = random_at_vertex(d, sampler, hn::Set(du, pixel), hn::Set(du, first + i), vertex, true);
+    const auto p = hn::Set(du, pixel), s = hn::Set(du, first + i);
+    const auto four = second ? second_random_at_vertex(d, sampler, p, s, vertex, true)
+                             : random_at_vertex(d, sampler, p, s, vertex, true);
     for (int k = 0; k < 4; ++k) *out++ = hn::GetLane(four.v[k]);
   }
 }
@@ -74,9 +76,9 @@ std::vector<Point> points_of(std::uint32_t name, std::uint32_t first, std::size_
 }
 
 std::vector<double> numbers_of(const Sampler& sampler, std::uint32_t pixel, std::uint32_t vertex, std::uint32_t first,
-                               std::size_t count) {
+                               std::size_t count, bool second = false) {
   std::vector<double> out(4 * count);
-  ORRERY_BEST(numbers)(sampler, pixel, vertex, first, count, out.data());
+  ORRERY_BEST(numbers)(sampler, pixel, vertex, second, first, count, out.data());
   return out;
 }
 
@@ -172,8 +174,11 @@ struct Excess {
   double mean = 0;     ///< over all pairs of vertices and numbers
   double largest = 0;  ///< maximum over pairs of vertices
 };
-Excess product_variance(SamplerKind kind, std::size_t samples, std::uint32_t vertices, std::uint32_t first_sample = 0) {
-  constexpr std::size_t kNumbers = 2;  // the two that determine a direction
+///
+/// `with_second` second points are taken as vertices after the others
+Excess product_variance(SamplerKind kind, std::size_t samples, std::uint32_t vertices, std::uint32_t first_sample = 0,
+                        bool with_second = false) {
+  constexpr std::size_t kNumbers = 2;  // that direct a ray
   const std::uint32_t pixels = static_cast<std::uint32_t>(std::max<std::size_t>(200, 20000 / samples));
   Sampler sampler;
   sampler.kind = kind;
@@ -181,10 +186,11 @@ Excess product_variance(SamplerKind kind, std::size_t samples, std::uint32_t ver
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> sums;
   for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
     std::vector<std::vector<double>> u;
-    for (std::uint32_t v = 0; v < vertices; ++v)
-      u.push_back(numbers_of(sampler, (pixel / 97) << 16 | pixel % 97, v, first_sample, samples));
-    for (std::uint32_t a = 0; a < vertices; ++a) {
-      for (std::uint32_t b = a + 1; b < vertices; ++b) {
+    for (const bool second : {false, true})
+      for (std::uint32_t v = 0; v < vertices && (with_second || !second); ++v)
+        u.push_back(numbers_of(sampler, (pixel / 97) << 16 | pixel % 97, v, first_sample, samples, second));
+    for (std::uint32_t a = 0; a < u.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < u.size(); ++b) {
         for (std::size_t i = 0; i < kNumbers * kNumbers; ++i) {
           double sum = 0;
           for (std::size_t s = 0; s < samples; ++s)
@@ -218,6 +224,31 @@ TEST(KernelSampler, ProductsAcrossVerticesVaryNoMoreThanIndependentNumbers) {
   EXPECT_LE(product_variance(SamplerKind::kSobol, 64, kSobolVertices, Sampler::kSecondHalf + 192).mean, 1.05);
   EXPECT_LE(product_variance(SamplerKind::kSobol, 16, kSobolVertices + 3).mean, 1.05) << "including later vertices";
   EXPECT_NEAR(product_variance(SamplerKind::kIndependent, 16, 4).mean, 1, 0.05) << "independent numbers must give 1";
+}
+
+TEST(KernelSampler, SecondPointsVaryNoMoreThanIndependentNumbersInProductsWithAnyOther) {
+  for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kBlueNoise}) {
+    for (std::size_t samples = 4; samples <= 256; samples *= 4) {
+      const Excess at = product_variance(kind, samples, 4, 0, true);
+      std::printf("%4zu samples: %.3f, of a pair of points at most %.3f\n", samples, at.mean, at.largest);
+      EXPECT_LE(at.mean, 1.05) << samples;
+      EXPECT_LE(at.largest, samples < 64 ? 3 : 1.25) << samples;
+    }
+  }
+  EXPECT_NEAR(product_variance(SamplerKind::kIndependent, 16, 2, 0, true).mean, 1, 0.1);
+}
+
+TEST(KernelSampler, SecondPointsAreNoOthersPoints) {
+  for (const SamplerKind kind : {SamplerKind::kIndependent, SamplerKind::kSobol}) {
+    Sampler sampler;
+    sampler.kind = kind;
+    std::set<std::vector<double>> points;
+    const std::uint32_t vertices = kSobolVertices + 2;
+    for (const bool second : {false, true})
+      for (std::uint32_t v = 0; v < vertices; ++v)
+        for (std::uint32_t s = 0; s < 16; ++s) points.insert(numbers_of(sampler, 5, v, s, 1, second));
+    EXPECT_EQ(points.size(), 2 * vertices * 16);
+  }
 }
 
 TEST(KernelSampler, VerticesHalvesPixelsAndSeedsAreIndependent) {

@@ -17,6 +17,7 @@
 #include "film/partial_words.h"
 #include "render/render.h"
 #include "support/everything.h"
+#include "support/tile_functions.h"
 
 namespace orrery::render {
 namespace {
@@ -50,7 +51,9 @@ std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, in
   std::reverse(pieces.begin(), pieces.end());
   const auto stream = std::make_unique<kernel::PathStream>();
   const kernel::SceneView view = compiled.view();
-  const kernel::RenderTile render_tile = kernel::render_tile_function(view.features, compiled.precision, lanes);
+  const kernel::RenderTile render_tile = lanes == kernel::Lanes::kOne
+                                             ? test::one_lane_tile_function(view.features, compiled.precision)
+                                             : kernel::render_tile_function(view.features, compiled.precision);
   for (const kernel::Tile& piece : pieces) render_tile(view, accel->tracer(), piece, *stream);
   return values(film.picture());
 }

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// A packet's rays as Embree takes them. Compiled once per instruction set.
+#if defined(ORRERY_ACCEL_EMBREE_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
+#undef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
+#else
+#define ORRERY_ACCEL_EMBREE_RAYS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "accel/box_ray-inl.h"
+#include "accel/embree_scene.h"
+#include "kernel/intersect-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::accel::HWY_NAMESPACE {
+
+/// Rays that Embree takes at a time: as many floats as a register holds.
+constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
+
+template <class Packet>
+using DistanceOf = std::remove_cvref_t<decltype(Packet::distance[0])>;
+
+/// Converts distances along rays to Embree's tfar, rounded up so that boxes of other spheres at the same distance are
+/// still entered. Distances beyond the range of float become infinite.
+template <class D>
+HWY_INLINE hn::Vec<D> far_limits(D d, hn::Vec<D> distance, double scale, hn::Vec<D> start) {
+  using T = hn::TFromD<D>;
+  constexpr T kUlp = sizeof(T) == 8 ? T(0x1p-50) : T(0x1p-21);
+  const auto at = distance * hn::Set(d, static_cast<T>(scale));
+  return (hn::MulAdd(at, hn::Set(d, kUlp), at) - start) * hn::Set(d, static_cast<T>(1 + 0x1p-20)) +
+         hn::Set(d, static_cast<T>(std::numeric_limits<float>::min()));
+}
+
+/// Stores lanes as floats.
+template <class D>
+HWY_INLINE void store_float(D d, hn::Vec<D> value, float* to) {
+  const hn::Rebind<float, D> df;
+  if constexpr (sizeof(hn::TFromD<D>) == 8) {
+    hn::StoreU(hn::DemoteTo(df, value), df, to);
+  } else {
+    hn::StoreU(value, df, to);
+  }
+  (void)d;
+}
+
+/// A mask as one bit per lane.
+template <class D>
+HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
+}
+
+/// Embree's valid flags as a mask.
+template <class D>
+HWY_INLINE hn::Mask<D> is_valid(D d, hn::Vec<hn::Rebind<std::int32_t, D>> flags) {
+  if constexpr (sizeof(hn::TFromD<D>) == 8) {
+    const hn::RebindToSigned<D> wide;
+    return hn::RebindMask(d, hn::PromoteTo(wide, flags) < hn::Zero(wide));
+  } else {
+    return hn::RebindMask(d, flags < hn::Zero(hn::Rebind<std::int32_t, D>()));
+  }
+}
+
+/// Sets what all queries have in common.
+template <class EmbreeRay>
+HWY_INLINE void set_constants(EmbreeRay& rays) {
+  for (int i = 0; i < kWidth; ++i) {
+    rays.tnear[i] = 0;
+    rays.time[i] = 0;
+    rays.mask[i] = ~0u;
+    rays.id[i] = static_cast<unsigned>(i);
+    rays.flags[i] = 0;
+  }
+}
+
+/// Sets Embree's rays to rays `first` .. of the query's packet in box space, and which of them can hit a box before
+/// their maximum distance.
+///
+/// Domain     kUnit: directions are unit
+template <bool kUnit, bool kMoves, class Packet, class EmbreeRay>
+HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid) {
+  const hn::ScalableTag<DistanceOf<Packet>> d;
+  const int step = static_cast<int>(hn::Lanes(d));
+  const Packet& packet = *query.packet;
+  const EmbreeScene& scene = *query.scene;
+  for (int v = 0; v < kWidth; v += step) {
+    const int first = query.first + v;
+    auto ray = k::load_rays(d, packet, first);
+    auto distance = hn::Load(d, packet.distance + first);
+    if constexpr (!kUnit) {
+      const auto per_length = hn::Sqrt(ray.inverse_square);
+      ray.direction = ray.direction * per_length;
+      distance = distance / per_length;
+    }
+    const auto box = to_box_space(d, ray, scene.frame);
+    const auto limit = far_limits(d, distance, scene.frame.scale, box.start);
+    store_float(d, box.origin.x, rays.org_x + v);
+    store_float(d, box.origin.y, rays.org_y + v);
+    store_float(d, box.origin.z, rays.org_z + v);
+    store_float(d, ray.direction.x, rays.dir_x + v);
+    store_float(d, ray.direction.y, rays.dir_y + v);
+    store_float(d, ray.direction.z, rays.dir_z + v);
+    store_float(d, limit, rays.tfar + v);
+    if constexpr (kMoves) store_float(d, hn::Load(d, packet.time + first), rays.time + v);
+    hn::Store(box.start, d, query.start + v);
+    // A hit that is known before the boxes begin leaves nothing to find, and Embree takes no negative limit.
+    const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first)));
+    const unsigned lanes = bits_of(d, hn::And(hn::And(active, box.reaches), limit > hn::Zero(d)));
+    for (int i = 0; i < step; ++i) valid[v + i] = (lanes >> i & 1) != 0 ? -1 : 0;
+  }
+}
+
+/// One lane of Embree's rays.
+template <class EmbreeRay>
+HWY_INLINE RTCRay one_ray(const EmbreeRay& rays, int lane) {
+  RTCRay ray;
+  ray.org_x = rays.org_x[lane];
+  ray.org_y = rays.org_y[lane];
+  ray.org_z = rays.org_z[lane];
+  ray.tnear = 0;
+  ray.dir_x = rays.dir_x[lane];
+  ray.dir_y = rays.dir_y[lane];
+  ray.dir_z = rays.dir_z[lane];
+  ray.time = rays.time[lane];
+  ray.tfar = rays.tfar[lane];
+  ray.mask = ~0u;
+  ray.id = 0;
+  ray.flags = 0;
+  return ray;
+}
+
+}  // namespace orrery::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// The path loop. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_RENDER_TILE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_RENDER_TILE_INL_H_
+#undef ORRERY_KERNEL_RENDER_TILE_INL_H_
+#else
+#define ORRERY_KERNEL_RENDER_TILE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "kernel/camera-inl.h"
+#include "kernel/render_tile.h"
+#include "kernel/shade-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+template <class T>
+using IdFor = hwy::MakeUnsigned<T>;
+
+/// Enumerates a tile's paths: all samples of a pixel, then the next pixel, so that the rays of a packet are coherent.
+class PathCounter {
+ public:
+  PathCounter(const Tile& tile, const SceneView& scene)
+      : tile_(tile), scene_(scene), sample_(tile.sample_begin), place_(tile.pixel(0)) {}
+
+  template <class Id>
+  void take(Id& pixel, Id& sample) {
+    const std::uint32_t x = static_cast<std::uint32_t>(tile_.x + place_.x) + scene_.window_x;
+    const std::uint32_t y = static_cast<std::uint32_t>(tile_.y + place_.y) + scene_.window_y;
+    pixel = static_cast<Id>(y << 16 | (x & 0xffff));
+    sample = static_cast<Id>(sample_);
+    if (++sample_ < tile_.sample_end) return;
+    sample_ = tile_.sample_begin;
+    if (++pixel_ < tile_.pixel_count()) place_ = tile_.pixel(pixel_);
+  }
+
+ private:
+  const Tile& tile_;
+  const SceneView& scene_;
+  std::uint32_t sample_;
+  int pixel_ = 0;
+  PixelPlace place_;
+};
+
+/// Fills the packet with the camera rays of the next paths.
+template <class D, Loop kLoop, class Packet, class Carried>
+HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& counter, int count, Packet& packet,
+                                 Carried& carried) {
+  using T = hn::TFromD<D>;
+  using Id = IdFor<T>;
+  const IdTag<D> du;
+  for (int i = 0; i < count; ++i) counter.take(carried.pixel[i], carried.sample[i]);
+  for (int i = count; i < kPacketSize; ++i) {  // whole vectors are computed
+    carried.pixel[i] = carried.pixel[0];
+    carried.sample[i] = carried.sample[0];
+  }
+  packet.count = count;
+  const auto one = hn::Set(d, T(1));
+  for (int v = 0; v < kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
+    const auto pixels = hn::Load(du, carried.pixel + v);
+    const auto samples = hn::Load(du, carried.sample + v);
+    auto random = random_at_vertex(d, scene.sampler, pixels, samples, 0, scene.features.lens);
+    if (scene.filter.above != nullptr) filter_place(d, scene.filter, samples, random);
+    const auto place = [&](hn::Vec<IdTag<D>> at, std::uint32_t begin) {
+      return to_real(d, hn::And(at - hn::Set(du, static_cast<Id>(begin)), hn::Set(du, Id{0xffff})));
+    };
+    const auto x = place(pixels, scene.window_x);
+    const auto y = place(hn::template ShiftRight<16>(pixels), scene.window_y);
+    const auto store = [&](const auto& value, auto& to) {
+      hn::Store(value.x, d, to[0] + v);
+      hn::Store(value.y, d, to[1] + v);
+      hn::Store(value.z, d, to[2] + v);
+    };
+    auto camera = camera_vectors(d, scene.camera);
+    if constexpr (kLoop.moves) {
+      const auto time = time_of_path(d, scene.sampler, pixels, samples);
+      hn::Store(time, d, packet.time + v);
+      camera = moved(camera, camera_vectors(d, scene.camera_motion), time);
+    }
+    const auto ray = camera_ray(d, scene, camera, x, y, random);
+    const auto origin = camera.origin + ray.offset;
+    store(origin, packet.origin);
+    store(sum_error(camera.origin, ray.offset, origin), packet.origin_low);
+    store(ray.offset, packet.offset);
+    store(ray.direction, packet.direction);
+    store(Vec3<hn::Vec<D>>{one, one, one}, carried.throughput);
+    hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
+    hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
+    if constexpr (kLoop.records) hn::Store(hn::Set(du, static_cast<Id>(kOnlyDeltaBit)), du, carried.history + v);
+    if constexpr (kLoop.collects) store(Vec3<hn::Vec<D>>{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, carried.radiance);
+  }
+}
+
+/// Fills the packet with the next rays of the stream's paths first .. first + count.
+template <class D, Loop kLoop, class Stream, class Carried>
+HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, int first, int count, Carried& carried) {
+  using T = hn::TFromD<D>;
+  const IdTag<D> du;
+  auto& packet = stream.packet;
+  packet.count = count;
+  const auto one = hn::Set(d, T(1));
+  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) {
+    const int i = first + v;
+    const auto at = [&](const auto& component) {
+      return Vec3<hn::Vec<D>>{hn::LoadU(d, component[0] + i), hn::LoadU(d, component[1] + i),
+                              hn::LoadU(d, component[2] + i)};
+    };
+    const auto store = [&](const auto& value, auto& to) {
+      hn::Store(value.x, d, to[0] + v);
+      hn::Store(value.y, d, to[1] + v);
+      hn::Store(value.z, d, to[2] + v);
+    };
+    const auto base = at(stream.base), offset = at(stream.offset), direction = at(stream.direction);
+    const auto origin = base + offset;
+    store(origin, packet.origin);
+    store(sum_error(base, offset, origin), packet.origin_low);
+    store(offset, packet.offset);
+    store(direction, packet.direction);
+    store(at(stream.throughput), carried.throughput);
+    hn::Store(one / dot(direction, direction), d, packet.inverse_square + v);
+    hn::Store(hn::LoadU(du, stream.self + i), du, packet.self + v);
+    const auto pixels = hn::LoadU(du, stream.pixel + i), samples = hn::LoadU(du, stream.sample + i);
+    hn::Store(pixels, du, carried.pixel + v);
+    hn::Store(samples, du, carried.sample + v);
+    if constexpr (kLoop.moves) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
+    if constexpr (kLoop.records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
+    if constexpr (kLoop.collects) store(at(stream.radiance), carried.radiance);
+  }
+}
+
+/// The path loop, instantiated for each lane type and each Loop in use.
+template <class D, Loop kLoop, class Stream>
+TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile& tile, Stream& stream) {
+  const D d;
+  using T = hn::TFromD<D>;
+  PathPayload<T, IdFor<T>> carried;
+  TileCounts counts;
+  counts.target = HWY_TARGET;
+  const std::int64_t weight = scene.filter.weight(tile.sample_begin, tile.sample_end);
+  for (int i = 0; i < tile.pixel_count(); ++i) {
+    const PixelPlace at = tile.pixel(i);
+    tile.sums[at.y * tile.row_stride + at.x].weight += weight;
+  }
+
+  PathCounter counter(tile, scene);
+  std::uint64_t to_start = tile.path_count();
+  const auto trace_and_shade = [&](std::uint32_t depth, int alive) {
+    reset_hits(stream.packet);
+    counts.rays += static_cast<std::uint64_t>(stream.packet.count);
+    trace(tracer, stream.packet);
+    return shade<D, kLoop>(d, scene, tile, depth, carried, stream, alive, counts);
+  };
+  while (to_start > 0) {
+    const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
+    to_start -= static_cast<std::uint64_t>(batch);
+    int alive = 0;
+    for (int i = 0; i < batch; i += kPacketSize) {
+      load_camera_rays<D, kLoop>(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet, carried);
+      alive = trace_and_shade(0, alive);
+    }
+    for (std::uint32_t depth = 1; alive > 0; ++depth) {
+      // Survivors overwrite paths that have been read: a packet never grows.
+      int survivors = 0;
+      for (int i = 0; i < alive; i += kPacketSize) {
+        load_bounced_rays<D, kLoop>(d, scene, stream, i, std::min(kPacketSize, alive - i), carried);
+        survivors = trace_and_shade(depth, survivors);
+      }
+      alive = survivors;
+    }
+  }
+  return counts;
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples of each BSDF against the integral of its density over bins, and the density against its closed form in
+// long double.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "statistical/bsdf_test.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
+#include <hwy/highway.h>
+
+#include "kernel/scatter-inl.h"
+#include "math/dispatch.h"
+#include "support/chi_square.h"
+
+namespace orrery::test {
+#ifndef ORRERY_STATISTICAL_BSDF_TEST_CASE_
+#define ORRERY_STATISTICAL_BSDF_TEST_CASE_
+/// A material, met in the plane z = 0 on the top of a unit sphere; the normal is +y.
+struct Met {
+  kernel::MaterialKind kind = kernel::MaterialKind::kLambertian;
+  double fuzz = 0;
+  double cos_arriving = 1;
+  bool from_outside = true;
+};
+/// Directions and what is known of each, in rows.
+struct Directions {
+  std::vector<double> x, y, z, pdf, value;
+  std::vector<bool> alive;
+  explicit Directions(std::size_t count) : x(count), y(count), z(count), pdf(count), value(count), alive(count) {}
+};
+#endif
+}  // namespace orrery::test
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::test::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+namespace k = kernel::HWY_NAMESPACE;
+
+constexpr kernel::Features kAllFeatures{true, true, true, true};
+constexpr double kAlbedo = 0.75;
+
+template <class D>
+k::Surface<D> surface(D d, const Met& met) {
+  using T = hn::TFromD<D>;
+  k::Surface<D> at;
+  const double arriving[3] = {std::sqrt(1 - met.cos_arriving * met.cos_arriving), -met.cos_arriving, 0};
+  const double up[3] = {0, 1, 0}, center_to_point[3] = {0, met.from_outside ? 1.0 : -1.0, 0};
+  at.direction = k::set3(d, arriving);
+  at.normal = k::set3(d, up);
+  at.offset = k::set3(d, center_to_point);
+  at.from_outside = hn::FirstN(d, met.from_outside ? hn::Lanes(d) : 0);
+  at.fuzz = hn::Set(d, static_cast<T>(met.fuzz));
+  at.eta = hn::Set(d, static_cast<T>(1 / 1.5));
+  at.r0 = hn::Set(d, static_cast<T>(0.04));
+  at.kind = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(met.kind));
+  at.fresnel = hn::Zero(k::IdTag<D>());
+  return at;
+}
+
+/// Fills x, y, z and alive with samples first .. first + as many as there is room for, a multiple of 16.
+void sample(const Met& met, std::uint32_t first, Directions& out) {
+  const hn::ScalableTag<double> d;
+  using D = std::remove_const_t<decltype(d)>;
+  const k::IdTag<D> du;
+  const auto at = surface(d, met);
+  HWY_ALIGN double alive[hn::MaxLanes(D())];
+  for (std::size_t i = 0; i < out.x.size(); i += hn::Lanes(d)) {
+    const auto name = hn::Iota(du, first + i);
+    const auto u = k::random_at_vertex(d, {kernel::SamplerKind::kIndependent, 3}, hn::ShiftRight<8>(name),
+                                       hn::And(name, hn::Set(du, 255)), 1, false);
+    const auto sampled = k::sample_bsdf(d, kAllFeatures, at, u);
+    hn::StoreU(sampled.direction.x, d, &out.x[i]);
+    hn::StoreU(sampled.direction.y, d, &out.y[i]);
+    hn::StoreU(sampled.direction.z, d, &out.z[i]);
+    hn::Store(hn::IfThenElseZero(sampled.alive, hn::Set(d, 1.0)), d, alive);
+    for (std::size_t l = 0; l < hn::Lanes(d); ++l) out.alive[i + l] = alive[l] != 0;
+  }
+}
+
+/// Fills pdf and value, in lanes of T.
+template <class T>
+void judge(const Met& met, Directions& out) {
+  const hn::ScalableTag<T> d;
+  using D = std::remove_const_t<decltype(d)>;
+  const auto at = surface(d, met);
+  const auto albedo = hn::Set(d, static_cast<T>(kAlbedo));
+  HWY_ALIGN T lanes[3][hn::MaxLanes(D())];
+  for (std::size_t i = 0; i < out.x.size(); i += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < hn::Lanes(d); ++l) {
+      lanes[0][l] = static_cast<T>(out.x[i + l]);
+      lanes[1][l] = static_cast<T>(out.y[i + l]);
+      lanes[2][l] = static_cast<T>(out.z[i + l]);
+    }
+    const auto w = k::load3(d, lanes[0], lanes[1], lanes[2]);
+    hn::Store(k::pdf_bsdf(d, kAllFeatures, at, w), d, lanes[0]);
+    hn::Store(k::evaluate_bsdf(d, kAllFeatures, at, {albedo, albedo, albedo}, w).y, d, lanes[1]);
+    for (std::size_t l = 0; l < hn::Lanes(d); ++l) {
+      out.pdf[i + l] = static_cast<double>(lanes[0][l]);
+      out.value[i + l] = static_cast<double>(lanes[1][l]);
+    }
+  }
+}
+void judge_double(const Met& met, Directions& out) { judge<double>(met, out); }
+void judge_float(const Met& met, Directions& out) { judge<float>(met, out); }
+
+}  // namespace orrery::test::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orrery::test {
+namespace {
+
+HWY_EXPORT(sample);
+HWY_EXPORT(judge_double);
+HWY_EXPORT(judge_float);
+
+using kernel::MaterialKind;
+
+const std::vector<Met>& cases() {
+  static const std::vector<Met> list = [] {
+    std::vector<Met> all;
+    for (const double cosine : {1.0, 0.6, 0.05}) {
+      for (const bool outside : {true, false}) {
+        all.push_back({MaterialKind::kLambertian, 0, cosine, outside});
+        all.push_back({MaterialKind::kHemisphere, 0, cosine, outside});
+        for (const double fuzz : {0.001, 0.1, 0.7, 1.0}) all.push_back({MaterialKind::kMetal, fuzz, cosine, outside});
+      }
+    }
+    return all;
+  }();
+  return list;
+}
+
+/// Coordinates of directions: c, the cosine to the axis of the distribution, as `lowest` + (1 - lowest) v^2, which
+/// takes the singularity from a fuzzy metal's rim; and the turn around the axis. Both are in 0..1.
+struct Chart {
+  double axis[2];  ///< x and y; z = 0
+  double lowest;
+
+  explicit Chart(const Met& met)
+      : axis{0, 1}, lowest(met.kind == MaterialKind::kMetal ? std::sqrt(1 - met.fuzz * met.fuzz) : 0) {
+    if (met.kind != MaterialKind::kMetal) return;
+    axis[0] = std::sqrt(1 - met.cos_arriving * met.cos_arriving);
+    axis[1] = met.cos_arriving;
+  }
+  void direction(double v, double turn, double& x, double& y, double& z) const {
+    const double versine = (1 - lowest) * (1 - v) * (1 + v), c = 1 - versine, s = std::sqrt(versine * (1 + c));
+    const double along = s * std::cos(2 * std::numbers::pi * turn);
+    x = axis[0] * c + axis[1] * along;
+    y = axis[1] * c - axis[0] * along;
+    z = s * std::sin(2 * std::numbers::pi * turn);
+  }
+  /// Steradians per unit of v and turn.
+  double solid_angle(double v) const { return 2 * (1 - lowest) * v * 2 * std::numbers::pi; }
+  void coordinates(double x, double y, double z, double& v, double& turn) const {
+    const double dx = x - axis[0], dy = y - axis[1];
+    const double versine = (dx * dx + dy * dy + z * z) / 2;
+    v = std::sqrt(std::max(0.0, 1 - versine / (1 - lowest)));
+    turn = std::atan2(z, axis[1] * x - axis[0] * y) / (2 * std::numbers::pi);
+    if (turn < 0) turn += 1;
+  }
+};
+
+/// The density in long double: for metal the sum over the two points at which the line along w leaves and enters the
+/// sphere around the tip of the mirror direction, each t^2 / (4 pi fuzz^2 |cosine|).
+long double closed_form(const Met& met, double x, double y, double z) {
+  if (y <= 0) return 0;
+  const long double pi = std::numbers::pi_v<long double>;
+  if (met.kind == MaterialKind::kLambertian) return y / pi;
+  if (met.kind == MaterialKind::kHemisphere) return 1 / (2 * pi);
+  if (met.kind != MaterialKind::kMetal || met.fuzz == 0) return 0;
+  const long double f = met.fuzz, my = met.cos_arriving, mx = std::sqrt(1 - met.cos_arriving * met.cos_arriving);
+  const long double length =
+      std::sqrt(static_cast<long double>(x) * x + static_cast<long double>(y) * y + static_cast<long double>(z) * z);
+  const long double c = (mx * x + my * y) / length;
+  const long double dx = x / length - mx, dy = y / length - my, dz = z / length;
+  const long double h = dx * dx + dy * dy + dz * dz, s2 = h * (1 - h / 4);
+  if (c <= 0 || s2 >= f * f) return 0;
+  const long double half_chord = std::sqrt(f * f - s2);
+  long double sum = 0;
+  for (const long double t : {c - half_chord, c + half_chord})
+    if (t > 0) sum += t * t / (4 * pi * f * f * (half_chord / f));
+  return sum;
+}
+
+TEST(StatisticalBsdf, SamplesHaveTheDensity) {
+  constexpr int kSide = 16, kFine = 32, kAbsorbed = kSide * kSide, kCut = kAbsorbed + 1;
+  constexpr std::uint32_t kBatch = 1 << 14, kBatches = 24;
+  Directions batch(kBatch), fine(kFine * kFine);
+  for (const Met& met : cases()) {
+    const Chart chart(met);
+    // Two more bins: what is absorbed; and all that the surface cuts, since the midpoint rule is too rough for each.
+    std::vector<double> expected(kCut + 1);
+    std::vector<std::uint64_t> counts(kCut + 1);
+    std::vector<std::size_t> bin_of(kAbsorbed);
+    double total = 0;
+    for (int bin = 0; bin < kAbsorbed; ++bin) {
+      const auto v_of = [&](int i) { return (bin / kSide + (i / kFine + 0.5) / kFine) / kSide; };
+      for (int i = 0; i < kFine * kFine; ++i)
+        chart.direction(v_of(i), (bin % kSide + (i % kFine + 0.5) / kFine) / kSide, fine.x[i], fine.y[i], fine.z[i]);
+      ORRERY_BEST(judge_double)(met, fine);
+      double sum = 0;
+      bool is_cut = false;
+      for (int i = 0; i < kFine * kFine; ++i) {
+        sum += fine.pdf[i] * chart.solid_angle(v_of(i));
+        is_cut = is_cut || fine.y[i] <= 0;
+      }
+      bin_of[bin] = is_cut ? kCut : bin;
+      expected[bin_of[bin]] += sum / (kFine * kFine * kSide * kSide);
+      total += sum / (kFine * kFine * kSide * kSide);
+    }
+    if (met.kind != MaterialKind::kMetal) {
+      EXPECT_NEAR(total, 1, 1e-3);
+    }
+    expected[kAbsorbed] = std::max(0.0, 1 - total);
+    const double samples = double{kBatch} * kBatches / (total + expected[kAbsorbed]);
+    for (double& e : expected) e *= samples;
+    for (std::uint32_t n = 0; n < kBatches; ++n) {
+      ORRERY_BEST(sample)(met, n * kBatch, batch);
+      for (std::uint32_t i = 0; i < kBatch; ++i) {
+        std::size_t bin = kAbsorbed;
+        if (batch.alive[i]) {
+          double v = 0, turn = 0;
+          chart.coordinates(batch.x[i], batch.y[i], batch.z[i], v, turn);
+          bin = bin_of[static_cast<std::size_t>(std::min(kSide - 1, static_cast<int>(v * kSide)) * kSide +
+                                                std::min(kSide - 1, static_cast<int>(turn * kSide)))];
+        }
+        ++counts[bin];
+      }
+    }
+    const ChiSquare result = chi_square(counts, expected);
+    EXPECT_LT(std::abs(result.z), kLargestZ)
+        << "kind " << static_cast<int>(met.kind) << ", fuzz " << met.fuzz << ", cosine " << met.cos_arriving;
+  }
+}
+
+TEST(StatisticalBsdf, DensityIsTheClosedFormInBothPrecisions) {
+  constexpr int kCount = 1 << 12;
+  Directions at(kCount);
+  std::mt19937_64 random{5};
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const Met& met : cases()) {
+    const Chart chart(met);
+    int above = 0;
+    for (int i = 0; i < kCount; ++i) {
+      // Most directions lie inside the cone, but for its rim, where rounding alone changes the density by much.
+      chart.direction(i % 4 == 0 ? 0.1 + uniform(random) : 0.1 + 0.9 * uniform(random), uniform(random), at.x[i],
+                      at.y[i], at.z[i]);
+      if (i % 16 == 0) at.x[i] = -at.x[i], at.y[i] = -at.y[i];
+      if (!std::isfinite(at.x[i] + at.z[i])) at.x[i] = 0, at.y[i] = -1, at.z[i] = 0;
+    }
+    for (const bool in_double : {true, false}) {
+      (in_double ? ORRERY_BEST(judge_double) : ORRERY_BEST(judge_float))(met, at);
+      // A float's direction is off by 1e-7, and the narrowest cone is 1e-3 wide.
+      const double most = in_double ? 1e-9 : met.fuzz < 0.01 ? 0.03 : 1e-4;
+      for (int i = 0; i < kCount; ++i) {
+        if (!in_double && std::abs(at.y[i]) < 1e-5) continue;
+        const auto expected = static_cast<double>(closed_form(met, at.x[i], at.y[i], at.z[i]));
+        ASSERT_NEAR(at.pdf[i], expected, most * std::max(expected, 0.05))
+            << "kind " << static_cast<int>(met.kind) << ", fuzz " << met.fuzz << ", cosine " << met.cos_arriving
+            << ", direction " << at.x[i] << ' ' << at.y[i] << ' ' << at.z[i];
+        ASSERT_NEAR(at.value[i], 0.75 * at.pdf[i], 1e-6 * at.pdf[i]);
+        above += expected > 0;
+      }
+    }
+    EXPECT_GT(above, kCount / 4);
+  }
+}
+
+TEST(StatisticalBsdf, DeltaMaterialsHaveNoDensity) {
+  Directions at(16);
+  for (const Met& met : {Met{MaterialKind::kMetal, 0, 0.6}, Met{MaterialKind::kDielectric, 0, 0.6}}) {
+    ORRERY_BEST(sample)(met, 0, at);
+    ORRERY_BEST(judge_double)(met, at);
+    EXPECT_EQ(at.pdf, std::vector<double>(16, 0.0));
+    EXPECT_EQ(at.value, std::vector<double>(16, 0.0));
+  }
+}
+
+}  // namespace
+}  // namespace orrery::test
+#endif

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// The path loop that collects light along the path: bit for bit the same where nothing emits, closed forms where
+// something does.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "accel/accel.h"
+#include "compile/compile.h"
+#include "render/tile_renderer.h"
+#include "support/everything.h"
+#include "support/tile_functions.h"
+
+namespace orrery::render {
+namespace {
+
+/// All that one tile, the whole picture, has given.
+struct Rendered {
+  std::vector<kernel::PixelSum> sums;
+  std::vector<kernel::PathRecord> records;
+  LightEventBuffer events;
+  kernel::TileCounts counts;
+
+  std::vector<kernel::LightEvent> all_events() const {
+    return {events.begin(), const_cast<const kernel::LightEvent*>(events.next)};
+  }
+};
+
+/// The collecting instances are those of scenes that move.
+void let_camera_rest(kernel::SceneView& view) {
+  kernel::Camera& c = view.camera_motion;
+  for (int k = 0; k < 3; ++k) c.origin[k] = c.forward[k] = c.right[k] = c.down[k] = c.lens_u[k] = c.lens_v[k] = 0;
+}
+
+enum class Kind { kPlain, kCollecting };
+
+void render(const compile::CompiledScene& compiled, kernel::SceneView view, Kind kind, bool records, Rendered& out) {
+  const auto accel = accel::make_embree(compiled.view(), compiled.precision);
+  out.sums.assign(static_cast<std::size_t>(compiled.width * compiled.height), {});
+  kernel::Tile tile;
+  tile.width = compiled.width;
+  tile.height = compiled.height;
+  tile.sample_end = static_cast<std::uint32_t>(compiled.samples);
+  tile.sums = out.sums.data();
+  tile.row_stride = compiled.width;
+  if (records) {
+    out.records.resize(tile.path_count());
+    out.events.reset(tile.path_count());
+    tile.records = out.records.data();
+    tile.events = &out.events;
+  }
+  if (compiled.precision == compile::Precision::kFast) {
+    const auto loop = kind == Kind::kCollecting ? test::collecting_tile_fast_function(records)
+                      : records                 ? kernel::record_tile_fast_function(view.features)
+                                                : kernel::render_tile_fast_function(view.features);
+    out.counts = loop(view, accel->tracer(), tile, *std::make_unique<kernel::PathStreamFast>());
+  } else {
+    const auto loop = kind == Kind::kCollecting ? test::collecting_tile_function(records)
+                      : records                 ? kernel::record_tile_function(view.features, compiled.precision)
+                                                : kernel::render_tile_function(view.features, compiled.precision);
+    out.counts = loop(view, accel->tracer(), tile, *std::make_unique<kernel::PathStream>());
+  }
+}
+
+bool equal(const double (&a)[3], const double (&b)[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+
+void expect_same(const Rendered& a, const Rendered& b) {
+  EXPECT_EQ(a.counts.rays, b.counts.rays);
+  EXPECT_EQ(a.counts.bad_samples, b.counts.bad_samples);
+  int different = 0;
+  for (std::size_t i = 0; i < a.sums.size(); ++i) {
+    different += a.sums[i].weight != b.sums[i].weight;
+    for (int c = 0; c < 3; ++c) different += a.sums[i].rgb[c] != b.sums[i].rgb[c];
+  }
+  for (std::size_t i = 0; i < a.records.size(); ++i) {
+    const kernel::PathRecord &x = a.records[i], &y = b.records[i];
+    different += !equal(x.light, y.light) || !equal(x.offset, y.offset) || !equal(x.direction, y.direction);
+    different += x.sphere != y.sphere;
+    for (int k = 0; k < 3; ++k)
+      different += x.guide_albedo[k] != y.guide_albedo[k] || x.guide_normal[k] != y.guide_normal[k];
+  }
+  const auto p = a.all_events(), q = b.all_events();
+  ASSERT_EQ(p.size(), q.size());
+  for (std::size_t i = 0; i < p.size(); ++i)
+    different += !equal(p[i].value, q[i].value) || p[i].path != q[i].path || p[i].lobe != q[i].lobe;
+  EXPECT_EQ(different, 0);
+}
+
+TEST(RenderCollectedLight, SameBitsWhereNothingEmits) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
+    for (const auto shading : {scene::Shading::kPath, scene::Shading::kNormal}) {
+      for (const bool background_visible : {true, false}) {
+        for (const bool records : {false, true}) {
+          scene::Scene scene = test::everything();
+          scene.image = {48, 27};
+          scene.render.samples = 16;
+          scene.render.max_depth = 6;
+          scene.render.roulette_depth = 2;
+          scene.render.precision = precision;
+          scene.render.shading = shading;
+          const compile::CompiledScene compiled = compile::compile(scene);
+          kernel::SceneView view = compiled.view();
+          view.background_visible = background_visible;
+          if (!view.features.motion) let_camera_rest(view);
+          Rendered plain, collecting;
+          render(compiled, view, Kind::kPlain, records, plain);
+          render(compiled, view, Kind::kCollecting, records, collecting);
+          expect_same(plain, collecting);
+          EXPECT_GT(plain.counts.rays, plain.sums.size());
+        }
+      }
+    }
+  }
+}
+
+/// The camera in a grey hollow sphere that emits.
+struct Furnace {
+  compile::CompiledScene compiled;
+  std::vector<kernel::Emission> emission;
+  kernel::SceneView view;
+
+  Furnace(scene::Precision precision, int max_depth, double emitted) {
+    scene::Scene s;
+    s.image = {8, 4};
+    s.camera.look_from = {0, 0, 0};
+    s.camera.look_at = {0, 0, -1};
+    s.camera.vfov = 60;
+    s.background.bottom = s.background.top = {1e30, 1e30, 1e30};  // never seen
+    s.materials = {{"grey", scene::Lambertian{{0.5, 0.25, 0.5}}}};
+    s.spheres = {{{0, 0, 0}, 10, 0, ""}};
+    s.render.samples = 16;
+    s.render.max_depth = max_depth;
+    s.render.roulette_depth = 0;
+    s.render.precision = precision;
+    compiled = compile::compile(s);
+    emission.resize(compiled.materials.size());
+    for (kernel::Emission& e : emission) e.radiance[0] = e.radiance[1] = e.radiance[2] = emitted;
+    view = compiled.view();
+    let_camera_rest(view);
+    view.emission = emission.data();
+  }
+};
+
+TEST(RenderCollectedLight, AFurnaceHasItsSeries) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
+    for (const int rays : {1, 2, 3, 20}) {
+      const Furnace furnace(precision, rays, 4);
+      for (const bool records : {false, true}) {
+        Rendered out;
+        render(furnace.compiled, furnace.view, Kind::kCollecting, records, out);
+        EXPECT_EQ(out.counts.bad_samples, 0u);
+        // Powers of two: exact in either precision.
+        const double red = 8 - std::ldexp(8, -rays);
+        for (const kernel::PixelSum& sum : out.sums) {
+          ASSERT_EQ(sum.weight, 16);
+          ASSERT_EQ(kernel::from_fixed_point(sum.rgb[0]), 16 * red) << rays;
+        }
+        if (!records) continue;
+        std::vector<double> of_path(out.records.size());
+        for (const kernel::LightEvent& e : out.all_events()) {
+          of_path[e.path] += e.value[0];
+          const int bounces = -std::ilogb(e.value[0] / 4);
+          ASSERT_EQ(e.lobe, bounces == 0   ? kernel::Lobe::kBackground
+                            : bounces == 1 ? kernel::Lobe::kDiffuseDirect
+                                           : kernel::Lobe::kDiffuseIndirect);
+        }
+        EXPECT_EQ(out.all_events().size(), out.records.size() * static_cast<std::size_t>(rays));
+        for (std::size_t i = 0; i < of_path.size(); ++i) {
+          ASSERT_EQ(of_path[i], red);
+          ASSERT_EQ(out.records[i].light[0], red);
+        }
+      }
+    }
+  }
+}
+
+TEST(RenderCollectedLight, LobesAddUpToTheBeauty) {
+  const Furnace furnace(scene::Precision::kExact, 5, 4);
+  Rendered out;
+  render(furnace.compiled, furnace.view, Kind::kCollecting, true, out);
+  film::LayerRequest request;
+  request.diffuse = request.background = true;
+  std::vector<film::LayerPixel> layers(out.sums.size());
+  for (std::size_t i = 0; i < out.records.size(); ++i) layers[i / 16].add(request, furnace.view, out.records[i], 1);
+  for (const kernel::LightEvent& e : out.all_events()) layers[e.path / 16].add(out.records[e.path], e, 1);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    kernel::Int128 sum = 0;
+    for (const auto& lobe : layers[i].light) sum += lobe[1];
+    EXPECT_TRUE(sum == out.sums[i].rgb[1]);
+  }
+}
+
+TEST(RenderCollectedLight, ABadValueCostsAPathItsWeightOnce) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
+    for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+      const Furnace furnace(precision, 7, bad);
+      Rendered out;
+      render(furnace.compiled, furnace.view, Kind::kCollecting, true, out);
+      EXPECT_EQ(out.counts.bad_samples, out.records.size());
+      for (const kernel::PixelSum& sum : out.sums) {
+        ASSERT_EQ(sum.weight, 0);
+        ASSERT_TRUE(sum.rgb[0] == 0);
+      }
+      film::LayerPixel layers;
+      for (const kernel::LightEvent& e : out.all_events()) layers.add(out.records[e.path], e, 1);
+      for (const auto& lobe : layers.light) ASSERT_TRUE(lobe[0] == 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orrery::render
