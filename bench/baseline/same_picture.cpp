@@ -5,9 +5,9 @@
 #include <exception>
 #include <utility>
 
-#include "generate/generate.h"
 #include "baseline/program.h"
 #include "compile/compile.h"
+#include "generate/generate.h"
 #include "render/render.h"
 
 namespace orrery::bench {

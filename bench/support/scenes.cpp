@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/scenes.h"
 
-#include "generate/generate.h"
 #include "compile/compile.h"
+#include "generate/generate.h"
 
 namespace orrery::bench {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bake_file.h"
 
-#include "job/job_files.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "job/job_files.h"
 
 namespace orrery::app {
 

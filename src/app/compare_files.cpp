@@ -7,9 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/compared_channels.h"
-#include "job/text.h"
-#include "job/threads.h"
-#include "job/version.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
@@ -17,9 +14,12 @@
 #include "image/format.h"
 #include "image/read.h"
 #include "image/write.h"
+#include "job/text.h"
+#include "job/threads.h"
+#include "job/version.h"
+#include "metrics/color_view.h"
 #include "metrics/false_color.h"
 #include "metrics/flip.h"
-#include "metrics/color_view.h"
 #include "metrics/ssim.h"
 #include "render/tile_pool.h"
 

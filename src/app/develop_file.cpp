@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/develop_file.h"
 
-#include "job/display_writer.h"
-#include "job/job_files.h"
-#include "job/outputs.h"
-#include "job/version.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/format.h"
 #include "image/read.h"
 #include "image/write.h"
+#include "job/display_writer.h"
+#include "job/job_files.h"
+#include "job/outputs.h"
+#include "job/version.h"
 
 namespace orrery::app {
 namespace {

@@ -6,15 +6,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "measure/bench_scene.h"
 #include "app/precision_advice.h"
-#include "job/layers.h"
-#include "job/scene_hash.h"
-#include "job/text.h"
 #include "base/text.h"
 #include "compile/compile.h"
 #include "film/layer_film.h"
+#include "job/layers.h"
+#include "job/scene_hash.h"
+#include "job/text.h"
 #include "kernel/isa.h"
+#include "measure/bench_scene.h"
 #include "render/traversals.h"
 #include "scene/layers.h"
 #include "scene/schema.h"

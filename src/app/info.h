@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "job/load_scene.h"
 #include "job/memory.h"
-#include "base/diagnostic.h"
 
 namespace orrery::app {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/text.h"
 
-#include <cstdarg>
-#include <cstdio>
 #include <algorithm>
 #include <cctype>
+#include <cstdarg>
 #include <cstddef>
+#include <cstdio>
 
 namespace orrery::base {
 

@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <memory>
 
-#include "measure/bench_scene.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
+#include "measure/bench_scene.h"
 
 namespace orrery::cli {
 namespace {

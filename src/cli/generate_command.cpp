@@ -2,10 +2,10 @@
 #include <limits>
 #include <memory>
 
-#include "generate/generate_files.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/signals.h"
+#include "generate/generate_files.h"
 
 namespace orrery::cli {
 namespace {

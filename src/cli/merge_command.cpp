@@ -3,14 +3,14 @@
 #include <sstream>
 #include <vector>
 
-#include "job/merge_shards.h"
-#include "job/job.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/picture_options.h"
 #include "cli/render_report.h"
 #include "cli/signals.h"
+#include "job/job.h"
+#include "job/merge_shards.h"
 
 namespace orrery::cli {
 namespace {

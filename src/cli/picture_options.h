@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "job/job.h"
 #include "cli/arguments.h"
+#include "job/job.h"
 
 namespace orrery::cli {
 

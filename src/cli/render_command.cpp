@@ -10,7 +10,6 @@
 
 #include <fmt/core.h>
 
-#include "farm/batch.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
@@ -22,6 +21,7 @@
 #include "cli/render_report.h"
 #include "cli/scene_options.h"
 #include "cli/signals.h"
+#include "farm/batch.h"
 
 namespace orrery::cli {
 namespace {

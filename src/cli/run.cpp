@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "job/version.h"
 #include "base/error.h"
 #include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/signals.h"
 #include "cli/usage.h"
+#include "job/version.h"
 
 namespace orrery::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "job/load_scene.h"
 #include "cli/arguments.h"
+#include "job/load_scene.h"
 
 namespace orrery::cli {
 

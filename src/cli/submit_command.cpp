@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
-#include "farm/submit.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
@@ -10,6 +9,7 @@
 #include "cli/output.h"
 #include "cli/picture_options.h"
 #include "cli/scene_options.h"
+#include "farm/submit.h"
 
 namespace orrery::cli {
 namespace {

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <vector>
-#include "kernel/pixel_filter.h"
 
-namespace orrery::scene {
-struct Render;
-}
+#include "kernel/pixel_filter.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 

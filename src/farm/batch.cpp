@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
-#include "job/job_files.h"
 #include "base/frames.h"
+#include "job/job_files.h"
 
 namespace orrery::farm {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "job/job.h"
 #include "base/error.h"
+#include "job/job.h"
 
 namespace orrery::farm {
 

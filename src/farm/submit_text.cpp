@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "farm/submit.h"
 #include "base/text.h"
+#include "farm/submit.h"
 
 namespace orrery::farm {
 namespace {

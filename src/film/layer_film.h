@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "film/picture.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
+#include "film/picture.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::film {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
 #include "base/diagnostic.h"
+#include "base/error.h"
 #include "format/source_text.h"
 
 namespace orrery::format {

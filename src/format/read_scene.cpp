@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/frames.h"
 #include "format/overrides.h"
 #include "format/read_keys.h"
 #include "format/read_materials.h"
-#include "base/frames.h"
 #include "format/read_ply.h"
 #include "format/read_tracks.h"
 #include "scene/animation.h"

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <string>
 
+#include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
-#include "base/error.h"
 #include "scene/limits.h"
 #include "scene/schema.h"
 

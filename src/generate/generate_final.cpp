@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
-#include "base/error.h"
 
 namespace orrery::generate {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <fmt/core.h>
 
-#include "job/choose_isa.h"
-#include "job/job_files.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/format.h"
+#include "job/choose_isa.h"
+#include "job/job_files.h"
 
 namespace orrery::job {
 namespace {

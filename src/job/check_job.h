@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "job/job.h"
 #include "compile/compiled_scene.h"
+#include "job/job.h"
 
 namespace orrery::job {
 

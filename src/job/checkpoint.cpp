@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "job/provenance.h"
 #include "base/error.h"
 #include "base/file_name.h"
+#include "job/provenance.h"
 
 namespace orrery::job {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <fmt/core.h>
 
-#include "job/text.h"
 #include "base/error.h"
 #include "image/format.h"
+#include "job/text.h"
 
 namespace orrery::job {
 namespace {

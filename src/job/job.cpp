@@ -7,6 +7,11 @@
 
 #include <fmt/core.h>
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "compile/compile.h"
+#include "film/layer_film.h"
+#include "image/format.h"
 #include "job/check_job.h"
 #include "job/checkpoint.h"
 #include "job/disk_space.h"
@@ -22,11 +27,6 @@
 #include "job/statistics.h"
 #include "job/text.h"
 #include "job/threads.h"
-#include "base/atomic_file.h"
-#include "base/error.h"
-#include "compile/compile.h"
-#include "film/layer_film.h"
-#include "image/format.h"
 
 namespace orrery::job {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job_files.h"
 
-#include "job/checkpoint.h"
-#include "job/working_space.h"
 #include "base/frames.h"
 #include "display/config_files.h"
 #include "format/named_files.h"
+#include "job/checkpoint.h"
+#include "job/working_space.h"
 
 namespace orrery::job {
 namespace {

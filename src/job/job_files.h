@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "job/job.h"
 #include "base/file_set.h"
+#include "job/job.h"
 #include "scene/scene.h"
 
 namespace orrery::job {

@@ -6,9 +6,9 @@
 
 #include <fmt/core.h>
 
-#include "job/working_space.h"
 #include "base/error.h"
 #include "display/look_up.h"
+#include "job/working_space.h"
 
 namespace orrery::job {
 namespace {

@@ -9,11 +9,11 @@
 
 #include <fmt/core.h>
 
-#include "job/merge_shards.h"
-#include "job/provenance.h"
 #include "base/error.h"
 #include "image/format.h"
 #include "image/verify.h"
+#include "job/merge_shards.h"
+#include "job/provenance.h"
 
 namespace orrery::job {
 namespace {

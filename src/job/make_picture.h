@@ -3,12 +3,12 @@
 
 #include <string>
 
+#include "compile/compiled_scene.h"
+#include "image/partial_file.h"
 #include "job/checkpoint.h"
 #include "job/job.h"
 #include "job/layers.h"
 #include "render/render.h"
-#include "compile/compiled_scene.h"
-#include "image/partial_file.h"
 
 namespace orrery::job {
 

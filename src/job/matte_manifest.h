@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <vector>
 
+#include "image/write.h"
 #include "job/layers.h"
 #include "job/outputs.h"
-#include "image/write.h"
 
 namespace orrery::job {
 

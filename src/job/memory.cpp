@@ -7,10 +7,10 @@
 
 #include <fmt/core.h>
 
-#include "job/text.h"
 #include "base/error.h"
 #include "film/layer_film.h"
 #include "film/layer_pixel.h"
+#include "job/text.h"
 #include "kernel/pixel_sum.h"
 #include "kernel/sphere.h"
 

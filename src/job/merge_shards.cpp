@@ -10,11 +10,11 @@
 
 #include <fmt/core.h>
 
-#include "job/provenance.h"
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/text.h"
+#include "job/provenance.h"
 
 namespace orrery::job {
 namespace {

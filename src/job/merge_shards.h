@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "job/job.h"
 #include "film/partial.h"
+#include "job/job.h"
 
 namespace orrery::job {
 

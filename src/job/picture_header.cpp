@@ -6,10 +6,10 @@
 
 #include <fmt/core.h>
 
-#include "job/camera_matrices.h"
-#include "job/version.h"
 #include "compile/camera_basis.h"
 #include "display/color_space.h"
+#include "job/camera_matrices.h"
+#include "job/version.h"
 #include "scene/value_text.h"
 
 namespace orrery::job {

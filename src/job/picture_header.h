@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "job/job_report.h"
 #include "compile/compiled_scene.h"
 #include "format/read_scene.h"
+#include "job/job_report.h"
 
 namespace orrery::job {
 

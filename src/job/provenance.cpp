@@ -9,9 +9,9 @@
 
 #include <fmt/core.h>
 
+#include "film/layer_film.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
-#include "film/layer_film.h"
 
 namespace orrery::job {
 namespace {

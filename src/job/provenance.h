@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "job/job.h"
-#include "job/layers.h"
 #include "compile/compiled_scene.h"
 #include "image/partial_file.h"
+#include "job/job.h"
+#include "job/layers.h"
 
 namespace orrery::job {
 

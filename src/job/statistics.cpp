@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/atomic_file.h"
 #include "job/text.h"
 #include "job/version.h"
-#include "base/atomic_file.h"
 
 namespace orrery::job {
 

@@ -12,8 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/sampler-inl.h"
 #include "kernel/sample-inl.h"
+#include "kernel/sampler-inl.h"
 #include "kernel/scene_view.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "measure/bench_scene.h"
 #include "job/text.h"
+#include "measure/bench_scene.h"
 
 namespace orrery::measure {
 namespace {

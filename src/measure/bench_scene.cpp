@@ -8,14 +8,14 @@
 #include <optional>
 #include <utility>
 
-#include "measure/bench_tracing.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "compile/compile.h"
 #include "job/choose_isa.h"
 #include "job/load_scene.h"
 #include "job/reduced_picture.h"
 #include "job/scene_hash.h"
-#include "base/text.h"
-#include "base/error.h"
-#include "compile/compile.h"
+#include "measure/bench_tracing.h"
 #include "render/recorded_rays.h"
 #include "render/render.h"
 

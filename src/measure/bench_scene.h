@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "measure/quartiles.h"
 #include "job/scene_source.h"
+#include "measure/quartiles.h"
 
 namespace orrery::measure {
 

@@ -6,8 +6,8 @@
 
 #include "image/read.h"
 #include "image/write.h"
-#include "metrics/pixel_errors.h"
 #include "measure/temp_dir.h"
+#include "metrics/pixel_errors.h"
 
 namespace orrery::measure {
 

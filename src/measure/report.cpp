@@ -10,11 +10,11 @@
 #include "base/text.h"
 #include "display/develop.h"
 #include "image/write.h"
+#include "measure/report_page.h"
+#include "measure/study.h"
+#include "measure/temp_dir.h"
 #include "metrics/false_color.h"
 #include "metrics/pixel_errors.h"
-#include "measure/report_page.h"
-#include "measure/temp_dir.h"
-#include "measure/study.h"
 
 namespace orrery::measure {
 namespace {

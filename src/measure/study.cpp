@@ -8,7 +8,11 @@
 #include <map>
 #include <utility>
 
-#include "measure/bench_scene.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_set.h"
+#include "base/text.h"
+#include "compile/compile.h"
 #include "job/choose_isa.h"
 #include "job/job_files.h"
 #include "job/layers.h"
@@ -18,18 +22,14 @@
 #include "job/scene_hash.h"
 #include "job/threads.h"
 #include "job/version.h"
-#include "base/atomic_file.h"
-#include "base/error.h"
-#include "base/file_set.h"
-#include "base/text.h"
-#include "compile/compile.h"
-#include "render/render.h"
 #include "measure/axes.h"
+#include "measure/bench_scene.h"
 #include "measure/file_axis.h"
-#include "measure/pareto.h"
 #include "measure/paired_errors.h"
+#include "measure/pareto.h"
 #include "measure/recommendation.h"
 #include "measure/study_renderer.h"
+#include "render/render.h"
 
 namespace orrery::measure {
 namespace {

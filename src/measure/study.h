@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "measure/bench_scene.h"
 #include "film/picture.h"
 #include "job/scene_source.h"
+#include "measure/bench_scene.h"
 
 namespace orrery::measure {
 

@@ -8,12 +8,12 @@
 #include <string>
 #include <utility>
 
+#include <cstdint>
+#include <vector>
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
 #include "measure/study.h"
 #include "render/render.h"
-#include <cstdint>
-#include <vector>
 
 namespace orrery::measure {
 

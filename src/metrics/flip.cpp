@@ -7,8 +7,8 @@
 #include <mutex>
 #include <numbers>
 
-#include "metrics/convolve.h"
 #include "metrics/color_view.h"
+#include "metrics/convolve.h"
 
 namespace orrery::metrics {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
-#include "film/picture.h"
 #include "film/layers.h"
 #include "film/partial.h"
+#include "film/picture.h"
 #include "render/progress.h"
 #include "render/sampling_limits.h"
 #include "render/statistics.h"

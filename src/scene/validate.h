@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "base/diagnostic.h"
+#include "base/error.h"
 #include "scene/scene.h"
 
 namespace orrery::scene {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "generate/generate_files.h"
 #include "base/error.h"
 #include "format/read_scene.h"
+#include "generate/generate_files.h"
 
 namespace orrery {
 namespace {

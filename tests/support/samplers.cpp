@@ -7,8 +7,8 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
-#include "kernel/scatter-inl.h"
 #include "kernel/intersect-inl.h"
+#include "kernel/scatter-inl.h"
 #include "math/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();

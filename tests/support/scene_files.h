@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "base/diagnostic.h"
+#include "base/error.h"
 #include "format/read_scene.h"
 #include "support/temp_dir.h"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/error.h"
 #include "base/diagnostic.h"
+#include "base/error.h"
 #include "support/temp_dir.h"
 
 namespace orrery::format {

@@ -9,9 +9,9 @@
 #include <set>
 #include <variant>
 
-#include "generate/generate_random.h"
 #include "base/error.h"
 #include "format/write_scene.h"
+#include "generate/generate_random.h"
 #include "scene/validate.h"
 
 namespace orrery::generate {

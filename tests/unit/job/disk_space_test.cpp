@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "generate/generate_files.h"
 #include "base/error.h"
+#include "generate/generate_files.h"
 #include "job/job.h"
 #include "support/temp_dir.h"
 

@@ -8,10 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "job/matte_manifest.h"
 #include "compile/compile.h"
 #include "film/cryptomatte.h"
 #include "film/layer_film.h"
+#include "job/matte_manifest.h"
 #include "scene/schema.h"
 #include "support/everything.h"
 #include "support/temp_dir.h"

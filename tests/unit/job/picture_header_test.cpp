@@ -5,9 +5,9 @@
 
 #include <regex>
 
+#include "compile/compile.h"
 #include "job/camera_matrices.h"
 #include "job/version.h"
-#include "compile/compile.h"
 
 namespace orrery::job {
 namespace {

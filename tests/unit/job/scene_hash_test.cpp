@@ -6,8 +6,8 @@
 #include <functional>
 #include <set>
 
-#include "generate/generate.h"
 #include "compile/compile.h"
+#include "generate/generate.h"
 
 namespace orrery::job {
 namespace {

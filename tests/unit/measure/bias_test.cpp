@@ -7,10 +7,10 @@
 #include <random>
 
 #include "compile/compile.h"
-#include "render/render.h"
 #include "measure/axes.h"
-#include "measure/pareto.h"
 #include "measure/paired_errors.h"
+#include "measure/pareto.h"
+#include "render/render.h"
 
 namespace orrery::measure {
 namespace {
