@@ -98,7 +98,8 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
     drawn.count = 1 + static_cast<int>(random.uniform(0, kPacketSize));
     for (int lane = 0; lane < kPacketSize; ++lane) {
       test::aim(random, scene, drawn, lane);
-      if (random.uniform(0, 1) < 0.05) test::step_back(random, scene, drawn, lane);
+      // Far away, floats are off by more than boxes are padded by.
+      if (precision == Precision::kExact && random.uniform(0, 1) < 0.05) test::step_back(random, scene, drawn, lane);
       drawn.time[lane] = std::floor(random.uniform(0, 0x1p20)) * 0x1p-20;
       // No ray leaves its light; and those that leave a sphere do so where it is at time 0.
       if (drawn.self[lane] == target || drawn.self[lane] < view.motion.size()) drawn.self[lane] = kNoSphere;
@@ -125,14 +126,9 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
       shadow.distance[lane] = limit;
       shadow.target[lane] = has_target ? target : static_cast<Id>(kNoSphere);
       shadow.occluded[lane] = 7;
-      if (limit < std::numeric_limits<T>::max()) lengthen(shadow, lane, static_cast<int>(random.uniform(-9, 9)));
-    }
-    // The book's distances count from an epsilon in units of length.
-    if (precision == Precision::kBook) {
-      for (int lane = 0; lane < kPacketSize; ++lane) {
-        const int exponent = std::ilogb(shadow.inverse_square[lane]) / 2;
-        if (shadow.distance[lane] < std::numeric_limits<T>::max()) lengthen(shadow, lane, exponent);
-      }
+      // The book's epsilon is in lengths of the direction.
+      if (precision != Precision::kBook && limit < std::numeric_limits<T>::max())
+        lengthen(shadow, lane, static_cast<int>(random.uniform(-9, 9)));
     }
     kernel::occlude(other->tracer(), shadow);
     for (int lane = 0; lane < shadow.count; ++lane) {

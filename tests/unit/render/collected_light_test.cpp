@@ -122,14 +122,15 @@ struct Furnace {
   std::vector<kernel::Emission> emission;
   kernel::SceneView view;
 
-  Furnace(scene::Precision precision, int max_depth, double emitted) {
+  Furnace(scene::Precision precision, int max_depth, double emitted,
+          const scene::MaterialModel& grey = scene::Lambertian{{0.5, 0.25, 0.5}}) {
     scene::Scene s;
     s.image = {8, 4};
     s.camera.look_from = {0, 0, 0};
     s.camera.look_at = {0, 0, -1};
     s.camera.vfov = 60;
     s.background.bottom = s.background.top = {1e30, 1e30, 1e30};  // never seen
-    s.materials = {{"grey", scene::Lambertian{{0.5, 0.25, 0.5}}}};
+    s.materials = {{"grey", grey}};
     s.spheres = {{{0, 0, 0}, 10, 0, ""}};
     s.render.samples = 16;
     s.render.max_depth = max_depth;
@@ -175,6 +176,22 @@ TEST(RenderCollectedLight, AFurnaceHasItsSeries) {
       }
     }
   }
+}
+
+TEST(RenderCollectedLight, AbsorbedPathsKeepTheirLight) {
+  const Furnace furnace(scene::Precision::kExact, 10, 4, scene::Metal{{0.5, 0.5, 0.5}, 1});
+  Rendered out;
+  render(furnace.compiled, furnace.view, Kind::kCollecting, true, out);
+  EXPECT_LT(out.counts.rays, 10 * out.records.size()) << "some are absorbed";
+  std::vector<double> of_path(out.records.size()), of_pixel(out.sums.size());
+  for (const kernel::LightEvent& e : out.all_events()) of_path[e.path] += e.value[0];
+  for (std::size_t i = 0; i < of_path.size(); ++i) {
+    EXPECT_GE(of_path[i], 4);
+    EXPECT_EQ(of_path[i], out.records[i].light[0]);
+    of_pixel[i / 16] += of_path[i];
+  }
+  for (std::size_t i = 0; i < of_pixel.size(); ++i)
+    EXPECT_EQ(of_pixel[i], kernel::from_fixed_point(out.sums[i].rgb[0]));
 }
 
 TEST(RenderCollectedLight, LobesAddUpToTheBeauty) {
