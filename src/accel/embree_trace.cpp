@@ -47,8 +47,8 @@ struct ClosestHit {
 
 /// Intersects rays, one per lane, with one sphere.
 template <class D, kernel::Precision kPrecision>
-HWY_INLINE void meet(D d, const k::Rays<D>& ray, const k::Spheres<D>& sphere, std::uint32_t id, hn::Mask<D> lanes,
-                     ClosestHit<D>& nearest) {
+HWY_INLINE void intersect_sphere(D d, const k::Rays<D>& ray, const k::Spheres<D>& sphere, std::uint32_t id,
+                                 hn::Mask<D> lanes, ClosestHit<D>& nearest) {
   const auto ids = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(id));
   const auto is_self = hn::RebindMask(d, ray.self == ids);
   nearest.take(d, k::nearest<D, kPrecision>(d, ray, sphere, is_self), ids, lanes);
@@ -63,8 +63,9 @@ void intersect_single(const RTCIntersectFunctionNArguments* arguments, const Emb
   Packet& packet = *query.packet;
   const std::uint32_t id = scene.sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
   auto nearest = ClosestHit<D>::load(d, packet, query.first);
-  meet<D, kPrecision>(d, k::load_rays(d, packet, query.first), k::sphere_at<kMoves>(d, scene, id, packet, query.first),
-                      id, hn::FirstN(d, 1), nearest);
+  intersect_sphere<D, kPrecision>(d, k::load_rays(d, packet, query.first),
+                                  k::sphere_at<kMoves>(d, scene, id, packet, query.first), id, hn::FirstN(d, 1),
+                                  nearest);
   if (hn::AllFalse(d, nearest.is_new)) {
     arguments->valid[0] = 0;
     return;
@@ -95,7 +96,7 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const int first = query.first + v;
     const auto ray = k::load_rays(d, packet, first);
     auto nearest = ClosestHit<D>::load(d, packet, first);
-    meet<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first), id, valid, nearest);
+    intersect_sphere<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first), id, valid, nearest);
     if (hn::AllFalse(d, nearest.is_new)) {
       hn::StoreU(hn::Zero(di), di, arguments->valid + v);
       continue;
@@ -143,7 +144,7 @@ void trace(const void* self, Packet& packet) {
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
     auto nearest = ClosestHit<D>::load(d, packet, v);
     for (const std::uint32_t id : scene.outliers)
-      meet<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v), id, lanes, nearest);
+      intersect_sphere<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v), id, lanes, nearest);
     nearest.store(d, packet, v);
   }
   if (scene.scene == nullptr) return;

@@ -160,8 +160,8 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
   using T = hn::TFromD<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, T(1));
-  const auto apart = w - mirrored(d, at);
-  const V versine_twice = dot(apart, apart);  // 2 - 2c
+  const auto between = w - mirrored(d, at);
+  const V versine_twice = dot(between, between);  // 2 - 2c
   const V s2 = versine_twice * hn::NegMulAdd(versine_twice, hn::Set(d, static_cast<T>(0.25)), one);
   const V rest = hn::NegMulAdd(at.fuzz, at.fuzz, s2);  // s^2 - f^2, negative inside the cone
   const auto inside = hn::And(rest < zero, versine_twice < hn::Set(d, T(2)));

@@ -237,7 +237,7 @@ TEST(AccelOcclusion, AHollowSphereOccludesWhatLiesBehindItsWall) {
     const View inside{{{0, 0, 0, in}, {0, 0.5, 0, 0.1}}, {}}, outside{{{0, 0, 0, in}, {0, 5, 0, 0.1}}, {}};
     EXPECT_FALSE(is_occluded(inside, way, {0, -1, 0}, 1)) << way.name;
     EXPECT_TRUE(is_occluded(outside, way, {0, -1, 0}, 1)) << way.name;
-    // A shell around the light: the shadow ray meets its outer wall, then its inner one.
+    // A shell around the light: the shadow ray hits its outer wall, then its inner one.
     View shell = inside;
     shell.spheres.push_back({0, 0.5, 0, 0.3});
     EXPECT_TRUE(is_occluded(shell, way, {0, -1, 0}, 1)) << way.name;
