@@ -121,11 +121,7 @@ SceneInfo scene_info(const job::SceneRequest& request) {
   info.memory = job::estimate_memory(job::memory_needs(compiled, layers));
   info.warnings = std::move(loaded.warnings);
   for (const std::string& advice : precision_advice(compiled)) {
-    base::Diagnostic warning;
-    warning.severity = base::Severity::kWarning;
-    warning.file = request.source.file.string();
-    warning.text = advice;
-    info.warnings.push_back(std::move(warning));
+    info.warnings.push_back(base::file_diagnostic(base::Severity::kWarning, request.source.file.string(), advice));
   }
   return info;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 namespace orrery::base {
 namespace {
@@ -50,6 +51,15 @@ std::string formatted(const Diagnostic& diagnostic) {
   if (!diagnostic.source_line.empty() && diagnostic.column > 0) {
     out += "    " + printable(diagnostic.source_line) + "\n    " + caret_line(diagnostic) + '\n';
   }
+  return out;
+}
+
+Diagnostic file_diagnostic(Severity severity, std::string file, std::string text, std::string remedy) {
+  Diagnostic out;
+  out.severity = severity;
+  out.file = std::move(file);
+  out.text = std::move(text);
+  out.remedy = std::move(remedy);
   return out;
 }
 

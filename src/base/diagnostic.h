@@ -19,6 +19,9 @@ struct Diagnostic {
   std::string remedy;       ///< what to do: "did you mean `samples`?"; may be empty
 };
 
+/// A diagnostic about a whole file.
+Diagnostic file_diagnostic(Severity severity, std::string file, std::string text, std::string remedy = {});
+
 /// Formats a diagnostic for the user: `file:line:column: error: text; remedy`, the source line, a caret. Without a line
 /// the column is left out as well: `--samples: error: text`.
 ///

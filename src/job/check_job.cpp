@@ -6,8 +6,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/format.h"
-#include "job/choose_isa.h"
 #include "job/job_files.h"
+#include "job/machine.h"
 
 namespace orrery::job {
 namespace {

@@ -58,11 +58,9 @@ void Checkpoint::write_snapshot(const film::Partial& partial) {
     write(partial);
     if (was_requested && hooks_.on_note) hooks_.on_note("wrote " + file_.string());
   } catch (const base::Error& error) {
-    base::Diagnostic diagnostic;
-    diagnostic.severity = base::Severity::kWarning;
-    diagnostic.file = file_.string();
-    diagnostic.text = std::string("checkpoint not written: ") + error.what();
-    if (hooks_.on_warning) hooks_.on_warning(diagnostic);
+    if (hooks_.on_warning)
+      hooks_.on_warning(base::file_diagnostic(base::Severity::kWarning, file_.string(),
+                                              std::string("checkpoint not written: ") + error.what()));
   }
   next_ = Clock::now() + interval(settings_);
 }

@@ -19,6 +19,7 @@
 #include "job/job_files.h"
 #include "job/layers.h"
 #include "job/load_scene.h"
+#include "job/machine.h"
 #include "job/make_picture.h"
 #include "job/matte_manifest.h"
 #include "job/memory.h"
@@ -26,7 +27,6 @@
 #include "job/provenance.h"
 #include "job/statistics.h"
 #include "job/text.h"
-#include "job/threads.h"
 
 namespace orrery::job {
 namespace {

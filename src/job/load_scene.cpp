@@ -13,14 +13,6 @@
 namespace orrery::job {
 namespace {
 
-base::Diagnostic warning(const std::string& file, std::string text) {
-  base::Diagnostic out;
-  out.severity = base::Severity::kWarning;
-  out.file = file;
-  out.text = std::move(text);
-  return out;
-}
-
 display::Settings settings_of(const SceneRequest& request, const scene::Color& color) {
   display::Settings out = request.display;
   const auto otherwise = [](std::string& option, const std::string& key) {
@@ -113,10 +105,11 @@ LoadedScene load_scene(const SceneRequest& request) {
   out.display = settings_of(request, scene.color);
   out.warnings = std::move(out.read.warnings);
   if (out.choice)
-    for (const std::string& text : out.choice->warnings) out.warnings.push_back(warning(out.choice->config, text));
+    for (const std::string& text : out.choice->warnings)
+      out.warnings.push_back(base::file_diagnostic(base::Severity::kWarning, out.choice->config, text));
   if (const int clamped = to_working_space(out.display.config, scene); clamped > 0)
-    out.warnings.push_back(warning(
-        request.source.file.string(),
+    out.warnings.push_back(base::file_diagnostic(
+        base::Severity::kWarning, request.source.file.string(),
         fmt::format("{} colours are out of range in {} and were clamped", clamped, scene.color.working_space())));
   return out;
 }

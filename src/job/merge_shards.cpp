@@ -22,12 +22,7 @@ namespace {
 using base::ErrorKind;
 
 base::Diagnostic error_in(const std::filesystem::path& file, std::string text, std::string remedy = {}) {
-  base::Diagnostic diagnostic;
-  diagnostic.severity = base::Severity::kError;
-  diagnostic.file = file.string();
-  diagnostic.text = std::move(text);
-  diagnostic.remedy = std::move(remedy);
-  return diagnostic;
+  return base::file_diagnostic(base::Severity::kError, file.string(), std::move(text), std::move(remedy));
 }
 
 /// A shard's error as a warning: the image is made without the shard.

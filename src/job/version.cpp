@@ -8,8 +8,8 @@
 #include "display/develop.h"
 #include "format/read_scene.h"
 #include "image/write.h"
-#include "kernel/version.h"
-#include "render/version.h"
+#include "kernel/isa.h"
+#include "render/render.h"
 
 namespace orrery::job {
 

@@ -62,5 +62,9 @@ bool limit_isa(std::string_view name) {
   return false;
 }
 
+std::string highway_version() {
+  return std::to_string(HWY_MAJOR) + "." + std::to_string(HWY_MINOR) + "." + std::to_string(HWY_PATCH);
+}
+
 }  // namespace orrery::kernel
 #endif

@@ -25,4 +25,7 @@ std::vector<std::string> available_isas();
 /// Result     false, with nothing changed, if `name` is not among available_isas()
 bool limit_isa(std::string_view name);
 
+/// The version of Highway in use.
+std::string highway_version();
+
 }  // namespace orrery::kernel

@@ -2,6 +2,7 @@
 #include "render/render.h"
 
 #include <tbb/task_arena.h>
+#include <tbb/version.h>
 
 #include <algorithm>
 #include <chrono>
@@ -150,5 +151,7 @@ Result render(const compile::CompiledScene& compiled, const Settings& settings, 
   result.statistics.build_s = build_s;
   return result;
 }
+
+std::string tbb_version() { return TBB_runtime_version(); }
 
 }  // namespace orrery::render

@@ -81,4 +81,7 @@ std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings&
 /// Converts a partial to an image; pixels without samples are black.
 Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, film::Partial partial);
 
+/// The version of oneTBB in use.
+std::string tbb_version();
+
 }  // namespace orrery::render

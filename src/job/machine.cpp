@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/threads.h"
+#include "job/machine.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
 
+#include "base/error.h"
+#include "base/text.h"
+#include "kernel/isa.h"
 #include "render/render.h"
 
 namespace orrery::job {
@@ -28,6 +31,13 @@ int default_threads() {
   for (const char* variable : {"SLURM_CPUS_PER_TASK", "CUE_THREADS"})
     if (const int granted = granted_by(variable); granted > 0) threads = std::min(threads, granted);
   return threads;
+}
+
+void choose_isa(const std::string& name) {
+  if (kernel::limit_isa(name)) return;
+  throw base::Error(base::ErrorKind::kUsage, "instruction set " + name +
+                                                 " is not available; this processor and program have " +
+                                                 base::joined(kernel::available_isas()));
 }
 
 }  // namespace orrery::job

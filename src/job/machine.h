@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 
 namespace orrery::job {
 
 /// Default thread count: the minimum of the affinity mask's CPUs, SLURM_CPUS_PER_TASK and CUE_THREADS. A variable that
 /// is not a positive integer is ignored.
 int default_threads();
+
+/// Limits kernel and accelerators to this instruction set; empty: the best available.
+///
+/// Errors     base::Error(kUsage) if the program or the processor lacks it; lists the available ones
+void choose_isa(const std::string& name);
 
 }  // namespace orrery::job

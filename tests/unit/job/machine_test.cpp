@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/threads.h"
+#include "job/machine.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 namespace orrery::job {
 namespace {
 
-class JobThreads : public testing::Test {
+class JobMachine : public testing::Test {
  protected:
-  JobThreads() { TearDown(); }
+  JobMachine() { TearDown(); }
   void TearDown() override {
     ::unsetenv("SLURM_CPUS_PER_TASK");
     ::unsetenv("CUE_THREADS");
@@ -20,9 +20,9 @@ class JobThreads : public testing::Test {
   const int all_ = render::available_threads();
 };
 
-TEST_F(JobThreads, DefaultIsTheAffinityMask) { EXPECT_EQ(default_threads(), all_); }
+TEST_F(JobMachine, DefaultIsTheAffinityMask) { EXPECT_EQ(default_threads(), all_); }
 
-TEST_F(JobThreads, SchedulersLimitTheDefault) {
+TEST_F(JobMachine, SchedulersLimitTheDefault) {
   ::setenv("SLURM_CPUS_PER_TASK", "1", 1);
   EXPECT_EQ(default_threads(), 1);
   ::unsetenv("SLURM_CPUS_PER_TASK");
@@ -30,12 +30,12 @@ TEST_F(JobThreads, SchedulersLimitTheDefault) {
   EXPECT_EQ(default_threads(), 1);
 }
 
-TEST_F(JobThreads, SchedulersCannotExceedTheAffinityMask) {
+TEST_F(JobMachine, SchedulersCannotExceedTheAffinityMask) {
   ::setenv("SLURM_CPUS_PER_TASK", "100000", 1);
   EXPECT_EQ(default_threads(), all_);
 }
 
-TEST_F(JobThreads, InvalidVariablesAreIgnored) {
+TEST_F(JobMachine, InvalidVariablesAreIgnored) {
   for (const char* text : {"", "abc", "0", "-1", "1x", "99999999999999999999"}) {
     ::setenv("SLURM_CPUS_PER_TASK", text, 1);
     EXPECT_EQ(default_threads(), all_) << text;
