@@ -10,6 +10,8 @@
 #include <vector>
 
 #include <jpeglib.h>
+// After jpeglib.h:
+#include <jerror.h>
 
 // Declared in OpenImageIO/tiffutils.h, which includes a libtiff header that the OpenImageIO package does not depend on.
 OIIO_NAMESPACE_BEGIN
@@ -51,10 +53,12 @@ void begin_buffer(j_compress_ptr info) {
   out.base.free_in_buffer = out.buffer.size();
 }
 
-/// Result     FALSE if writing failed, which libjpeg reports as an error
+/// Errors     libjpeg's, through on_error. A result of FALSE would not be one: it suspends the encoder, whose caller
+/// then
+///            offers the same row for ever.
 boolean empty_buffer(j_compress_ptr info) {
   Destination& out = destination_of(info);
-  if (out.file->write(out.buffer.data(), out.buffer.size()) != out.buffer.size()) return FALSE;
+  if (out.file->write(out.buffer.data(), out.buffer.size()) != out.buffer.size()) ERREXIT(info, JERR_FILE_WRITE);
   begin_buffer(info);
   return TRUE;
 }

@@ -134,9 +134,14 @@ TEST_F(ImageWriteEncoded, LibjpegErrorsAreReturnedWithoutExit) {
 TEST_F(ImageWriteEncoded, AFullDiskFailsTheJpegFile) {
   CheckedFile full("/dev/full");
   const OIIO::ImageSpec spec(600, 400, 3, OIIO::TypeDesc::UINT8);
-  const std::vector<std::uint8_t> pixels(600 * 400 * 3);
+  std::vector<std::uint8_t> pixels(600 * 400 * 3);
   encode_jpeg(spec, pixels.data(), full);
-  EXPECT_EQ(full.finish(), ENOSPC);
+  EXPECT_EQ(full.finish(), ENOSPC) << "all in one buffer";
+  std::uint32_t state = 1;
+  for (std::uint8_t& code : pixels) code = static_cast<std::uint8_t>((state = state * 1664525 + 1013904223) >> 24);
+  CheckedFile again("/dev/full");
+  EXPECT_NE(encode_jpeg(spec, pixels.data(), again), "") << "noise fills several buffers";
+  EXPECT_EQ(again.finish(), ENOSPC);
 }
 
 TEST_F(ImageWriteEncoded, PngAndTiffHoldStraightAlpha) {
