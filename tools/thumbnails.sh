@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Renders scenes/thumbnails/, the images in scenes/README.md. Takes three or four minutes on two cores.
+# Renders scenes/thumbnails/, the images in scenes/README.md, and docs/final.jpg, the image in README.md. Takes three or
+# four minutes on two cores.
 #   tools/thumbnails.sh [PROGRAM]     default: build/src/orrery, which ./run.sh builds
 set -eu
 cd "$(dirname "$0")/.."
@@ -47,3 +48,6 @@ for count in 30 1000 100000; do
   picture "$work/cloud-$count.toml" cloud-$count --samples 300
 done
 du -ch "$out"/*.png | tail -1
+echo docs/final.jpg
+"$program" render scenes/book/final.toml -o docs/final.jpg --width 800 --height 450 --noise 0.01 \
+  --display "Gamma 2.0 Rec.709" --reproducible --quiet
