@@ -51,8 +51,8 @@ using BuildMonitor = std::function<bool(double fraction)>;
 /// Spheres as Embree user geometry.
 ///
 /// Domain     the view's spheres outlive the result
-/// Errors     base::Error(kInternal) if Embree fails or would drop a sphere, kStopped if the monitor cancelled the
-/// build
+/// Errors     base::Error(kInternal) if Embree fails or would drop a sphere, kStopped if the monitor cancelled
+///            the build
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor = {});
 

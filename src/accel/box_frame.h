@@ -8,7 +8,7 @@
 
 namespace orrery::accel {
 
-/// The space of a single-precision BVH: the spheres recentred on the origin and scaled by a power of two to about one,
+/// The space of a single-precision BVH: the spheres recentred on the origin and scaled by a power of two to order one,
 /// so that neither the scene's position nor its size costs precision.
 ///
 /// Boxes are padded by the worst rounding error of rays and boxes in float, so no hit is lost. Boxes only select

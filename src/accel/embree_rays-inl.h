@@ -20,7 +20,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
 
-/// Rays that Embree takes at a time: as many floats as a register holds.
+/// Rays per Embree packet: the number of floats in a register.
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
 
 template <class Packet>
@@ -68,7 +68,7 @@ HWY_INLINE hn::Mask<D> is_valid(D d, hn::Vec<hn::Rebind<std::int32_t, D>> flags)
   }
 }
 
-/// Sets what all queries have in common.
+/// Sets the members that are the same in all queries.
 template <class EmbreeRay>
 HWY_INLINE void set_constants(EmbreeRay& rays) {
   for (int i = 0; i < kWidth; ++i) {

@@ -49,7 +49,7 @@ struct EmbreeQuery {
   alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
 };
 
-/// The instances for this processor, a precision, and a scene that moves or rests.
+/// The function instances for this processor, for one precision, with or without motion.
 struct EmbreeFunctions {
   RTCIntersectFunctionN intersect = nullptr;
   RTCOccludedFunctionN occluded = nullptr;

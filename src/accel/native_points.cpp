@@ -8,7 +8,8 @@
 namespace orrery::accel {
 namespace {
 
-/// Minimum hit distance, in lengths of the direction: without root exclusion a ray would hit the sphere that it leaves.
+/// Minimum hit distance, as a multiple of the direction's length: without root exclusion a ray would hit the sphere
+/// that it leaves.
 constexpr float kShortestDistance = 0.001F;
 
 /// One ray of a packet as Embree's ray.

@@ -48,7 +48,7 @@ const std::vector<std::string>& limitable_metrics();
 Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
                    const std::string& layer = {}, int threads = 0);
 
-/// Image files of a comparison to write; empty: none.
+/// Paths of the difference images to write. An empty path writes no image.
 struct ComparisonPictures {
   std::filesystem::path difference, heat, flip;
 };

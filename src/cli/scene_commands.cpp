@@ -51,7 +51,7 @@ int info(const InfoOptions& options) {
   return 0;
 }
 
-/// A warning if the scene does not fit into memory, which another machine may have.
+/// Warning if the scene exceeds this machine's free memory; not an error, since it may be rendered on another machine.
 std::string memory_warning(const app::SceneInfo& info) {
   try {
     job::require_memory(info.memory, 0);

@@ -38,8 +38,8 @@ struct Choice {
 /// Resolves the settings against the config.
 ///
 /// Errors     base::Error: kMissingInput for a config (or a LUT file of it) that cannot be opened, kBadData for an
-///            invalid config, kUsage for an unknown display, view, look or colour space, with similar names, and for an
-///            exposure that is not finite
+///            invalid config, kUsage for an unknown display, view, look or colour space (the message suggests similar
+///            names), and for an exposure that is not finite
 Choice choose(const Settings& settings);
 
 /// What happens to an image's alpha.

@@ -22,7 +22,8 @@ Words with_numbers(Words words, const std::string& frame, const std::string& sha
   return words;
 }
 
-/// One line of shell. `frame` and `shard` replace the numbers unquoted, e.g. "$frame" with its quotes.
+/// One shell command line. The frame and shard placeholders become `frame` and `shard`, outside single quotes so that
+/// the shell expands them.
 std::string shell_line(const Words& words, const std::string& frame, const std::string& shard) {
   std::string out;
   for (const std::string& word : words) {

@@ -16,7 +16,7 @@ double mean(Int128 sum, std::int64_t weight) {
   return weight > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(weight) : 0.0;
 }
 
-/// The light groups of a pixel as floats whose single-precision sum equals the beauty bit for bit in any order.
+/// The lobe AOVs of a pixel as floats whose single-precision sum equals the beauty bit for bit in any order.
 ///
 /// Each group is rounded to a multiple of the beauty's last bit, and no partial sum exceeds the beauty, so that all
 /// sums are exact. With a filter that has negative lobes a partial sum can exceed it.

@@ -26,7 +26,7 @@ struct LayerRequest {
   std::vector<std::uint32_t> material_numbers;  ///< material_id of each material of the compiled scene
   std::vector<Matte> mattes;
 
-  bool lights() const;                                        ///< a light group
+  bool lights() const;                                        ///< any lobe AOV
   bool nearest() const;                                       ///< a property of the nearest hit
   bool paths_light() const;                                   ///< the radiance of single paths
   bool light_events() const { return lights() || variance; }  ///< the lobes that radiance came from
@@ -36,7 +36,7 @@ struct LayerRequest {
 
 /// What a layer is computed from.
 enum class LayerSource {
-  kLight,    ///< radiance by light group
+  kLight,    ///< radiance by lobe
   kNearest,  ///< the first hit nearest to the camera
   kSums,     ///< sums over first hits
   kPaths,    ///< number and radiance of the paths

@@ -16,9 +16,9 @@ struct Override {
   // NOLINTNEXTLINE(google-explicit-constructor)
   Override(const char* key_and_value) : Override(std::string(key_and_value)) {}
 
-  /// An override by a short option: `--samples 20` is Override("render.samples=20", "--samples", "20").
+  /// An override from a dedicated option: `--samples 20` is Override("render.samples=20", "--samples", "20").
   ///
-  /// Domain     `value` ends `key_and_value`, except for a closing bracket
+  /// Domain     `value` is a suffix of `key_and_value`, not counting a closing bracket
   Override(std::string key_and_value, std::string name, std::string value)
       : text(std::move(key_and_value)), option(std::move(name)), typed(std::move(value)) {}
 

@@ -112,7 +112,7 @@ std::optional<Value> read_window(Reading& reading, const toml::node& node, const
   return scene::Window{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
 }
 
-/// Reports each invalid word separately.
+/// Reads a list of enumerators. Reports each invalid element separately.
 std::optional<Value> read_words(Reading& reading, const toml::node& node, const std::string& name,
                                 const std::vector<std::string>& choices) {
   const toml::array* array = node.as_array();

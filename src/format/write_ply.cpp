@@ -35,7 +35,7 @@ void append_float(std::string& out, double value, std::size_t index) {
   append_bytes(out, static_cast<float>(value));
 }
 
-/// is_own_ply recognises files by the comment.
+/// Start of the PLY files that orrery writes; is_own_ply() recognises them by the comment.
 constexpr const char* kPlyBegin = "ply\nformat binary_little_endian 1.0\ncomment made by orrery\n";
 
 std::string header(const scene::Points& points, PlyReal real) {

@@ -13,6 +13,8 @@ struct CameraMatrices {
   std::array<float, 16> world_to_ndc;     ///< after division by w: x 0..1 from the left, y 0..1 from the top
 };
 
+/// Computes the camera matrices of a frame.
+///
 /// Reference  openexr-standard-attributes
 CameraMatrices camera_matrices(const scene::Camera& camera, const scene::Image& image);
 

@@ -6,8 +6,8 @@
 
 namespace orrery::job {
 
-/// Finds everything in a request that would make the job fail, except errors that depend on the scene: formats, bit
-/// depths, files that cannot be created, compression, instruction set.
+/// Checks everything in a request that does not depend on the scene: formats, bit depths, whether files can be created,
+/// compression, instruction set.
 ///
 /// Errors     base::Error: kUsage, kCannotCreate
 void check_request(const Job& job);

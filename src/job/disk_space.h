@@ -10,7 +10,7 @@
 
 namespace orrery::job {
 
-/// What the size of an image's files depends on.
+/// Properties of an image that determine the size of its files.
 struct ImageSize {
   int width_px = 0, height_px = 0;
   std::size_t layer_planes = 0;  ///< besides R, G, B, A

@@ -26,7 +26,7 @@ struct ShardFile {
   image::Provenance provenance;
 };
 
-/// What a job may use of the machine.
+/// Limits on the job's use of the machine.
 struct Resources {
   int threads = 0;                            ///< 0: default_threads()
   std::uint64_t memory_limit = 0;             ///< bytes; 0: the free memory

@@ -26,12 +26,12 @@ std::vector<OutputFile> outputs_of(const Job& job);
 /// Errors     base::Error(kUsage) for an output that is an input or another output
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner = {});
 
-/// Adds the files that a scene names at these frames. Parses the scene file without reading points files.
+/// Adds the files that a scene references at these frames. Parses the scene file without reading points files.
 ///
 /// Errors     as add_job_files; those of format::named_files
 void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files);
 
-/// Adds the files that an already read scene names.
+/// Adds the files that a loaded scene references.
 ///
 /// Errors     as add_job_files
 void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files);

@@ -21,7 +21,7 @@ struct Phases {
   double write_s = 0;
 };
 
-/// What a job did.
+/// Result of a job.
 struct JobReport {
   render::Statistics render;
   Phases phases;
@@ -36,7 +36,7 @@ struct JobReport {
   std::filesystem::path checkpoint;  ///< written because the job was stopped; empty: none
   bool was_resumed = false;          ///< from a checkpoint
   std::string missing;               ///< samples that no merged shard has, as text; empty: none
-  std::vector<std::string> hosts;    ///< that rendered it
+  std::vector<std::string> hosts;    ///< machines that rendered the image
   bool was_skipped = false;          ///< its files existed and were up to date
 };
 

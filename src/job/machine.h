@@ -10,7 +10,7 @@ int default_threads();
 
 /// Limits kernel and accelerators to this instruction set; empty: the best available.
 ///
-/// Errors     base::Error(kUsage) if the program or the processor lacks it; lists the available ones
+/// Errors     base::Error(kUsage) if the program or the processor lacks it; the message lists the available ones
 void choose_isa(const std::string& name);
 
 }  // namespace orrery::job

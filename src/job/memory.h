@@ -18,7 +18,7 @@ struct MemoryEstimate {
   std::uint64_t total() const { return film + spheres + accelerator; }
 };
 
-/// What the memory of a render depends on.
+/// Properties of a render that determine its memory.
 struct MemoryNeeds {
   int width = 0, height = 0;       ///< px
   std::uint64_t spheres = 0;       ///< from tables and points files
@@ -31,7 +31,7 @@ struct MemoryNeeds {
 /// Estimates memory for `info`, `study` and the check before a render.
 MemoryEstimate estimate_memory(const MemoryNeeds& needs);
 
-/// The needs of a render of this scene.
+/// Determines these properties for a render of this scene.
 MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
                          bool is_adaptive = false);
 

@@ -28,7 +28,7 @@ void take_scene(const ShardFile& shard, Job& job);
 struct MergedShards {
   film::Partial partial;
   std::string missing;                     ///< as text; empty: each pixel has all its samples
-  std::vector<std::string> hosts;          ///< that rendered them, without duplicates
+  std::vector<std::string> hosts;          ///< machines that rendered the shards, without duplicates
   std::vector<base::Diagnostic> left_out;  ///< damaged shards
 };
 

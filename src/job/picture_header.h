@@ -9,7 +9,7 @@ namespace orrery::job {
 
 /// The header of a job's images: camera, colour space, settings, statistics.
 ///
-/// `reproducible` gives every render of a scene the same header on any machine, thread count and accelerator.
+/// `reproducible` omits everything that depends on the machine, the thread count or the accelerator.
 image::Header picture_header(const format::ReadResult& read, const compile::CompiledScene& compiled,
                              const JobReport& report, bool reproducible);
 

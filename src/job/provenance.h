@@ -12,10 +12,10 @@
 namespace orrery::job {
 
 /// The provenance of a shard or checkpoint of this job: program version, scene, and every setting that its sums depend
-/// on. It prevents merging or resuming files that do not belong together.
+/// on. It prevents merging or resuming incompatible files.
 image::Provenance provenance_of(const Job& job, const compile::CompiledScene& compiled, const Layers& layers);
 
-/// A hash of everything that the images of a job depend on. An image with the same stamp in its header is up to date.
+/// Hash of everything that determines the images of a job. An image with this stamp in its header is up to date.
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display);
 
 /// The first difference of two provenances, as text: "scene hash 1234, not 5678"; empty: none.
@@ -23,7 +23,7 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
 /// `keys`     the keys to compare
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys);
 
-/// The keys that must be equal in all shards of an image, and in a checkpoint and the job that resumes from it.
+/// The keys whose values must match in all shards of an image, and in a checkpoint and the job that resumes from it.
 const std::vector<std::string>& keys_of_shards();
 const std::vector<std::string>& keys_of_checkpoints();
 

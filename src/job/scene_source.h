@@ -8,7 +8,7 @@
 
 namespace orrery::job {
 
-/// A scene as a command names it: file, overrides, and a frame of its animation.
+/// A scene as specified on the command line: file, overrides, and a frame of its animation.
 struct SceneSource {
   std::filesystem::path file;
   std::vector<format::Override> overrides;  ///< "camera.vfov=30"

@@ -8,7 +8,7 @@
 
 namespace orrery::job {
 
-/// How a job ended.
+/// Outcome of a job.
 struct Outcome {
   std::string reason = "completed";  ///< "completed", "stopped", "failed"
   int exit_status = 0;               ///< of the program

@@ -11,8 +11,8 @@ namespace orrery::job {
 
 using base::bytes_text;
 
-/// JSON, indented, with a final newline. Bytes that are not UTF-8, as file names may have, become replacement
-/// characters.
+/// Formats a value as indented JSON with a final newline. Bytes that are not UTF-8, possible in file names, become
+/// replacement characters.
 std::string json_text(const nlohmann::json& value);
 
 }  // namespace orrery::job

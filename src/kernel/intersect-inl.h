@@ -46,7 +46,7 @@ HWY_INLINE Rays<D> load_rays(D d, const Packet& p, int first) {
           hn::Load(IdTag<D>(), p.self + first)};
 }
 
-/// One sphere per lane, or the same in all.
+/// One sphere per lane, or one sphere broadcast to all lanes.
 template <class D>
 struct Spheres {
   Vec3<hn::Vec<D>> center;
@@ -76,7 +76,7 @@ HWY_INLINE Spheres<D> sphere_at(D d, const Scene& scene, std::uint32_t id, const
 template <class D>
 struct Chord {
   using V = hn::Vec<D>;
-  V middle;           ///< distance to the chord's midpoint, in lengths of the direction
+  V middle;           ///< distance to the chord's midpoint, as a multiple of the direction's length
   V discriminant;     ///< radius^2 - |to_center|^2; the line intersects the sphere if this is >= 0
   Vec3<V> to_center;  ///< from the midpoint to the sphere's centre; perpendicular to the direction
 };
@@ -119,19 +119,22 @@ HWY_INLINE Chord<D> chord(const Rays<D>& ray, const Spheres<D>& sphere) {
   return plain;
 }
 
-/// Lanes whose lines may intersect their spheres. The others miss, whatever compensation adds.
+/// Conservative test of the uncompensated discriminant: other lanes miss even after compensation.
 ///
-/// The plain form errs by less than 2^-47 (|to_sphere|^2 + |center|^2): the difference by 2^-53 of itself and of the
-/// origin, whose length is at most that of both together; the projection by about 2^-51 of the difference.
+/// With centre c and rounded origin o, the error of to_center has two parts: the subtraction, with the rounding error
+/// of the origin, contributes at most 2^-53 (|c-o| + |o|), where |o| <= |c-o| + |c|; the projection about 2^-51 |c-o|.
+/// Since |to_center| <= |c-o|, the error of the discriminant is at most 2 |c-o| times their sum, plus its own rounding
+/// near zero, where the radius is about |to_center|: less than 2^-47 (|c-o|^2 + |c|^2) in total. The margin is four
+/// times that.
 template <class D>
-HWY_INLINE hn::Mask<D> may_meet(D d, const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
+HWY_INLINE hn::Mask<D> may_intersect(D d, const Rays<D>& ray, const Spheres<D>& sphere, const Chord<D>& plain) {
   const auto to_sphere = sphere.center - ray.origin;
   const auto reach = dot(to_sphere, to_sphere) + dot(sphere.center, sphere.center);
   const auto margin = hn::Set(d, static_cast<hn::TFromD<D>>(0x1p-45));
   return hn::MulAdd(reach, margin, plain.discriminant) >= hn::Zero(d);
 }
 
-/// Distances along rays, in lengths of their directions; only lanes in `mask` have one.
+/// Distances along rays, as multiples of their directions' lengths; valid in the lanes of `mask`.
 template <class D>
 struct Distances {
   hn::Vec<D> value;
@@ -164,7 +167,7 @@ HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& spher
     auto c = plain_chord(ray, sphere);
     if constexpr (kPrecision == Precision::kExact) {
       // In the naive list a ray misses nearly all spheres, and compensation costs more than everything before it.
-      if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hn::Or(is_self, may_meet(d, ray, sphere, c))))
+      if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hn::Or(is_self, may_intersect(d, ray, sphere, c))))
         return {zero, is_self};
       c = compensated(ray, sphere, c);
     }

@@ -20,9 +20,9 @@ enum class Lobe : std::uint8_t {
 };
 inline constexpr int kLobes = 7;
 
-/// What the layers beside the beauty need to know of one path. Only tiles that request records pay for them.
+/// Data of one path for the layers besides the beauty. Computed only for tiles that request records.
 struct PathRecord {
-  double light[3] = {0, 0, 0};        ///< the path's whole radiance, the sum of its light events
+  double light[3] = {0, 0, 0};        ///< total radiance of the path, the sum of its light events
   double offset[3] = {0, 0, 0};       ///< first hit: from the sphere's centre to the point, scene units
   double direction[3] = {0, 0, 0};    ///< of the camera ray that hit it, unit
   float guide_albedo[3] = {0, 0, 0};  ///< of the first surface that is not delta, times the throughput before it
@@ -31,7 +31,7 @@ struct PathRecord {
   double time = 0;                    ///< 0..1 within the shutter
 };
 
-/// Radiance that a path gained at one point: from the background, or from a light.
+/// One contribution to a path's radiance: emission of the background or a light, times path throughput.
 struct LightEvent {
   double value[3];          ///< emitted radiance times the path's throughput
   std::uint32_t path;       ///< index of the path's record within the tile

@@ -7,12 +7,12 @@
 
 namespace orrery::kernel {
 
-/// Paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
+/// Number of paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
 inline constexpr int kStreamSize = 1024;
 
 /// The state of a tile's paths between two vertices, as a structure of arrays.
 ///
-/// The end of the arrays is read and written in whole vectors, hence the room for one more packet.
+/// The end of the arrays is read and written in whole vectors, hence the capacity for one more packet.
 template <class T, class Id>
 struct alignas(64) PathStreamOf {
   static constexpr int kCapacity = kStreamSize + kPacketSize;

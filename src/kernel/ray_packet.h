@@ -9,7 +9,7 @@
 
 namespace orrery::kernel {
 
-/// Rays that are traced together: as many floats as a 512-bit register holds.
+/// Rays per packet: the number of floats in a 512-bit register.
 inline constexpr int kPacketSize = 16;
 
 /// Up to sixteen rays in structure-of-arrays form.
@@ -27,7 +27,7 @@ struct alignas(64) RaysOf {
   T direction[3][kPacketSize];
   T inverse_square[kPacketSize];  ///< 1 / (direction . direction)
   Id self[kPacketSize];           ///< sphere that the ray leaves, or kNoSphere
-  T distance[kPacketSize];        ///< maximum distance of a hit, in lengths of direction
+  T distance[kPacketSize];        ///< maximum distance of a hit, as a multiple of the direction's length
   T time[kPacketSize];            ///< 0..1 within the shutter; only if the scene moves
   int count = 0;                  ///< rays in use, the first ones
 };
@@ -66,7 +66,7 @@ struct Tracer {
 inline void trace(const Tracer& tracer, RayPacket& packet) { tracer.trace(tracer.self, packet); }
 inline void trace(const Tracer& tracer, RayPacketFast& packet) { tracer.trace_fast(tracer.self, packet); }
 
-/// Finds out which rays of a packet are occluded.
+/// Determines which rays of a packet are occluded.
 inline void occlude(const Tracer& tracer, ShadowPacket& packet) { tracer.occlude(tracer.self, packet); }
 inline void occlude(const Tracer& tracer, ShadowPacketFast& packet) { tracer.occlude_fast(tracer.self, packet); }
 

@@ -60,16 +60,15 @@ using RenderTile = TileCounts (*)(const SceneView& scene, const Tracer& tracer, 
 using RenderTileFast = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile,
                                       PathStreamFast& stream);
 
-/// How many lanes an instance of the kernel's text has. Instances with one lane are compiled into tests and benchmarks
+/// Number of lanes of an instance of the kernel. Instances with one lane are compiled into tests and benchmarks
 /// only, as the reference for those with all lanes.
 enum class Lanes : std::uint8_t { kOne, kAll };
 
 /// The path loop for the best enabled instruction set, specialized to scenes with these features.
 ///
 /// Domain     the scene has these features
-/// Result     bit-identical images for any number of lanes, with records or without, and on every instruction set
-/// with
-///            fused multiply-add
+/// Result     bit-identical images for any number of lanes, with records or without, and on every instruction
+///            set with fused multiply-add
 RenderTile render_tile_function(const Features& features, Precision precision);
 RenderTileFast render_tile_fast_function(const Features& features);
 

@@ -80,7 +80,8 @@ HWY_INLINE Four<hn::Vec<D>> random_of_sequence(D d, const Sampler& sampler, hn::
   return {{to_unit(d, bits.v[0]), to_unit(d, bits.v[1]), to_unit(d, bits.v[2]), to_unit(d, bits.v[3])}};
 }
 
-/// Far down a path the numbers before have decided so much that well distributed points gain nothing.
+/// True if a vertex uses independent random numbers. Deep in a path well distributed points have no advantage, since
+/// the numbers of earlier vertices determine most of the result.
 inline bool is_independent_at(const Sampler& sampler, std::uint32_t vertex) {
   return sampler.kind == SamplerKind::kIndependent || vertex >= kSobolVertices;
 }

@@ -8,7 +8,7 @@ namespace orrery::kernel {
 enum class SamplerKind : std::uint8_t {
   kIndependent,  ///< independent random numbers
   kSobol,        ///< well distributed over a pixel's samples
-  kBlueNoise,    ///< and over neighbouring pixels, so that their errors cancel
+  kBlueNoise,    ///< also well distributed over neighbouring pixels, so that their errors cancel
 };
 
 /// The source of a path's random numbers.

@@ -52,7 +52,7 @@ struct BsdfSample {
 
 inline constexpr double kTwoPi = 6.283185307179586476925;
 
-/// Lanes whose id-wide value equals an enumerator.
+/// Mask of the lanes whose kind is `kind`. Kinds are stored at the width of sphere ids.
 template <class D, class E>
 HWY_INLINE hn::Mask<D> is_kind(D d, hn::Vec<IdTag<D>> kinds, E kind) {
   const IdTag<D> du;

@@ -37,8 +37,8 @@ struct Features {
   bool motion = false;      ///< camera or spheres move while the shutter is open
 };
 
-/// Russian roulette spares paths whose throughput is above 1 / kRouletteGain: ending them would save less than their
-/// noise costs.
+/// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
+/// save less time than the added noise costs.
 inline constexpr double kRouletteGain = 8;
 
 /// A roulette depth that no path reaches.
@@ -52,7 +52,7 @@ struct SceneView {
   std::size_t sphere_count = 0;
   /// One per material; null if nothing emits. Read only by loops that collect light along the path.
   const Emission* emission = nullptr;
-  /// Changes of centre and radius of the first spheres until the shutter closes. The others rest.
+  /// Changes of centre and radius of the first spheres until the shutter closes. The others do not move.
   const Sphere* motion = nullptr;
   std::size_t moving_count = 0;
   Camera camera;

@@ -22,7 +22,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// Path state of a packet's rays beside their geometry, in the packet's lane order.
+/// Path state of a packet's rays besides their geometry, in the packet's lane order.
 template <class T, class Id>
 struct alignas(64) PathPayload {
   T base[3][kPacketSize];
@@ -88,7 +88,7 @@ HWY_INLINE Vec3<V> background(D d, const Background& sky, bool has_gradient, con
   return mul_add(set3(d, sky.top), a, bottom * one_minus_a);
 }
 
-/// The radiance that the spheres of a vector of hits emit.
+/// Emitted radiance of the hit spheres, one per lane.
 ///
 /// Domain     scene.emission is not null
 template <class D>

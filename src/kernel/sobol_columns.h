@@ -7,7 +7,8 @@
 
 namespace orrery::kernel {
 
-/// Index bits of one scrambled sequence. Samples beyond it use a sequence of another name.
+/// Number of bits of a point's index within one scrambled sequence. Samples with larger indices use sequences of other
+/// names.
 inline constexpr int kSobolBits = 16;
 
 /// Generator matrices by columns: what each bit of a point's index adds (XOR) to the bit-reversed coordinate, in which
@@ -44,10 +45,10 @@ inline constexpr SobolColumns kSobolColumns{sobol_columns(2, 1, {1, 3, 0}), sobo
 /// A matrix over GF(2) by columns: what each bit of a sample's index adds (XOR) to the index of its point.
 using SobolOrder = std::array<std::uint32_t, kSobolBits>;
 
-/// Path vertices, the camera first, that share one sequence. Later vertices have independent numbers.
+/// Number of path vertices, from the camera on, that share one sequence. Later vertices use independent random numbers.
 inline constexpr std::uint32_t kSobolVertices = 8;
 
-/// Low bits of an index that an order mixes freely. Above them a bit changes only lower bits, so points
+/// Number of low bits of an index that an order mixes freely. Above them a bit changes only lower bits, so points
 /// 2^k n .. 2^k (n + 1) are the same set at every vertex, in another order, for all k from here on.
 inline constexpr std::size_t kSobolFreeBits = 4;
 

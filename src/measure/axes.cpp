@@ -10,9 +10,9 @@ namespace {
 
 using compile::CompiledScene;
 
-/// Samples per pixel of choices whose errors are compared.
+/// Samples per pixel of variants whose errors are compared.
 constexpr int kCompared = 64;
-/// Samples per pixel of choices with identical images, of which only the time is measured.
+/// Samples per pixel of variants that produce identical images, so that only render time is compared.
 constexpr int kTimed = 16;
 
 /// Maximum number of spheres for which the list is measured.

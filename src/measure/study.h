@@ -50,7 +50,7 @@ struct Point {
   film::Picture picture;     ///< planes R, G, B
 };
 
-/// Result of one EXR pixel type and compression.
+/// File size, write time and storage error of one combination of EXR pixel type and compression.
 struct FilePoint {
   std::string name;  ///< "half zips"
   std::string flags;

@@ -44,12 +44,12 @@ class Spheres {
   std::vector<std::uint32_t> materials_;
 };
 
-/// Renders the images of a study and keeps account of the time they take.
+/// Renders the images of a study and accumulates their render times.
 ///
 /// All renders share one copy of the spheres, and one accelerator for each precision.
 class StudyRenderer {
  public:
-  /// Begins the clock.
+  /// Starts the clock.
   ///
   /// Domain     `request` outlives this
   StudyRenderer(const Request& request, int threads) : request_(request), threads_(threads) {}
@@ -57,7 +57,7 @@ class StudyRenderer {
   /// Takes the spheres out of a scene. All scenes to render are copies of it.
   void take_spheres(compile::CompiledScene& scene) { spheres_.take_from(scene); }
 
-  /// Seconds since the study began, or what its paths amount to (Request::paths_per_s).
+  /// Seconds since the study began; with Request::paths_per_s, computed from the number of paths instead.
   double elapsed() const;
 
   /// Duration of a render, in the same seconds.
@@ -92,7 +92,7 @@ class StudyRenderer {
   Spheres spheres_;
   std::map<std::pair<compile::Precision, compile::Accelerator>, std::unique_ptr<accel::Accel>> accels_;
   std::string isa_;
-  double paths_ = 0;  ///< traced so far
+  double paths_ = 0;  ///< paths traced so far
   double build_s_ = 0;
 };
 

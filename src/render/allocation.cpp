@@ -44,7 +44,7 @@ class Ranking {
   std::array<Bin, kBins> bins{};
 };
 
-/// Adds the pixels that lack evidence if all of them are affordable.
+/// Adds the pixels without a reliable error estimate if all of them are affordable.
 void add_due(const std::vector<std::uint32_t>& samples, const std::vector<std::uint8_t>& lacks_evidence,
              const RoundGoal& goal, Round& round) {
   const auto price_of = [&](std::size_t i) {

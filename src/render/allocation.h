@@ -23,13 +23,13 @@ struct Round {
 
 /// Chooses the pixels whose next samples reduce the image's error most.
 ///
-/// For a given number of samples the sum of the pixels' errors is minimal if every pixel's last sample reduces it by
-/// the same amount (Neyman allocation). So the pixels continue whose squared error per sample lies above a level, at
-/// which the goal will be reached. Pixels that lack evidence are added if affordable.
+/// For a fixed number of samples, the total squared error is minimal if the marginal reduction per sample is equal in
+/// all pixels (Neyman allocation). Selects the pixels whose marginal reduction exceeds the threshold that meets the
+/// target noise, then pixels without a reliable error estimate, if the budget allows.
 ///
 /// `samples`              of each pixel, above 0
 /// `error_of_one_sample`  squared error of each pixel with one sample
-/// `lacks_evidence`       1: the pixel lacks evidence
+/// `lacks_evidence`       1: the pixel has no reliable error estimate
 /// Reference              neyman1934
 Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector<float>& error_of_one_sample,
                     const std::vector<std::uint8_t>& lacks_evidence, const RoundGoal& goal);

@@ -24,9 +24,9 @@ struct PixelStatistics {
   }
 };
 
-/// Pixels belong to nine interleaved classes, (x mod 3, y mod 3): a pixel's 5 x 5 window has no other of its class.
+/// Number of interleaved pixel classes, (x mod 3, y mod 3). A pixel's 5 x 5 window has no other pixel of its class.
 inline constexpr int kClasses = 9;
-/// No class is excluded: all pixels are used.
+/// Value of `excluded_class` that excludes no class.
 inline constexpr int kNoClass = -1;
 
 inline int class_of(int x, int y) { return x % 3 + y % 3 * 3; }
@@ -39,8 +39,8 @@ struct PixelBlock {
 /// The blocks of an image, in a fixed order.
 std::vector<PixelBlock> blocks_of(int width_px, int height_px);
 
-/// The number of pixels within `reach` of `at` along an axis of the image; with `remainder`, of those whose coordinate
-/// modulo three equals it, none if it is negative.
+/// The number of pixels within `reach` of `at` along an axis of the image. The second form counts only pixels whose
+/// coordinate modulo three is `remainder`; none if it is negative.
 int count_within(int at, int reach, int size);
 int count_within(int at, int reach, int size, int remainder);
 

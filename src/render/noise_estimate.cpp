@@ -12,7 +12,7 @@ namespace orrery::render {
 namespace {
 
 /// Half-widths of windows, px: for averaging errors; the same if effectively fewer than kFewest pixels make up the mean
-/// of the first; and for finding evidence.
+/// of the first; and for deciding whether an estimate is reliable.
 constexpr int kReach = 2, kWideReach = 4, kEvidenceReach = 3;
 constexpr double kFewest = 3;
 
@@ -147,8 +147,8 @@ bool has_evidence(const PixelStatistics& s, int x, int y) {
       ++count;
     }
   }
-  if (count == 0 || n * count > 2 * samples) return true;  // its own samples are no evidence; its neighbours need more
-  if (2 * dark >= count) return false;                     // light beside a dark area is no evidence within it
+  if (count == 0 || n * count > 2 * samples) return true;  // its neighbours need more samples, not the pixel itself
+  if (2 * dark >= count) return false;                     // light beside a dark area says nothing about the area
   return light * light >= kHits * variance;                // the number of hits if all are equally bright
 }
 

@@ -22,7 +22,7 @@ struct NoiseEstimate {
 /// Estimates the noise of the present image.
 NoiseEstimate estimate_noise(const PixelStatistics& statistics, TilePool& pool);
 
-/// Pixels around which too few paths have found light for a reliable estimate.
+/// Pixels without a reliable error estimate: too few paths around them have found light.
 struct MissingEvidence {
   std::vector<std::uint8_t> of_pixel;  ///< 1: needs more samples whatever its estimated error
   std::uint64_t count = 0;
@@ -35,7 +35,7 @@ struct MissingEvidence {
 /// trusted, too.
 MissingEvidence find_missing_evidence(const PixelStatistics& statistics, TilePool& pool);
 
-/// Samples of a half per pixel.
+/// Samples per pixel in each half from which every error estimate counts as reliable.
 inline constexpr std::uint32_t kSamplesForEvidence = 512;
 
 /// The squared relative error of a single sample of each pixel, as in --noise, estimated from the pixels around it. The

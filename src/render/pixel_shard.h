@@ -15,7 +15,7 @@ struct PixelShard {
 /// Side of the squares, px.
 inline constexpr int kShardSide = 16;
 
-/// Which pixels belong to a shard, in row-major order. The shards of one count partition the image.
+/// Mask of the pixels that belong to a shard, in row-major order. The shards of one count partition the image.
 std::vector<bool> pixels_of(const PixelShard& shard, int width_px, int height_px);
 
 }  // namespace orrery::render

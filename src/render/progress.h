@@ -6,11 +6,11 @@
 
 namespace orrery::render {
 
-/// How far a render is.
+/// Progress of a render.
 struct Progress {
   std::uint64_t samples_done = 0;
   std::uint64_t samples_total = 0;
-  double seconds = 0;     ///< since rendering began, without building the acceleration structure
+  double seconds = 0;     ///< render time so far, excluding the BVH build
   std::string goal = {};  ///< what ends the render, in words; empty: its samples
 };
 

@@ -15,7 +15,7 @@
 
 namespace orrery::render {
 
-/// Renders the samples that pixels lack, on all threads. Can be stopped at any time without losing samples.
+/// Renders pixels up to their target sample counts, on all threads. Can be stopped at any time without losing samples.
 class ProgressiveSampling {
  public:
   /// Called for every pixel that has received samples, on the thread that rendered them.

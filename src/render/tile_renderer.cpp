@@ -10,7 +10,8 @@ namespace {
 /// Maximum path records that a thread holds at a time: a few megabytes.
 constexpr std::uint32_t kMostRecords = 65536;
 
-/// Restores the default rounding mode for its lifetime: the image must not depend on that of a host program.
+/// Sets the default floating-point environment (rounding, exception masks, flush-to-zero) and restores the host's on
+/// destruction, so that the image does not depend on it.
 class DefaultRounding {
  public:
   DefaultRounding() {

@@ -39,7 +39,9 @@ class TileRenderer {
   /// Domain     all arguments outlive this
   TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const film::LayerRequest& request);
 
-  /// `layers`   of the image, row-major; null if the request is empty
+  /// Renders one tile.
+  ///
+  /// `layers`   layer pixels of the whole image, row-major; null if the LayerRequest is empty
   void operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const;
 
  private:

@@ -20,8 +20,8 @@ constexpr int kFewestTrialTiles = 4;
 /// Without a trial: in larger scenes bounced rays diverge too soon for packets.
 constexpr std::size_t kManySpheres = 1000;
 
-/// Tiles all over the image, the same in every run. Each fills one stream of paths: with fewer paths bounced packets
-/// would be emptier than in a render. As in a render, a packet of camera rays spans as many pixels as it needs.
+/// A deterministic set of tiles, spread over the image. Each fills a whole path stream; otherwise packets of secondary
+/// rays would be less full than in a render. As in a render, a packet of camera rays spans as many pixels as it needs.
 std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
   const double paths = static_cast<double>(compiled.width) * compiled.height * compiled.samples;
   const int count = static_cast<int>(std::min(paths * kTrialShare, kMostTrialPaths) / kernel::kStreamSize);

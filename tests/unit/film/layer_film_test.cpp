@@ -117,7 +117,7 @@ TEST_F(FilmLayerFilm, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
   EXPECT_EQ(value(picture(), "N.Z"), 1);
 }
 
-/// The sum of the light groups in single precision equals the beauty bit for bit in any order.
+/// The sum of the lobe AOVs in single precision equals the beauty bit for bit in any order.
 TEST_F(FilmLayerFilm, LightGroupsAddUpToTheBeautyInAnyOrder) {
   request_.diffuse = request_.specular = request_.transmission = request_.background = true;
   std::mt19937 random(1);

@@ -124,7 +124,7 @@ TEST(RenderLayers, LightIsInTheGroupOfTheFirstSurface) {
             "background specular_direct transmission_direct transmission_indirect ");
 }
 
-/// Later surfaces do not change the light group.
+/// Later surfaces do not change the lobe.
 TEST(RenderLayers, FirstSurfaceDeterminesTheGroup) {
   const scene::MaterialModel mirror = scene::Metal{{0.9, 0.9, 0.9}, 0}, clay = scene::Lambertian{{0.5, 0.5, 0.5}},
                              glass = scene::Dielectric{1.5, scene::Fresnel::kExact};
