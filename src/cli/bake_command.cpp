@@ -26,13 +26,13 @@ void add_bake(Command& program, Action& action) {
   Command& command = *program.add_subcommand("bake", "Write a display transform as a look-up table for other programs");
   command
       .add_option("-o,--output", options->output,
-                  "File to write: .cube, or .clf, which is exact where the format has the transform's steps")
+                  "File to write: .cube (sampled 3D LUT) or .clf (exact if CLF supports every op of the transform)")
       ->required()
       ->type_name("FILE");
-  add_view_options(command, options->display);
+  add_view_options(command, options->display, DisplayDefaults::kOfConfig);
   command.add_option("--space", options->display.working_space, "Input colour space; default: lin_rec709")
       ->type_name("NAME");
-  command.add_option("--size", options->size, "Points along each edge of the table; default: 65")
+  command.add_option("--size", options->size, "3D LUT grid points per axis; default: 65")
       ->transform(whole_number(kSmallestCube, kLargestCube))
       ->type_name("N");
   command.footer(

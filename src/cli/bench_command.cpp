@@ -43,7 +43,8 @@ int bench(BenchOptions& options) {
 
 void add_bench(Command& program, Action& action) {
   const auto options = std::make_shared<BenchOptions>();
-  Command& command = *program.add_subcommand("bench", "Measure how fast a scene renders in each precision");
+  Command& command =
+      *program.add_subcommand("bench", "Benchmark a scene in each precision, with Embree and with a list of spheres");
   command.add_option("SCENE", options->request.scene.file, "Scene file")->required()->type_name("FILE");
   options->scene.add_to(command);
   options->scene.add_frame_to(command);
@@ -52,17 +53,20 @@ void add_bench(Command& program, Action& action) {
       ->type_name("N");
   command
       .add_option("--isa", options->request.isa,
-                  "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
+                  "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
-  command.add_option("--rounds", options->request.rounds, "Measurements of each case; default: 7")
+  command.add_option("--rounds", options->request.rounds, "Repetitions per case; default: 7")
       ->transform(whole_number(1, kMaxRounds))
       ->type_name("N");
-  command.add_option("--seconds", options->request.seconds, "Minimum time of a measurement; default: 0.25")
+  command
+      .add_option("--seconds", options->request.seconds,
+                  "Minimum duration of each repetition, in seconds; default: 0.25")
       ->check(real_number(0.001, kMaxSeconds))
       ->type_name("SECONDS");
   command.add_flag("--json", options->json, "Print JSON");
   command.add_flag("-q,--quiet", options->quiet, "Show no progress");
   command.footer(
+      "Ignored: --samples, --precision, --accelerator and --layers. Larger images are reduced to about 5,184 pixels.\n"
       "Examples:\n"
       "  orrery bench scenes/book/final.toml\n"
       "  orrery bench cloud.toml --threads 8 --rounds 15 --json");

@@ -33,13 +33,13 @@ void add_develop(Command& program, Action& action) {
   const auto options = std::make_shared<DevelopOptions>();
   app::Development& development = options->development;
   development.display.working_space.clear();
-  Command& command = *program.add_subcommand("develop", "Convert an EXR or HDR file to display formats, through OCIO");
+  Command& command = *program.add_subcommand("develop", "Apply an OCIO display transform to an EXR or HDR image");
   command.add_option("IN", development.input, "Scene-linear image: EXR or HDR")->required()->type_name("FILE");
   command.add_option("-o,--output", development.outputs, "File to write: PNG, TIFF, JPEG or PPM; can be repeated")
       ->required()
       ->type_name("FILE")
       ->repeatable();
-  add_display_options(command, development.display, development.bits);
+  add_display_options(command, development.display, development.bits, DisplayDefaults::kOfConfig);
   command
       .add_option("--space", development.display.working_space,
                   "Colour space of the input; default: from its header, otherwise lin_rec709")

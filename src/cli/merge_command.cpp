@@ -50,16 +50,16 @@ void add_merge(Command& program, Action& action) {
                   "Scene file; default: the file that the shards were rendered from")
       ->type_name("FILE");
   command.add_flag("--allow-missing", options->job.merge.allow_missing,
-                   "Merge incomplete shards, and list missing samples in the header");
+                   "Merge even if shards are missing or damaged; record missing samples in the header");
   command
       .add_option("--memory-limit", options->job.resources.memory_limit,
-                  "Memory limit for the estimated need, e.g. 8G; default: the free memory")
+                  "Refuse to merge if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
       ->transform(byte_size())
       ->type_name("SIZE");
   command.add_option("--stats", options->job.outputs.statistics, "Write statistics of all shards as JSON")
       ->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print only errors");
-  command.add_flag("-v,--verbose", options->verbose, "Also print phases and their times");
+  command.add_flag("-v,--verbose", options->verbose, "Also print the time of each phase");
   command.footer(
       "Examples:\n"
       "  orrery merge shard.*.exr -o final.exr -o final.png\n"

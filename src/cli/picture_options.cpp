@@ -14,7 +14,7 @@ void PictureOptions::add_to(Command& command, job::Job& job) {
       ->required()
       ->type_name("FILE")
       ->repeatable();
-  add_display_options(command, job.outputs.display, job.outputs.bits);
+  add_display_options(command, job.outputs.display, job.outputs.bits, DisplayDefaults::kOfScene);
   command.add_option("--type", type_, "EXR channel type: half or float; default: half")
       ->check(one_of({"half", "float"}))
       ->type_name("TYPE");
@@ -26,10 +26,11 @@ void PictureOptions::add_to(Command& command, job::Job& job) {
   command.add_flag("--multipart", job.outputs.exr.multipart, "Write each EXR layer to a separate part");
   command
       .add_option("--disk-limit", job.resources.disk_limit,
-                  "Disk limit for the estimated need, e.g. 8G; default: the free space")
+                  "Refuse to start if the estimated disk space exceeds SIZE, e.g. 8G; default: free space")
       ->transform(byte_size())
       ->type_name("SIZE");
-  command.add_flag("--reproducible", job.outputs.reproducible, "Omit everything that varies between runs from headers");
+  command.add_flag("--reproducible", job.outputs.reproducible,
+                   "Omit run-dependent metadata (date, render time, accelerator, instruction set) from EXR headers");
 }
 
 void PictureOptions::finish(job::Job& job) const {

@@ -171,17 +171,18 @@ void add_render(Command& program, Action& action) {
       ->type_name("FILE");
   options->picture.add_to(command, options->batch.job);
   options->scene.add_to(command, true);
-  command.add_option("--shard", options->shard, "Render the I-th of N shards of the pixels, for orrery merge")
+  command
+      .add_option("--shard", options->shard,
+                  "Render shard I of N (I from 1), every N-th 16 x 16 tile; combine with orrery merge")
       ->type_name("I/N");
   command
       .add_option("--frames", options->frames,
                   "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9; name outputs like shot.####.exr")
       ->type_name("RANGE");
   command.add_flag("--skip-existing", options->batch.job.skip_existing,
-                   "Skip images that exist, are intact, and are of this scene and settings");
+                   "Skip images that exist, are intact, and match this scene and these settings");
   command.add_flag("--fail-fast", options->fail_fast, "Stop at the first frame or scene that fails");
-  command.add_flag("--resume", options->batch.job.checkpoint.resume,
-                   "Continue from the checkpoint of a stopped render, if there is one");
+  command.add_flag("--resume", options->batch.job.checkpoint.resume, "Resume from the checkpoint, if it exists");
   command
       .add_option("--checkpoint", options->batch.job.checkpoint.interval_s,
                   "Checkpoint interval, e.g. 5m; default: only when a signal stops the render")
@@ -195,7 +196,8 @@ void add_render(Command& program, Action& action) {
                   "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
       ->transform(duration())
       ->type_name("TIME");
-  command.add_flag("--strict", options->strict, "Exit with 75 if --noise was not reached or could not be judged");
+  command.add_flag("--strict", options->strict,
+                   "Exit with status 75 if the target noise was not reached or could not be estimated");
   command
       .add_option("-t,--threads", options->batch.job.resources.threads,
                   "Number of threads; default: all that this process may use")
@@ -203,16 +205,16 @@ void add_render(Command& program, Action& action) {
       ->type_name("N");
   command
       .add_option("--traversal", options->traversal,
-                  "BVH traversal: packet, single, or auto, which measures the faster one; default: auto")
+                  "BVH traversal: packet, single, or auto: time both and use the faster; default: auto")
       ->check(one_of({"auto", "packet", "single"}))
       ->type_name("MODE");
   command
       .add_option("--isa", options->batch.job.resources.isa,
-                  "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
+                  "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
   command
       .add_option("--memory-limit", options->batch.job.resources.memory_limit,
-                  "Memory limit for the estimated need, e.g. 8G; default: the free memory")
+                  "Refuse to render if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
       ->transform(byte_size())
       ->type_name("SIZE");
   command
@@ -222,10 +224,10 @@ void add_render(Command& program, Action& action) {
       ->type_name("STYLE");
   command.add_option("--stats", options->batch.job.outputs.statistics, "Write statistics of the render as JSON")
       ->type_name("FILE");
-  command.add_option("--log", options->batch.log, "Append all messages to a log file, with the time")
+  command.add_option("--log", options->batch.log, "Append all messages to a log file, with timestamps")
       ->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print only errors");
-  command.add_flag("-v,--verbose", options->verbose, "Also print phases and their times");
+  command.add_flag("-v,--verbose", options->verbose, "Also print the time of each phase");
   command.footer(
       "Examples:\n"
       "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"

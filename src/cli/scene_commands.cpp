@@ -124,11 +124,12 @@ int check(const CheckOptions& options) {
 
 void add_info(Command& program, Action& action) {
   const auto options = std::make_shared<InfoOptions>();
-  Command& command = *program.add_subcommand("info", "Print what a scene contains, requires and leaves out");
+  Command& command = *program.add_subcommand("info", "Print a scene's contents, memory estimate and unused features");
   command.add_option("SCENE", options->scene, "Scene file")->required()->type_name("FILE");
   options->overrides.add_to(command);
   options->overrides.add_frame_to(command);
-  command.add_flag("--measure", options->measure, "Measure what the left-out features save; takes some seconds");
+  command.add_flag("--measure", options->measure,
+                   "Measure the time saved by skipping unused features (takes a few seconds)");
   auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings");
   command.add_flag("--settings", options->settings, "Print every setting, its value and its origin")->excludes(json);
   command.footer(

@@ -57,8 +57,8 @@ int run(StudyOptions& options) {
 
 void add_study(Command& program, Action& action) {
   const auto options = std::make_shared<StudyOptions>();
-  Command& command =
-      *program.add_subcommand("study", "Measure the trade-off of time and accuracy on a scene, and recommend settings");
+  Command& command = *program.add_subcommand(
+      "study", "Measure the trade-off between render time and error on a scene, and recommend settings");
   command.add_option("SCENE", options->request.scene.file, "Scene file")->required()->type_name("FILE");
   command
       .add_option("-o,--output", options->request.report,
@@ -78,7 +78,7 @@ void add_study(Command& program, Action& action) {
       ->type_name("N");
   command
       .add_option("--isa", options->request.isa,
-                  "Best instruction set to use: sse4, avx2 or avx512; default: the processor's best")
+                  "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
   command.add_flag("--json", options->json, "Print JSON");
   command.add_flag("-q,--quiet", options->quiet, "Show no progress");

@@ -54,14 +54,15 @@ int submit(SubmitOptions& options) {
 void add_submit(Command& program, Action& action) {
   const auto options = std::make_shared<SubmitOptions>();
   farm::Submission& s = options->submission;
-  Command& command = *program.add_subcommand("submit", "Print a job for Slurm, OpenJD, OpenCue or GNU parallel");
+  Command& command = *program.add_subcommand(
+      "submit", "Write a render-farm job (Slurm, OpenJD, OpenCue, GNU parallel) to standard output");
   command.add_option("SCENE", options->scene_file, "Scene file")->required()->type_name("FILE");
-  command.add_flag("--slurm", options->slurm, "Print a shell script that calls sbatch");
-  command.add_flag("--openjd", options->openjd, "Print an Open Job Description template, jobtemplate-2023-09");
-  command.add_flag("--opencue", options->opencue, "Print a job in OpenCue's specification language, cjsl-1.12");
+  command.add_flag("--slurm", options->slurm, "Write a shell script that calls sbatch");
+  command.add_flag("--openjd", options->openjd, "Write an Open Job Description template (jobtemplate-2023-09)");
+  command.add_flag("--opencue", options->opencue, "Write an OpenCue job specification (XML, cjsl-1.12)");
   options->parallel =
       command
-          .add_option("--parallel", s.jobs_at_a_time, "Print a shell script that calls GNU parallel, N tasks at a time")
+          .add_option("--parallel", s.jobs_at_a_time, "Write a shell script that calls GNU parallel, N tasks at a time")
           ->transform(whole_number(1, kMaxThreads))
           ->type_name("N");
   options->picture.add_to(command, s.batch.job);
@@ -83,7 +84,8 @@ void add_submit(Command& program, Action& action) {
           ->type_name("FILE");
   options->passed_on = {noise, time, stats};
   options->command = &command;
-  command.add_option("--program", s.program, "Program that the engine runs; default: orrery")->type_name("FILE");
+  command.add_option("--program", s.program, "orrery executable on the render nodes; default: orrery")
+      ->type_name("FILE");
   s.program = "orrery";
   command.footer(
       "Examples:\n"

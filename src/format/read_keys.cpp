@@ -37,7 +37,7 @@ std::optional<double> read_number(Reading& reading, const toml::node& node, cons
   }
   const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!range.contains(x)) {
-    reading.error(place_of(node), name + " is " + scene::number_text(x) + "; allowed is " + range.text());
+    reading.error(place_of(node), name + " is " + scene::number_text(x) + "; " + range.requirement());
     return {};
   }
   return x;
@@ -73,7 +73,7 @@ std::optional<Value> read_integer(Reading& reading, const toml::node& node, cons
   if (!range.contains(static_cast<double>(x))) {
     const auto whole = [](double end) { return std::to_string(static_cast<std::int64_t>(end)); };
     reading.error(place_of(node),
-                  name + " is " + std::to_string(x) + "; allowed is " + whole(range.from) + ".." + whole(range.to));
+                  name + " is " + std::to_string(x) + "; must be in " + whole(range.from) + ".." + whole(range.to));
     return {};
   }
   return x;
@@ -87,7 +87,7 @@ std::optional<Value> read_text(Reading& reading, const toml::node& node, const s
   }
   const std::string& text = node.as_string()->get();
   if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
-    reading.error(place_of(node), name + " is \"" + text + "\"; allowed is " + base::joined(choices),
+    reading.error(place_of(node), name + " is \"" + text + "\"; must be one of " + base::joined(choices),
                   base::did_you_mean(text, choices));
     return {};
   }

@@ -111,8 +111,8 @@ void read_tracks(Reading& reading, const toml::array& list, scene::Scene& scene)
                                                         " frames but " + std::to_string(values->size()) + " values");
     const auto is_same = [&](const Track& other) { return other.target == track.target; };
     if (std::any_of(scene.tracks.begin(), scene.tracks.end(), is_same))
-      reading.error(place_of(*table.get("target")), full_name + ": " + track.target + " already has keys",
-                    "put all its frames into one [[key]]");
+      reading.error(place_of(*table.get("target")), full_name + ": " + track.target + " already has an animation track",
+                    "put all its keyframes into one [[key]]");
     const bool frames_are_good = read_frames(reading, *frames, full_name + ".frames", track.frames);
     const bool values_are_good = read_values(reading, *values, full_name + ".values", *target, track.values);
     if (frames_are_good && values_are_good && track.frames.size() == track.values.size())
@@ -130,8 +130,8 @@ void check_tracks(Reading& reading, const toml::array& list, const scene::Scene&
       continue;
     reading.error(place_of(*list.get(i)),
                   track.target + " is " + (is_vector ? scene::vector_text(v) : scene::number_text(v.x)) + " at frame " +
-                      scene::number_text(frame) + "; allowed is " + target->range.text(),
-                  "cubic interpolation may overshoot; add keys, or make it linear");
+                      scene::number_text(frame) + "; " + target->range.requirement(),
+                  "cubic interpolation may overshoot; add keyframes, or make it linear");
   }
 }
 

@@ -71,10 +71,10 @@ std::uint32_t pick_material(double u) { return u < 0.75 ? 0 : u < 0.87 ? 1 : u <
 void check(const Cloud& options) {
   if (options.count < 1 || options.count > kLargestCloud)
     throw base::Error(base::ErrorKind::kUsage,
-                      "count is " + std::to_string(options.count) + "; allowed is 1.." + std::to_string(kLargestCloud));
+                      "count is " + std::to_string(options.count) + "; must be in 1.." + std::to_string(kLargestCloud));
   // Negated, so that NaN is refused too.
   if (options.radius && !(*options.radius >= scene::kSmallestRadius && *options.radius <= kLargestCloudRadius))
-    throw base::Error(base::ErrorKind::kUsage, "radius is " + scene::number_text(*options.radius) + "; allowed is " +
+    throw base::Error(base::ErrorKind::kUsage, "radius is " + scene::number_text(*options.radius) + "; must be in " +
                                                    scene::number_text(scene::kSmallestRadius) + ".." +
                                                    scene::number_text(kLargestCloudRadius));
 }

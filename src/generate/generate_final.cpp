@@ -111,7 +111,7 @@ void set_view(scene::Scene& scene) {
 
 scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::path& points_file) {
   if (options.grid < 0 || options.grid > kLargestFinalGrid)
-    throw base::Error(base::ErrorKind::kUsage, "grid is " + std::to_string(options.grid) + "; allowed is 0.." +
+    throw base::Error(base::ErrorKind::kUsage, "grid is " + std::to_string(options.grid) + "; must be in 0.." +
                                                    std::to_string(kLargestFinalGrid));
   scene::Scene scene;
   set_view(scene);

@@ -9,11 +9,17 @@
 namespace orrery::scene {
 namespace {
 
-const char* type_name(ValueType type) {
-  switch (type) {
+template <class Target>
+bool is_color(const Key<Target>& key) {
+  return key.type == ValueType::kVector && key.unit == "scene-linear";
+}
+
+template <class Target>
+const char* type_name(const Key<Target>& key) {
+  switch (key.type) {
     case ValueType::kInteger: return "integer";
     case ValueType::kNumber: return "number";
-    case ValueType::kVector: return "[x, y, z]";
+    case ValueType::kVector: return is_color(key) ? "[r, g, b]" : "[x, y, z]";
     case ValueType::kText: return "string";
     case ValueType::kChoice: return "one of";
     case ValueType::kChoices: return "list of";
@@ -29,7 +35,7 @@ std::string range_text(const Key<Target>& key) {
       return std::to_string(static_cast<std::int64_t>(key.range.from)) + ".." +
              std::to_string(static_cast<std::int64_t>(key.range.to));
     case ValueType::kNumber: return key.range.text();
-    case ValueType::kWindow: return "inside the frame";
+    case ValueType::kWindow: return "inside the image";
     case ValueType::kVector: return "each " + key.range.text();
     case ValueType::kText: return "any";
     case ValueType::kChoice:
@@ -47,8 +53,7 @@ std::string row(const Key<Target>& key, const Target& defaults) {
   const auto or_dash = [](const std::string& text) { return text.empty() ? std::string("-") : text; };
   std::string standard = key.required ? "**required**" : key.text(defaults);
   if (standard == "\"\"") standard = "none";
-  std::string out =
-      "| `" + key.name + "` | " + type_name(key.type) + " | " + range_text(key) + " | " + or_dash(key.unit);
+  std::string out = "| `" + key.name + "` | " + type_name(key) + " | " + range_text(key) + " | " + or_dash(key.unit);
   return out + " | " + standard + " | " + key.doc + " | " + or_dash(key.cost) + " |\n";
 }
 

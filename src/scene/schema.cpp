@@ -21,77 +21,73 @@ Table image_table() {
   const char* const cost = "Time and memory scale linearly";
   return {
       "image",
-      {integer<S>("width", {1, kLargestSide}, {"px", "Frame width", cost}, [](S& s) -> int& { return s.image.width; }),
-       integer<S>("height", {1, kLargestSide}, {"px", "Frame height", cost},
+      {integer<S>("width", {1, kLargestSide}, {"px", "Image width", cost}, [](S& s) -> int& { return s.image.width; }),
+       integer<S>("height", {1, kLargestSide}, {"px", "Image height", cost},
                   [](S& s) -> int& { return s.image.height; }),
        number<S>("pixel_aspect", {0.1, 10}, {"", "Pixel width divided by pixel height on the display"},
                  [](S& s) -> double& { return s.image.pixel_aspect; }),
-       optional_window<S>("crop",
-                          {"px",
-                           "Window of the frame to render, as [x, y, width, height]. Its pixels are identical to "
-                           "those of the full frame, bit for bit. Cannot be combined with `overscan`"},
-                          "the whole frame", [](S& s) -> std::optional<Window>& { return s.image.crop; }),
+       optional_window<S>(
+           "crop",
+           {"px",
+            "Crop window (EXR data window) in pixels from the top left of the image, as [x, y, width, height]. Its "
+            "pixels are identical to those of the full image, bit for bit. Cannot be combined with `overscan`"},
+           "the whole image", [](S& s) -> std::optional<Window>& { return s.image.crop; }),
        integer<S>(
            "overscan", {0, kWidestOverscan},
-           {"px", "Rows and columns to render beyond each edge of the frame. Cannot be combined with `crop`", cost},
+           {"px", "Rows and columns to render beyond each edge of the image. Cannot be combined with `crop`", cost},
            [](S& s) -> int& { return s.image.overscan; })}};
 }
 
 Table camera_table() {
-  return {
-      "camera",
-      {vector<S>("look_from", kAnyLength, {"scene units", "Camera position. May be inside a sphere"},
-                 [](S& s) -> Vec3d& { return s.camera.look_from; }),
-       vector<S>("look_at", kAnyLength, {"scene units", "Point at the centre of the image"},
-                 [](S& s) -> Vec3d& { return s.camera.look_at; }),
-       vector<S>("up", kAnyLength,
-                 {"any length", "Up direction of the image. Must not be parallel to the view direction"},
-                 [](S& s) -> Vec3d& { return s.camera.up; }),
-       number<S>("vfov", {0, 180, true, true}, {"degrees", "Vertical field of view"},
-                 [](S& s) -> double& { return s.camera.vfov; }),
-       number<S>(
-           "defocus_angle", {0, 180, false, true},
-           {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",
-            "Above 0: one lens sample per path"},
-           [](S& s) -> double& { return s.camera.defocus_angle; }),
-       optional_number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the plane of focus"},
-                          "distance to look_at",
-                          [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
-       number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
-                 {"frames", "Shutter opening time, relative to the frame"},
-                 [](S& s) -> double& { return s.camera.shutter_open; }),
-       number<S>(
-           "shutter_close", {-kLongestShutter, kLongestShutter},
-           {"frames",
-            "Shutter closing time, relative to the frame. If later than `shutter_open`, whatever moves in between is "
-            "motion-blurred",
-            "Only if something moves: one extra random dimension per vertex, and motion-blurred bounds"},
-           [](S& s) -> double& { return s.camera.shutter_close; })}};
+  return {"camera",
+          {vector<S>("look_from", kAnyLength, {"scene units", "Camera position. May be inside a sphere"},
+                     [](S& s) -> Vec3d& { return s.camera.look_from; }),
+           vector<S>("look_at", kAnyLength, {"scene units", "Point at the centre of the image"},
+                     [](S& s) -> Vec3d& { return s.camera.look_at; }),
+           vector<S>("up", kAnyLength,
+                     {"any length", "Up direction of the image. Must not be parallel to the view direction"},
+                     [](S& s) -> Vec3d& { return s.camera.up; }),
+           number<S>("vfov", {0, 180, true, true}, {"degrees", "Vertical field of view"},
+                     [](S& s) -> double& { return s.camera.vfov; }),
+           number<S>(
+               "defocus_angle", {0, 180, false, true},
+               {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",
+                "Above 0: one lens sample per path"},
+               [](S& s) -> double& { return s.camera.defocus_angle; }),
+           optional_number<S>("focus_distance", kLength,
+                              {"scene units", "Distance from the camera to the plane of focus"}, "distance to look_at",
+                              [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
+           number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
+                     {"frames", "Shutter opening time, relative to the frame"},
+                     [](S& s) -> double& { return s.camera.shutter_open; }),
+           number<S>("shutter_close", {-kLongestShutter, kLongestShutter},
+                     {"frames",
+                      "Shutter closing time, relative to the frame. If later than `shutter_open`, camera and spheres "
+                      "that move during the interval are motion-blurred",
+                      "Only if something moves: one extra random dimension per vertex, and motion-blurred bounds"},
+                     [](S& s) -> double& { return s.camera.shutter_close; })}};
 }
 
 Table animation_table() {
-  return {
-      "animation",
-      {number<S>("fps", {0.001, 1000}, {"frames per second", "Frame rate, written to the EXR header"},
-                 [](S& s) -> double& { return s.animation.fps; }),
-       number<S>(
-           "turntable", {-kMostFrames, kMostFrames},
-           {"frames",
-            "Number of frames per orbit of the camera around `look_at`, about `up`. The orbit starts at frame 1, to "
-            "the right; negative values orbit to the left. 0: no orbit"},
-           [](S& s) -> double& { return s.animation.turntable; })}};
+  return {"animation",
+          {number<S>("fps", {0.001, 1000}, {"frames per second", "Frame rate, written to the EXR header"},
+                     [](S& s) -> double& { return s.animation.fps; }),
+           number<S>("turntable", {-kMostFrames, kMostFrames},
+                     {"frames",
+                      "Number of frames per orbit of the camera around `look_at`, about `up`. The camera is at its set "
+                      "position at frame 1 and moves to its right; negative values: to its left. 0: no orbit"},
+                     [](S& s) -> double& { return s.animation.turntable; })}};
 }
 
 Table background_table() {
   const char* const unit = "scene-linear";
   return {
       "background",
-      {choice<S>(
-           "type", {"gradient", "constant"},
-           {"",
-            "`gradient`: from `bottom` to `top`, linear in the y component of the unit ray direction. `constant`: "
-            "`color`"},
-           [](S& s) -> BackgroundType& { return s.background.type; }),
+      {choice<S>("type", {"gradient", "constant"},
+                 {"",
+                  "`gradient`: from `bottom` to `top`, linear in the y component of the unit ray direction. "
+                  "`constant`: `color`"},
+                 [](S& s) -> BackgroundType& { return s.background.type; }),
        vector<S>("bottom", kLight, {unit, "Gradient: radiance from straight below"},
                  [](S& s) -> Vec3d& { return s.background.bottom; }),
        vector<S>("top", kLight, {unit, "Gradient: radiance from straight above"},
@@ -100,7 +96,7 @@ Table background_table() {
                  [](S& s) -> Vec3d& { return s.background.color; }),
        integer<S>("alpha", {0, 1},
                   {"", "1: the background is opaque. 0: the image is transparent where only the background is visible",
-                   "0: as much as a layer"},
+                   "0: costs as much as one layer"},
                   [](S& s) -> int& { return s.background.alpha; })}};
 }
 
@@ -110,37 +106,35 @@ Table render_table() {
       {integer<S>("samples", {1, std::numeric_limits<std::int32_t>::max()},
                   {"per pixel", "Paths per pixel", "Time scales linearly; four times as many samples halve the noise"},
                   [](S& s) -> int& { return s.render.samples; }),
-       integer<S>(
-           "max_depth", {1, kDeepestPath},
-           {"rays",
-            "Maximum number of rays per path, counted as in the book: the camera ray is the first. A path whose last "
-            "ray hits a sphere is black",
-            "An upper bound only: most paths leave the scene earlier"},
-           [](S& s) -> int& { return s.render.max_depth; }),
-       integer<S>(
-           "roulette_depth", {0, kDeepestPath},
-           {"scattering events",
-            "Scattering events before Russian roulette begins. It terminates paths with a probability that grows "
-            "as their throughput falls, and weights the survivors up; the result is unbiased. 0: no roulette",
-            "0: from slightly more to twice the time, most in dark scenes"},
-           [](S& s) -> int& { return s.render.roulette_depth; }),
+       integer<S>("max_depth", {1, kDeepestPath},
+                  {"rays",
+                   "Maximum number of rays per path, counted as in the book: the camera ray is the first. A path whose "
+                   "last ray hits a sphere is black",
+                   "An upper bound only: most paths leave the scene earlier"},
+                  [](S& s) -> int& { return s.render.max_depth; }),
+       integer<S>("roulette_depth", {0, kDeepestPath},
+                  {"scattering events",
+                   "Scattering events before Russian roulette begins. It terminates paths with a probability that "
+                   "grows as their throughput falls, and divides the throughput of survivors by their survival "
+                   "probability; the result is unbiased. 0: no roulette",
+                   "0: up to twice the render time, most of all in dark scenes"},
+                  [](S& s) -> int& { return s.render.roulette_depth; }),
        choice<S>("sampler", {"independent", "sobol", "blue-noise"},
                  {"",
-                  "Distribution of the random numbers over a pixel's paths. `independent`: uncorrelated, as in the "
-                  "book. `sobol`: stratified. `blue-noise`: stratified, and decorrelates the errors of neighbouring "
-                  "pixels",
+                  "Sampler. `independent`: uncorrelated random numbers, as in the book. `sobol`: Owen-scrambled Sobol "
+                  "sequence (low discrepancy). `blue-noise`: the same sequence, and decorrelates the errors of "
+                  "neighbouring pixels",
                   "`sobol` and `blue-noise` need fewer samples for the same error"},
                  [](S& s) -> Sampler& { return s.render.sampler; }),
        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},
                   {"", "Random seed. The same seed gives the same image, bit for bit"},
                   [](S& s) -> std::uint32_t& { return s.render.seed; }),
-       choice<S>(
-           "precision", {"exact", "fast", "book"},
-           {"",
-            "`exact`: double precision without epsilons. `fast`: single precision. `book`: the book's intersection "
-            "formula with its minimum t",
-            "`fast` and `book` trade accuracy for time"},
-           [](S& s) -> Precision& { return s.render.precision; }),
+       choice<S>("precision", {"exact", "fast", "book"},
+                 {"",
+                  "`exact`: double precision without epsilons. `fast`: single precision. `book`: the book's "
+                  "intersection formula with its minimum t",
+                  "`fast` and `book` trade accuracy for time"},
+                 [](S& s) -> Precision& { return s.render.precision; }),
        choice<S>("shading", {"path", "normal", "flat"},
                  {"", "`path`: path tracing. `normal`: surface normals as colours. `flat`: albedo without lighting",
                   "`normal` and `flat`: one ray per sample"},
@@ -169,7 +163,7 @@ Table output_table() {
                "samples", "object_id", "material_id", "denoise.albedo", "denoise.normal", "CryptoObject",
                "CryptoMaterial", "CryptoGroup", kAllLayers},
               {"", "Layers of EXR files in addition to the beauty image. `all`: every layer that the scene can have",
-               "One layer adds a tenth to a fifth to the time, all layers two fifths. Files grow"},
+               "One layer adds 10-20 % render time, all layers 40 %. Larger files"},
               [](S& s) -> std::vector<std::string>& { return s.output.layers; })}};
 }
 
@@ -191,20 +185,19 @@ std::vector<MaterialType> make_material_types() {
        {required(vector<M>("albedo", kUnit, albedo, [](M& m) -> Vec3d& { return std::get<Metal>(m).albedo; })),
         number<M>("fuzz", kUnit,
                   {"",
-                   "Radius of the sphere around the tip of the unit mirror direction, on whose surface reflected "
-                   "directions end. Those that point into the metal are absorbed. 0 is a perfect mirror"},
+                   "Radius of the sphere, centred on the tip of the unit reflected direction, on which the perturbed "
+                   "direction is sampled. Directions below the surface are absorbed. 0 is a perfect mirror"},
                   [](M& m) -> double& { return std::get<Metal>(m).fuzz; })}},
       {"dielectric",
        "Clear dielectric, such as glass, water, or an air bubble in water",
        Dielectric{},
        {number<M>("ior", {1e-6, 1e6}, {"", "Refractive index of the inside, relative to the surrounding medium"},
                   [](M& m) -> double& { return std::get<Dielectric>(m).ior; }),
-        choice<M>(
-            "fresnel", {"schlick", "exact", "none"},
-            {"",
-             "Fresnel reflectance. `schlick`: Schlick's approximation, as in the book. `exact`: Fresnel equations. "
-             "`none`: refraction only, apart from total internal reflection"},
-            [](M& m) -> Fresnel& { return std::get<Dielectric>(m).fresnel; })}},
+        choice<M>("fresnel", {"schlick", "exact", "none"},
+                  {"",
+                   "Fresnel reflectance. `schlick`: Schlick's approximation, as in the book. `exact`: Fresnel "
+                   "equations. `none`: refraction only, apart from total internal reflection"},
+                  [](M& m) -> Fresnel& { return std::get<Dielectric>(m).fresnel; })}},
   };
 }
 
@@ -217,9 +210,11 @@ std::string window_text(const Window& w) {
 
 std::string Range::text() const {
   if (!from_open && !to_open) return number_text(from) + ".." + number_text(to);
-  return std::string(from_open ? "above " : "from ") + number_text(from) + (to_open ? ", below " : ", up to ") +
-         number_text(to);
+  return std::string(from_open ? "above " : "at least ") + number_text(from) +
+         (to_open ? " and below " : " and at most ") + number_text(to);
 }
+
+std::string Range::requirement() const { return (from_open || to_open ? "must be " : "must be in ") + text(); }
 
 const std::vector<Table>& tables() {
   static const std::vector<Table> all = {
@@ -262,25 +257,27 @@ const std::vector<Key<Sphere>>& sphere_keys() {
           "radius", kAnyLength,
           {"scene units", "Radius. Must not be 0. If negative, the normal points inward, for hollow glass"},
           [](Sphere& s) -> double& { return s.radius; })),
-      text<Sphere>("name", {"", "Name for mattes. Default: `sphere.` and the index"},
+      text<Sphere>("name", {"", "Name in the CryptoObject matte. Default: `sphere.` and the index"},
                    [](Sphere& s) -> std::string& { return s.name; }),
-      text<Sphere>("group", {"", "Group for mattes: all objects of a group are one matte"},
+      text<Sphere>("group", {"", "CryptoGroup name; objects of a group share one matte"},
                    [](Sphere& s) -> std::string& { return s.group; })};
   return keys;
 }
 
 const std::vector<Key<Points>>& points_keys() {
   static const std::vector<Key<Points>> keys = [] {
-    auto file = required(text<Points>(
-        "file", {"", "PLY file, relative to the scene file", "Read once; 32 bytes per sphere, 36 with materials"},
-        [](Points& p) -> std::filesystem::path& { return p.file; }));
+    auto file = required(text<Points>("file",
+                                      {"", "PLY file, relative to the scene file",
+                                       "Read once. 32 bytes of scene data per sphere, without BVH; 36 with materials"},
+                                      [](Points& p) -> std::filesystem::path& { return p.file; }));
     return std::vector<Key<Points>>{
         file,
         optional_number<Points>("radius", kLength, {"scene units", "Radius of every sphere. Overrides the file"},
                                 "as in the file", [](Points& p) -> std::optional<double>& { return p.radius; }),
-        text<Points>("name", {"", "Name for mattes, shared by all spheres of the file. Default: the file name"},
+        text<Points>("name",
+                     {"", "Name in the CryptoObject matte, shared by all spheres of the file. Default: the file name"},
                      [](Points& p) -> std::string& { return p.name; }),
-        text<Points>("group", {"", "Group for mattes: all objects of a group are one matte"},
+        text<Points>("group", {"", "CryptoGroup name; objects of a group share one matte"},
                      [](Points& p) -> std::string& { return p.group; })};
   }();
   return keys;

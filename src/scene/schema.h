@@ -25,8 +25,10 @@ struct Range {
   bool from_open = false, to_open = false;
 
   bool contains(double x) const { return (from_open ? x > from : x >= from) && (to_open ? x < to : x <= to); }
-  /// Returns the interval for messages and documentation: "0..1", "above 0, below 180".
+  /// Returns the interval for documentation: "0..1", "above 0 and below 180".
   std::string text() const;
+  /// Returns the interval for messages: "must be in 0..1", "must be above 0 and below 180".
+  std::string requirement() const;
 };
 
 /// Formats a window for a scene file: "[0, 0, 640, 360]".

@@ -96,8 +96,8 @@ void check_lens(const Camera& camera, Problems& diagnostics) {
 
 /// Returns what is wrong with a radius; empty if it is valid.
 std::string radius_fault(double radius) {
-  if (!std::isfinite(radius)) return "radius is not finite; allowed is " + length_range();
-  if (radius == 0) return "radius is 0; allowed is " + length_range() + ", or negative for an inward normal";
+  if (!std::isfinite(radius)) return "radius is not finite; must be in " + length_range();
+  if (radius == 0) return "radius is 0; must be in " + length_range() + ", or negative for an inward normal";
   if (std::abs(radius) < kSmallestRadius || std::abs(radius) > kLargestLength)
     return "radius is " + number_text(radius) + "; its magnitude must be in " + length_range();
   return {};

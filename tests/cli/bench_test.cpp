@@ -19,7 +19,7 @@ TEST_F(CliBench, PrintsOnlyATableOrJson) {
   EXPECT_EQ(file_count(), 0);
 }
 
-TEST_F(CliBench, ReportsErrors) {
+TEST_F(CliBench, BadInputExitsWithDocumentedStatus) {
   EXPECT_EQ(run("bench none.toml").status, 66);
   EXPECT_EQ(run("bench good.toml --rounds 0").status, 2);
   EXPECT_EQ(run("bench good.toml --isa mmx").status, 2);

@@ -48,10 +48,10 @@ TEST_F(CliProgram, InvalidSceneExits65WithAllDiagnosticsAndNoFiles) {
             "bad.toml:2:1: error: unknown key `widht` in image; did you mean `width`?\n"
             "    widht = 3\n"
             "    ^~~~~\n"
-            "bad.toml:4:8: error: camera.vfov is 200; allowed is above 0, below 180\n"
+            "bad.toml:4:8: error: camera.vfov is 200; must be above 0 and below 180\n"
             "    vfov = 200\n"
             "           ^~~\n"
-            "bad.toml:6:11: error: render.samples is 0; allowed is 1..2147483647\n"
+            "bad.toml:6:11: error: render.samples is 0; must be in 1..2147483647\n"
             "    samples = 0\n"
             "              ^\n"
             "orrery: bad.toml: 3 errors\n");

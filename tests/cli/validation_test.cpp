@@ -40,7 +40,7 @@ const Broken kBroken[] = {
     {"ALayerWithoutLightPaths", "[output]\nlayers = [\"Z\", \"diffuse\"]\n", "--set render.shading=normal", 65,
      ":15:16: error: output.layers[1]: diffuse requires render.shading"},
     {"ALayerOption", "", "--layers Z,Y", 65, "--layers: error: output.layers[1] is \"Y\""},
-    {"ASampleCount", "", "--samples 0", 65, "--samples: error: render.samples is 0; allowed"},
+    {"ASampleCount", "", "--samples 0", 65, "--samples: error: render.samples is 0; must be in"},
     {"ACameraWithoutDirection", "[camera]\nlook_at = [0, 0, 0]\n", "", 65, "error: camera.look_at: "},
     {"AShutter", "[camera]\nshutter_open = 1\n", "", 65, "error: camera.shutter_close: "},
     {"CropAndOverscan", "", "--set image.crop=[0,0,2,2] --set image.overscan=1", 65, "--set: error: image.overscan: "},
@@ -55,7 +55,7 @@ const Broken kBroken[] = {
     {"AValueOutsideItsRangeBetweenKeys",
      "[[key]]\ntarget = \"sphere[0].radius\"\ninterpolation = \"cubic\"\nframes = [-9, 0, 2, 3]\n"
      "values = [1e18, 1e18, 1e18, 1]\n",
-     "", 65, "at frame 1; allowed"},
+     "", 65, "at frame 1; must be in"},
     {"MissingPoints", "[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 66,
      ":15:8: error: points[0].file: cannot open none.ply: No such file"},
     {"ADeviceAsPoints", "[[points]]\nfile = \"/dev/zero\"\nmaterial = \"grey\"\n", "", 66,

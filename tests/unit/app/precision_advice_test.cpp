@@ -24,7 +24,7 @@ TEST(AppPrecisionAdvice, IsEmptyIfThePrecisionIsSufficient) {
   EXPECT_EQ(advice_for(scene::Precision::kBook, 10, 1, 0), 0u);
 }
 
-TEST(AppPrecisionAdvice, WarnsOfOffsetsInFastAndOfDistanceAndSmallRadiiInBook) {
+TEST(AppPrecisionAdvice, WarnsAboutDistantScenesInFastAndAboutDistanceAndSmallRadiiInBook) {
   EXPECT_EQ(advice_for(scene::Precision::kFast, 10, 1, 1e6), 1u);
   EXPECT_EQ(advice_for(scene::Precision::kBook, 1e8, 1, 0), 1u);
   EXPECT_EQ(advice_for(scene::Precision::kBook, 0.1, 0.01, 0), 1u);

@@ -18,10 +18,10 @@ Diagnostic at(int line, int column, int width, const std::string& text, const st
 }
 
 TEST(BaseDiagnostic, HasLocationTextRemedyLineAndCaret) {
-  Diagnostic diagnostic = at(12, 8, 3, "camera.vfov is 200; allowed is above 0, below 180", "vfov = 200");
+  Diagnostic diagnostic = at(12, 8, 3, "camera.vfov is 200; must be above 0 and below 180", "vfov = 200");
   diagnostic.remedy = "write degrees";
   EXPECT_EQ(formatted(diagnostic),
-            "scene.toml:12:8: error: camera.vfov is 200; allowed is above 0, below 180; write degrees\n"
+            "scene.toml:12:8: error: camera.vfov is 200; must be above 0 and below 180; write degrees\n"
             "    vfov = 200\n"
             "           ^~~\n");
 }

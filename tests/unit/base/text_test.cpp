@@ -15,7 +15,7 @@ TEST(BaseText, FindsInsertedDeletedReplacedAndSwappedLetters) {
   EXPECT_EQ(closest("smaples", kKeys), "samples");
 }
 
-TEST(BaseText, ASwapIsOneEdit) {
+TEST(BaseText, TranspositionCountsAsOneEdit) {
   // Four letters allow one edit: two edits would be too many.
   EXPECT_EQ(closest("sede", {"seed"}), "seed");
 }

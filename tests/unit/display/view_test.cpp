@@ -76,7 +76,7 @@ TEST_F(DisplayView, UsesTheTransformsOfAConfig) {
   EXPECT_EQ(develop(picture, settings, 8).values, (std::vector<std::uint16_t>{51, 153, 255}));
 }
 
-TEST_F(DisplayView, PrintsNothing) {
+TEST_F(DisplayView, OcioMessagesAreNotPrinted) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   choose({});
@@ -180,7 +180,7 @@ TEST_F(DisplayView, AMissingLutFileIsAMissingInput) {
   expect_error(settings, base::ErrorKind::kMissingInput, {"curve.spi1d"});
 }
 
-TEST_F(DisplayView, TheWorkingSpaceIsFoundByNameAliasRoleAndForeignNames) {
+TEST_F(DisplayView, TheWorkingSpaceIsFoundByNameAliasRoleOrNameInOtherConfigs) {
   Settings settings;
   for (const char* name : {"lin_rec709", "lin_srgb", "scene_linear", "lin_rec709_scene", "Utility - Linear - sRGB"}) {
     settings.working_space = name;

@@ -52,7 +52,7 @@ TEST(FormatKeyDepth, DecimalPointsInAListDoNotAccumulate) {
   EXPECT_EQ(line_of("x = [1.5, 2.5, 3.5,\n1.5, 2.5, 3.5, 1.5, 2.5, 3.5, 4.5]\n"), 0);
 }
 
-TEST(FormatKeyDepth, ALineEndsAKey) { EXPECT_EQ(line_of("x = 1.5\na.b.c.d.e.f.g.h = 1\n"), 0); }
+TEST(FormatKeyDepth, KeyDepthResetsAtNewline) { EXPECT_EQ(line_of("x = 1.5\na.b.c.d.e.f.g.h = 1\n"), 0); }
 
 TEST(FormatKeyDepth, AcceptsTruncatedTexts) {
   const std::string text = "x = \"\"\"a\\\"b\"\"\"\"\ny = '''c'''\n" + std::string(kNine);

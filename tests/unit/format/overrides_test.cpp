@@ -85,13 +85,13 @@ TEST(FormatOverrides, ErrorsAreLocatedInTheOverride) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics(kScene, {"image.width=5", "camera.vfov=300", "camera.vfow=3", "sphere[1].radius=0",
                                        "sphere[0].center=[0, 1]"}),
-            "--set: error: camera.vfov is 300; allowed is above 0, below 180\n"
+            "--set: error: camera.vfov is 300; must be above 0 and below 180\n"
             "    --set camera.vfov=300\n"
             "                      ^~~\n"
             "--set: error: unknown key `vfow` in camera; did you mean `vfov`?\n"
             "    --set camera.vfow=3\n"
             "                 ^~~~\n"
-            "--set: error: sphere[1].radius: radius is 0; allowed is 1e-30..1e+18, or negative for an inward "
+            "--set: error: sphere[1].radius: radius is 0; must be in 1e-30..1e+18, or negative for an inward "
             "normal\n"
             "    --set sphere[1].radius=0\n"
             "                           ^\n"
@@ -105,13 +105,13 @@ TEST(FormatOverrides, MessagesNameTheShortOption) {
   EXPECT_EQ(files.diagnostics(kScene, {{"render.samples=0", "--samples", "0"},
                                        "camera.vfov=0",
                                        {"output.layers=[Z,Q,N]", "--layers", "Z,Q,N"}}),
-            "--samples: error: render.samples is 0; allowed is 1..2147483647\n"
+            "--samples: error: render.samples is 0; must be in 1..2147483647\n"
             "    --samples 0\n"
             "              ^\n"
-            "--set: error: camera.vfov is 0; allowed is above 0, below 180\n"
+            "--set: error: camera.vfov is 0; must be above 0 and below 180\n"
             "    --set camera.vfov=0\n"
             "                      ^\n"
-            "--layers: error: output.layers[1] is \"Q\"; allowed is Z, depth, N, P, albedo, diffuse, specular, "
+            "--layers: error: output.layers[1] is \"Q\"; must be one of Z, depth, N, P, albedo, diffuse, specular, "
             "transmission, background, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, "
             "CryptoObject, CryptoMaterial, CryptoGroup, all\n"
             "    --layers Z,Q,N\n"
@@ -130,7 +130,7 @@ TEST(FormatOverrides, ListsOfWordsNeedNoQuotes) {
   EXPECT_EQ(layers("[]"), Names{});
   EXPECT_EQ(
       told("output.layers=[Z,,N]"),
-      "--set: error: output.layers[1] is \"\"; allowed is Z, depth, N, P, albedo, diffuse, specular, transmission, "
+      "--set: error: output.layers[1] is \"\"; must be one of Z, depth, N, P, albedo, diffuse, specular, transmission, "
       "background, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, CryptoObject, "
       "CryptoMaterial, CryptoGroup, all");
   EXPECT_EQ(told("camera.up=[0,1,x]"), "--set: error: camera.up[2] must be a number, not a string");

@@ -37,30 +37,30 @@ TEST(FormatReadKeys, AnIntegerIsANumberButNotViceVersa) {
 }
 
 TEST(FormatReadKeys, RangesAreClosedOrOpen) {
-  EXPECT_EQ(text_of("camera.vfov = 0"), "camera.vfov is 0; allowed is above 0, below 180");
-  EXPECT_EQ(text_of("camera.vfov = 180"), "camera.vfov is 180; allowed is above 0, below 180");
-  EXPECT_EQ(text_of("camera.defocus_angle = 180"), "camera.defocus_angle is 180; allowed is from 0, below 180");
+  EXPECT_EQ(text_of("camera.vfov = 0"), "camera.vfov is 0; must be above 0 and below 180");
+  EXPECT_EQ(text_of("camera.vfov = 180"), "camera.vfov is 180; must be above 0 and below 180");
+  EXPECT_EQ(text_of("camera.defocus_angle = 180"), "camera.defocus_angle is 180; must be at least 0 and below 180");
   EXPECT_EQ(text_of("camera.defocus_angle = 0"), "");
-  EXPECT_EQ(text_of("render.max_depth = 10001"), "render.max_depth is 10001; allowed is 1..10000");
+  EXPECT_EQ(text_of("render.max_depth = 10001"), "render.max_depth is 10001; must be in 1..10000");
   EXPECT_EQ(text_of("render.max_depth = 10000"), "");
-  EXPECT_EQ(text_of("render.seed = -1"), "render.seed is -1; allowed is 0..4294967295");
-  EXPECT_EQ(text_of("image.width = 9223372036854775807"), "image.width is 9223372036854775807; allowed is 1..65536");
-  EXPECT_EQ(text_of("background.top = [0, -0.5, 0]"), "background.top[1] is -0.5; allowed is 0..1e+06");
+  EXPECT_EQ(text_of("render.seed = -1"), "render.seed is -1; must be in 0..4294967295");
+  EXPECT_EQ(text_of("image.width = 9223372036854775807"), "image.width is 9223372036854775807; must be in 1..65536");
+  EXPECT_EQ(text_of("background.top = [0, -0.5, 0]"), "background.top[1] is -0.5; must be in 0..1e+06");
 }
 
 TEST(FormatReadKeys, NaNAndInfinityAreInNoRange) {
-  EXPECT_EQ(text_of("camera.vfov = nan"), "camera.vfov is nan; allowed is above 0, below 180");
-  EXPECT_EQ(text_of("camera.look_at = [0, 0, -inf]"), "camera.look_at[2] is -inf; allowed is -1e+18..1e+18");
-  EXPECT_EQ(text_of("camera.focus_distance = inf"), "camera.focus_distance is inf; allowed is 1e-30..1e+18");
+  EXPECT_EQ(text_of("camera.vfov = nan"), "camera.vfov is nan; must be above 0 and below 180");
+  EXPECT_EQ(text_of("camera.look_at = [0, 0, -inf]"), "camera.look_at[2] is -inf; must be in -1e+18..1e+18");
+  EXPECT_EQ(text_of("camera.focus_distance = inf"), "camera.focus_distance is inf; must be in 1e-30..1e+18");
 }
 
 TEST(FormatReadKeys, EachInvalidComponentIsReported) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("camera.up = [nan,\n inf, 0]"),
-            "scene.toml:1:14: error: camera.up[0] is nan; allowed is -1e+18..1e+18\n"
+            "scene.toml:1:14: error: camera.up[0] is nan; must be in -1e+18..1e+18\n"
             "    camera.up = [nan,\n"
             "                 ^~~\n"
-            "scene.toml:2:2: error: camera.up[1] is inf; allowed is -1e+18..1e+18\n"
+            "scene.toml:2:2: error: camera.up[1] is inf; must be in -1e+18..1e+18\n"
             "     inf, 0]\n"
             "     ^~~\n");
 }
@@ -74,14 +74,14 @@ TEST(FormatReadKeys, ReadsListsOfWords) {
   EXPECT_EQ(near.substr(near.find("; did")), "; did you mean `albedo`?");
 }
 
-TEST(FormatReadKeys, ReadsWindows) {
+TEST(FormatReadKeys, ParsesCropWindow) {
   EXPECT_EQ(text_of("image.crop = [0, 0, 8, 8]"), "");
   EXPECT_EQ(text_of("image.crop = [0, 0, 8]"),
             "image.crop must be x, y, width and height like [0, 0, 640, 360], not a list of 3");
   EXPECT_EQ(text_of("image.crop = 8"),
             "image.crop must be x, y, width and height like [0, 0, 640, 360], not an integer");
   EXPECT_EQ(text_of("image.crop = [0, 0, 8, 1.5]"), "image.crop[3] must be an integer, not a floating-point number");
-  EXPECT_EQ(text_of("image.crop = [-1, 0, 8, 8]"), "image.crop[0] is -1; allowed is 0..65536");
+  EXPECT_EQ(text_of("image.crop = [-1, 0, 8, 8]"), "image.crop[0] is -1; must be in 0..65536");
 }
 
 TEST(FormatReadKeys, UnknownKeysWithoutASuggestionListTheKnownKeys) {

@@ -62,10 +62,10 @@ TEST(FormatReadMaterials, WithoutATypeKeysAreCheckedAgainstAllTypes) {
 TEST(FormatReadMaterials, RangesOfValuesAreChecked) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[material]\na = { type = \"metal\", albedo = [1, 1.5, 1], fuzz = 2 }\n"),
-            "scene.toml:2:36: error: material.a.albedo[1] is 1.5; allowed is 0..1\n"
+            "scene.toml:2:36: error: material.a.albedo[1] is 1.5; must be in 0..1\n"
             "    a = { type = \"metal\", albedo = [1, 1.5, 1], fuzz = 2 }\n"
             "                                       ^~~\n"
-            "scene.toml:2:52: error: material.a.fuzz is 2; allowed is 0..1\n"
+            "scene.toml:2:52: error: material.a.fuzz is 2; must be in 0..1\n"
             "    a = { type = \"metal\", albedo = [1, 1.5, 1], fuzz = 2 }\n"
             "                                                       ^\n");
 }

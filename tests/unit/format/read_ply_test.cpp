@@ -53,7 +53,7 @@ class FormatReadPly : public testing::Test {
   support::TempDir folder_;
 };
 
-TEST_F(FormatReadPly, Ascii) {
+TEST_F(FormatReadPly, ReadsAscii) {
   const auto points = read(header("ascii", std::string("element vertex 2\n") + kXyzr) + "1 2 3 0.5\r\n-4e2 +5 .25 -1");
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{1, 2, 3}, {-400, 5, 0.25}}));
   EXPECT_EQ(points.radii, (std::vector<double>{0.5, -1}));

@@ -173,16 +173,16 @@ TEST(FormatReadScene, ReportsAllErrorsInFileOrder) {
                         "center = [0, 0]\n"
                         "radius = 0\n"
                         "material = \"glod\"\n"),
-      "scene.toml:2:9: error: camera.vfov is 200; allowed is above 0, below 180\n"
+      "scene.toml:2:9: error: camera.vfov is 200; must be above 0 and below 180\n"
       "    \tvfov = 200\n"
       "    \t       ^~~\n"
       "scene.toml:3:1: error: unknown key `fov` in camera; did you mean `vfov`?\n"
       "    fov = 20\n"
       "    ^~~\n"
-      "scene.toml:5:11: error: render.samples is 0; allowed is 1..2147483647\n"
+      "scene.toml:5:11: error: render.samples is 0; must be in 1..2147483647\n"
       "    samples = 0\n"
       "              ^\n"
-      "scene.toml:6:13: error: render.precision is \"exakt\"; allowed is exact, fast, book; did you mean `exact`?\n"
+      "scene.toml:6:13: error: render.precision is \"exakt\"; must be one of exact, fast, book; did you mean `exact`?\n"
       "    precision = \"exakt\"\n"
       "                ^~~~~~~\n"
       "scene.toml:7:2: error: unknown key `materal` in the scene; did you mean `material`?\n"
@@ -197,7 +197,7 @@ TEST(FormatReadScene, ReportsAllErrorsInFileOrder) {
       "scene.toml:12:10: error: sphere[0].center must be three numbers like [0, 1, 0], not a list of 2\n"
       "    center = [0, 0]\n"
       "             ^~~~~~\n"
-      "scene.toml:13:10: error: sphere[0].radius: radius is 0; allowed is 1e-30..1e+18, or negative for an "
+      "scene.toml:13:10: error: sphere[0].radius: radius is 0; must be in 1e-30..1e+18, or negative for an "
       "inward normal\n"
       "    radius = 0\n"
       "             ^\n"
@@ -289,19 +289,18 @@ TEST(FormatReadScene, OneMistakeIsReportedOnce) {
   // look_at keeps its default, which equals look_from here: that is not a second mistake.
   const std::string told = files.diagnostics("[camera]\nlook_from = [0, 0, -1]\nlook_at = [0, nan, 0]\n");
   EXPECT_EQ(told,
-            "scene.toml:3:15: error: camera.look_at[1] is nan; allowed is -1e+18..1e+18\n"
+            "scene.toml:3:15: error: camera.look_at[1] is nan; must be in -1e+18..1e+18\n"
             "    look_at = [0, nan, 0]\n"
             "                  ^~~\n");
   // Here the default makes the view parallel to up, a different key than the invalid one.
   const std::string parallel = files.diagnostics("[camera]\nlook_from = [0, 5, -1]\nlook_at = [0, nan, 0]\n");
   EXPECT_EQ(parallel.find("parallel"), std::string::npos) << parallel;
-  EXPECT_EQ(
-      files.diagnostics("[material.a]\ntype = \"metall\"\nalbedo = 3\n"
-                        "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
-      "scene.toml:2:8: error: material.a.type is \"metall\"; allowed is lambertian, hemisphere, metal, dielectric; did "
-      "you mean `metal`?\n"
-      "    type = \"metall\"\n"
-      "           ^~~~~~~~\n");
+  EXPECT_EQ(files.diagnostics("[material.a]\ntype = \"metall\"\nalbedo = 3\n"
+                              "[[sphere]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"a\"\n"),
+            "scene.toml:2:8: error: material.a.type is \"metall\"; must be one of lambertian, hemisphere, metal, "
+            "dielectric; did you mean `metal`?\n"
+            "    type = \"metall\"\n"
+            "           ^~~~~~~~\n");
 }
 
 TEST(FormatReadScene, CoincidentSpheresAreAWarning) {
@@ -415,7 +414,7 @@ TEST(FormatReadScene, FurtherChecksAreReported) {
   } catch (const base::Error& error) {
     EXPECT_EQ(files.told(error),
               "scene.toml:2:9: error: color.space: no foo\n    space = \"foo\"\n            ^~~~~\n"
-              "scene.toml:4:9: error: image.width is 0; allowed is 1..65536\n    width = 0\n            ^\n");
+              "scene.toml:4:9: error: image.width is 0; must be in 1..65536\n    width = 0\n            ^\n");
   }
 }
 
@@ -427,7 +426,7 @@ TEST(FormatReadScene, RadiiOfPointsAreChecked) {
   const std::string told =
       files.diagnostics("[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"zero.ply\"\nmaterial = \"a\"\n");
   EXPECT_EQ(told,
-            "scene.toml:3:1: error: points[0][1].radius: radius is 0; allowed is 1e-30..1e+18, or negative for "
+            "scene.toml:3:1: error: points[0][1].radius: radius is 0; must be in 1e-30..1e+18, or negative for "
             "an inward normal\n"
             "    [[points]]\n    ^~~~~~~~~~\n");
 }

@@ -10,7 +10,7 @@ namespace {
 
 using support::SceneFiles;
 
-TEST(FormatTomlTree, DuplicateKey) {
+TEST(FormatTomlTree, RejectsDuplicateKey) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[camera]\nvfov = 3\nvfov = 4\n"),
             "scene.toml:3:8: error: duplicate: cannot redefine existing integer 'vfov'; remove one of them\n"
@@ -18,7 +18,7 @@ TEST(FormatTomlTree, DuplicateKey) {
             "           ^\n");
 }
 
-TEST(FormatTomlTree, DuplicateTable) {
+TEST(FormatTomlTree, RejectsDuplicateTable) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[camera]\nvfov = 3\n[camera]\n"),
             "scene.toml:3:1: error: duplicate: cannot redefine existing table 'camera'; remove one of them\n"
@@ -32,7 +32,7 @@ TEST(FormatTomlTree, InvalidTomlIsOneErrorAtItsLocation) {
   EXPECT_EQ(files.diagnostics("[camera\n").rfind("scene.toml:1:8: error: ", 0), 0u);
 }
 
-TEST(FormatTomlTree, InvalidUtf8) {
+TEST(FormatTomlTree, RejectsInvalidUtf8) {
   SceneFiles files;
   const std::string told = files.diagnostics("[camera]\nvfov = \"\xff\"\n");
   EXPECT_EQ(told.substr(0, told.find('\n')), "scene.toml:2:8: error: Encountered invalid utf-8 sequence") << told;
@@ -52,7 +52,7 @@ TEST(FormatTomlTree, DeepNestingIsRefused) {
 TEST(FormatTomlTree, AcceptsCarriageReturns) {
   SceneFiles files;
   EXPECT_EQ(files.diagnostics("[camera]\r\nvfov = 0\r\n"),
-            "scene.toml:2:8: error: camera.vfov is 0; allowed is above 0, below 180\n"
+            "scene.toml:2:8: error: camera.vfov is 0; must be above 0 and below 180\n"
             "    vfov = 0\n"
             "           ^\n");
 }

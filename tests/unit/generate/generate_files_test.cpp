@@ -21,7 +21,7 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-class GenerateGenerateFiles : public testing::Test {
+class GenerateFiles : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::path(testing::TempDir()) /
@@ -38,7 +38,7 @@ class GenerateGenerateFiles : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(GenerateGenerateFiles, FinalReadsBackAsTheSameScene) {
+TEST_F(GenerateFiles, FinalReadsBackAsTheSameScene) {
   const auto file = folder_ / "a.toml";
   generate_final({5, 3}, file);
   const auto read = format::read_scene(file);
@@ -47,13 +47,13 @@ TEST_F(GenerateGenerateFiles, FinalReadsBackAsTheSameScene) {
   EXPECT_EQ(files(), 1u);
 }
 
-TEST_F(GenerateGenerateFiles, FinalNamesTheCommandThatReproducesIt) {
+TEST_F(GenerateFiles, FinalNamesTheCommandThatReproducesIt) {
   generate_final({5, 3}, folder_ / "a.toml");
   EXPECT_NE(bytes_of(folder_ / "a.toml").find("orrery generate final --seed 5 --grid 3 -o a.toml\n"),
             std::string::npos);
 }
 
-TEST_F(GenerateGenerateFiles, LargeFinalHasAPointsFile) {
+TEST_F(GenerateFiles, LargeFinalHasAPointsFile) {
   const auto file = folder_ / "wide.toml";
   generate_final({1, 40}, file);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "wide.ply"));
@@ -61,7 +61,7 @@ TEST_F(GenerateGenerateFiles, LargeFinalHasAPointsFile) {
   EXPECT_EQ(read.scene.points.at(0).materials, make_final_scene({1, 40}).points.at(0).materials);
 }
 
-TEST_F(GenerateGenerateFiles, CloudReadsBackAsTheSameSpheres) {
+TEST_F(GenerateFiles, CloudReadsBackAsTheSameSpheres) {
   const auto file = folder_ / "c.toml";
   generate_cloud({1, 500}, file);
   const auto read = format::read_scene(file);
@@ -75,13 +75,13 @@ TEST_F(GenerateGenerateFiles, CloudReadsBackAsTheSameSpheres) {
     EXPECT_EQ(read.scene.materials.at(i).name, made.materials[i].name) << "points count materials in this order";
 }
 
-TEST_F(GenerateGenerateFiles, CloudNamesTheCommandWithItsRadius) {
+TEST_F(GenerateFiles, CloudNamesTheCommandWithItsRadius) {
   generate_cloud({2, 10, 0.125}, folder_ / "c.toml");
   EXPECT_NE(bytes_of(folder_ / "c.toml").find("orrery generate cloud --seed 2 --count 10 --radius 0.125 -o c.toml\n"),
             std::string::npos);
 }
 
-TEST_F(GenerateGenerateFiles, TwiceGivesTheSameBytes) {
+TEST_F(GenerateFiles, TwiceGivesTheSameBytes) {
   generate_cloud({2, 100}, folder_ / "c.toml");
   const std::string toml = bytes_of(folder_ / "c.toml"), ply = bytes_of(folder_ / "c.ply");
   generate_cloud({2, 100}, folder_ / "c.toml");
@@ -89,7 +89,7 @@ TEST_F(GenerateGenerateFiles, TwiceGivesTheSameBytes) {
   EXPECT_EQ(bytes_of(folder_ / "c.ply"), ply);
 }
 
-TEST_F(GenerateGenerateFiles, SceneNamedLikeItsPointsIsAUsageError) {
+TEST_F(GenerateFiles, SceneNamedLikeItsPointsIsAUsageError) {
   try {
     generate_cloud({1, 10}, folder_ / "cloud.ply");
     FAIL() << "the scene replaced its own points file";
@@ -100,7 +100,7 @@ TEST_F(GenerateGenerateFiles, SceneNamedLikeItsPointsIsAUsageError) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(GenerateGenerateFiles, MissingFolderIsCannotCreate) {
+TEST_F(GenerateFiles, MissingFolderIsCannotCreate) {
   try {
     generate_final({}, folder_ / "none" / "a.toml");
     FAIL() << "no error";
@@ -109,13 +109,13 @@ TEST_F(GenerateGenerateFiles, MissingFolderIsCannotCreate) {
   }
 }
 
-TEST_F(GenerateGenerateFiles, InvalidOptionsLeaveNoFiles) {
+TEST_F(GenerateFiles, InvalidOptionsLeaveNoFiles) {
   EXPECT_THROW(generate_final({1, -1}, folder_ / "a.toml"), base::Error);
   EXPECT_THROW(generate_cloud({1, 0}, folder_ / "c.toml"), base::Error);
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(GenerateGenerateFiles, AForeignPointsFileIsNotReplaced) {
+TEST_F(GenerateFiles, AForeignPointsFileIsNotReplaced) {
   std::ofstream(folder_ / "c.ply") << "ply\nformat ascii 1.0\nmy own data\n";
   const std::string mine = bytes_of(folder_ / "c.ply");
   try {
@@ -132,14 +132,14 @@ TEST_F(GenerateGenerateFiles, AForeignPointsFileIsNotReplaced) {
   EXPECT_EQ(bytes_of(folder_ / "c.ply"), mine);
 }
 
-TEST_F(GenerateGenerateFiles, AGeneratedPointsFileIsReplaced) {
+TEST_F(GenerateFiles, AGeneratedPointsFileIsReplaced) {
   generate_cloud({1, 50}, folder_ / "c.toml");
   const std::string first = bytes_of(folder_ / "c.ply");
   generate_cloud({2, 60}, folder_ / "c.toml");
   EXPECT_NE(bytes_of(folder_ / "c.ply"), first);
 }
 
-TEST_F(GenerateGenerateFiles, SceneAndPointsMustBeDifferentFiles) {
+TEST_F(GenerateFiles, SceneAndPointsMustBeDifferentFiles) {
   generate_cloud({1, 50}, folder_ / "c.toml");
   std::filesystem::remove(folder_ / "c.toml");
   std::filesystem::create_symlink("c.ply", folder_ / "c.toml");

@@ -41,14 +41,14 @@ std::vector<Model> small_models(const scene::Scene& s) {
   return out;
 }
 
-TEST(GenerateGenerateRandom, TheEngineIsStandard) {
+TEST(GenerateRandom, TheEngineIsStandard) {
   // The C++ standard specifies the 10000th number of this engine at its default seed, [rand.predef].
   GenerateRandom random(5489);
   for (int i = 0; i < 9999; ++i) random.unit();
   EXPECT_EQ(random.unit(), static_cast<double>(9981545732273789042u >> 11) * 0x1p-53);
 }
 
-TEST(GenerateGenerateRandom, BallIsUniformByVolume) {
+TEST(GenerateRandom, BallIsUniformByVolume) {
   GenerateRandom random(1);
   constexpr int kCount = 100'000;
   double sum_cube = 0;
@@ -65,12 +65,12 @@ TEST(GenerateGenerateRandom, BallIsUniformByVolume) {
     expect_near_mean(component / kCount, 0, 0.2, kCount, "component");
 }
 
-TEST(GenerateGenerateFinal, TheSameSeedGivesTheSameScene) {
+TEST(GenerateFinal, TheSameSeedGivesTheSameScene) {
   EXPECT_EQ(format::scene_text(make_final_scene({}), ""), format::scene_text(make_final_scene({}), ""));
   EXPECT_NE(format::scene_text(make_final_scene({1, 11}), ""), format::scene_text(make_final_scene({2, 11}), ""));
 }
 
-TEST(GenerateGenerateFinal, HasTheBooksLargeSpheresAndCamera) {
+TEST(GenerateFinal, HasTheBooksLargeSpheresAndCamera) {
   const scene::Scene s = make_final_scene({});
   EXPECT_EQ(s.camera.look_from, (Vec3d{13, 2, 3}));
   EXPECT_EQ(s.camera.look_at, (Vec3d{0, 0, 0}));
@@ -97,7 +97,7 @@ TEST(GenerateGenerateFinal, HasTheBooksLargeSpheresAndCamera) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(large[i].radius, 1);
 }
 
-TEST(GenerateGenerateFinal, SmallSpheresAreInTheirCellsAndClearOfTheMetalSphere) {
+TEST(GenerateFinal, SmallSpheresAreInTheirCellsAndClearOfTheMetalSphere) {
   const scene::Scene s = make_final_scene({3, 11});
   std::set<std::pair<int, int>> cells;
   for (std::size_t i = 1; i + 3 < s.spheres.size(); ++i) {
@@ -117,7 +117,7 @@ TEST(GenerateGenerateFinal, SmallSpheresAreInTheirCellsAndClearOfTheMetalSphere)
   EXPECT_LT(cells.size(), 22u * 22u) << "seed 3 must leave some out for this test to mean anything";
 }
 
-TEST(GenerateGenerateFinal, SmallMaterialsHaveTheBooksProbabilities) {
+TEST(GenerateFinal, SmallMaterialsHaveTheBooksProbabilities) {
   const scene::Scene s = make_final_scene({7, kLargestWrittenGrid});
   ASSERT_TRUE(s.points.empty());
   const double n = static_cast<double>(s.spheres.size()) - 4;
@@ -149,7 +149,7 @@ TEST(GenerateGenerateFinal, SmallMaterialsHaveTheBooksProbabilities) {
   for (const auto& m : glass) EXPECT_EQ(m.ior, 1.5);
 }
 
-TEST(GenerateGenerateFinal, LargeGridsUsePointsWithTheSameProbabilities) {
+TEST(GenerateFinal, LargeGridsUsePointsWithTheSameProbabilities) {
   const scene::Scene s = make_final_scene({1, kLargestWrittenGrid + 68}, "far.ply");
   ASSERT_EQ(s.points.size(), 1u);
   EXPECT_EQ(s.points[0].file, "far.ply");
@@ -171,14 +171,14 @@ TEST(GenerateGenerateFinal, LargeGridsUsePointsWithTheSameProbabilities) {
   EXPECT_TRUE(scene::validate(s).empty());
 }
 
-TEST(GenerateGenerateFinal, GridZeroHasOnlyTheLargeSpheres) { EXPECT_EQ(make_final_scene({1, 0}).spheres.size(), 4u); }
+TEST(GenerateFinal, GridZeroHasOnlyTheLargeSpheres) { EXPECT_EQ(make_final_scene({1, 0}).spheres.size(), 4u); }
 
-TEST(GenerateGenerateFinal, GridOutOfRangeIsAUsageError) {
+TEST(GenerateFinal, GridOutOfRangeIsAUsageError) {
   for (const int grid : {-1, kLargestFinalGrid + 1, std::numeric_limits<int>::max()})
     EXPECT_EQ(kind_of_error([&] { make_final_scene({1, grid}); }), base::ErrorKind::kUsage) << grid;
 }
 
-TEST(GenerateGenerateCloud, HasExactlyTheRequestedNumberOfSpheres) {
+TEST(GenerateCloud, HasExactlyTheRequestedNumberOfSpheres) {
   for (const std::uint64_t count : {1u, 2u, 10u, 1000u, 12345u}) {
     const scene::Scene s = make_cloud({1, count});
     EXPECT_TRUE(s.spheres.empty());
@@ -190,13 +190,13 @@ TEST(GenerateGenerateCloud, HasExactlyTheRequestedNumberOfSpheres) {
   }
 }
 
-TEST(GenerateGenerateCloud, SeedDeterminesTheCloud) {
+TEST(GenerateCloud, SeedDeterminesTheCloud) {
   const auto centers = [](std::uint64_t seed) { return make_cloud({seed, 100}).points[0].centers; };
   EXPECT_EQ(centers(1), centers(1));
   EXPECT_NE(centers(1), centers(2));
 }
 
-TEST(GenerateGenerateCloud, TotalCrossSectionDoesNotDependOnTheCount) {
+TEST(GenerateCloud, TotalCrossSectionDoesNotDependOnTheCount) {
   const auto cross_section = [](std::uint64_t count) {
     const scene::Scene s = make_cloud({1, count});
     double sum = 0;
@@ -207,18 +207,18 @@ TEST(GenerateGenerateCloud, TotalCrossSectionDoesNotDependOnTheCount) {
   EXPECT_NEAR(cross_section(1000) / cross_section(200'000), 1.0, 0.08);
 }
 
-TEST(GenerateGenerateCloud, AGivenRadiusAppliesToEverySphere) {
+TEST(GenerateCloud, AGivenRadiusAppliesToEverySphere) {
   const scene::Scene s = make_cloud({1, 100, 0.0625});
   for (const double r : s.points[0].radii) EXPECT_EQ(r, 0.0625);
 }
 
-TEST(GenerateGenerateCloud, UsesAllItsMaterials) {
+TEST(GenerateCloud, UsesAllItsMaterials) {
   const scene::Scene s = make_cloud({1, 1000});
   const std::set<std::uint32_t> used(s.points[0].materials.begin(), s.points[0].materials.end());
   EXPECT_EQ(used.size(), s.materials.size());
 }
 
-TEST(GenerateGenerateCloud, OptionsOutOfRangeAreUsageErrors) {
+TEST(GenerateCloud, OptionsOutOfRangeAreUsageErrors) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const Cloud& options : {Cloud{1, 0}, Cloud{1, kLargestCloud + 1}, Cloud{1, 10, 0.0}, Cloud{1, 10, -1.0},
                                Cloud{1, 10, 2 * kLargestCloudRadius}, Cloud{1, 10, kNan}})

@@ -34,9 +34,9 @@ radius = 0.5
 material = "grey"
 )";
 
-class JobJob : public testing::Test {
+class JobRun : public testing::Test {
  protected:
-  JobJob() {
+  JobRun() {
     ::unsetenv("OCIO");
     support::write_bytes(folder_ / "scene.toml", kScene);
     job_.scene.file = folder_ / "scene.toml";
@@ -62,7 +62,7 @@ class JobJob : public testing::Test {
   bool rendered_ = false;
 };
 
-TEST_F(JobJob, WritesEveryOutputAndTheStatistics) {
+TEST_F(JobRun, WritesEveryOutputAndTheStatistics) {
   job_.outputs.images = {folder_ / "a.exr", folder_ / "a.png", folder_ / "a.hdr"};
   const JobReport report = run_job(job_);
   for (const ImageFile& output : job_.outputs.images) EXPECT_EQ(image::read(output.path).width, 24) << output.path;
@@ -76,7 +76,7 @@ TEST_F(JobJob, WritesEveryOutputAndTheStatistics) {
   EXPECT_EQ(statistics().count("error"), 0u);
 }
 
-TEST_F(JobJob, LooksUpADisplayOnlyForDisplayFormats) {
+TEST_F(JobRun, LooksUpADisplayOnlyForDisplayFormats) {
   job_.outputs.images = {folder_ / "a.exr"};
   ::setenv("OCIO", (folder_ / "nowhere.ocio").c_str(), 1);
   const JobReport report = run_job(job_);
@@ -86,7 +86,7 @@ TEST_F(JobJob, LooksUpADisplayOnlyForDisplayFormats) {
   EXPECT_EQ(error().kind(), base::ErrorKind::kMissingInput) << "named explicitly";
 }
 
-TEST_F(JobJob, RejectsInvalidRequestsBeforeRendering) {
+TEST_F(JobRun, RejectsInvalidRequestsBeforeRendering) {
   const auto kind_of_error = [&](const char* output) {
     job_.outputs.images = {folder_ / output};
     return error().kind();
@@ -108,7 +108,7 @@ TEST_F(JobJob, RejectsInvalidRequestsBeforeRendering) {
   EXPECT_FALSE(rendered_);
 }
 
-TEST_F(JobJob, WritesNoImageIfStoppedBeforeRendering) {
+TEST_F(JobRun, WritesNoImageIfStoppedBeforeRendering) {
   const std::atomic<bool> cancel{true};
   job_.hooks.cancel = &cancel;
   job_.outputs.images = {folder_ / "a.exr"};
@@ -119,7 +119,7 @@ TEST_F(JobJob, WritesNoImageIfStoppedBeforeRendering) {
   EXPECT_EQ(statistics()["exit_status"], 75);
 }
 
-TEST_F(JobJob, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
+TEST_F(JobRun, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
   job_.outputs.reproducible = true;
@@ -148,7 +148,7 @@ TEST_F(JobJob, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
-TEST_F(JobJob, RejectsACheckpointOfAnotherRender) {
+TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300"};
   std::atomic<bool> cancel{false};
@@ -179,7 +179,7 @@ TEST_F(JobJob, RejectsACheckpointOfAnotherRender) {
   EXPECT_EQ(error().kind(), base::ErrorKind::kBadData);
 }
 
-TEST_F(JobJob, WritesCheckpointsAtTheInterval) {
+TEST_F(JobRun, WritesCheckpointsAtTheInterval) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=64", "image.height=64", "render.samples=64"};
   job_.checkpoint.interval_s = 0.01;
@@ -195,7 +195,7 @@ TEST_F(JobJob, WritesCheckpointsAtTheInterval) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
 }
 
-TEST_F(JobJob, ReportsAFailedWriteInTheStatistics) {
+TEST_F(JobRun, ReportsAFailedWriteInTheStatistics) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=512", "image.height=512", "render.samples=1"};
   job_.outputs.exr.compression = "none";
@@ -213,7 +213,7 @@ TEST_F(JobJob, ReportsAFailedWriteInTheStatistics) {
   EXPECT_EQ(statistics()["error"], failed.what());
 }
 
-TEST_F(JobJob, WarningsReachTheCaller) {
+TEST_F(JobRun, WarningsReachTheCaller) {
   const std::string twice = "[[sphere]]\ncenter = [0, 0, -1]\nradius = 0.5\nmaterial = \"grey\"\n";
   support::write_bytes(job_.scene.file, kScene + twice);
   std::vector<base::Diagnostic> warnings;
@@ -224,7 +224,7 @@ TEST_F(JobJob, WarningsReachTheCaller) {
   EXPECT_EQ(warnings[0].severity, base::Severity::kWarning);
 }
 
-TEST_F(JobJob, OptionsOverrideTheDisplayOfTheScene) {
+TEST_F(JobRun, OptionsOverrideTheDisplayOfTheScene) {
   support::write_bytes(folder_ / "scene.toml",
                        std::string(kScene) + "[color]\ndisplay = \"Gamma 2.0 Rec.709\"\nexposure = -2\n");
   job_.outputs.images = {folder_ / "a.png"};
@@ -237,7 +237,7 @@ TEST_F(JobJob, OptionsOverrideTheDisplayOfTheScene) {
   EXPECT_EQ(run_job(job_).display.display, "sRGB");
 }
 
-TEST_F(JobJob, AConfigPathIsRelativeToTheScene) {
+TEST_F(JobRun, AConfigPathIsRelativeToTheScene) {
   support::write_bytes(folder_ / "scene.toml", std::string(kScene) + "[color]\nconfig = \"none.ocio\"\n");
   job_.outputs.images = {folder_ / "a.png"};
   const base::Error missing = error();
@@ -247,7 +247,7 @@ TEST_F(JobJob, AConfigPathIsRelativeToTheScene) {
   EXPECT_FALSE(rendered_);
 }
 
-TEST_F(JobJob, LayersNeedAnExrOutput) {
+TEST_F(JobRun, LayersNeedAnExrOutput) {
   job_.scene.overrides = {"output.layers=[\"Z\", \"CryptoObject\"]"};
   job_.outputs.images = {folder_ / "a.exr", folder_ / "a.png"};
   job_.outputs.deep = folder_ / "deep.exr";
@@ -263,7 +263,7 @@ TEST_F(JobJob, LayersNeedAnExrOutput) {
   EXPECT_EQ(error().kind(), base::ErrorKind::kUsage);
 }
 
-TEST_F(JobJob, RejectsLossyCompressionOfDataBeforeRendering) {
+TEST_F(JobRun, RejectsLossyCompressionOfDataBeforeRendering) {
   job_.scene.overrides = {"output.layers=[\"CryptoObject\"]"};
   job_.outputs.images = {folder_ / "a.exr"};
   job_.outputs.exr.compression = "dwaa";
@@ -271,7 +271,7 @@ TEST_F(JobJob, RejectsLossyCompressionOfDataBeforeRendering) {
   EXPECT_FALSE(rendered_);
 }
 
-TEST_F(JobJob, AnHdrDisplayHasSixteenBits) {
+TEST_F(JobRun, AnHdrDisplayHasSixteenBits) {
   job_.outputs.display.display = "Rec.2100-PQ";
   job_.outputs.images = {folder_ / "a.png"};
   run_job(job_);

@@ -155,7 +155,7 @@ double z_of(const std::vector<int>& cells) {
   return (chi - freedom) / std::sqrt(2 * freedom);
 }
 
-TEST(KernelSobol, PointsAreUniformOverNamesInEveryPairOfDimensions) {
+TEST(KernelSobol, EveryDimensionPairIsUniformOverScrambleSeeds) {
   constexpr int kSide = 32, kNames = 200000;
   for (const std::uint32_t index : {0u, 1u, 2u, 3u, 5u, 16u, 1000u}) {
     for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}) {
@@ -210,7 +210,7 @@ Excess product_variance(SamplerKind kind, std::size_t samples, std::uint32_t ver
 }
 
 /// With a nested shuffle per vertex, samples 2k and 2k + 1 would be in opposite halves everywhere, and the mean 1.58.
-TEST(KernelSampler, ProductsAcrossVerticesVaryNoMoreThanIndependentNumbers) {
+TEST(KernelSampler, CrossVertexProductVarianceDoesNotExceedIndependent) {
   for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kBlueNoise}) {
     for (std::size_t samples = 4; samples <= 1024; samples *= 2) {
       const Excess at = product_variance(kind, samples, kSobolVertices);
@@ -226,7 +226,7 @@ TEST(KernelSampler, ProductsAcrossVerticesVaryNoMoreThanIndependentNumbers) {
   EXPECT_NEAR(product_variance(SamplerKind::kIndependent, 16, 4).mean, 1, 0.05) << "independent numbers must give 1";
 }
 
-TEST(KernelSampler, SecondPointsVaryNoMoreThanIndependentNumbersInProductsWithAnyOther) {
+TEST(KernelSampler, SecondPointProductVarianceDoesNotExceedIndependent) {
   for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kBlueNoise}) {
     for (std::size_t samples = 4; samples <= 256; samples *= 4) {
       const Excess at = product_variance(kind, samples, 4, 0, true);

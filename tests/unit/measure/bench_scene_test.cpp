@@ -141,7 +141,7 @@ Benchmark some_benchmark() {
   return b;
 }
 
-TEST(MeasureBenchReport, AsText) {
+TEST(MeasureBenchReport, FormatsTextReport) {
   EXPECT_EQ(benchmark_text(some_benchmark()),
             "scene       0123, 0 spheres, 2.50 rays per path\n"
             "measured    96 x 54 px, 1 thread, avx2, embree; 7 rounds, median (interquartile range)\n"
@@ -153,7 +153,7 @@ TEST(MeasureBenchReport, AsText) {
             "left out    something, since\n");
 }
 
-TEST(MeasureBenchReport, AsJson) {
+TEST(MeasureBenchReport, FormatsJsonReport) {
   const auto json = nlohmann::json::parse(benchmark_json(some_benchmark()));
   EXPECT_EQ(json["schema"], "orrery.bench/1");
   EXPECT_EQ(json["cases"][0]["tracing"]["median"], 0.7);

@@ -70,7 +70,7 @@ TEST(RenderAllocation, PixelsAtTheSampleLimitAreNotChosen) {
   EXPECT_TRUE(round.limited_by_pixels);
 }
 
-TEST(RenderAllocation, PixelsWithoutEvidenceAreChosenWhateverTheirError) {
+TEST(RenderAllocation, PixelsWithUnreliableEstimatesAreChosenWhateverTheirError) {
   Bands bands(16);
   std::fill_n(bands.lacks_evidence.begin(), 400, std::uint8_t{1});
   EXPECT_EQ(chosen_in(bands.choose({0.01, kAll, kEndless}), 0, 30), 400);

@@ -33,11 +33,11 @@ TEST(SceneReference, DocumentMatchesTheSchema) {
 
 TEST(SceneReference, RowsHaveRangeUnitDefaultAndCost) {
   const std::string text = reference_markdown();
-  EXPECT_NE(text.find("| `vfov` | number | above 0, below 180 | degrees | 90 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| `vfov` | number | above 0 and below 180 | degrees | 90 |"), std::string::npos) << text;
   EXPECT_NE(text.find("| `samples` | integer | 1..2147483647 | per pixel | 100 | Paths per pixel | Time scales"),
             std::string::npos);
   EXPECT_NE(text.find("| `fresnel` | one of | `schlick, exact, none` | - | \"schlick\" |"), std::string::npos);
-  EXPECT_NE(text.find("| `albedo` | [x, y, z] | each 0..1 | scene-linear | **required** |"), std::string::npos);
+  EXPECT_NE(text.find("| `albedo` | [r, g, b] | each 0..1 | scene-linear | **required** |"), std::string::npos);
 }
 
 }  // namespace

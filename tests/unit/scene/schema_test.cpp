@@ -112,7 +112,7 @@ TEST(SceneSchema, RangesAreAsSpecified) {
   EXPECT_FALSE(key_of("background", "top").range.contains(-1e-9));
 }
 
-TEST(SceneSchema, NaNIsInNoRange) {
+TEST(SceneSchema, EveryRangeRejectsNaN) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Table& table : tables())
     for (const auto& key : table.keys) EXPECT_FALSE(has_range(key.type) && key.range.contains(nan)) << key.name;
@@ -120,9 +120,11 @@ TEST(SceneSchema, NaNIsInNoRange) {
 
 TEST(SceneSchema, FormatsRanges) {
   EXPECT_EQ((Range{0, 1}).text(), "0..1");
-  EXPECT_EQ((Range{0, 180, true, true}).text(), "above 0, below 180");
-  EXPECT_EQ((Range{0, 180, false, true}).text(), "from 0, below 180");
-  EXPECT_EQ((Range{0, 5, true, false}).text(), "above 0, up to 5");
+  EXPECT_EQ((Range{0, 180, true, true}).text(), "above 0 and below 180");
+  EXPECT_EQ((Range{0, 180, false, true}).text(), "at least 0 and below 180");
+  EXPECT_EQ((Range{0, 5, true, false}).text(), "above 0 and at most 5");
+  EXPECT_EQ((Range{0, 5, true, false}).requirement(), "must be above 0 and at most 5");
+  EXPECT_EQ((Range{0, 5}).requirement(), "must be in 0..5");
 }
 
 TEST(SceneSchema, FocusDistanceDefaultsToTheDistanceToLookAt) {

@@ -109,13 +109,13 @@ TEST(SceneValidate, LensMustBeInTheDomain) {
 
 TEST(SceneValidate, RadiusMustBeInTheDomain) {
   EXPECT_EQ(told(with_sphere({}, 0)),
-            Told{"sphere[0].radius: radius is 0; allowed is 1e-30..1e+18, or negative for an inward normal"});
+            Told{"sphere[0].radius: radius is 0; must be in 1e-30..1e+18, or negative for an inward normal"});
   EXPECT_EQ(told(with_sphere({}, 1e-31)),
             Told{"sphere[0].radius: radius is 1e-31; its magnitude must be in 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, -2e18)),
             Told{"sphere[0].radius: radius is -2e+18; its magnitude must be in 1e-30..1e+18"});
-  EXPECT_EQ(told(with_sphere({}, kNan)), Told{"sphere[0].radius: radius is not finite; allowed is 1e-30..1e+18"});
-  EXPECT_EQ(told(with_sphere({}, -kInfinity)), Told{"sphere[0].radius: radius is not finite; allowed is 1e-30..1e+18"});
+  EXPECT_EQ(told(with_sphere({}, kNan)), Told{"sphere[0].radius: radius is not finite; must be in 1e-30..1e+18"});
+  EXPECT_EQ(told(with_sphere({}, -kInfinity)), Told{"sphere[0].radius: radius is not finite; must be in 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, 1e-30)), Told{});
   EXPECT_EQ(told(with_sphere({}, -1e18)), Told{});
 }
