@@ -38,8 +38,8 @@ else
   ctest "$@" | sed -u -E '/^ *[0-9]+\/[0-9]+ Test +#.* Passed |^ +Start +[0-9]+: /d; /^[0-9]+% tests passed/,$d' || status=$?
   printf 'Built in %s s, tested in %s s. The slowest tests:\n' "$build_seconds" $((SECONDS - begin))
   # Columns: name, number of runs, mean seconds.
-  sed '/^---/,$d' "$root/build/Testing/Temporary/CTestCostData.txt" | sort -k3,3nr | head -n 10 |
-    awk '{ printf "%8.1f s  %s\n", $3, $1 }'
+  sed '/^---/,$d' "$root/build/Testing/Temporary/CTestCostData.txt" | sort -k3,3nr |
+    awk 'NR <= 10 { printf "%8.1f s  %s\n", $3, $1 }'
   sed -n '/^[0-9]*% tests passed/,$p' "$log"
 fi
 exit "$status"

@@ -42,7 +42,7 @@ cd "$build/bench"
 
 # Recorded with the results.
 revision=$(git -C "$root" describe --always --dirty 2>/dev/null || echo unknown)
-processor=$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1)
+processor=$(awk -F': ' '/^model name/ { print $2; exit }' /proc/cpuinfo)
 results="$root/bench/results/$machine"
 mkdir -p "$results"
 part=$(mktemp -d)

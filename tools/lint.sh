@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 format=""
 for name in clang-format-14 clang-format; do
-  if command -v "$name" >/dev/null && "$name" --version | grep -q ' version 14\.'; then format=$name; break; fi
+  if command -v "$name" >/dev/null && [[ $("$name" --version) == *' version 14.'* ]]; then format=$name; break; fi
 done
 if [ -z "$format" ]; then echo "lint.sh: skipped: clang-format 14 not found" >&2; exit 77; fi
 if ! command -v shellcheck >/dev/null; then echo "lint.sh: skipped: shellcheck not found" >&2; exit 77; fi
@@ -23,11 +23,16 @@ if [ "${1:-}" = --fix ]; then "$format" -i "${sources[@]}"; fi
 "$format" --dry-run -Werror "${sources[@]}" || status=1
 shellcheck -S warning -x -e SC1091 "${scripts[@]}" || status=1
 for file in "${sources[@]}" "${scripts[@]}" $(git ls-files '*.py' '*.pl' '*.cmake' '*CMakeLists.txt'); do
-  if ! head -n 3 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0'; then
+  if [[ $(head -n 3 "$file") != *'SPDX-License-Identifier: Apache-2.0'* ]]; then
     echo "$file: no SPDX-License-Identifier in the first three lines" >&2
     status=1
   fi
 done
+# With pipefail, a command that stops reading early makes the one before it fail (SIGPIPE) if that still writes.
+if grep -nE '[|] *(head|grep -[a-zA-Z]*q)\b' "${scripts[@]}"; then
+  echo "lint.sh: a pipe into head or grep -q fails at random with pipefail; use awk, or read the output into a variable" >&2
+  status=1
+fi
 # Words and phrases that the project does not use.
 tools/terms.pl || status=1
 exit "$status"

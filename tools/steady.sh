@@ -56,7 +56,7 @@ stop_busy() {
 trap 'stop_busy; rm -rf "$work"' EXIT
 
 # attribute NAME FILE: prints an attribute of the <testsuite> in a JUnit file.
-attribute() { sed -n "s/^[[:space:]]*$1=\"\([0-9]*\)\".*/\1/p" "$2" | head -n 1; }
+attribute() { sed -n "/^[[:space:]]*$1=\"/{s/^[[:space:]]*$1=\"\([0-9]*\)\".*/\1/p;q}" "$2"; }
 
 status=0
 table=$work/table

@@ -23,7 +23,7 @@ skip() {
 # Findings differ between versions; Debian 12 has 14.
 tidy=""
 for name in clang-tidy-14 clang-tidy; do
-  if command -v "$name" >/dev/null && "$name" --version | grep -q ' version 14\.'; then tidy=$name; break; fi
+  if command -v "$name" >/dev/null && [[ $("$name" --version) == *' version 14.'* ]]; then tidy=$name; break; fi
 done
 [ -n "$tidy" ] || skip "clang-tidy 14 not found (package clang-tidy-14)"
 git rev-parse --is-inside-work-tree >/dev/null 2>&1 || skip "not a git repository"
