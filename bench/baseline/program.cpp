@@ -35,6 +35,7 @@ struct MakeMaterial {
     if (m.fresnel != scene::Fresnel::kSchlick) refuse("reflectance models other than Schlick's");
     return std::make_unique<Dielectric>(m.ior);
   }
+  std::unique_ptr<const Material> operator()(const scene::Emitter&) const { refuse("emitters"); }
 };
 
 std::unique_ptr<const Hittable> make_list(const std::vector<PlacedSphere>& spheres) {
@@ -55,6 +56,8 @@ Program::Program(const scene::Scene& scene, Spheres spheres)
       max_depth_(scene.render.max_depth),
       has_lens_(scene.camera.defocus_angle > 0) {
   if (scene.render.shading != scene::Shading::kPath) refuse("shading modes other than path tracing");
+  if (background_.type == scene::BackgroundType::kImage || background_.type == scene::BackgroundType::kSky)
+    refuse("image backgrounds");
   if (background_.type == scene::BackgroundType::kConstant) background_.bottom = background_.top = background_.color;
 
   for (const scene::Material& m : scene.materials) materials_.push_back(std::visit(MakeMaterial(), m.model));

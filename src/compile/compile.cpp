@@ -63,6 +63,34 @@ kernel::Material compile_model(const scene::Dielectric& m) {
   return out;
 }
 
+kernel::Material compile_model(const scene::Emitter&) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kEmitter;
+  set(out.albedo, {0, 0, 0});
+  return out;
+}
+
+/// Returns the number of a light group, and adds the group if it is new.
+std::uint16_t light_group(CompiledScene& compiled, const std::string& name) {
+  std::vector<std::string>& names = compiled.light_groups;
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) names.push_back(name);
+  return static_cast<std::uint16_t>(at == names.end() ? names.size() - 1
+                                                      : static_cast<std::size_t>(at - names.begin()));
+}
+
+/// Precision  rounded from long double, so that it does not depend on the math library
+double stops_to_factor(double stops) { return static_cast<double>(std::exp2(static_cast<long double>(stops))); }
+
+kernel::Emission emission_of(const scene::MaterialModel& model, CompiledScene& compiled) {
+  const auto* emitter = std::get_if<scene::Emitter>(&model);
+  if (emitter == nullptr) return {};
+  kernel::Emission out;
+  set(out.radiance, emitter->radiance * stops_to_factor(emitter->exposure));
+  out.group = light_group(compiled, emitter->light_group);
+  return out;
+}
+
 /// Returns the material for a sphere whose normal points inward: its inside and outside are exchanged.
 kernel::Material turned_inside_out(kernel::Material m) {
   std::swap(m.eta[0], m.eta[1]);
@@ -74,7 +102,7 @@ kernel::Material turned_inside_out(kernel::Material m) {
 class MaterialTable {
  public:
   MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
-      : scene_(scene), world_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}
+      : scene_(scene), out_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}
 
   std::uint32_t index(std::uint32_t authored, bool inside_out) {
     std::uint32_t& at = compiled_[authored][inside_out ? 1 : 0];
@@ -84,9 +112,10 @@ class MaterialTable {
     // Only dielectrics have two different sides; other materials are the same from both.
     if (inside_out && m.kind != kernel::MaterialKind::kDielectric) return at = index(authored, false);
     if (inside_out) m = turned_inside_out(m);
-    at = static_cast<std::uint32_t>(world_.materials.size());
-    world_.materials.push_back(m);
-    if (m.kind == kernel::MaterialKind::kHemisphere) world_.features.hemisphere = true;
+    at = static_cast<std::uint32_t>(out_.materials.size());
+    out_.materials.push_back(m);
+    out_.emission.push_back(emission_of(scene_.materials[authored].model, out_));
+    if (m.kind == kernel::MaterialKind::kHemisphere) out_.features.hemisphere = true;
     return at;
   }
 
@@ -94,7 +123,7 @@ class MaterialTable {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   const scene::Scene& scene_;
-  CompiledScene& world_;
+  CompiledScene& out_;
   std::vector<std::array<std::uint32_t, 2>> compiled_;
 };
 
@@ -187,6 +216,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.sphere_materials = sphere_materials.data();
   v.materials = materials.data();
   v.sphere_count = spheres.size();
+  v.emission = emission.empty() ? nullptr : emission.data();
   v.motion = motion.data();
   v.moving_count = motion.size();
   v.camera_motion = camera_motion;
@@ -237,7 +267,10 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   compiled.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
   set_background(scene.background, compiled);
   compiled.filter = compile_filter(scene.render);
+  compiled.light_groups = {""};
   add_spheres(scene, compiled);
+  const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
+  if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
   if (closing != nullptr) add_motion(scene, *closing, compiled);
   compiled.bounds = bounds_of(compiled.spheres);
   return compiled;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "compile/pixel_filter.h"
@@ -30,6 +31,8 @@ struct CompiledScene {
   std::vector<kernel::Sphere> spheres;
   std::vector<std::uint32_t> sphere_materials;  ///< one per sphere, index into `materials`
   std::vector<kernel::Material> materials;
+  std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
+  std::vector<std::string> light_groups;   ///< names, by Emission::group; the first is the default group's, ""
   std::vector<kernel::Sphere> motion;  ///< of the first motion.size() spheres, see kernel::SceneView; empty: none moves
   kernel::Camera camera;
   kernel::Camera camera_motion;

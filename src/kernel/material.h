@@ -6,7 +6,7 @@
 
 namespace orrery::kernel {
 
-enum class MaterialKind : std::uint32_t { kLambertian, kHemisphere, kMetal, kDielectric };
+enum class MaterialKind : std::uint32_t { kLambertian, kHemisphere, kMetal, kDielectric, kEmitter };
 enum class FresnelKind : std::uint32_t { kSchlick, kExact, kNone };
 
 /// A compiled material, with everything that does not depend on the ray. `kind` decides which members are used.

@@ -17,8 +17,9 @@ enum class Lobe : std::uint8_t {
   kSpecularIndirect,
   kTransmissionDirect,
   kTransmissionIndirect,
+  kEmission,  ///< no surface but the emitter's own: the camera sees it directly
 };
-inline constexpr int kLobes = 7;
+inline constexpr int kLobes = 8;
 
 /// Data of one path for the layers besides the beauty. Computed only for tiles that request records.
 struct PathRecord {

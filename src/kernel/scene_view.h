@@ -19,10 +19,10 @@ struct Background {
   double top[3] = {1, 1, 1};
 };
 
-/// Radiance that a material emits to all sides. Fetched as four doubles.
+/// Radiance that a material emits in all directions. Fetched as four doubles.
 struct Emission {
   double radiance[3] = {0, 0, 0};  ///< scene-linear
-  double unused = 0;
+  double group = 0;                ///< light group, an integer; 0: the default group
 };
 
 enum class Shading : std::uint8_t { kPath, kNormal, kFlat };

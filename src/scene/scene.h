@@ -48,7 +48,7 @@ struct Camera {
   double shutter_close = 0;              ///< frames, relative to the frame; equal to shutter_open: no motion blur
 };
 
-enum class BackgroundType { kGradient, kConstant };
+enum class BackgroundType { kGradient, kConstant, kImage, kSky };
 
 struct Background {
   BackgroundType type = BackgroundType::kGradient;
@@ -56,11 +56,24 @@ struct Background {
   Vec3d top{0.5, 0.7, 1};  ///< gradient: straight up
   Vec3d color{1, 1, 1};    ///< constant
   int alpha = 1;           ///< 0: the background is transparent
+  // Image and sky.
+  std::filesystem::path file;    ///< image: latitude-longitude map, relative to the scene file
+  std::string color_space;       ///< image: empty: by the file's attribute, else the scene's
+  double rotation = 0;           ///< degrees about +y
+  double exposure = 0;           ///< stops
+  std::string light_group = {};  ///< empty: the default group
+  bool visible = true;           ///< to the camera; scattered rays always see the background
+  double sun_elevation = 45;     ///< sky: degrees above the horizon
+  double sun_azimuth = 0;        ///< sky: degrees from +z towards +x
+  double turbidity = 3;          ///< sky: amount of haze; 1 is pure air
+  Vec3d ground_albedo{0.2, 0.2, 0.2};
+  bool sun = true;  ///< sky: includes the sun's disc
 };
 
 enum class Precision { kExact, kFast, kBook };
 enum class Shading { kPath, kNormal, kFlat };
 enum class Sampler { kIndependent, kSobol, kBlueNoise };
+enum class DirectLighting { kMis, kBsdf, kLight };
 enum class Filter { kBox, kGaussian, kBlackmanHarris, kMitchell };
 
 struct Render {
@@ -74,6 +87,7 @@ struct Render {
   std::optional<double> filter_width = {};  ///< px, full width; default: 1, 3, 3 or 4, by filter
   int roulette_depth = 3;                   ///< scattering events before Russian roulette begins; 0: off
   Sampler sampler = Sampler::kSobol;
+  DirectLighting direct_lighting = DirectLighting::kMis;
 };
 
 struct Lambertian {
@@ -93,7 +107,14 @@ struct Dielectric {
   Fresnel fresnel = Fresnel::kSchlick;
 };
 
-using MaterialModel = std::variant<Lambertian, Hemisphere, Metal, Dielectric>;
+/// Emits the same radiance in all directions, on both sides, and reflects nothing.
+struct Emitter {
+  Vec3d radiance{1, 1, 1};
+  double exposure = 0;           ///< stops
+  std::string light_group = {};  ///< empty: the default group
+};
+
+using MaterialModel = std::variant<Lambertian, Hemisphere, Metal, Dielectric, Emitter>;
 
 struct Material {
   std::string name;

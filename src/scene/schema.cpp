@@ -145,6 +145,12 @@ Table render_table() {
                   "bit for bit",
                   "`list`: time is proportional to the number of spheres"},
                  [](S& s) -> Accelerator& { return s.render.accelerator; }),
+       choice<S>("direct_lighting", {"mis", "bsdf", "light"},
+                 {"",
+                  "Sampling of direct light. `mis`: multiple importance sampling of lights and BSDFs. `bsdf`: BSDF "
+                  "sampling only, as in the book. `light`: light sampling only, where light can be sampled",
+                  "`mis`: one shadow ray per vertex, only in scenes with emitters or an image background"},
+                 [](S& s) -> DirectLighting& { return s.render.direct_lighting; }),
        choice<S>("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
                  {"",
                   "Pixel filter. `box`: the area of the pixel, as in the book. `gaussian`, `blackman-harris`: softer. "
@@ -198,6 +204,16 @@ std::vector<MaterialType> make_material_types() {
                    "Fresnel reflectance. `schlick`: Schlick's approximation, as in the book. `exact`: Fresnel "
                    "equations. `none`: refraction only, apart from total internal reflection"},
                   [](M& m) -> Fresnel& { return std::get<Dielectric>(m).fresnel; })}},
+      {"emitter",
+       "A light: emits the same radiance in all directions and reflects nothing",
+       Emitter{},
+       {required(vector<M>("radiance", kLight,
+                           {"scene-linear", "Emitted radiance: radiant exitance divided by pi, per colour channel"},
+                           [](M& m) -> Vec3d& { return std::get<Emitter>(m).radiance; })),
+        number<M>("exposure", {-kMaxStops, kMaxStops}, {"stops", "Multiplies the radiance by 2 to this power"},
+                  [](M& m) -> double& { return std::get<Emitter>(m).exposure; }),
+        text<M>("light_group", {"", "Light group, for the layer `light_groups`. Default: the group `default`"},
+                [](M& m) -> std::string& { return std::get<Emitter>(m).light_group; })}},
   };
 }
 
