@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "compile/camera_basis.h"
+#include "compile/light_tree.h"
 #include "compile/pixel_filter.h"
 #include "kernel/sobol_columns.h"
 
@@ -217,6 +218,8 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.materials = materials.data();
   v.sphere_count = spheres.size();
   v.emission = emission.empty() ? nullptr : emission.data();
+  v.lights = light_tree.view();
+  v.direct_lighting = direct_lighting;
   v.motion = motion.data();
   v.moving_count = motion.size();
   v.camera_motion = camera_motion;
@@ -271,7 +274,15 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   add_spheres(scene, compiled);
   const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
   if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
+  compiled.features.lit = !compiled.emission.empty();
   if (closing != nullptr) add_motion(scene, *closing, compiled);
+  switch (scene.render.direct_lighting) {
+    case scene::DirectLighting::kMis: compiled.direct_lighting = kernel::DirectLighting::kMis; break;
+    case scene::DirectLighting::kBsdf: compiled.direct_lighting = kernel::DirectLighting::kBsdf; break;
+    case scene::DirectLighting::kLight: compiled.direct_lighting = kernel::DirectLighting::kLight; break;
+  }
+  if (!compiled.emission.empty() && compiled.direct_lighting != kernel::DirectLighting::kBsdf)
+    compiled.light_tree = build_light_tree(compiled.view());
   compiled.bounds = bounds_of(compiled.spheres);
   return compiled;
 }

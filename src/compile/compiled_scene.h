@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compile/light_tree.h"
 #include "compile/pixel_filter.h"
 #include "kernel/precision.h"
 #include "kernel/scene_view.h"
@@ -32,7 +33,9 @@ struct CompiledScene {
   std::vector<std::uint32_t> sphere_materials;  ///< one per sphere, index into `materials`
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
-  std::vector<std::string> light_groups;   ///< names, by Emission::group; the first is the default group's, ""
+  LightTree light_tree;                    ///< of the emitting spheres; empty if lights are not sampled
+  kernel::DirectLighting direct_lighting = kernel::DirectLighting::kMis;
+  std::vector<std::string> light_groups;  ///< names, by Emission::group; the first is the default group's, ""
   std::vector<kernel::Sphere> motion;  ///< of the first motion.size() spheres, see kernel::SceneView; empty: none moves
   kernel::Camera camera;
   kernel::Camera camera_motion;

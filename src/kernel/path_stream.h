@@ -10,6 +10,42 @@ namespace orrery::kernel {
 /// Number of paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
 inline constexpr int kStreamSize = 1024;
 
+/// Shadow rays that wait until they fill a packet, and what arrives if they are not occluded.
+///
+/// The end of the arrays is written in whole vectors.
+template <class T, class Id>
+struct alignas(64) ShadowStreamOf {
+  static constexpr int kCapacity = 3 * kPacketSize;
+  T base[3][kCapacity];       ///< centre of the sphere that the ray leaves
+  T offset[3][kCapacity];     ///< from there to the ray's origin
+  T direction[3][kCapacity];  ///< to the light; of any length
+  T distance[kCapacity];      ///< maximum distance of an occluder, as a multiple of the direction's length
+  T time[kCapacity];          ///< 0..1 within the shutter; only if the scene moves
+  T light[3][kCapacity];      ///< radiance times throughput and weight
+  Id self[kCapacity];         ///< sphere that the ray leaves
+  Id target[kCapacity];       ///< the light, or kNoSphere
+  Id path[kCapacity];         ///< index into LitPathsOf
+  Id history[kCapacity];      ///< only in loops that record paths
+  Id group[kCapacity];        ///< light group; only in loops that record paths
+  int count = 0;
+  ShadowPacketOf<T, Id> packet;  ///< the rays being traced
+};
+
+/// State of paths that gain radiance at their vertices.
+///
+/// A path's radiance stays in the place of the path within the batch and is deposited when all paths of the batch have
+/// ended, so that a bad value costs the path its weight once.
+template <class T, class Id>
+struct alignas(64) LitPathsOf {
+  static constexpr int kCapacity = kStreamSize + kPacketSize;
+  Id path[kCapacity];        ///< of the stream's paths: their index within the batch
+  T pdf[kCapacity];          ///< of the stream's paths: density of the direction, per steradian; infinite: delta
+  T radiance[3][kCapacity];  ///< by index within the batch
+  Id pixel[kCapacity];       ///< by index within the batch
+  Id sample[kCapacity];      ///< by index within the batch
+  ShadowStreamOf<T, Id> shadow;
+};
+
 /// The state of a tile's paths between two vertices, as a structure of arrays.
 ///
 /// The end of the arrays is read and written in whole vectors, hence the capacity for one more packet.
@@ -25,7 +61,7 @@ struct alignas(64) PathStreamOf {
   Id sample[kCapacity];
   Id history[kCapacity];      ///< only in loops that record paths; see record-inl.h
   RayPacketOf<T, Id> packet;  ///< the rays being traced
-  T radiance[3][kCapacity];   ///< collected so far; only in loops that collect light along the path
+  LitPathsOf<T, Id> lit;      ///< only in lit loops
 };
 
 using PathStream = PathStreamOf<double, std::uint64_t>;

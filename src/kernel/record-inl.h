@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include "kernel/compaction-inl.h"
 #include "kernel/render_tile.h"
 #include "kernel/scatter-inl.h"
 
@@ -61,12 +62,16 @@ class Recorder {
   }
 
   /// Writes light events for radiance that paths gained.
-  HWY_INLINE void event(D d, hn::Mask<D> lanes, const Vec3<V>& light, Ids history) {
+  ///
+  /// `groups`   light groups of the sources
+  /// `unscattered`  the lobe of light that no surface has scattered
+  HWY_INLINE void event(D d, hn::Mask<D> lanes, const Vec3<V>& light, Ids history, Ids groups, Lobe unscattered) {
     if (tile_.events == nullptr) return;
     const IdTag<D> du;
-    HWY_ALIGN Id way[kMax];
+    HWY_ALIGN Id way[kMax], group[kMax];
     Stored rgb(d, light);
     hn::Store(history, du, way);
+    hn::Store(groups, du, group);
     LightEvents& events = *tile_.events;
     if (events.end - events.next < kPacketSize) events.make_room(events);
     each_lane(d, lanes, [&](int i) {
@@ -75,8 +80,8 @@ class Recorder {
       LightEvent& e = *events.next++;
       for (int k = 0; k < 3; ++k) e.value[k] = static_cast<double>(rgb.v[k][i]);
       e.path = static_cast<std::uint32_t>(index(i));
-      e.group = 0;
-      e.lobe = lobe != 0 ? static_cast<Lobe>(2 * lobe - (direct ? 1 : 0)) : Lobe::kBackground;
+      e.group = static_cast<std::uint16_t>(group[i]);
+      e.lobe = lobe != 0 ? static_cast<Lobe>(2 * lobe - (direct ? 1 : 0)) : unscattered;
     });
   }
 
@@ -115,13 +120,6 @@ class Recorder {
     const auto count = static_cast<std::int64_t>(tile_.sample_end - tile_.sample_begin);
     const auto sample = static_cast<std::int64_t>(sample_[lane]) - tile_.sample_begin;
     return (std::int64_t{at.y - tile_.y} * tile_.width + (at.x - tile_.x)) * count + sample;
-  }
-  template <class Do>
-  HWY_INLINE void each_lane(D d, hn::Mask<D> lanes, Do what) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, lanes, bytes);
-    for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8; bits != 0; bits &= bits - 1)
-      what(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
   }
   template <class Do>
   HWY_INLINE void each(D d, hn::Mask<D> lanes, Do what) {

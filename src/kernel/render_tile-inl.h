@@ -71,13 +71,9 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     };
     const auto x = place(pixels, scene.window_x);
     const auto y = place(hn::template ShiftRight<16>(pixels), scene.window_y);
-    const auto store = [&](const auto& value, auto& to) {
-      hn::Store(value.x, d, to[0] + v);
-      hn::Store(value.y, d, to[1] + v);
-      hn::Store(value.z, d, to[2] + v);
-    };
+    const auto store = [&](const auto& value, auto& to) { store3(d, value, to, v); };
     auto camera = camera_vectors(d, scene.camera);
-    if constexpr (kLoop.moves) {
+    if (kLoop.moves && scene.features.motion) {
       const auto time = time_of_path(d, scene.sampler, pixels, samples);
       hn::Store(time, d, packet.time + v);
       camera = moved(camera, camera_vectors(d, scene.camera_motion), time);
@@ -92,7 +88,6 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
     if constexpr (kLoop.records) hn::Store(hn::Set(du, static_cast<Id>(kOnlyDeltaBit)), du, carried.history + v);
-    if constexpr (kLoop.collects) store(Vec3<hn::Vec<D>>{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, carried.radiance);
   }
 }
 
@@ -110,11 +105,7 @@ HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, i
       return Vec3<hn::Vec<D>>{hn::LoadU(d, component[0] + i), hn::LoadU(d, component[1] + i),
                               hn::LoadU(d, component[2] + i)};
     };
-    const auto store = [&](const auto& value, auto& to) {
-      hn::Store(value.x, d, to[0] + v);
-      hn::Store(value.y, d, to[1] + v);
-      hn::Store(value.z, d, to[2] + v);
-    };
+    const auto store = [&](const auto& value, auto& to) { store3(d, value, to, v); };
     const auto base = at(stream.base), offset = at(stream.offset), direction = at(stream.direction);
     const auto origin = base + offset;
     store(origin, packet.origin);
@@ -127,9 +118,13 @@ HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, i
     const auto pixels = hn::LoadU(du, stream.pixel + i), samples = hn::LoadU(du, stream.sample + i);
     hn::Store(pixels, du, carried.pixel + v);
     hn::Store(samples, du, carried.sample + v);
-    if constexpr (kLoop.moves) hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
+    if (kLoop.moves && scene.features.motion)
+      hn::Store(time_of_path(d, scene.sampler, pixels, samples), d, packet.time + v);
     if constexpr (kLoop.records) hn::Store(hn::LoadU(du, stream.history + i), du, carried.history + v);
-    if constexpr (kLoop.collects) store(at(stream.radiance), carried.radiance);
+    if constexpr (kLoop.lit) {
+      hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
+      hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
+    }
   }
 }
 
@@ -153,16 +148,28 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     reset_hits(stream.packet);
     counts.rays += static_cast<std::uint64_t>(stream.packet.count);
     trace(tracer, stream.packet);
-    return shade<D, kLoop>(d, scene, tile, depth, carried, stream, alive, counts);
+    alive = shade<D, kLoop>(d, scene, tile, depth, carried, stream, alive, counts);
+    if constexpr (kLoop.lit)
+      if (stream.lit.shadow.count >= kPacketSize)
+        trace_shadow_packet<D, kLoop>(d, scene, tracer, tile, stream.lit, counts);
+    return alive;
   };
+  // At the end of each depth, so that a path adds up its light in the same order in every batch.
+  const auto trace_remaining_shadows = [&] {
+    if constexpr (kLoop.lit)
+      if (stream.lit.shadow.count > 0) trace_shadow_packet<D, kLoop>(d, scene, tracer, tile, stream.lit, counts);
+  };
+  if constexpr (kLoop.lit) stream.lit.shadow.count = 0;
   while (to_start > 0) {
     const int batch = static_cast<int>(std::min<std::uint64_t>(to_start, kStreamSize));
     to_start -= static_cast<std::uint64_t>(batch);
     int alive = 0;
     for (int i = 0; i < batch; i += kPacketSize) {
       load_camera_rays<D, kLoop>(d, scene, counter, std::min(kPacketSize, batch - i), stream.packet, carried);
+      if constexpr (kLoop.lit) begin_lit(d, i, carried, stream.lit);
       alive = trace_and_shade(0, alive);
     }
+    trace_remaining_shadows();
     for (std::uint32_t depth = 1; alive > 0; ++depth) {
       // Survivors overwrite paths that have been read: a packet never grows.
       int survivors = 0;
@@ -171,7 +178,9 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
         survivors = trace_and_shade(depth, survivors);
       }
       alive = survivors;
+      trace_remaining_shadows();
     }
+    if constexpr (kLoop.lit) deposit_batch<D, kLoop>(d, batch, scene, tile, stream.lit, counts);
   }
   return counts;
 }

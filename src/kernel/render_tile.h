@@ -12,10 +12,8 @@
 
 namespace orrery::kernel {
 
-/// Maximum width and height of an image: pixels are numbered y << 16 | x.
-inline constexpr int kLargestSide = 65536;
-
-/// A pixel's coordinates within the rendered window, from its number y << 16 | x within the frame.
+/// A pixel's coordinates within the rendered window, from its number y << 16 | x within the frame. No side of an image
+/// exceeds 65536.
 struct PixelPlace {
   int x, y;
 };

@@ -40,6 +40,83 @@ HWY_INLINE DiscPoint<D, V> sample_unit_disc(D d, V u, V v) {
   return {radius * turn.cos, radius * turn.sin};
 }
 
+/// Two unit vectors that form a right-handed orthonormal basis with the unit vector `axis`.
+///
+/// Reference  duff2017
+template <class V>
+struct Frame {
+  Vec3<V> x, y;
+};
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Frame<V> frame_around(D d, const Vec3<V>& axis) {
+  using T = hn::TFromD<D>;
+  const V one = hn::Set(d, T(1));
+  const V sign = hn::CopySign(one, axis.z);
+  const V a = hn::Neg(one / (sign + axis.z));
+  const V b = axis.x * axis.y * a;
+  return {{hn::MulAdd(sign * axis.x, axis.x * a, one), sign * b, hn::Neg(sign * axis.x)},
+          {b, hn::MulAdd(axis.y, axis.y * a, sign), hn::Neg(axis.y)}};
+}
+
+/// The solid angle of a sphere from outside, and what sampling it needs.
+template <class V>
+struct SubtendedCone {
+  V distance;       ///< to the centre
+  V sin2, cos;      ///< of half the apex angle: squared sine, and cosine
+  V one_minus_cos;  ///< does not cancel, at any distance
+};
+
+/// The cone that a sphere subtends from a point outside. Lanes from inside have no meaning; see is_outside.
+///
+/// Precision  1 - cos from sin^2 / (1 + cos), and cos from the difference (distance - radius) (distance + radius)
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE SubtendedCone<V> subtended_cone(D d, const Vec3<V>& to_center, V radius) {
+  const V one = hn::Set(d, hn::TFromD<D>(1));
+  const V distance = hn::Sqrt(dot(to_center, to_center));
+  const V sin = radius / distance;
+  const V cos = hn::Sqrt(hn::Max((distance - radius) * (distance + radius), hn::Zero(d))) / distance;
+  return {distance, sin * sin, cos, sin * sin / (one + cos)};
+}
+
+/// The solid angle of a cone with this 1 - cos, in steradians.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V solid_angle(D d, V one_minus_cos) {
+  return one_minus_cos * hn::Set(d, static_cast<hn::TFromD<D>>(6.283185307179586476925));
+}
+
+/// Points of a sphere that are visible from outside, uniform by solid angle.
+template <class V>
+struct SphereSample {
+  Vec3<V> direction;  ///< unit, to the point
+  Vec3<V> normal;     ///< unit, of the sphere at the point
+};
+
+/// Samples the visible points of a sphere.
+///
+/// `to_center` from the point outside to the sphere's centre
+/// Precision  the angle at the sphere's centre follows from the law of sines, without the difference of distances
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE SphereSample<V> sample_visible_sphere(D d, const Vec3<V>& to_center, const SubtendedCone<V>& cone, V u,
+                                                 V v) {
+  using T = hn::TFromD<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), two = hn::Set(d, T(2));
+  const V versine = u * cone.one_minus_cos;
+  const V cos = one - versine;
+  // sin^2 of the direction's angle divided by sin^2 of the rim's: sin^2 of the angle of incidence on the sphere.
+  const V incidence2 = u * (two - versine) / (one + cone.cos);
+  const V sin_incidence = hn::Sqrt(incidence2);
+  const V cos_incidence = hn::Sqrt(hn::Max(one - incidence2, zero));
+  const V rim = hn::Sqrt(cone.sin2);
+  const V sin = rim * sin_incidence;
+  const V sin_center = sin_incidence * hn::NegMulAdd(rim, cos_incidence, cos);
+  const V cos_center = hn::MulAdd(cos_incidence, cos, rim * incidence2);
+  const Vec3<V> axis = to_center * (one / cone.distance);
+  const auto frame = frame_around(d, axis);
+  const auto turn = sin_cos_turn(d, v);
+  const Vec3<V> across = mul_add(frame.x, turn.cos, frame.y * turn.sin);
+  return {mul_add(across, sin, axis * cos), neg_mul_add(axis, cos_center, across * sin_center)};
+}
+
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

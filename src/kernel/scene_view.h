@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "kernel/camera.h"
+#include "kernel/lights.h"
 #include "kernel/material.h"
 #include "kernel/pixel_filter.h"
 #include "kernel/sampler.h"
@@ -35,6 +36,7 @@ struct Features {
   bool hemisphere = false;  ///< some sphere has a hemisphere material
   bool sky = false;         ///< the background depends on the direction
   bool motion = false;      ///< camera or spheres move while the shutter is open
+  bool lit = false;         ///< something emits, or is sampled: paths gain radiance at their vertices
 };
 
 /// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
@@ -50,8 +52,9 @@ struct SceneView {
   const std::uint32_t* sphere_materials = nullptr;  ///< one per sphere, index into `materials`
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
-  /// One per material; null if nothing emits. Read only by loops that collect light along the path.
-  const Emission* emission = nullptr;
+  const Emission* emission = nullptr;  ///< one per material; null if nothing emits
+  Lights lights;                       ///< the emitters that light sampling chooses from
+  DirectLighting direct_lighting = DirectLighting::kMis;
   /// Changes of centre and radius of the first spheres until the shutter closes. The others do not move.
   const Sphere* motion = nullptr;
   std::size_t moving_count = 0;
@@ -81,6 +84,20 @@ inline Sphere sphere_at(const SceneView& scene, std::size_t id, double time) noe
   s.z = std::fma(change.z, time, s.z);
   s.radius = std::fma(change.radius, time, s.radius);
   return s;
+}
+
+/// The bounding sphere and power of a single emitter; if it moves, of its whole motion.
+inline LightNode light_leaf(const SceneView& scene, std::uint32_t id) noexcept {
+  const Sphere& s = scene.spheres[id];
+  const double* const rgb = scene.emission[scene.sphere_materials[id]].radiance;
+  LightNode leaf{{s.x, s.y, s.z}, s.radius, (rgb[0] + rgb[1] + rgb[2]) * (s.radius * s.radius)};
+  if (id >= scene.moving_count) return leaf;
+  const Sphere& change = scene.motion[id];
+  const double half[3] = {change.x / 2, change.y / 2, change.z / 2};
+  for (int k = 0; k < 3; ++k) leaf.center[k] += half[k];
+  leaf.radius = std::fmax(s.radius, s.radius + change.radius) +
+                std::sqrt((half[0] * half[0] + half[1] * half[1]) + half[2] * half[2]);
+  return leaf;
 }
 
 }  // namespace orrery::kernel

@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <cstddef>
+
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
 
@@ -31,6 +33,16 @@ HWY_INLINE Vec3<V> operator-(const Vec3<V>& a, const Vec3<V>& b) {
 template <class V>
 HWY_INLINE Vec3<V> operator*(const Vec3<V>& a, V s) {
   return {a.x * s, a.y * s, a.z * s};
+}
+/// Returns the product by components.
+template <class V>
+HWY_INLINE Vec3<V> operator*(const Vec3<V>& a, const Vec3<V>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+/// Returns the largest component.
+template <class V>
+HWY_INLINE V max(const Vec3<V>& a) {
+  return hn::Max(a.x, hn::Max(a.y, a.z));
 }
 template <class V>
 HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
@@ -63,6 +75,12 @@ HWY_INLINE Vec3<V> normalized(D d, const Vec3<V>& a) {
 template <class D, class T>
 HWY_INLINE Vec3<hn::Vec<D>> load3(D d, const T* x, const T* y, const T* z) {
   return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
+}
+template <class D, class T, std::size_t kSize>
+HWY_INLINE void store3(D d, const Vec3<hn::Vec<D>>& v, T (&to)[3][kSize], int at) {
+  hn::Store(v.x, d, to[0] + at);
+  hn::Store(v.y, d, to[1] + at);
+  hn::Store(v.z, d, to[2] + at);
 }
 template <class D, class T>
 HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const T* v) {

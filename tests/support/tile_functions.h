@@ -9,8 +9,4 @@ namespace orrery::test {
 /// kernel::render_tile_function with one lane: the reference for those with all lanes.
 kernel::RenderTile one_lane_tile_function(const kernel::Features& features, kernel::Precision precision);
 
-/// The loop that collects light along the path, for `exact` and for `fast`, of scenes that move or rest.
-kernel::RenderTile collecting_tile_function(bool records);
-kernel::RenderTileFast collecting_tile_fast_function(bool records);
-
 }  // namespace orrery::test

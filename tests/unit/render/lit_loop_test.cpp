@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path loop that collects light along the path: bit for bit the same where nothing emits, closed forms where
+// The lit path loop: bit for bit the same where nothing emits, closed forms where
 // something does.
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 #include "compile/compile.h"
 #include "render/tile_renderer.h"
 #include "support/everything.h"
-#include "support/tile_functions.h"
 
 namespace orrery::render {
 namespace {
@@ -29,15 +28,10 @@ struct Rendered {
   }
 };
 
-/// The collecting instances are those of scenes that move.
-void let_camera_rest(kernel::SceneView& view) {
-  kernel::Camera& c = view.camera_motion;
-  for (int k = 0; k < 3; ++k) c.origin[k] = c.forward[k] = c.right[k] = c.down[k] = c.lens_u[k] = c.lens_v[k] = 0;
-}
-
-enum class Kind { kPlain, kCollecting };
+enum class Kind { kPlain, kLit };
 
 void render(const compile::CompiledScene& compiled, kernel::SceneView view, Kind kind, bool records, Rendered& out) {
+  view.features.lit = kind == Kind::kLit;
   const auto accel = accel::make_embree(compiled.view(), compiled.precision);
   out.sums.assign(static_cast<std::size_t>(compiled.width * compiled.height), {});
   kernel::Tile tile;
@@ -53,14 +47,12 @@ void render(const compile::CompiledScene& compiled, kernel::SceneView view, Kind
     tile.events = &out.events;
   }
   if (compiled.precision == compile::Precision::kFast) {
-    const auto loop = kind == Kind::kCollecting ? test::collecting_tile_fast_function(records)
-                      : records                 ? kernel::record_tile_fast_function(view.features)
-                                                : kernel::render_tile_fast_function(view.features);
+    const auto loop =
+        records ? kernel::record_tile_fast_function(view.features) : kernel::render_tile_fast_function(view.features);
     out.counts = loop(view, accel->tracer(), tile, *std::make_unique<kernel::PathStreamFast>());
   } else {
-    const auto loop = kind == Kind::kCollecting ? test::collecting_tile_function(records)
-                      : records                 ? kernel::record_tile_function(view.features, compiled.precision)
-                                                : kernel::render_tile_function(view.features, compiled.precision);
+    const auto loop = records ? kernel::record_tile_function(view.features, compiled.precision)
+                              : kernel::render_tile_function(view.features, compiled.precision);
     out.counts = loop(view, accel->tracer(), tile, *std::make_unique<kernel::PathStream>());
   }
 }
@@ -89,7 +81,7 @@ void expect_same(const Rendered& a, const Rendered& b) {
   EXPECT_EQ(different, 0);
 }
 
-TEST(RenderCollectedLight, SameBitsWhereNothingEmits) {
+TEST(RenderLitLoop, SameBitsWhereNothingEmits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     for (const auto shading : {scene::Shading::kPath, scene::Shading::kNormal}) {
       for (const bool background_visible : {true, false}) {
@@ -104,11 +96,10 @@ TEST(RenderCollectedLight, SameBitsWhereNothingEmits) {
           const compile::CompiledScene compiled = compile::compile(scene);
           kernel::SceneView view = compiled.view();
           view.background_visible = background_visible;
-          if (!view.features.motion) let_camera_rest(view);
-          Rendered plain, collecting;
+          Rendered plain, lit;
           render(compiled, view, Kind::kPlain, records, plain);
-          render(compiled, view, Kind::kCollecting, records, collecting);
-          expect_same(plain, collecting);
+          render(compiled, view, Kind::kLit, records, lit);
+          expect_same(plain, lit);
           EXPECT_GT(plain.counts.rays, plain.sums.size());
         }
       }
@@ -140,18 +131,17 @@ struct Furnace {
     emission.resize(compiled.materials.size());
     for (kernel::Emission& e : emission) e.radiance[0] = e.radiance[1] = e.radiance[2] = emitted;
     view = compiled.view();
-    let_camera_rest(view);
     view.emission = emission.data();
   }
 };
 
-TEST(RenderCollectedLight, AFurnaceHasItsSeries) {
+TEST(RenderLitLoop, AFurnaceHasItsSeries) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     for (const int rays : {1, 2, 3, 20}) {
       const Furnace furnace(precision, rays, 4);
       for (const bool records : {false, true}) {
         Rendered out;
-        render(furnace.compiled, furnace.view, Kind::kCollecting, records, out);
+        render(furnace.compiled, furnace.view, Kind::kLit, records, out);
         EXPECT_EQ(out.counts.bad_samples, 0u);
         // Powers of two: exact in either precision.
         const double red = 8 - std::ldexp(8, -rays);
@@ -164,7 +154,7 @@ TEST(RenderCollectedLight, AFurnaceHasItsSeries) {
         for (const kernel::LightEvent& e : out.all_events()) {
           of_path[e.path] += e.value[0];
           const int bounces = -std::ilogb(e.value[0] / 4);
-          ASSERT_EQ(e.lobe, bounces == 0   ? kernel::Lobe::kBackground
+          ASSERT_EQ(e.lobe, bounces == 0   ? kernel::Lobe::kEmission
                             : bounces == 1 ? kernel::Lobe::kDiffuseDirect
                                            : kernel::Lobe::kDiffuseIndirect);
         }
@@ -178,10 +168,10 @@ TEST(RenderCollectedLight, AFurnaceHasItsSeries) {
   }
 }
 
-TEST(RenderCollectedLight, AbsorbedPathsKeepTheirLight) {
+TEST(RenderLitLoop, AbsorbedPathsKeepTheirLight) {
   const Furnace furnace(scene::Precision::kExact, 10, 4, scene::Metal{{0.5, 0.5, 0.5}, 1});
   Rendered out;
-  render(furnace.compiled, furnace.view, Kind::kCollecting, true, out);
+  render(furnace.compiled, furnace.view, Kind::kLit, true, out);
   EXPECT_LT(out.counts.rays, 10 * out.records.size()) << "some are absorbed";
   std::vector<double> of_path(out.records.size()), of_pixel(out.sums.size());
   for (const kernel::LightEvent& e : out.all_events()) of_path[e.path] += e.value[0];
@@ -194,10 +184,10 @@ TEST(RenderCollectedLight, AbsorbedPathsKeepTheirLight) {
     EXPECT_EQ(of_pixel[i], kernel::from_fixed_point(out.sums[i].rgb[0]));
 }
 
-TEST(RenderCollectedLight, LobesAddUpToTheBeauty) {
+TEST(RenderLitLoop, LobesAddUpToTheBeauty) {
   const Furnace furnace(scene::Precision::kExact, 5, 4);
   Rendered out;
-  render(furnace.compiled, furnace.view, Kind::kCollecting, true, out);
+  render(furnace.compiled, furnace.view, Kind::kLit, true, out);
   film::LayerRequest request;
   request.diffuse = request.background = true;
   std::vector<film::LayerPixel> layers(out.sums.size());
@@ -210,12 +200,12 @@ TEST(RenderCollectedLight, LobesAddUpToTheBeauty) {
   }
 }
 
-TEST(RenderCollectedLight, ABadValueCostsAPathItsWeightOnce) {
+TEST(RenderLitLoop, ABadValueCostsAPathItsWeightOnce) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
       const Furnace furnace(precision, 7, bad);
       Rendered out;
-      render(furnace.compiled, furnace.view, Kind::kCollecting, true, out);
+      render(furnace.compiled, furnace.view, Kind::kLit, true, out);
       EXPECT_EQ(out.counts.bad_samples, out.records.size());
       for (const kernel::PixelSum& sum : out.sums) {
         ASSERT_EQ(sum.weight, 0);

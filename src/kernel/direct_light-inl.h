@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Direct light: next-event estimation with shadow rays, and its weights. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_DIRECT_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_DIRECT_LIGHT_INL_H_
+#undef ORRERY_KERNEL_DIRECT_LIGHT_INL_H_
+#else
+#define ORRERY_KERNEL_DIRECT_LIGHT_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "kernel/compaction-inl.h"
+#include "kernel/light-inl.h"
+#include "kernel/path_stream.h"
+#include "kernel/record-inl.h"
+#include "kernel/scatter-inl.h"
+#include "kernel/surface-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+// Weights of the power heuristic in one variable: x is the density of BSDF sampling divided by that of light sampling.
+// The product of BSDF and cosine is albedo times the density, so a light sample contributes albedo * radiance * x, and
+// nothing is divided by a density. With the heuristic's weights, no sample exceeds albedo * radiance.
+
+/// The factor of albedo and radiance for light samples: x / (1 + x^2), and x if only lights are sampled.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V light_sample_factor(D d, DirectLighting mode, V x) {
+  const V one = hn::Set(d, hn::TFromD<D>(1));
+  return mode == DirectLighting::kLight ? x : one / (x + one / x);
+}
+
+/// The weight of light that a BSDF sample finds: 1 / (1 + 1 / x^2), and 0 if only lights are sampled.
+///
+/// `inverse`  1 / x; 0 where light sampling cannot find the light
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V bsdf_sample_weight(D d, DirectLighting mode, V inverse) {
+  const V zero = hn::Zero(d), one = hn::Set(d, hn::TFromD<D>(1));
+  if (mode == DirectLighting::kLight) return hn::IfThenElse(inverse > zero, zero, one);
+  return one / hn::MulAdd(inverse, inverse, one);
+}
+
+/// Adds radiance to paths of the batch.
+template <class D, class Lit>
+HWY_INLINE void gain(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, hn::Vec<IdTag<D>> paths, Lit& lit) {
+  using T = hn::TFromD<D>;
+  HWY_ALIGN T rgb[3][hn::MaxLanes(D())];
+  HWY_ALIGN hn::TFromD<IdTag<D>> path[hn::MaxLanes(D())];
+  hn::Store(light.x, d, rgb[0]);
+  hn::Store(light.y, d, rgb[1]);
+  hn::Store(light.z, d, rgb[2]);
+  hn::Store(paths, IdTag<D>(), path);
+  each_lane(d, lanes, [&](int i) {
+    for (int k = 0; k < 3; ++k) lit.radiance[k][path[i]] += rgb[k][i];
+  });
+}
+
+/// Radiance and light group of emitters, one per lane.
+template <class D>
+struct Emitted {
+  Vec3<hn::Vec<D>> radiance;
+  hn::Vec<IdTag<D>> group;
+};
+
+/// Emission of the spheres in the lanes of `hit`; sphere 0 in the others.
+///
+/// Domain     scene.emission is not null
+template <class D>
+HWY_INLINE Emitted<D> emitted(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, hn::Mask<D> hit) {
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  HWY_ALIGN Id id[hn::MaxLanes(D())], group[hn::MaxLanes(D())];
+  hn::Store(hn::IfThenElseZero(hn::RebindMask(du, hit), hits), du, id);
+  hn::Vec<D> rgb[4];
+  const auto emission = [&](std::size_t i) -> const Emission& { return scene.emission[scene.sphere_materials[id[i]]]; };
+  gather4(
+      d, [&](std::size_t i) { return emission(i).radiance; }, rgb);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) group[i] = static_cast<Id>(emission(i).group);
+  return {{rgb[0], rgb[1], rgb[2]}, hn::Load(du, group)};
+}
+
+/// The weight of emitters that rays with a sampled direction have hit.
+///
+/// `pdf`      density of the direction; infinite for delta materials
+template <class D, bool kMoves, class V = hn::Vec<D>>
+HWY_INLINE V emitter_weight(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+                            const hn::TFromD<D>* times, V pdf) {
+  using T = hn::TFromD<D>;
+  const V one = hn::Set(d, T(1));
+  if (scene.direct_lighting == DirectLighting::kBsdf || scene.lights.count == 0) return one;
+  const Vertex<D> at{ray.origin, ray.origin_low, normal_along(d, ray.offset, ray.direction)};
+  const auto sphere = load_spheres<D, kMoves>(d, scene, hits, times);
+  const auto cone = subtended_cone(d, to_center(at, sphere.center), sphere.radius);
+  const V probability = choice_probability(d, scene, at, hits);
+  const auto can_sample = hn::And(hn::And(cone.distance > sphere.radius, probability > hn::Zero(d)),
+                                  pdf < hn::Set(d, std::numeric_limits<T>::infinity()));
+  const V inverse = hn::IfThenElseZero(can_sample, probability / (pdf * solid_angle(d, cone.one_minus_cos)));
+  return bsdf_sample_weight(d, scene.direct_lighting, inverse);
+}
+
+/// Next-event estimation: chooses a light for each vertex, samples a point on it, and appends shadow rays to it to the
+/// shadow stream.
+///
+/// `center`   of the spheres that the vertices lie on
+/// `tinted`   throughput times albedo
+/// `lanes`    vertices whose material is neither delta nor an emitter
+template <class D, Loop kLoop, class Lit, class V = hn::Vec<D>>
+HWY_INLINE void connect(D d, const SceneView& scene, const Surface<D>& surface, const Vec3<V>& center,
+                        const Vec3<V>& tinted, hn::Mask<D> lanes, hn::Vec<IdTag<D>> self, hn::Vec<IdTag<D>> paths,
+                        hn::Vec<IdTag<D>> history, const Four<V>& random, const hn::TFromD<D>* times, Lit& lit) {
+  using T = hn::TFromD<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+  const auto origin = center + surface.offset;
+  const auto unit = normalized(d, surface.offset);
+  const Vertex<D> at{origin, sum_error(center, surface.offset, origin),
+                     select(surface.from_outside, unit, negated(unit))};
+  const auto chosen = choose_light(d, scene, at, random.v[2], random.v[3]);
+  const auto light = load_spheres<D, kLoop.moves>(d, scene, chosen.spheres, times);
+  const auto to = to_center(at, light.center);
+  const auto cone = subtended_cone(d, to, light.radius);
+  const auto sample = sample_visible_sphere(d, to, cone, random.v[0], random.v[1]);
+  const V pdf = pdf_bsdf(d, scene.features, surface, sample.direction);
+  const V factor =
+      light_sample_factor(d, scene.direct_lighting, pdf * solid_angle(d, cone.one_minus_cos) / chosen.probability);
+  lanes = hn::And(lanes, hn::And(cone.distance > light.radius, chosen.probability > zero));
+  lanes = hn::And(lanes, factor > zero);
+  if (hn::AllFalse(d, lanes)) return;
+  const auto source = emitted(d, scene, chosen.spheres, lanes);
+
+  auto& shadow = lit.shadow;
+  const int n = shadow.count;
+  const Compactor<D> compactor(d, lanes);
+  compactor.store3(d, center, shadow.base, n);
+  compactor.store3(d, surface.offset, shadow.offset, n);
+  compactor.store3(d, mul_add(sample.normal, light.radius, to), shadow.direction, n);
+  compactor.store(d, one, shadow.distance + n);
+  if constexpr (kLoop.moves)
+    if (scene.features.motion) compactor.store(d, hn::Load(d, times), shadow.time + n);
+  compactor.store3(d, source.radiance * tinted * factor, shadow.light, n);
+  compactor.store_ids(d, self, shadow.self + n);
+  compactor.store_ids(d, chosen.spheres, shadow.target + n);
+  compactor.store_ids(d, paths, shadow.path + n);
+  if constexpr (kLoop.records) {
+    compactor.store_ids(d, history, shadow.history + n);
+    compactor.store_ids(d, source.group, shadow.group + n);
+  }
+  shadow.count += compactor.count();
+}
+
+/// Traces the last packet of shadow rays in the stream and adds the light that is not occluded to its paths.
+template <class D, Loop kLoop, class Lit>
+HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile, Lit& lit,
+                                    TileCounts& counts) {
+  using T = hn::TFromD<D>;
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  auto& shadow = lit.shadow;
+  auto& packet = shadow.packet;
+  packet.count = std::min(shadow.count, kPacketSize);
+  shadow.count -= packet.count;
+  const int step = static_cast<int>(hn::Lanes(d));
+  const auto one = hn::Set(d, T(1));
+  for (int v = 0; v < packet.count; v += step) {
+    const int i = shadow.count + v;
+    const auto at = [&](const auto& component) {
+      return Vec3<hn::Vec<D>>{hn::LoadU(d, component[0] + i), hn::LoadU(d, component[1] + i),
+                              hn::LoadU(d, component[2] + i)};
+    };
+    const auto base = at(shadow.base), offset = at(shadow.offset), direction = at(shadow.direction);
+    const auto origin = base + offset;
+    store3(d, origin, packet.origin, v);
+    store3(d, sum_error(base, offset, origin), packet.origin_low, v);
+    store3(d, offset, packet.offset, v);
+    store3(d, direction, packet.direction, v);
+    hn::Store(one / dot(direction, direction), d, packet.inverse_square + v);
+    hn::Store(hn::LoadU(d, shadow.distance + i), d, packet.distance + v);
+    hn::Store(hn::LoadU(du, shadow.self + i), du, packet.self + v);
+    hn::Store(hn::LoadU(du, shadow.target + i), du, packet.target + v);
+    if constexpr (kLoop.moves)
+      if (scene.features.motion) hn::Store(hn::LoadU(d, shadow.time + i), d, packet.time + v);
+  }
+  counts.rays += static_cast<std::uint64_t>(packet.count);
+  occlude(tracer, packet);
+  for (int v = 0; v < packet.count; v += step) {
+    const int i = shadow.count + v;
+    const auto active = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
+    const auto is_free = hn::RebindMask(d, hn::Load(du, packet.occluded + v) == hn::Zero(du));
+    const auto lanes = hn::And(active, is_free);
+    if (hn::AllFalse(d, lanes)) continue;
+    const Vec3<hn::Vec<D>> light{hn::LoadU(d, shadow.light[0] + i), hn::LoadU(d, shadow.light[1] + i),
+                                 hn::LoadU(d, shadow.light[2] + i)};
+    const auto paths = hn::LoadU(du, shadow.path + i);
+    gain(d, lanes, light, paths, lit);
+    if constexpr (kLoop.records) {
+      if (!tile.record_light) continue;
+      HWY_ALIGN Id pixel[hn::MaxLanes(D())] = {}, sample[hn::MaxLanes(D())] = {};
+      each_lane(d, lanes, [&](int lane) {
+        pixel[lane] = lit.pixel[shadow.path[i + lane]];
+        sample[lane] = lit.sample[shadow.path[i + lane]];
+      });
+      Recorder<D> record(d, scene, tile, hn::Load(du, pixel), hn::Load(du, sample));
+      record.event(d, lanes, light, hn::LoadU(du, shadow.history + i), hn::LoadU(du, shadow.group + i),
+                   Lobe::kEmission);
+    }
+  }
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

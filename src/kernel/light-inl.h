@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Choice and sampling of emitters. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_LIGHT_INL_H_
+#undef ORRERY_KERNEL_LIGHT_INL_H_
+#else
+#define ORRERY_KERNEL_LIGHT_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "kernel/gather-inl.h"
+#include "kernel/intersect-inl.h"
+#include "kernel/lights.h"
+#include "kernel/sample-inl.h"
+#include "kernel/scene_view.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+/// Points from which light is sampled, one per lane.
+template <class D>
+struct Vertex {
+  using V = hn::Vec<D>;
+  Vec3<V> origin, origin_low;  ///< the point, as in RaysOf
+  Vec3<V> normal;              ///< unit, on the side that is lit
+};
+
+/// The normal at the origin of rays that leave spheres, on the side to which they leave.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> normal_along(D d, const Vec3<V>& offset, const Vec3<V>& direction) {
+  const auto unit = normalized(d, offset);
+  return select(dot(direction, offset) < hn::Zero(d), negated(unit), unit);
+}
+
+/// The vector from a vertex to sphere centres.
+template <class D>
+HWY_INLINE Vec3<hn::Vec<D>> to_center(const Vertex<D>& at, const Vec3<hn::Vec<D>>& center) {
+  return (center - at.origin) - at.origin_low;
+}
+
+/// Tree nodes, one per lane.
+template <class D>
+class LightNodes {
+ public:
+  void set(std::size_t lane, const LightNode& node) {
+    using T = hn::TFromD<D>;
+    for (int k = 0; k < 3; ++k) center_[k][lane] = static_cast<T>(node.center[k]);
+    radius_[lane] = static_cast<T>(node.radius);
+    power_[lane] = static_cast<T>(node.power);
+  }
+
+  /// An estimate of the irradiance at the vertices: power / distance^2 times the largest cosine to the normal that a
+  /// point of the bounding sphere can have. Zero only if the whole sphere is below the horizon, or dark.
+  HWY_INLINE hn::Vec<D> importance(D d, const Vertex<D>& at) const {
+    using T = hn::TFromD<D>;
+    using V = hn::Vec<D>;
+    const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+    const V radius = hn::Load(d, radius_);
+    const Vec3<V> to = to_center<D>(at, {hn::Load(d, center_[0]), hn::Load(d, center_[1]), hn::Load(d, center_[2])});
+    const auto cone = subtended_cone(d, to, radius);
+    const V sin = radius / cone.distance;
+    const V cos_center = dot(to, at.normal) / cone.distance;
+    const V sin_center = hn::Sqrt(hn::Max(hn::NegMulAdd(cos_center, cos_center, one), zero));
+    // cos(max(angle to the centre - half apex angle, 0))
+    const V nearest = hn::IfThenElse(cos_center > cone.cos, one, hn::MulAdd(cos_center, cone.cos, sin_center * sin));
+    const auto outside = cone.distance > radius;
+    const V cosine = hn::IfThenElse(outside, hn::Max(nearest, zero), one);
+    const V distance = hn::Max(cone.distance, radius);
+    return hn::Load(d, power_) * cosine / (distance * distance);
+  }
+
+ private:
+  static constexpr std::size_t kMax = hn::MaxLanes(D());
+  HWY_ALIGN hn::TFromD<D> center_[3][kMax], radius_[kMax], power_[kMax];
+};
+
+/// Emitters that were chosen for vertices.
+template <class D>
+struct ChosenLights {
+  hn::Vec<IdTag<D>> spheres;  ///< ids
+  hn::Vec<D> probability;     ///< of the choice; 0: none was chosen
+};
+
+/// Descends the light tree at each vertex, to the leaf that `next` leads to.
+///
+/// `next`     called as next(left, whole, level): whether each lane continues to the left child, whose share of
+///            the importance is left / whole
+/// Result     the probability of the path to the leaf
+template <class D, class Next>
+HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, LightRange (&range)[hn::MaxLanes(D())],
+                              Next next) {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+  const Lights& lights = scene.lights;
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) range[i] = {0, lights.count};
+  V probability = one;
+  LightNodes<D> left, right;
+  HWY_ALIGN T is_inner[kMax], goes_left[kMax];
+  const auto set = [&](LightNodes<D>& nodes, std::size_t lane, LightRange r) {
+    nodes.set(lane, r.end - r.begin > 1 ? lights.nodes[Lights::middle(r)] : light_leaf(scene, lights.spheres[r.begin]));
+  };
+  for (int level = 0;; ++level) {
+    bool any = false;
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) any = any || range[i].end - range[i].begin > 1;
+    if (!any) return probability;
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      const bool inner = range[i].end - range[i].begin > 1;
+      is_inner[i] = inner ? T(1) : T(0);
+      const std::uint32_t m = inner ? Lights::middle(range[i]) : range[i].end;
+      set(left, i, {range[i].begin, m});
+      set(right, i, inner ? LightRange{m, range[i].end} : LightRange{range[i].begin, m});
+    }
+    const auto inner = hn::Load(d, is_inner) != zero;
+    const V of_left = left.importance(d, at);
+    const V whole = of_left + right.importance(d, at);
+    const V share = hn::IfThenElseZero(whole > zero, of_left / whole);
+    const auto go_left = next(share, inner, range, level);
+    // Where nothing has any importance both probabilities are 0.
+    const V other = hn::IfThenElseZero(whole > zero, one - share);
+    probability = hn::IfThenElse(inner, probability * hn::IfThenElse(go_left, share, other), probability);
+    hn::Store(hn::IfThenElseZero(go_left, one), d, goes_left);
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      if (range[i].end - range[i].begin <= 1) continue;
+      const std::uint32_t m = Lights::middle(range[i]);
+      range[i] = goes_left[i] != T(0) ? LightRange{range[i].begin, m} : LightRange{m, range[i].end};
+    }
+  }
+}
+
+/// After this many levels of the light tree a second random number is used, since a choice uses up bits of the first.
+inline constexpr int kLevelsPerNumber = 8;
+
+/// Chooses an emitter for each vertex, by the nodes' importance.
+///
+/// `u`, `fresh`  uniform in 0..1; `fresh` is used after kLevelsPerNumber levels
+/// Domain        scene.lights.count > 0
+/// Reference     estevez2018
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE ChosenLights<D> choose_light(D d, const SceneView& scene, const Vertex<D>& at, V u, V fresh) {
+  using Id = hn::TFromD<IdTag<D>>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  const V one = hn::Set(d, hn::TFromD<D>(1));
+  LightRange range[kMax];
+  const V probability = descend(d, scene, at, range, [&](V share, hn::Mask<D> inner, const auto&, int level) {
+    if (level == kLevelsPerNumber) u = fresh;
+    const auto go_left = u < share;
+    const V rescaled = hn::IfThenElse(go_left, u / share, (u - share) / (one - share));
+    u = hn::IfThenElse(inner, rescaled, u);
+    return go_left;
+  });
+  HWY_ALIGN Id ids[kMax];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) ids[i] = static_cast<Id>(scene.lights.spheres[range[i].begin]);
+  return {hn::Load(IdTag<D>(), ids), probability};
+}
+
+/// The probability with which choose_light chooses given emitters; 1 in lanes whose sphere is no leaf of the tree.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V choice_probability(D d, const SceneView& scene, const Vertex<D>& at, hn::Vec<IdTag<D>> spheres) {
+  using T = hn::TFromD<D>;
+  using Id = hn::TFromD<IdTag<D>>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  if (scene.lights.count == 1) return hn::Set(d, T(1));
+  HWY_ALIGN Id ids[kMax];
+  HWY_ALIGN T goes_left[kMax];
+  hn::Store(spheres, IdTag<D>(), ids);
+  LightRange range[kMax];
+  return descend(d, scene, at, range, [&](V, hn::Mask<D>, const auto& ranges, int) {
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
+      goes_left[i] = scene.lights.leaf(static_cast<std::uint32_t>(ids[i])) < Lights::middle(ranges[i]) ? T(1) : T(0);
+    return hn::Load(d, goes_left) != hn::Zero(d);
+  });
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace orrery::kernel {
+
+/// Sampling of direct light at non-delta vertices.
+enum class DirectLighting : std::uint8_t {
+  kMis,    ///< light and BSDF sampling, weighted by the power heuristic
+  kBsdf,   ///< BSDF sampling only
+  kLight,  ///< light sampling only, wherever the light can be sampled
+};
+
+/// A bounding sphere of emitters and their power. Fetched as five doubles.
+struct LightNode {
+  double center[3];
+  double radius;
+  double power;  ///< radiance, summed over the channels, times radius^2, summed over the emitters
+};
+
+/// A range of leaves of the light tree.
+struct LightRange {
+  std::uint32_t begin, end;
+};
+
+/// The emitting spheres, as leaves of an implicit balanced tree: a range of leaves is split in the middle, down to
+/// single leaves. Owns nothing.
+struct Lights {
+  static constexpr std::uint32_t kNoLeaf = 0xffffffffu;
+
+  const std::uint32_t* spheres = nullptr;  ///< sphere id of each leaf
+  const LightNode* nodes = nullptr;        ///< of each range of two leaves or more, at its `middle`
+  const std::uint32_t* leaves = nullptr;   ///< leaf of each sphere from `first_sphere` on, or kNoLeaf
+  std::uint32_t first_sphere = 0;
+  std::uint32_t end_sphere = 0;
+  std::uint32_t count = 0;  ///< leaves; 0: no emitter is sampled
+
+  static std::uint32_t middle(LightRange r) noexcept { return r.begin + (r.end - r.begin) / 2; }
+  /// The leaf of a sphere, or kNoLeaf.
+  std::uint32_t leaf(std::uint32_t sphere) const noexcept {
+    return sphere >= first_sphere && sphere < end_sphere ? leaves[sphere - first_sphere] : kNoLeaf;
+  }
+};
+
+}  // namespace orrery::kernel

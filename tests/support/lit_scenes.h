@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace orrery::test {
+
+struct NamedScene {
+  std::string name;
+  scene::Scene scene;
+  const scene::Scene* closing = nullptr;
+};
+
+/// A floor, a diffuse ball and a black sky; material 0 is the floor, 1 the ball.
+inline scene::Scene dark_stage(int width_px, int height_px) {
+  scene::Scene s;
+  s.image = {width_px, height_px};
+  s.camera.look_from = {0, 2, 6};
+  s.camera.look_at = {0, 0.7, 0};
+  s.camera.vfov = 40;
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0, 0, 0};
+  s.materials = {{"floor", scene::Lambertian{{0.5, 0.5, 0.5}}}, {"ball", scene::Lambertian{{0.7, 0.3, 0.2}}}};
+  s.spheres = {{{0, -1000, 0}, 1000, 0, "floor"}, {{0, 0.8, 0}, 0.8, 1, "ball"}};
+  return s;
+}
+
+/// Adds an emitter with a material of its own.
+inline void add_lamp(scene::Scene& s, math::Vec3d center, double radius, math::Vec3d radiance,
+                     const std::string& group = {}) {
+  s.materials.push_back({"lamp" + std::to_string(s.materials.size()), scene::Emitter{radiance, 0, group}});
+  s.spheres.push_back({center, radius, static_cast<std::uint32_t>(s.materials.size() - 1)});
+}
+
+/// Adds a ball beside the diffuse one.
+inline void add_ball(scene::Scene& s, math::Vec3d center, double radius, const scene::MaterialModel& model) {
+  s.materials.push_back({"ball" + std::to_string(s.materials.size()), model});
+  s.spheres.push_back({center, radius, static_cast<std::uint32_t>(s.materials.size() - 1)});
+}
+
+/// The stage under lights that are each hard in another way.
+inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
+  std::vector<NamedScene> out;
+  const auto add = [&](const char* name) -> scene::Scene& {
+    out.push_back({name, dark_stage(width_px, height_px)});
+    return out.back().scene;
+  };
+  add_lamp(add("small lamp"), {1.5, 2.5, 1}, 0.25, {60, 50, 40});
+  add_lamp(add("huge lamp"), {4, 9, -3}, 6, {1, 0.8, 0.6});
+  scene::Scene& many = add("many lamps");
+  for (int i = 0; i < 40; ++i)
+    add_lamp(many, {-3 + 0.75 * (i % 8), 0.5 + 0.5 * (i / 8), -1.5 + 0.4 * (i % 5)}, 0.05 + 0.01 * (i % 7),
+             {5.0 + i % 3, 5.0 + i % 5, 5.0 + i % 7});
+  scene::Scene& glass = add("glass in front of a lamp");
+  add_lamp(glass, {1.2, 2.2, 1}, 0.4, {20, 20, 20});
+  add_ball(glass, {0.9, 1.8, 1}, 0.35, scene::Dielectric{1.5, scene::Fresnel::kExact});
+  scene::Scene& metal = add("fuzzy metal");
+  add_lamp(metal, {1.5, 2.5, 1}, 0.5, {15, 15, 15});
+  add_ball(metal, {1.6, 0.6, 0.5}, 0.6, scene::Metal{{0.9, 0.7, 0.5}, 0.3});
+  add_ball(metal, {-1.6, 0.6, 0.5}, 0.6, scene::Metal{{0.8, 0.8, 0.8}, 1});
+  scene::Scene& inside = add("camera inside an emitter");
+  add_lamp(inside, {0, 2, 6}, 8, {0.5, 0.4, 0.3});
+  add_lamp(inside, {1.5, 2.5, 1}, 0.4, {10, 10, 10});
+  scene::Scene& hemisphere = add("hemisphere material beside a lamp that touches the floor");
+  hemisphere.materials[1].model = scene::Hemisphere{{0.6, 0.6, 0.6}};
+  add_lamp(hemisphere, {1.5, 0.4, 1}, 0.4, {8, 8, 8});
+  return out;
+}
+
+}  // namespace orrery::test

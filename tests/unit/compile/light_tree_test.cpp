@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compile/light_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "compile/compile.h"
+#include "support/light_batch.h"
+#include "support/lit_scenes.h"
+
+namespace orrery::compile {
+namespace {
+
+using math::Vec3d;
+
+scene::Scene random_lamps(int count, std::uint32_t seed) {
+  scene::Scene s = test::dark_stage(16, 9);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> at(-10, 10), size(0.001, 0.2), power(0.1, 10);
+  for (int i = 0; i < count; ++i) {
+    const double x = at(random), y = at(random), z = at(random), r = size(random), light = power(random);
+    test::add_lamp(s, {x, y, z}, r, {light, light, light});
+  }
+  return s;
+}
+
+double distance(const double (&a)[3], const kernel::Sphere& s) {
+  return std::hypot(a[0] - s.x, a[1] - s.y, a[2] - s.z);
+}
+
+TEST(CompileLightTree, EveryNodeBoundsItsEmittersAndHoldsTheirPower) {
+  const CompiledScene compiled = compile(random_lamps(200, 1));
+  const LightTree& tree = compiled.light_tree;
+  ASSERT_EQ(tree.spheres.size(), 200u);
+  EXPECT_EQ(std::set<std::uint32_t>(tree.spheres.begin(), tree.spheres.end()).size(), 200u);
+  std::vector<kernel::LightRange> ranges = {{0, 200}};
+  int nodes = 0;
+  while (!ranges.empty()) {
+    const kernel::LightRange r = ranges.back();
+    ranges.pop_back();
+    if (r.end - r.begin < 2) continue;
+    const std::uint32_t middle = kernel::Lights::middle(r);
+    const kernel::LightNode& node = tree.nodes[middle];
+    double power = 0;
+    for (std::uint32_t leaf = r.begin; leaf < r.end; ++leaf) {
+      const kernel::Sphere& s = compiled.spheres[tree.spheres[leaf]];
+      EXPECT_LE(distance(node.center, s) + s.radius, node.radius * (1 + 1e-14));
+      power += kernel::light_leaf(compiled.view(), tree.spheres[leaf]).power;
+    }
+    EXPECT_NEAR(node.power, power, 1e-12 * power);
+    ++nodes;
+    ranges.push_back({r.begin, middle});
+    ranges.push_back({middle, r.end});
+  }
+  EXPECT_EQ(nodes, 199);
+  for (std::uint32_t leaf = 0; leaf < 200; ++leaf) EXPECT_EQ(tree.view().leaf(tree.spheres[leaf]), leaf);
+  EXPECT_EQ(tree.view().leaf(0), kernel::Lights::kNoLeaf) << "the floor";
+  EXPECT_EQ(tree.view().leaf(1000), kernel::Lights::kNoLeaf);
+}
+
+TEST(CompileLightTree, DarkEmittersAreLeftOut) {
+  scene::Scene s = test::dark_stage(16, 9);
+  test::add_lamp(s, {0, 3, 0}, 1, {0, 0, 0});
+  EXPECT_TRUE(compile(s).light_tree.spheres.empty());
+  test::add_lamp(s, {0, 5, 0}, 1, {0, 1e-30, 0});
+  EXPECT_EQ(compile(s).light_tree.spheres, std::vector<std::uint32_t>{3});
+}
+
+TEST(CompileLightTree, NoTreeIfLightsAreNotSampled) {
+  scene::Scene s = random_lamps(3, 1);
+  s.render.direct_lighting = scene::DirectLighting::kBsdf;
+  EXPECT_TRUE(compile(s).light_tree.spheres.empty());
+  EXPECT_FALSE(compile(s).emission.empty());
+  EXPECT_TRUE(compile(test::dark_stage(16, 9)).emission.empty());
+}
+
+TEST(CompileLightTree, FortyEightBytesPerEmitter) {
+  EXPECT_LE(compile(random_lamps(1000, 2)).light_tree.bytes(), 48u * 1000u);
+}
+
+TEST(CompileLightTree, MovingEmittersAreBoundedDuringTheirWholeMotion) {
+  scene::Scene open = random_lamps(20, 3), closed = open;
+  for (std::size_t i = 2; i < closed.spheres.size(); ++i) {
+    closed.spheres[i].center = closed.spheres[i].center + Vec3d{0.5, -0.25, static_cast<double>(i)};
+    closed.spheres[i].radius *= 2;
+  }
+  const CompiledScene compiled = compile(open, &closed);
+  const kernel::SceneView view = compiled.view();
+  const kernel::LightNode& root = compiled.light_tree.nodes[10];
+  for (std::uint32_t id = 2; id < 22; ++id)
+    for (const double time : {0.0, 0.5, 1.0}) {
+      const kernel::Sphere s = kernel::sphere_at(view, id, time);
+      EXPECT_LE(distance(root.center, s) + s.radius, root.radius * (1 + 1e-14));
+    }
+}
+
+/// Points outside, among and far from the lamps, with normals to and away from them.
+std::vector<std::pair<Vec3d, Vec3d>> vertices() {
+  return {{{0, 0, 0}, {0, 1, 0}},    {{3, -2, 1}, {0, 0, -1}},     {{30, 0, 0}, {1, 0, 0}},
+          {{30, 1, 2}, {-1, 0, 0}},  {{1e6, 0, 0}, {-1, 0, 0}},    {{0, -1e9, 0}, {0, 1, 0}},
+          {{0, 10.5, 0}, {0, 1, 0}}, {{9.9, 9.9, 9.9}, {0, -1, 0}}};
+}
+
+TEST(KernelLights, ProbabilitiesOfAllEmittersSumToOneOrNoneCanBeReached) {
+  const CompiledScene compiled = compile(random_lamps(157, 4));
+  for (const auto& [point, normal] : vertices()) {
+    double sum = 0;
+    for (const std::uint32_t id : compiled.light_tree.spheres)
+      sum += test::choice_probability(compiled.view(), point, normal, id);
+    // Above the horizon of no emitter, some choice may lead to a node without importance.
+    EXPECT_LE(sum, 1 + 1e-12);
+    if (std::abs(point.x) < 1e5 && normal.x <= 0 && point.y < 10) EXPECT_GT(sum, 0.9);
+  }
+}
+
+TEST(KernelLights, ChoicesHaveTheProbabilityThatIsReported) {
+  const CompiledScene compiled = compile(random_lamps(37, 5));
+  for (const auto& [point, normal] : vertices()) {
+    constexpr int kDraws = 100000;
+    std::vector<int> count(100);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int i = 0; i < kDraws; ++i) {
+      const test::Choice c = test::choose_light(compiled.view(), point, normal, (i + 0.5) / kDraws, uniform(random));
+      if (c.probability == 0) continue;
+      ++count[c.sphere];
+      ASSERT_NEAR(c.probability, test::choice_probability(compiled.view(), point, normal, c.sphere),
+                  1e-14 * c.probability);
+    }
+    for (std::uint32_t id = 2; id < 39; ++id) {
+      const double p = test::choice_probability(compiled.view(), point, normal, id);
+      EXPECT_NEAR(count[id], p * kDraws, 6) << id;
+    }
+  }
+}
+
+TEST(KernelLights, ScalingTheSceneByAPowerOfTwoChangesNoChoice) {
+  scene::Scene s = random_lamps(60, 6);
+  const CompiledScene compiled = compile(s);
+  for (scene::Sphere& sphere : s.spheres) {
+    sphere.center = sphere.center * 0x1p40;
+    sphere.radius *= 0x1p40;
+  }
+  const CompiledScene scaled = compile(s);
+  EXPECT_EQ(compiled.light_tree.spheres, scaled.light_tree.spheres);
+  for (const auto& [point, normal] : vertices())
+    for (const double u : {0.1, 0.4, 0.7, 0.95}) {
+      const test::Choice a = test::choose_light(compiled.view(), point, normal, u, 0.3);
+      const test::Choice b = test::choose_light(scaled.view(), point * 0x1p40, normal, u, 0.3);
+      EXPECT_EQ(a.sphere, b.sphere);
+      EXPECT_EQ(a.probability, b.probability);
+    }
+}
+
+TEST(KernelLights, ALightThatIsPartlyAboveTheHorizonCanBeChosen) {
+  // Two lamps below the horizon, the second reaches above it by a hair's breadth.
+  scene::Scene s = test::dark_stage(16, 9);
+  test::add_lamp(s, {3, -1, 0}, 0.99, {1, 1, 1});
+  test::add_lamp(s, {-3, -1, 0}, 1.0001, {1, 1, 1});
+  const CompiledScene compiled = compile(s);
+  EXPECT_EQ(test::choice_probability(compiled.view(), {0, 0, 0}, {0, 1, 0}, 2), 0);
+  EXPECT_EQ(test::choice_probability(compiled.view(), {0, 0, 0}, {0, 1, 0}, 3), 1);
+}
+
+TEST(KernelLights, IrradianceOfASphereIsExactAtAnyDistance) {
+  // Quadrature over the sampler: E = pi L (r / d)^2 for a light overhead. The integrand is linear in u.
+  for (const double excess : {1e-13, 1e-10, 1e-6, 1e-3, 0.1, 1.0, 9.0, 1e3, 1e6, 1e9, 1e12, 1e15, 1e18}) {
+    const double distance = 1 + excess;
+    double mean = 0;
+    constexpr int kSteps = 64;
+    for (int i = 0; i < kSteps; ++i) {
+      const test::VisiblePoint p = test::visible_point({0, 0, distance}, 1, (i + 0.5) / kSteps, 0.3);
+      mean += p.direction.z / kSteps;
+      EXPECT_NEAR(math::length(p.direction), 1, 1e-15);
+      EXPECT_NEAR(math::length(p.normal), 1, 1e-15);
+    }
+    const double expected = std::numbers::pi / (distance * distance);
+    EXPECT_NEAR(mean * test::visible_point({0, 0, distance}, 1, 0.5, 0.5).solid_angle / expected, 1, 1e-12) << distance;
+  }
+}
+
+TEST(KernelLights, SampledPointsLieOnTheSphereAlongTheDirectionAndFaceTheViewer) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double distance : {1.0001, 1.5, 3.0, 100.0, 1e7}) {
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3d axis = math::normalized(Vec3d{uniform(random) - 0.5, uniform(random) - 0.5, uniform(random) - 0.5});
+      const Vec3d center = axis * distance;
+      const test::VisiblePoint p = test::visible_point(center, 1, uniform(random), uniform(random));
+      EXPECT_LE(math::dot(p.normal, p.direction), 1e-6);
+      const Vec3d point = center + p.normal;
+      EXPECT_NEAR(math::length(math::cross(point, p.direction)), 0, 1e-14 * distance * distance);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orrery::compile
