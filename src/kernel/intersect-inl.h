@@ -201,9 +201,9 @@ HWY_INLINE hn::Vec<D> own_distance(D d, const Rays<D>& ray, hn::Vec<D> distance)
   return hn::NegMulAdd(rest, hn::Set(d, static_cast<T>(2)), distance);
 }
 
-/// The hit point for a distance from `nearest`.
+/// The hit point at a distance that `nearest` returned.
 ///
-/// Domain     lanes in which `nearest` hit this sphere
+/// Domain     lanes whose rays hit this sphere
 template <class D, Precision kPrecision>
 HWY_INLINE HitPoint<hn::Vec<D>> hit_point(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self,
                                           hn::Vec<D> distance) {
