@@ -43,7 +43,7 @@ using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene
 ///
 /// Errors     base::Error: kMissingInput if the scene cannot be opened, or if the only errors are points files that
 ///            cannot be opened; kIo; kBadData with the diagnostics of the file, the overrides and the points files,
-///            each with its location, the first kMostErrors of them
+///            each with its location, the first kMaxErrors of them
 /// Reference  docs/scene-format.md
 ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {},
                       int frame = kFirstFrame, const SceneCheck& also = {});

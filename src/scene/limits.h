@@ -7,7 +7,7 @@ namespace orrery::scene {
 inline constexpr double kLongestShutter = 100;
 
 /// Maximum absolute frame number of a [[key]], and maximum turntable length, frames.
-inline constexpr double kMostFrames = 1e6;
+inline constexpr double kMaxFrame = 1e6;
 
 /// Maximum absolute coordinate and radius, scene units: squares and products of squares stay far inside the range of a
 /// double.

@@ -72,7 +72,7 @@ Table animation_table() {
   return {"animation",
           {number<S>("fps", {0.001, 1000}, {"frames per second", "Frame rate, written to the EXR header"},
                      [](S& s) -> double& { return s.animation.fps; }),
-           number<S>("turntable", {-kMostFrames, kMostFrames},
+           number<S>("turntable", {-kMaxFrame, kMaxFrame},
                      {"frames",
                       "Number of frames per orbit of the camera around `look_at`, about `up`. The camera is at "
                       "`look_from` in frame 1 and moves to its right; negative values: to its left. 0: no orbit"},
