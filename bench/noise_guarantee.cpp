@@ -133,12 +133,12 @@ class Subject {
     s.image.width = o.width;
     s.image.height = o.width * 9 / 16;
     s.render.sampler = sampler == "independent" ? scene::Sampler::kIndependent : scene::Sampler::kSobol;
-    world_ = compile::compile(s);
-    accel_ = render::build(world_, render::available_threads());
+    compiled_ = compile::compile(s);
+    accel_ = render::build(compiled_, render::available_threads());
   }
 
   std::size_t pixels() const {
-    return static_cast<std::size_t>(world_.width) * static_cast<std::size_t>(world_.height);
+    return static_cast<std::size_t>(compiled_.width) * static_cast<std::size_t>(compiled_.height);
   }
 
   render::Result adaptive(std::uint32_t seed, double noise, int most) {
@@ -151,12 +151,12 @@ class Subject {
  private:
   render::Result run(std::uint32_t seed, int samples, render::Settings settings) {
     settings.traversal = accel::Traversal::kPacket;
-    world_.sampler.seed = seed;
-    world_.samples = samples;
-    return render::render(world_, *accel_, settings);
+    compiled_.sampler.seed = seed;
+    compiled_.samples = samples;
+    return render::render(compiled_, *accel_, settings);
   }
 
-  compile::CompiledScene world_;
+  compile::CompiledScene compiled_;
   std::unique_ptr<accel::Accel> accel_;
 };
 
@@ -206,7 +206,7 @@ void measure_errors(const Case& c, const std::string& sampler, const Options& o,
     double noise = 0, samples = 0;
     int uniform_samples = 0;
     std::vector<Values> adaptive, uniform;
-    std::vector<double> told;
+    std::vector<double> reported;
   };
   Subject subject(c.scene(), o, sampler);
   std::vector<Target> targets;
@@ -219,7 +219,7 @@ void measure_errors(const Case& c, const std::string& sampler, const Options& o,
       is_within = r.statistics.ended_by == "noise";
       t.samples += static_cast<double>(r.statistics.paths) / static_cast<double>(subject.pixels()) / o.seeds;
       t.adaptive.push_back(values_of(r.picture));
-      t.told.push_back(*r.statistics.noise);
+      t.reported.push_back(*r.statistics.noise);
     }
     if (!is_within) {
       std::printf("%-26s %-11s %5g   needs more than %d samples per pixel\n", c.name.c_str(), sampler.c_str(), noise,

@@ -34,7 +34,7 @@ constexpr int kJudged = 1 << kJudgedBits;
 constexpr double kDecay = 0.6;
 /// Cost, in factors of e in the variance, of a product of two vertices with twice the variance of independent numbers.
 constexpr double kExcess = 1;
-constexpr int kStarts = 12, kFirstTries = 750, kSteps = 3000, kMostInVain = 800;
+constexpr int kStarts = 12, kFirstTries = 750, kSteps = 3000, kMaxFailures = 800;
 
 /// Distribution of an integrand's variance over the digits.
 enum class Kind { kSmooth, kRough };
@@ -238,11 +238,11 @@ class Search {
         return true;
       };
       for (int i = 0; i < kFirstTries; ++i) take_if_better(random_order(free_bits));
-      for (int i = 0, in_vain = 0; i < kSteps && in_vain < kMostInVain; ++i) {
+      for (int i = 0, failures = 0; i < kSteps && failures < kMaxFailures; ++i) {
         SobolOrder next = here;
         change(next, free_bits);
         if (!is_invertible(next, free_bits)) continue;
-        in_vain = take_if_better(next) ? 0 : in_vain + 1;
+        failures = take_if_better(next) ? 0 : failures + 1;
       }
       if (at < lowest) {
         lowest = at;

@@ -16,11 +16,11 @@ namespace orrery::accel {
 namespace {
 
 /// Maximum number of outliers: every ray tests each of them.
-constexpr std::size_t kMostApart = 4;
+constexpr std::size_t kMaxOutliers = 4;
 
 /// A sphere is an outlier if it is this many times larger than the bounds of all smaller ones, such as a ground under a
 /// scene. Its box would enclose every other sphere, and its size would determine their padding.
-constexpr double kApartRatio = 4;
+constexpr double kOutlierRatio = 4;
 
 /// Ids of all spheres except those in `without`.
 ///
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, st
 std::vector<std::uint32_t> find_outliers(const kernel::Sphere* spheres, std::size_t count,
                                          const std::vector<std::uint32_t>& duplicates) {
   std::vector<std::uint32_t> largest = all_but(duplicates, count);
-  const std::size_t candidates = std::min(largest.size(), kMostApart);
+  const std::size_t candidates = std::min(largest.size(), kMaxOutliers);
   std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(candidates), largest.end(),
                     [&](std::uint32_t a, std::uint32_t b) {
                       return spheres[a].radius != spheres[b].radius ? spheres[a].radius > spheres[b].radius : a < b;
@@ -54,7 +54,7 @@ std::vector<std::uint32_t> find_outliers(const kernel::Sphere* spheres, std::siz
     const std::vector<std::uint32_t> rest(largest.begin() + static_cast<std::ptrdiff_t>(n), largest.end());
     if (rest.empty()) continue;
     const BoxFrame frame(spheres, rest);
-    if (spheres[largest[n - 1]].radius * frame.scale > kApartRatio * frame.reach) take = n;
+    if (spheres[largest[n - 1]].radius * frame.scale > kOutlierRatio * frame.reach) take = n;
   }
   std::vector<std::uint32_t> outliers(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(take));
   std::sort(outliers.begin(), outliers.end());

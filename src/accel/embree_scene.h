@@ -63,7 +63,7 @@ struct EmbreeFunctions {
 };
 EmbreeFunctions embree_functions(kernel::Precision precision, bool moves);
 
-/// Sets the occlusion functions.
+/// Adds the occlusion queries to `functions`.
 void add_occlusion_functions(EmbreeFunctions& functions, kernel::Precision precision, bool moves);
 
 }  // namespace orrery::accel

@@ -7,7 +7,7 @@ namespace orrery::accel {
 
 /// How rays traverse the BVH. Hits do not depend on it.
 enum class Traversal : std::uint8_t {
-  kPacket,  ///< the rays of a packet together, which pays as long as they visit the same nodes
+  kPacket,  ///< the rays of a packet together, which pays off as long as they visit the same nodes
   kSingle,  ///< one ray after the other
 };
 

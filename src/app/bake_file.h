@@ -9,7 +9,7 @@ namespace orrery::app {
 
 /// Writes a display transform as a .cube or .clf file for other programs.
 ///
-/// Errors     base::Error: as display::choose; kUsage for another extension, kCannotCreate, kIo
+/// Errors     those of display::choose; base::Error: kUsage for another extension, kCannotCreate, kIo
 void bake_file(const display::Settings& display, int cube_size, const std::filesystem::path& file);
 
 }  // namespace orrery::app

@@ -59,8 +59,8 @@ struct ComparisonPictures {
 /// map shows the display error in false colours up to metrics::kHottest, the FLIP map up to 1; scene-linear formats
 /// hold the values.
 ///
-/// Errors     base::Error: as compare, image::read and image::write; kUsage if one file is scene-linear and the other
-///            display-encoded
+/// Errors     those of compare, image::read and image::write; base::Error(kUsage) if one file is scene-linear and the
+///            other display-encoded
 Comparison compare_files(const std::filesystem::path& picture, const std::filesystem::path& reference,
                          const std::string& layer, const ComparisonPictures& pictures, int threads = 0);
 

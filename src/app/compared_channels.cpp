@@ -14,7 +14,7 @@ namespace orrery::app {
 namespace {
 
 /// Maximum number of layers that channels_text() lists by name.
-constexpr std::size_t kMostNamed = 8;
+constexpr std::size_t kMaxNamed = 8;
 
 /// The layer of a channel, or the channel's name if it has none. Cryptomatte layers lose their two digits.
 std::string layer_name(const std::string& channel) {
@@ -150,12 +150,12 @@ ComparedChannels compared_channels(const film::Picture& picture, const film::Pic
 std::string channels_text(const std::vector<std::string>& channels) {
   const auto layers = layers_of(channels);
   std::string out;
-  for (std::size_t i = 0; i < layers.size() && i < kMostNamed; ++i) {
+  for (std::size_t i = 0; i < layers.size() && i < kMaxNamed; ++i) {
     out += (i == 0 ? "" : ", ") + layers[i].first;
     if (layers[i].second > 1) out += " (" + std::to_string(layers[i].second) + ")";
   }
-  if (layers.size() == kMostNamed + 1) out += " and 1 more layer";
-  if (layers.size() > kMostNamed + 1) out += " and " + std::to_string(layers.size() - kMostNamed) + " more layers";
+  if (layers.size() == kMaxNamed + 1) out += " and 1 more layer";
+  if (layers.size() > kMaxNamed + 1) out += " and " + std::to_string(layers.size() - kMaxNamed) + " more layers";
   return out;
 }
 

@@ -52,12 +52,12 @@ struct SceneInfo {
 
 /// Loads a scene and determines its properties without rendering.
 ///
-/// Errors     as load_scene
+/// Errors     those of load_scene
 SceneInfo scene_info(const job::SceneRequest& request);
 
 /// Measures the time saved by omitting the kernel features that the scene does not require, and sets Feature::saves.
 ///
-/// Errors     as bench_features
+/// Errors     those of bench_features
 void measure_savings(const job::SceneRequest& request, SceneInfo& info);
 
 /// The properties as text.

@@ -9,7 +9,7 @@ namespace orrery::base {
 /// A file that appears under its name complete, or not at all.
 ///
 /// The caller writes to a temporary file in the same directory, which commit() syncs and renames. A file that is not
-/// committed is removed, also if an exception is thrown or a signal ends the process (remove_unfinished_files).
+/// committed is removed, even if an exception is thrown or a signal ends the process (remove_unfinished_files).
 class AtomicFile {
  public:
   /// Creates the temporary file. If `path` is a symbolic link, its target is written and the link stays.
@@ -41,7 +41,7 @@ void remove_unfinished_files() noexcept;
 
 /// Writes a text to a file by an AtomicFile.
 ///
-/// Errors     as AtomicFile
+/// Errors     those of AtomicFile
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 /// Checks whether a file could be created, so that failure is found before any work; leaves no trace.

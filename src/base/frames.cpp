@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLargestFrame = 9'999'999;
 /// Maximum number of frames, more than an hour of animation: all jobs are listed before the first one starts.
-constexpr std::size_t kMostFrames = 100'000;
+constexpr std::size_t kMaxFrames = 100'000;
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
   throw Error(ErrorKind::kUsage, "`" + text + "` is not a frame range: " + why + "; write 1-10, 1-10x2 or 1,3,7-9");
@@ -82,9 +82,9 @@ std::vector<int> parse_frames(const std::string& text) {
       refuse(text, "unexpected `" + std::string(rest) + "`");
     }
     count += static_cast<std::size_t>(std::abs(last - first) / step) + 1;
-    if (count > kMostFrames) refuse(text, "it has more than " + std::to_string(kMostFrames) + " frames");
-    const int way = last < first ? -step : step;
-    for (int f = first; way > 0 ? f <= last : f >= last; f += way)
+    if (count > kMaxFrames) refuse(text, "it has more than " + std::to_string(kMaxFrames) + " frames");
+    const int signed_step = last < first ? -step : step;
+    for (int f = first; signed_step > 0 ? f <= last : f >= last; f += signed_step)
       if (seen.insert(f).second) frames.push_back(f);
   }
   return frames;

@@ -64,7 +64,7 @@ void add_bench(Command& program, Action& action) {
       ->check(real_number(0.001, kMaxSeconds))
       ->type_name("SECONDS");
   command.add_flag("--json", options->json, "Print JSON");
-  command.add_flag("-q,--quiet", options->quiet, "Show no progress");
+  command.add_flag("-q,--quiet", options->quiet, "Do not show progress");
   command.footer(
       "Ignored: --samples, --precision, --accelerator and --layers. Larger images are reduced to about 5,184 pixels.\n"
       "Examples:\n"

@@ -21,9 +21,7 @@ constexpr std::uint64_t kMaxSeed = std::numeric_limits<std::uint64_t>::max();
 /// Adds the options of all generators.
 void add_common(Command& command, std::filesystem::path& output, std::uint64_t& seed) {
   command.add_option("-o,--output", output, "Scene file to write")->required()->type_name("FILE");
-  command.add_option("--seed", seed, "Seed of the random numbers; default: 1")
-      ->transform(whole_number(0, kMaxSeed))
-      ->type_name("N");
+  command.add_option("--seed", seed, "Random seed; default: 1")->transform(whole_number(0, kMaxSeed))->type_name("N");
 }
 
 void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
@@ -52,7 +50,7 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
       ->type_name("N");
   command
       .add_option("--radius", options->cloud.radius,
-                  "Radius of all spheres, in scene units; default: varied, according to the count")
+                  "Radius of all spheres, in scene units; default: random, with a mean that depends on --count")
       ->check(real_number(0, generate::kLargestCloudRadius))
       ->type_name("R");
   command.footer("Example:\n  orrery generate cloud -o cloud.toml --count 1000000");

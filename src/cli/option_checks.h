@@ -28,7 +28,7 @@ Check real_number(double from, double to);
 /// Rejects everything but a size such as 512M or 1.5G. Converts it to bytes; K, M, G and T are powers of 1024.
 Check byte_size();
 
-/// One year, in seconds; longer times are taken for a wrong unit.
+/// One year, in seconds; a longer time is rejected, since its unit is probably wrong.
 inline constexpr double kLongestTime = 365.0 * 24 * 3600;
 /// Seconds; 0 would mean no limit.
 inline constexpr double kShortestTime = 0.01;

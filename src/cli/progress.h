@@ -12,11 +12,11 @@
 
 namespace orrery::cli {
 
-/// Maximum time between two lines of progress, so that a supervisor does not take a render for hung.
+/// Maximum time between two lines of progress, so that a supervisor does not consider a render hung.
 inline constexpr std::chrono::milliseconds kHeartbeat{60'000};
 
 /// Prints the progress of a render: a bar, or a line whenever the whole percent changes and at least once per
-/// heartbeat, also while the scene is read and during a long tile.
+/// heartbeat, including while the scene is read and during a long tile.
 class ProgressPrinter {
  public:
   /// Domain     `to` outlives this

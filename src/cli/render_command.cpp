@@ -205,7 +205,7 @@ void add_render(Command& program, Action& action) {
       ->type_name("N");
   command
       .add_option("--traversal", options->traversal,
-                  "BVH traversal: packet, single, or auto: time both and use the faster; default: auto")
+                  "BVH traversal: packet, single, or auto (times both and uses the faster); default: auto")
       ->check(one_of({"auto", "packet", "single"}))
       ->type_name("MODE");
   command

@@ -25,7 +25,7 @@ void SceneOptions::add_to(Command& command, bool allows_range) {
       allows_range ? "Samples per pixel, or a shard with samples A to B-1 of each pixel" : "Samples per pixel");
   add("--width", "image.width", "N", "Image width in pixels");
   add("--height", "image.height", "N", "Image height in pixels");
-  add("--seed", "render.seed", "N", "Seed of the random numbers");
+  add("--seed", "render.seed", "N", "Random seed");
   add("--max-depth", "render.max_depth", "N", "Maximum rays per path, including the camera ray");
   add("--precision", "render.precision", "NAME", "Arithmetic: exact, fast or book");
   add("--accelerator", "render.accelerator", "NAME", "Acceleration structure: embree or list");
@@ -64,9 +64,10 @@ int SceneOptions::frame() const {
   if (frame_.empty()) return format::kFirstFrame;
   const std::vector<int> frames = base::parse_frames(frame_);
   if (frames.size() != 1)
-    throw base::Error(base::ErrorKind::kUsage,
-                      fmt::format("--frame {} is {} frames; this command takes one; orrery check takes several", frame_,
-                                  frames.size()));
+    throw base::Error(
+        base::ErrorKind::kUsage,
+        fmt::format("--frame {} selects {} frames, but this command takes one; orrery check takes several", frame_,
+                    frames.size()));
   return frames.front();
 }
 

@@ -13,13 +13,13 @@ void prepare_signals();
 /// Makes INT, TERM and HUP request a stop. A second one ends the process at once with status 128 + its number, and
 /// leaves no partial or temporary file. Signals ignored at the start of the process, e.g. HUP by nohup, stay ignored.
 ///
-/// Result     becomes true with the first signal
+/// Result     set by the first of these signals
 const std::atomic<bool>& stop_on_signals();
 
-/// As stop_on_signals, for commands that cannot stop midway: the first signal ends the process.
+/// Like stop_on_signals, for commands that cannot stop midway: the first signal ends the process.
 void end_on_signals();
 
-/// Becomes true with USR1; the reader resets it to false.
+/// Set by USR1; the reader clears it.
 std::atomic<bool>& snapshot_request();
 
 }  // namespace orrery::cli

@@ -81,7 +81,7 @@ void add_study(Command& program, Action& action) {
                   "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
       ->type_name("NAME");
   command.add_flag("--json", options->json, "Print JSON");
-  command.add_flag("-q,--quiet", options->quiet, "Show no progress");
+  command.add_flag("-q,--quiet", options->quiet, "Do not show progress");
   command.footer(
       "Examples:\n"
       "  orrery study scenes/book/final.toml --budget 5m -o report.html\n"

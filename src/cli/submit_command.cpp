@@ -33,8 +33,7 @@ int submit(SubmitOptions& options) {
   options.picture.finish(batch.job);
   if (!s.frames_text.empty()) batch.frames = base::parse_frames(s.frames_text);
   if (options.slurm + options.openjd + options.opencue + static_cast<int>(options.parallel->count()) != 1)
-    throw base::Error(base::ErrorKind::kUsage,
-                      "select the engine with one of --slurm, --openjd, --opencue and --parallel N");
+    throw base::Error(base::ErrorKind::kUsage, "specify one of --slurm, --openjd, --opencue and --parallel N");
   s.arguments = options.command->arguments(kImageOptions);
   const auto pass_on = [&](const std::vector<std::string>& words) {
     s.arguments.insert(s.arguments.end(), words.begin(), words.end());

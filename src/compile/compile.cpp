@@ -164,8 +164,9 @@ Bounds bounds_of(const std::vector<kernel::Sphere>& spheres) {
 void add_motion(const scene::Scene& opening, const scene::Scene& closing, CompiledScene& compiled) {
   for (std::size_t i = opening.spheres.size(); i-- > 0;) {
     const scene::Sphere &from = opening.spheres[i], &to = closing.spheres[i];
-    const Vec3d way = to.center - from.center;
-    const kernel::Sphere change{way.x, way.y, way.z, std::abs(to.radius) - std::abs(from.radius)};
+    const Vec3d displacement = to.center - from.center;
+    const kernel::Sphere change{displacement.x, displacement.y, displacement.z,
+                                std::abs(to.radius) - std::abs(from.radius)};
     const bool rests = change.x == 0 && change.y == 0 && change.z == 0 && change.radius == 0;
     if (compiled.motion.empty() && !rests) compiled.motion.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
     if (!rests) compiled.motion[i] = change;

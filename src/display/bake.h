@@ -7,20 +7,20 @@
 
 namespace orrery::display {
 
-/// Points along each edge of a baked cube. Most programs accept 65, monitors 33.
+/// Grid points per axis of a baked 3D LUT. Most programs accept 65, monitors 33.
 inline constexpr int kDefaultCubeSize = 65;
 
-/// Bakes a display transform (exposure, look and view) to the text of a Resolve .cube file. A one-dimensional shaper
-/// maps radiance from 0 to 7 stops above mid grey logarithmically to the cube.
+/// Bakes a display transform (exposure, look and view) to a 3D LUT, as the text of a Resolve .cube file. A 1D shaper
+/// LUT maps radiance from 0 to 7 stops above mid grey logarithmically to the domain of the 3D LUT.
 ///
 /// Precision  test DisplayBake.ACubeMatchesTheView
-/// Errors     as choose
+/// Errors     those of choose
 std::string bake_cube(const Settings& settings, int size);
 
-/// The same as the text of a Common LUT Format file. The transforms are stored exactly if the format supports all of
-/// them; otherwise, as for the ACES views, LUTs as in bake_cube().
+/// The same transform as the text of a Common LUT Format (CLF) file. It is stored exactly if the format supports all of
+/// its ops; otherwise, e.g. for the ACES views, it is baked to LUTs as in bake_cube().
 ///
-/// Errors     as choose
+/// Errors     those of choose
 std::string bake_clf(const Settings& settings, int size);
 
 }  // namespace orrery::display

@@ -10,7 +10,7 @@ namespace orrery::display {
 /// Converts colours from one scene-linear space to another, in place.
 ///
 /// Domain     `config_file` as Settings::config
-/// Errors     base::Error: as choose; kUsage for a space that is not scene-linear
+/// Errors     those of choose; base::Error(kUsage) for a space that is not scene-linear
 void convert_colors(const std::string& config_file, const std::string& from, const std::string& to,
                     std::vector<std::array<double, 3>>& colors);
 

@@ -55,7 +55,7 @@ enum class Alpha {
 /// pixel alone.
 ///
 /// Domain     bits 8 or 16
-/// Errors     as choose; kBadData if a plane is missing
+/// Errors     those of choose; base::Error(kBadData) if a plane is missing
 /// Cost       40 ns per pixel with the default view of the built-in config, 160 ns with an ACES view
 film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither = false,
                              Alpha alpha = Alpha::kOverBlack);

@@ -15,7 +15,7 @@ std::string find_color_space(const Config& config, const std::string& name);
 
 /// The same for a scene-linear space; data, log and display spaces are refused.
 ///
-/// Errors     as find_color_space; base::Error(kUsage) for a space that is not scene-linear
+/// Errors     those of find_color_space; base::Error(kUsage) for a space that is not scene-linear
 std::string find_scene_linear(const Config& config, const std::string& name);
 
 }  // namespace orrery::display

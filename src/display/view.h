@@ -18,7 +18,7 @@ struct View {
 
 /// Loads the config and resolves the settings.
 ///
-/// Errors     as choose
+/// Errors     those of choose
 View find_view(const Settings& settings);
 
 /// The same with a config that is already loaded.

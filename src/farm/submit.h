@@ -35,12 +35,12 @@ struct Commands {
 
 /// Reads and checks the scene, and composes the commands.
 ///
-/// Errors     base::Error: kUsage as jobs_of, and for settings that exclude shards; those of load_scene
+/// Errors     those of jobs_of and load_scene; base::Error(kUsage) for settings that cannot be combined with shards
 Commands commands_of(const Submission& submission);
 
-/// The whole job as text for the engine, which a person can read and edit.
+/// The whole job in the engine's format, as text that a person can read and edit.
 ///
-/// Errors     as commands_of
+/// Errors     those of commands_of
 std::string submission_text(const Submission& submission);
 
 }  // namespace orrery::farm

@@ -16,9 +16,9 @@
 namespace orrery::format {
 
 /// Maximum number of errors reported for one scene; a generated scene may have the same error in a million spheres.
-inline constexpr std::size_t kMostErrors = 100;
+inline constexpr std::size_t kMaxErrors = 100;
 
-/// Collects the diagnostics of a scene: warnings, the first kMostErrors errors by location, and the number of errors.
+/// Collects the diagnostics of a scene: warnings, the first kMaxErrors errors by location, and the number of errors.
 class Diagnostics {
  public:
   /// Adds a diagnostic. `make` returns it, and is called only if it is kept.
@@ -31,9 +31,9 @@ class Diagnostics {
     ++errors_;
     if (kind == base::ErrorKind::kMissingInput) ++missing_;
     const Key key{place.text_name, place.line, place.column};
-    if (shown_.size() >= kMostErrors && !(key < std::prev(shown_.end())->first)) return;
+    if (shown_.size() >= kMaxErrors && !(key < std::prev(shown_.end())->first)) return;
     shown_.emplace(key, make());
-    if (shown_.size() > kMostErrors) shown_.erase(std::prev(shown_.end()));
+    if (shown_.size() > kMaxErrors) shown_.erase(std::prev(shown_.end()));
   }
 
   bool has_errors() const { return errors_ > 0; }

@@ -65,10 +65,10 @@ std::uint32_t read_material_name(Reading& reading, const toml::table& table, con
     const auto& name = std::get<std::string>(*value);
     std::vector<std::string> names;
     for (const scene::Material& material : scene.materials) names.push_back(material.name);
-    constexpr std::size_t kMostNamed = 12;
+    constexpr std::size_t kMaxNamed = 12;
     std::string remedy = base::did_you_mean(name, names);
     if (remedy.empty() && names.empty()) remedy = "the scene defines no materials";
-    if (remedy.empty() && names.size() <= kMostNamed) remedy = "defined are " + base::joined(names);
+    if (remedy.empty() && names.size() <= kMaxNamed) remedy = "defined are " + base::joined(names);
     reading.error(place_of(*node), full_name + " is \"" + name + "\", which is not defined", remedy);
   }
   reading.unread.insert(full_name);

@@ -41,10 +41,9 @@ using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene
 /// counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5". `frame` selects the values of
 /// animated keys and the files of sequences. `also` is called if [color] has no errors.
 ///
-/// Errors     base::Error: kMissingInput if the scene cannot be opened, or if all errors are points files that cannot
-/// be
-///            opened; kIo; kBadData with the diagnostics of the file, the overrides and the points files, each with its
-///            location, the first kMostErrors of them
+/// Errors     base::Error: kMissingInput if the scene cannot be opened, or if the only errors are points files that
+///            cannot be opened; kIo; kBadData with the diagnostics of the file, the overrides and the points files,
+///            each with its location, the first kMaxErrors of them
 /// Reference  docs/scene-format.md
 ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {},
                       int frame = kFirstFrame, const SceneCheck& also = {});

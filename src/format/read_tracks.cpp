@@ -29,8 +29,7 @@ const toml::array* list_at(Reading& reading, const toml::table& table, const std
 bool read_frames(Reading& reading, const toml::array& list, const std::string& name, std::vector<double>& frames) {
   bool good = true;
   for (const toml::node& node : list) {
-    const auto value =
-        read_value(reading, node, name, ValueType::kNumber, {-scene::kMostFrames, scene::kMostFrames}, {});
+    const auto value = read_value(reading, node, name, ValueType::kNumber, {-scene::kMaxFrame, scene::kMaxFrame}, {});
     const double frame = value ? std::get<double>(*value) : 0;
     if (value && !frames.empty() && good && frame <= frames.back()) {
       reading.error(place_of(node), name + " must ascend: " + scene::number_text(frame) + " follows " +

@@ -21,7 +21,7 @@ void add_parse_error(const toml::parse_error& error, const SourceText& source, D
 
 /// Parses the text of a scene file and applies the overrides; failures are added to `diagnostics`.
 ///
-/// Result     the tree, empty if the text is invalid; nodes have their locations, also in overrides
+/// Result     the tree, empty if the text is invalid; nodes have their locations, including those in overrides
 toml::table parse_tree(const std::string& file_name, const std::string& text, const std::vector<Override>& overrides,
                        SourceText& source, Diagnostics& diagnostics);
 

@@ -44,7 +44,8 @@ inline constexpr double kLargestCloudRadius = 1;
 struct Cloud {
   std::uint64_t seed = 1;
   std::uint64_t count = 1000;
-  std::optional<double> radius = {};  ///< scene units, of every sphere; default: random, with a mean by `count`
+  /// Scene units, of every sphere; default: random, with a mean that depends on `count`.
+  std::optional<double> radius = {};
 };
 
 /// Returns the scene of a cloud. By default, the total cross-section does not depend on the number of spheres: a few

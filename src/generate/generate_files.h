@@ -13,7 +13,7 @@ namespace orrery::generate {
 /// file is replaced only if orrery wrote it.
 ///
 /// Errors     base::Error: kUsage for options out of range and for a `file` that ends in .ply; kCannotCreate, before
-///            anything is generated, also for a points file that orrery did not write; kIo
+///            anything is generated, including for a points file that orrery did not write; kIo
 void generate_final(const FinalScene& options, const std::filesystem::path& file);
 void generate_cloud(const Cloud& options, const std::filesystem::path& file);
 

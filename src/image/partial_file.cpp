@@ -29,7 +29,7 @@ constexpr const char* kPrefix = "orrery/partial/";
 constexpr const char* kSumsName = "orrery.sums";
 
 /// Maximum number of words in a row of the part with the sums.
-constexpr int kMostWordsInRow = 4096;
+constexpr int kMaxWordsInRow = 4096;
 
 [[noreturn]] void damaged(const std::filesystem::path& file, const std::string& why) {
   throw base::Error(base::ErrorKind::kBadData, file.string() + " is not a usable checkpoint or shard: " + why);
@@ -62,7 +62,7 @@ void write_partial(const std::filesystem::path& file, const film::Picture& previ
   Header own = header;
   for (const auto& [name, value] : provenance) own.attributes.push_back({kPrefix + name, value});
   std::vector<std::uint32_t> words = film::to_words(partial);
-  const auto row = static_cast<std::size_t>(std::min(preview.width, kMostWordsInRow));
+  const auto row = static_cast<std::size_t>(std::min(preview.width, kMaxWordsInRow));
   words.resize((words.size() + row - 1) / row * row);
   ImageSpec sums(static_cast<int>(row), static_cast<int>(words.size() / row), 1, TypeDesc::UINT32);
   sums.channelnames = {"words"};
@@ -99,7 +99,7 @@ PartialFile read_partial(const std::filesystem::path& file, int width_px, int he
   if (!in->seek_subimage(1, 0)) damaged(file, "it has no sums");
   const ImageSpec spec = in->spec();
   if (spec.nchannels != 1 || spec.format != TypeDesc::UINT32 || spec.width < 1 || spec.height < 1 ||
-      spec.width > kMostWordsInRow)
+      spec.width > kMaxWordsInRow)
     damaged(file, "its sums have an unexpected type or size");
   try {
     std::vector<std::uint32_t> words(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));

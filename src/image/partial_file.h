@@ -24,7 +24,7 @@ void write_partial(const std::filesystem::path& file, const film::Picture& previ
 
 /// Reads the provenance of a checkpoint or shard. Checks the seal, but does not read the sums.
 ///
-/// Errors     as read_partial
+/// Errors     those of read_partial
 Provenance read_provenance(const std::filesystem::path& file);
 
 /// Content of a checkpoint or shard.

@@ -59,20 +59,20 @@ WriteReport write_exr(const std::filesystem::path& file, const film::Picture& pi
 /// Writes a deep scanline EXR with float channels R, G, B, A, Z, ZBack and zips compression. Its windows are those of
 /// `flat`.
 ///
-/// Result     as write_exr
+/// Result     as for write_exr
 /// Errors     base::Error: kCannotCreate, kIo
 void write_deep(const std::filesystem::path& file, const film::DeepPicture& deep, const film::Picture& flat,
                 const Header& header);
 
 /// Writes planes R, G, B as Radiance HDR, which has no negative values and one shared exponent per pixel.
 ///
-/// Result     as write_exr
+/// Result     as for write_exr
 /// Errors     base::Error: kBadData if a plane is missing, kCannotCreate, kIo
 WriteReport write_hdr(const std::filesystem::path& file, const film::Picture& picture);
 
 /// Writes a display-encoded image in the format of the file's extension. The same image gives the same bytes.
 ///
-/// Result     as write_exr
+/// Result     as for write_exr
 /// Errors     base::Error: kUsage if the format does not support the bit depth or size, kCannotCreate, kIo
 void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
                    const std::string& stamp = {});

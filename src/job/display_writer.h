@@ -18,7 +18,7 @@ class DisplayWriter {
   DisplayWriter(const film::Picture& picture, const display::Settings& settings, int bits)
       : picture_(picture), settings_(settings), bits_(bits) {}
 
-  /// Errors     as display::develop and image::write_encoded
+  /// Errors     those of display::develop and image::write_encoded
   void write(const std::filesystem::path& file, const std::string& software, const std::string& stamp = {});
 
  private:

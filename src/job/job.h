@@ -32,7 +32,7 @@ struct Resources {
   std::uint64_t memory_limit = 0;             ///< bytes; 0: the free memory
   std::uint64_t disk_limit = 0;               ///< bytes per file system; 0: its free space
   std::string isa;                            ///< best instruction set to use, "avx2"; empty: the processor's best
-  std::optional<accel::Traversal> traversal;  ///< as render::Settings
+  std::optional<accel::Traversal> traversal;  ///< see render::Settings
 };
 
 /// The shards that a job merges instead of rendering.

@@ -28,17 +28,17 @@ void add_job_files(const Job& job, base::FileSet& files, const std::string& owne
 
 /// Adds the files that a scene references at these frames. Parses the scene file without reading points files.
 ///
-/// Errors     as add_job_files; those of format::named_files
+/// Errors     those of add_job_files and format::named_files
 void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files);
 
 /// Adds the files that a loaded scene references.
 ///
-/// Errors     as add_job_files
+/// Errors     those of add_job_files
 void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files);
 
 /// Adds an OCIO config, from --ocio or a scene, and the config in $OCIO, if they are files.
 ///
-/// Errors     as add_job_files
+/// Errors     those of add_job_files
 void add_ocio_configs(const std::string& config, base::FileSet& files);
 
 }  // namespace orrery::job

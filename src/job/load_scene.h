@@ -31,8 +31,9 @@ struct LoadedScene {
 ///
 /// Names in [color] are always looked up. A default config is loaded only if `develops`.
 ///
-/// Errors     of format::read_scene, with unknown names in [color] among its diagnostics; base::Error: kUsage for an
-///            unknown name from the command line, kMissingInput and kBadData for a config from there or from $OCIO
+/// Errors     those of format::read_scene, with unknown names in [color] among its diagnostics; base::Error: kUsage
+///            for an unknown name from the command line, kMissingInput and kBadData for a config from there or from
+///            $OCIO
 LoadedScene load_scene(const SceneRequest& request);
 
 }  // namespace orrery::job

@@ -11,7 +11,8 @@
 
 namespace orrery::job {
 
-/// A manifest of more names than this is a file next to the image, since every reader loads the whole header.
+/// A manifest of more names than this is written to a separate file next to the image, since every reader loads the
+/// whole header.
 inline constexpr std::size_t kMaxNamesInHeader = 10000;
 
 /// The header attributes of Cryptomattes: layer name, hash, conversion, and the manifest or the name of its file.

@@ -18,7 +18,7 @@ struct MemoryEstimate {
   std::uint64_t total() const { return film + spheres + accelerator; }
 };
 
-/// Properties of a render that determine its memory.
+/// Properties of a render that determine its memory use.
 struct MemoryNeeds {
   int width = 0, height = 0;       ///< px
   std::uint64_t spheres = 0;       ///< from tables and points files

@@ -23,7 +23,7 @@ struct ImageFile {
 
 /// The formats of several files.
 ///
-/// Errors     as ImageFile
+/// Errors     those of ImageFile
 std::vector<ImageFile> image_files(const std::vector<std::filesystem::path>& files);
 
 /// Checks that every display format among these holds `bits` per channel; 0 always passes.

@@ -155,14 +155,14 @@ HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& spher
     const auto half_b = dot(oc, ray.direction);
     const auto c = dot(oc, oc) - sphere.radius * sphere.radius;
     const auto discriminant = half_b * half_b - a * c;
-    const auto meets = discriminant >= zero;
-    if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, meets)) return {zero, meets};
+    const auto hits = discriminant >= zero;
+    if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hits)) return {zero, hits};
     const auto root = hn::Sqrt(hn::Max(discriminant, zero));
     const auto t_min = hn::Set(d, static_cast<T>(kBookShortestDistance));
     const auto entry = (hn::Neg(half_b) - root) / a;
     const auto exit = (root - half_b) / a;
     const auto t = hn::IfThenElse(entry >= t_min, entry, exit);
-    return {t, hn::And(meets, t >= t_min)};
+    return {t, hn::And(hits, t >= t_min)};
   } else {
     auto c = plain_chord(ray, sphere);
     if constexpr (kPrecision == Precision::kExact) {
@@ -171,15 +171,15 @@ HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& spher
         return {zero, is_self};
       c = compensated(ray, sphere, c);
     }
-    const auto meets = hn::Or(is_self, c.discriminant >= zero);
+    const auto hits = hn::Or(is_self, c.discriminant >= zero);
     // In the naive list a ray misses nearly all spheres, and the root costs as much as everything before it.
-    if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, meets)) return {zero, meets};
+    if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hits)) return {zero, hits};
     const auto half = hn::Sqrt(hn::Max(c.discriminant, zero) * ray.inverse_square);
     const auto entry = c.middle - half;
     const auto exit = c.middle + half;
     const auto other_end = dot(ray.direction, ray.offset) * ray.inverse_square * hn::Set(d, static_cast<T>(-2));
     const auto t = hn::IfThenElse(is_self, other_end, hn::IfThenElse(entry > zero, entry, exit));
-    return {t, hn::And(meets, t > zero)};
+    return {t, hn::And(hits, t > zero)};
   }
 }
 
@@ -201,9 +201,9 @@ HWY_INLINE hn::Vec<D> own_distance(D d, const Rays<D>& ray, hn::Vec<D> distance)
   return hn::NegMulAdd(rest, hn::Set(d, static_cast<T>(2)), distance);
 }
 
-/// The hit point for a distance from `nearest`.
+/// The hit point at a distance that `nearest` returned.
 ///
-/// Domain     lanes in which `nearest` hit this sphere
+/// Domain     lanes whose rays hit this sphere
 template <class D, Precision kPrecision>
 HWY_INLINE HitPoint<hn::Vec<D>> hit_point(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self,
                                           hn::Vec<D> distance) {

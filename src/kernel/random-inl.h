@@ -80,7 +80,7 @@ HWY_INLINE hn::Vec<D> to_unit(D d, hn::Vec<hn::RebindToUnsigned<D>> bits) {
 
 /// Four random numbers, independent of those of any other (seed, pixel, sample, vertex).
 ///
-/// Result     as from philox
+/// Result     as for philox
 template <class DU, class V = hn::Vec<DU>>
 HWY_INLINE Four<V> independent_at_vertex(DU du, std::uint32_t seed, V pixel, V sample, std::uint32_t vertex) {
   return philox(du, Four<V>{{pixel, sample, hn::Set(du, vertex), hn::Zero(du)}}, seed,

@@ -70,7 +70,7 @@ inline void trace(const Tracer& tracer, RayPacketFast& packet) { tracer.trace_fa
 inline void occlude(const Tracer& tracer, ShadowPacket& packet) { tracer.occlude(tracer.self, packet); }
 inline void occlude(const Tracer& tracer, ShadowPacketFast& packet) { tracer.occlude_fast(tracer.self, packet); }
 
-/// Resets the packet's hits to none, at any distance.
+/// Resets all rays of a packet to no hit, with an unlimited maximum distance.
 template <class T, class Id>
 inline void reset_hits(RayPacketOf<T, Id>& packet) {
   std::fill_n(packet.distance, kPacketSize, std::numeric_limits<T>::max());

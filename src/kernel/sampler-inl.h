@@ -69,7 +69,8 @@ HWY_INLINE Four<V> sobol_at_vertex(DU du, const Sampler& sampler, V pixel, V sam
   return sobol(du, index, name, order, last_two);
 }
 
-/// A path's four numbers in 0..1 by the sampler's sequence `name`; with Sobol, in the order at `order`.
+/// Four random numbers in 0..1 for a path, from the sampler's sequence `name`. Sobol points are taken in the order
+/// kSobolOrders[order].
 template <class D>
 HWY_INLINE Four<hn::Vec<D>> random_of_sequence(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
                                                hn::Vec<hn::RebindToUnsigned<D>> sample, bool is_independent,
@@ -99,7 +100,7 @@ HWY_INLINE Four<hn::Vec<D>> random_at_vertex(D d, const Sampler& sampler, hn::Ve
 /// Four more numbers in 0..1 at the same vertex, in dimensions of their own: for sampling lights, while those of
 /// random_at_vertex sample the BSDF.
 ///
-/// `last_two` as of random_at_vertex
+/// `last_two` as in random_at_vertex
 /// Domain     vertex < 2^30
 template <class D>
 HWY_INLINE Four<hn::Vec<D>> second_random_at_vertex(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,

@@ -96,7 +96,7 @@ HWY_INLINE BsdfSample<D> sample_metal(D d, const Surface<D>& at, const Vec3<V>& 
   return {select(sharp, mirror, w), hn::Or(sharp, at.same_side(d, w))};
 }
 
-/// The Fresnel reflectance by the material's model.
+/// The Fresnel reflectance according to the material's model.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leaving) {
   using T = hn::TFromD<D>;

@@ -48,8 +48,9 @@ using SobolOrder = std::array<std::uint32_t, kSobolBits>;
 /// Number of path vertices, from the camera on, that share one sequence. Later vertices use independent random numbers.
 inline constexpr std::uint32_t kSobolVertices = 8;
 
-/// Number of low bits of an index that an order mixes freely. Above them a bit changes only lower bits, so points
-/// 2^k n .. 2^k (n + 1) are the same set at every vertex, in another order, for all k from here on.
+/// Number of low bits of an index that an order mixes by an arbitrary invertible matrix. Every higher bit affects only
+/// itself and lower bits, so for k >= kSobolFreeBits the points 2^k n .. 2^k (n + 1) are the same set at every vertex,
+/// in a different order.
 inline constexpr std::size_t kSobolFreeBits = 4;
 
 /// Index of the time's order in kSobolOrders, after those of the vertices' first points.
@@ -58,7 +59,7 @@ inline constexpr std::uint32_t kSobolTimeOrder = kSobolVertices;
 /// Index of the order of vertex 0's second point; those of the other vertices follow.
 inline constexpr std::uint32_t kSobolSecondOrders = kSobolTimeOrder + 1;
 
-/// The order in which each vertex, then the time, then each vertex's second point takes the points. Chosen by
+/// The orders in which the points are used: by each vertex, by the time, and by each vertex's second point. Chosen by
 /// tools/sobol_orders.cpp so that numbers of different vertices are well distributed together.
 inline constexpr std::array<SobolOrder, kSobolSecondOrders + kSobolVertices> kSobolOrders{{
     {0x1, 0x2, 0x4, 0x8, 0x10, 0x20, 0x40, 0x80, 0x100, 0x200, 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000},

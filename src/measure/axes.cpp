@@ -21,7 +21,7 @@ constexpr std::size_t kLongestList = 5000;
 class Planner {
  public:
   Planner(const scene::Scene& scene, const CompiledScene& compiled, double noise)
-      : scene_(scene), world_(compiled), noise_(noise) {}
+      : scene_(scene), compiled_(compiled), noise_(noise) {}
 
   AxisPlan plan() {
     samples();
@@ -59,7 +59,7 @@ class Planner {
   void noise(double noise) {
     std::string text;
     base::append(text, "%g", noise);
-    add("noise", text, "--noise " + text, world_.samples).noise = noise;
+    add("noise", text, "--noise " + text, compiled_.samples).noise = noise;
   }
 
   void precision() {
@@ -83,13 +83,13 @@ class Planner {
   }
 
   bool everything_is_white() const {
-    return std::all_of(world_.materials.begin(), world_.materials.end(), [](const kernel::Material& m) {
+    return std::all_of(compiled_.materials.begin(), compiled_.materials.end(), [](const kernel::Material& m) {
       return m.kind == kernel::MaterialKind::kDielectric || (m.albedo[0] == 1 && m.albedo[1] == 1 && m.albedo[2] == 1);
     });
   }
 
   void roulette() {
-    if (world_.spheres.empty() || everything_is_white()) {
+    if (compiled_.spheres.empty() || everything_is_white()) {
       out_.left_out.push_back("no absorption: no roulette axis");
       return;
     }
@@ -103,12 +103,12 @@ class Planner {
   }
 
   void depth() {
-    if (world_.spheres.empty()) {
+    if (compiled_.spheres.empty()) {
       out_.left_out.push_back("no spheres: no depth axis");
       return;
     }
     for (const std::uint32_t depth : {2u, 4u, 8u, 16u}) {
-      if (depth >= world_.max_depth) continue;
+      if (depth >= compiled_.max_depth) continue;
       Choice& c = add("depth", "at most " + std::to_string(depth),
                       flag(kCompared) + " --max-depth " + std::to_string(depth), kCompared);
       c.apply = [depth](CompiledScene& w) { w.max_depth = depth; };
@@ -120,9 +120,9 @@ class Planner {
     std::vector<std::string> names;
     for (const scene::Material& m : scene_.materials)
       if (std::holds_alternative<scene::Dielectric>(m.model)) names.push_back(m.name);
-    const bool in_use = std::any_of(world_.materials.begin(), world_.materials.end(), [](const kernel::Material& m) {
-      return m.kind == kernel::MaterialKind::kDielectric;
-    });
+    const bool in_use =
+        std::any_of(compiled_.materials.begin(), compiled_.materials.end(),
+                    [](const kernel::Material& m) { return m.kind == kernel::MaterialKind::kDielectric; });
     if (!in_use) {
       out_.left_out.push_back("no glass: no Fresnel axis");
       return;
@@ -134,9 +134,10 @@ class Planner {
       c.apply = [kind](CompiledScene& w) {
         for (kernel::Material& m : w.materials) m.fresnel = kind;
       };
-      c.is_shortcut = std::any_of(world_.materials.begin(), world_.materials.end(), [kind](const kernel::Material& m) {
-        return m.kind == kernel::MaterialKind::kDielectric && m.fresnel != kind;
-      });
+      c.is_shortcut =
+          std::any_of(compiled_.materials.begin(), compiled_.materials.end(), [kind](const kernel::Material& m) {
+            return m.kind == kernel::MaterialKind::kDielectric && m.fresnel != kind;
+          });
     };
     add_one("exact", kernel::FresnelKind::kExact);
     add_one("schlick", kernel::FresnelKind::kSchlick);
@@ -144,7 +145,7 @@ class Planner {
   }
 
   void accelerator() {
-    if (world_.spheres.empty()) {
+    if (compiled_.spheres.empty()) {
       out_.left_out.push_back("no spheres: no accelerator axis");
       return;
     }
@@ -152,18 +153,18 @@ class Planner {
         accel::Traversal::kPacket;
     add("accelerator", "embree, single rays", flag(kTimed) + " --traversal single", kTimed).traversal =
         accel::Traversal::kSingle;
-    if (world_.spheres.size() > kLongestList) {
+    if (compiled_.spheres.size() > kLongestList) {
       out_.left_out.push_back("more than 5000 spheres: the list is too slow");
       return;
     }
     Choice& list = add("accelerator", "list", flag(kTimed) + " --accelerator list", kTimed);
     list.apply = [](CompiledScene& w) { w.accelerator = compile::Accelerator::kList; };
-    list.slowness = 1 + static_cast<double>(world_.spheres.size()) / 12;
+    list.slowness = 1 + static_cast<double>(compiled_.spheres.size()) / 12;
     out_.left_out.push_back("Embree's build qualities: equally fast, see docs/benchmarks.md");
   }
 
   const scene::Scene& scene_;
-  const CompiledScene& world_;
+  const CompiledScene& compiled_;
   double noise_;
   AxisPlan out_;
 };

@@ -19,7 +19,7 @@ struct Choice {
   std::function<void(compile::CompiledScene&)> apply;  ///< further changes; may be empty
   bool is_shortcut = false;                            ///< converges to a different image
   double slowness = 1;                                 ///< estimated time per sample, relative to the scene's settings
-  std::optional<accel::Traversal> traversal;           ///< as render::Settings
+  std::optional<accel::Traversal> traversal;           ///< see render::Settings
 };
 
 /// The choices of a study, and the axes without effect on the scene.

@@ -35,7 +35,7 @@ constexpr double kLongestList = 10;  // seconds
 /// Ray-sphere tests per second of the one-lane kernel.
 constexpr double kListTests = 1e8;
 
-constexpr double kMostSamples = 1 << 20;
+constexpr double kMaxSamples = 1 << 20;
 
 enum class Tracer { kEmbree, kList, kSimdList };
 
@@ -58,7 +58,7 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
 }
 
 /// The compiled scene at the reduced image size.
-compile::CompiledScene small_world(const BenchRequest& request) {
+compile::CompiledScene reduced_scene(const BenchRequest& request) {
   job::SceneRequest load;
   load.source = request.scene;
   format::ReadResult read = std::move(job::load_scene(load).read);
@@ -70,21 +70,21 @@ compile::CompiledScene small_world(const BenchRequest& request) {
 class Subject {
  public:
   explicit Subject(const BenchRequest& request)
-      : request_(request), world_(small_world(request)), required_(world_.features) {}
+      : request_(request), compiled_(reduced_scene(request)), required_(compiled_.features) {}
 
-  const compile::CompiledScene& compiled() const { return world_; }
+  const compile::CompiledScene& compiled() const { return compiled_; }
   /// The features that the scene requires; compiled() has those of the last case.
   const kernel::Features& required() const { return required_; }
 
   /// Renders a case once.
   render::Statistics run(const Case& c) {
     prepare(c);
-    world_.samples = c.samples;
+    compiled_.samples = c.samples;
     render::Settings settings;
     settings.threads = request_.threads;
     settings.traversal = c.traversal;
     settings.cancel = request_.cancel;
-    const render::Result result = render::render(world_, accel(c), settings);
+    const render::Result result = render::render(compiled_, accel(c), settings);
     if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; nothing was measured");
     return result.statistics;
   }
@@ -95,7 +95,7 @@ class Subject {
     const accel::Accel& with = accel(c);
     if (c.precision == Precision::kFast) return seconds_a_path(with, fast_rays(with));
     auto& rays = rays_[c.precision];
-    if (rays.paths == 0) rays = render::record_rays(world_.view(), with, c.precision, recorded_rows());
+    if (rays.paths == 0) rays = render::record_rays(compiled_.view(), with, c.precision, recorded_rows());
     return seconds_a_path(with, rays);
   }
 
@@ -106,16 +106,16 @@ class Subject {
     fast.features = required_;
     prepare(fast);
     accel::Accel& with = accel(fast);
-    return TracingBench(world_.view(), with, fast_rays(with), with_lists);
+    return TracingBench(compiled_.view(), with, fast_rays(with), with_lists);
   }
 
  private:
   std::vector<kernel::Tile> recorded_rows() const {
     std::vector<kernel::Tile> rows;
-    for (int y = 0; y < world_.height; y += kRecordedRows) {
+    for (int y = 0; y < compiled_.height; y += kRecordedRows) {
       kernel::Tile row;
       row.y = y;
-      row.width = world_.width;
+      row.width = compiled_.width;
       row.height = 1;
       row.sample_end = kernel::kPacketSize;
       rows.push_back(row);
@@ -124,21 +124,21 @@ class Subject {
   }
 
   render::RecordedRays<kernel::RayPacketFast>& fast_rays(const accel::Accel& with) {
-    if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(world_.view(), with, recorded_rows());
+    if (fast_rays_.paths == 0) fast_rays_ = render::record_rays_fast(compiled_.view(), with, recorded_rows());
     return fast_rays_;
   }
 
   void prepare(const Case& c) {
-    world_.accelerator = c.tracer == Tracer::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
-    world_.precision = c.precision;
-    world_.features = c.features;
+    compiled_.accelerator = c.tracer == Tracer::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
+    compiled_.precision = c.precision;
+    compiled_.features = c.features;
   }
 
   accel::Accel& accel(const Case& c) {
     auto& built = accels_[{c.tracer, c.precision}];
     if (!built)
-      built = c.tracer == Tracer::kSimdList ? accel::make_simd_list(world_.view(), c.precision)
-                                            : render::build(world_, render::available_threads());
+      built = c.tracer == Tracer::kSimdList ? accel::make_simd_list(compiled_.view(), c.precision)
+                                            : render::build(compiled_, render::available_threads());
     return *built;
   }
 
@@ -150,7 +150,7 @@ class Subject {
   }
 
   const BenchRequest& request_;
-  compile::CompiledScene world_;
+  compile::CompiledScene compiled_;
   kernel::Features required_;
   std::map<std::pair<Tracer, Precision>, std::unique_ptr<accel::Accel>> accels_;
   std::map<Precision, render::RecordedRays<kernel::RayPacket>> rays_;
@@ -199,10 +199,10 @@ std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
 void calibrate(Subject& subject, Case& c, double seconds) {
   for (;;) {
     const double took = std::max(subject.run(c).render_s, 1e-6);
-    if (took >= seconds / 2 || c.samples >= kMostSamples) return;
+    if (took >= seconds / 2 || c.samples >= kMaxSamples) return;
     // The step is limited, since the first render includes warm-up.
     const double factor = std::clamp(seconds / took, 2.0, 64.0);
-    c.samples = static_cast<int>(std::min(c.samples * factor, kMostSamples));
+    c.samples = static_cast<int>(std::min(c.samples * factor, kMaxSamples));
   }
 }
 
@@ -259,35 +259,35 @@ Benchmark bench_scene(const BenchRequest& request) {
   out.rounds = request.rounds;
 
   std::vector<Case> cases = cases_of(compiled, out);
-  const std::size_t ways = cases.size();
+  const std::size_t case_count = cases.size();
   for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
   std::optional<TracingBench> tracing;
   if (request.threads == 1 && !compiled.spheres.empty())
     tracing.emplace(subject.tracing_bench(lists_are_bearable(compiled)));
   const int total = static_cast<int>(cases.size()) * (request.rounds + 1);
   int done = 0;
-  const auto tell = [&] {
+  const auto report_progress = [&] {
     ++done;
     if (request.on_progress) request.on_progress(done, total);
   };
   for (Case& c : cases) {
     calibrate(subject, c, request.seconds);
-    tell();
+    report_progress();
   }
   for (int round = 0; round < request.rounds; ++round) {
     measure_all(subject, cases, round, [&](Case& c, const render::Statistics& did) {
-      if (c.tracer == Tracer::kEmbree && request.threads == 1 && &c < &cases[ways])
+      if (c.tracer == Tracer::kEmbree && request.threads == 1 && &c < &cases[case_count])
         c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
       out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
       if (c.tracer == Tracer::kEmbree) out.accelerator = did.accelerator;
       out.isa = did.isa;
-      tell();
+      report_progress();
     });
     if (tracing) tracing->measure(round);
   }
   if (tracing) out.tracing = tracing->results();
   for (std::size_t i = 0; i < cases.size(); ++i)
-    (i < ways ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
+    (i < case_count ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
   return out;
 }
 

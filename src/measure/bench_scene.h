@@ -56,7 +56,7 @@ struct Benchmark {
 
 /// Measures the render speed of a scene at a reduced size, in every precision, with Embree and with the list.
 ///
-/// Errors     as format::read_scene; base::Error(kStopped) after `cancel`, kUsage for an unknown `isa`
+/// Errors     those of format::read_scene; base::Error(kStopped) after `cancel`, kUsage for an unknown `isa`
 Benchmark bench_scene(const BenchRequest& request);
 
 /// The cost of an optional kernel feature.
@@ -69,7 +69,7 @@ struct FeatureCost {
 /// Measures the cost of each kernel feature that the scene lacks, in embree exact at a reduced size.
 ///
 /// Result     all features; those that the scene requires are not measured
-/// Errors     as bench_scene
+/// Errors     those of bench_scene
 std::vector<FeatureCost> bench_features(const BenchRequest& request);
 
 /// A benchmark as a text table.

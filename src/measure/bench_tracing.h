@@ -25,7 +25,7 @@ class TracingBench {
   std::vector<BenchTracing> results() const;
 
  private:
-  struct Way {
+  struct Method {
     std::string name;
     accel::Accel* accel;
     accel::Traversal traversal;
@@ -35,7 +35,7 @@ class TracingBench {
   std::unique_ptr<accel::Accel> points_, list_;
   render::RecordedRays<kernel::RayPacketFast>& rays_;
   double ray_count_ = 0;
-  std::vector<Way> ways_;
+  std::vector<Method> methods_;
 };
 
 }  // namespace orrery::measure

@@ -14,7 +14,7 @@ namespace orrery::measure {
 /// `full`     the scene at full resolution
 /// `paths_per_s` measured speed
 /// Domain     the study has at least two points
-/// Errors     as StudyRenderer::render
+/// Errors     those of StudyRenderer::render
 void recommend(const Request& request, const compile::CompiledScene& full, double paths_per_s, StudyRenderer& renderer,
                Study& study);
 

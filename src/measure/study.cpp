@@ -46,7 +46,7 @@ constexpr double kSamplesWanted = 6000;
 constexpr double kFewestPixels = 64 * 36;
 
 /// Limits of the samples per pixel in each of the two reference renders.
-constexpr double kFewestReferenceSamples = 64, kMostReferenceSamples = 1 << 20;
+constexpr double kMinReferenceSamples = 64, kMaxReferenceSamples = 1 << 20;
 
 /// Number of choices that are measured regardless of the budget; a comparison needs two points.
 constexpr std::size_t kFewestChoices = 2;
@@ -72,24 +72,26 @@ class Runner {
     measure_features();
     out_.slopes = slopes_of(out_.points);
     mark_front(out_.points);
-    tell("testing the recommendation");
+    report_progress("testing the recommendation");
     recommend(request_, full_, paths_per_s_, renderer_, out_);
     out_.isa = renderer_.isa();
     out_.seconds = elapsed();
-    tell("done", 1);
+    report_progress("done", 1);
     return std::move(out_);
   }
 
  private:
   double elapsed() const { return renderer_.elapsed(); }
   double left() const { return request_.budget_s - elapsed(); }
-  void tell(const std::string& what, double fraction) const {
+  void report_progress(const std::string& what, double fraction) const {
     if (request_.on_progress) request_.on_progress(what, fraction);
   }
-  void tell(const std::string& what) const { tell(what, std::min(elapsed() / request_.budget_s, 0.99)); }
+  void report_progress(const std::string& what) const {
+    report_progress(what, std::min(elapsed() / request_.budget_s, 0.99));
+  }
 
   void load() {
-    tell("reading", 0);
+    report_progress("reading", 0);
     base::FileSet files;
     files.add_input(request_.scene.file, "scene");
     if (!request_.report.empty()) {
@@ -117,7 +119,7 @@ class Runner {
     out_.spheres = full_.spheres.size();
     plan_ = plan_axes(scene, full_, request_.noise);
     renderer_.take_spheres(full_);
-    world_ = full_;
+    reduced_ = full_;
   }
 
   /// The scene at shutter close; null without motion.
@@ -126,13 +128,13 @@ class Runner {
   /// Measures the speed and reduces the image until the study fits into the budget, but not below kFewestPixels. Beyond
   /// that, choices are skipped.
   void choose_size() {
-    tell("measuring speed");
+    report_progress("measuring speed");
     CompiledScene pilot = full_;
     resize(pilot, kFewestPixels);  // a single sample of a large image may exceed the budget
     paths_per_s_ = renderer_.measure_speed(std::move(pilot));
     const double most = static_cast<double>(full_.width) * full_.height;
     const double least = std::min(kFewestPixels, most);
-    double samples = 2 * kFewestReferenceSamples;
+    double samples = 2 * kMinReferenceSamples;
     for (std::size_t i = 0; i < std::min(kFewestChoices, plan_.choices.size()); ++i)
       samples += 2 * plan_.choices[i].samples;
     const double needed = least * samples / paths_per_s_;
@@ -142,9 +144,9 @@ class Runner {
                    1.2 * (elapsed() + needed));
       throw base::Error(base::ErrorKind::kUsage, text);
     }
-    resize(world_, std::clamp(left() * (1 - kPilotShare) * paths_per_s_ / kSamplesWanted, least, most));
-    out_.width = world_.width;
-    out_.height = world_.height;
+    resize(reduced_, std::clamp(left() * (1 - kPilotShare) * paths_per_s_ / kSamplesWanted, least, most));
+    out_.width = reduced_.width;
+    out_.height = reduced_.height;
   }
 
   /// Reduces an image to at most `pixels` pixels, with the same view.
@@ -169,12 +171,12 @@ class Runner {
 
   /// Renders the reference twice, without adaptive sampling, which would make the two halves of the samples dependent.
   void render_reference() {
-    tell("rendering the reference");
-    CompiledScene compiled = world_;
+    report_progress("rendering the reference");
+    CompiledScene compiled = reduced_;
     compiled.sampler.kind = kernel::SamplerKind::kSobol;
     compiled.precision = compile::Precision::kExact;
     const double affordable = left() * kReferenceShare * paths_per_s_ / (2 * pixels());
-    const double samples = std::clamp(affordable, kFewestReferenceSamples, kMostReferenceSamples);
+    const double samples = std::clamp(affordable, kMinReferenceSamples, kMaxReferenceSamples);
     compiled.samples = static_cast<int>(std::bit_floor(static_cast<unsigned>(samples)));
     for (std::uint32_t i = 0; i < 2; ++i) {
       compiled.sampler.seed = seed(2 + i);
@@ -187,7 +189,7 @@ class Runner {
     out_.reference = mean_of(reference_);
   }
 
-  double pixels() const { return static_cast<double>(world_.width) * world_.height; }
+  double pixels() const { return static_cast<double>(reduced_.width) * reduced_.height; }
 
   void measure_axes() {
     out_.left_out = plan_.left_out;
@@ -201,15 +203,15 @@ class Runner {
         names += (names.empty() ? "" : "; ") + choice.name;
         continue;
       }
-      tell(choice.axis + ": " + choice.name);
+      report_progress(choice.axis + ": " + choice.name);
       measure(choice);
     }
     for (const auto& [axis, names] : too_expensive)
       out_.left_out.push_back(axis + " (" + names + "): exceeds the budget");
   }
 
-  CompiledScene world_of(const Choice& choice) const {
-    CompiledScene compiled = world_;
+  CompiledScene scene_for(const Choice& choice) const {
+    CompiledScene compiled = reduced_;
     compiled.samples = choice.samples;
     if (choice.apply) choice.apply(compiled);
     // The blue-noise sampler depends on the sample count.
@@ -219,7 +221,7 @@ class Runner {
 
   /// Expected duration of both renders of a choice, including the build of a new accelerator.
   double expected_seconds(const Choice& choice) const {
-    const CompiledScene compiled = world_of(choice);
+    const CompiledScene compiled = scene_for(choice);
     const double build_s = renderer_.has_accelerator(compiled) ? 0 : renderer_.build_s();
     const double render_s =
         choice.noise > 0 ? expected_seconds(choice.noise) : choice.samples * pixels() / paths_per_s_;
@@ -240,7 +242,7 @@ class Runner {
     point.name = choice.name;
     point.flags = choice.flags;
     point.is_shortcut = choice.is_shortcut;
-    CompiledScene compiled = world_of(choice);
+    CompiledScene compiled = scene_for(choice);
     Pair pair;
     point.seconds = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < 2; ++i) {
@@ -264,7 +266,7 @@ class Runner {
   }
 
   void measure_files() {
-    tell("files");
+    report_progress("files");
     out_.files = measure_file_axis(out_.reference);
   }
 
@@ -274,7 +276,7 @@ class Runner {
       out_.left_out.push_back("features: exceeds the budget");
       return;
     }
-    tell("features");
+    report_progress("features");
     measure::BenchRequest bench;
     bench.scene = request_.scene;
     bench.isa = request_.isa;
@@ -286,8 +288,8 @@ class Runner {
 
   const Request& request_;
   StudyRenderer renderer_;
-  format::ReadResult read_;     ///< without spheres
-  CompiledScene world_, full_;  ///< at the study's size and at full resolution, both without spheres
+  format::ReadResult read_;       ///< without spheres
+  CompiledScene reduced_, full_;  ///< at the study's size and at full resolution, both without spheres
   job::MemoryNeeds memory_needs_;
   Pair reference_;
   AxisPlan plan_;

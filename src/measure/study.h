@@ -99,8 +99,8 @@ struct Study {
 /// Renders a reference and each choice twice, with different seeds: an error common to both renders is bias, the rest
 /// is noise. Tests the recommendation at full resolution. Choices that exceed the budget are skipped and listed.
 ///
-/// Errors     as job::run_job; base::Error(kUsage) with the time needed if the budget is too small for a reference and
-///            two choices; kStopped
+/// Errors     those of job::run_job; base::Error(kUsage) with the time needed if the budget is too small for a
+///            reference and two choices; kStopped
 Study run_study(const Request& request);
 
 /// A study as a text table.

@@ -20,13 +20,13 @@ namespace orrery::measure {
 /// The spheres of a scene, lent to one CompiledScene at a time instead of copied, since there may be ten million.
 class Spheres {
  public:
-  /// Exchanges the spheres with those of a compiled scene.
+  /// Swaps the spheres with those of a compiled scene.
   void take_from(compile::CompiledScene& compiled) {
     spheres_.swap(compiled.spheres);
     materials_.swap(compiled.sphere_materials);
   }
 
-  /// Lends the spheres to a compiled scene during its lifetime.
+  /// Lends the spheres to a compiled scene until the Loan is destroyed.
   class Loan {
    public:
     Loan(Spheres& from, compile::CompiledScene& to) : from_(from), to_(to) { from_.take_from(to_); }

@@ -22,7 +22,7 @@ constexpr int kSide = 16;
 constexpr std::uint32_t kFirstSamples = 8;
 
 /// Maximum samples of a half: the second half's sample numbers begin where the first's end.
-constexpr std::uint32_t kMostSamples = kernel::Sampler::kSecondHalf - 1;
+constexpr std::uint32_t kMaxSamples = kernel::Sampler::kSecondHalf - 1;
 
 /// The fraction of the remaining time that an iteration may take, since the speed is known only from earlier ones.
 constexpr double kShareOfTime = 0.5;
@@ -44,8 +44,8 @@ class AdaptiveSampling {
         pool_(pool),
         progress_(progress),
         state_(state),
-        most_(settings.sampling.unlimited ? kMostSamples
-                                          : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
+        max_samples_(settings.sampling.unlimited ? kMaxSamples
+                                                 : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
         pixels_(compiled.width, compiled.height),
         round_begin_(progress.seconds()),
         round_begin_samples_(progress.done()) {
@@ -60,7 +60,7 @@ class AdaptiveSampling {
     std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
     for (n = n > 0                            ? next_of_all(n)
              : settings_.sampling.seconds > 0 ? 1
-                                              : std::min(kFirstSamples, most_);
+                                              : std::min(kFirstSamples, max_samples_);
          n > 0; n = next_of_all(n)) {
       state_.goals.assign(state_.pixel_count(), n);
       if (!run_round()) return false;
@@ -74,7 +74,7 @@ class AdaptiveSampling {
       if (settings_.sampling.noise > 0 && upper <= wanted && unjudged_ == 0) return ended("noise");
       RoundGoal goal;
       goal.error_ratio = settings_.sampling.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
-      goal.most_per_pixel = most_;
+      goal.most_per_pixel = max_samples_;
       goal.affordable = affordable(kShareOfTime);
       const std::vector<float> errors = errors_of_one_sample(pixels_, noise_, pool_);
       Round round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
@@ -88,7 +88,7 @@ class AdaptiveSampling {
       if (settings_.sampling.noise > 0) expect(round, std::sqrt(upper));
       state_.goals = state_.counts;
       for (std::size_t i = 0; i < state_.goals.size(); ++i)
-        if (round.chosen[i]) state_.goals[i] = state_.goals[i] < most_ / 2 ? 2 * state_.goals[i] : most_;
+        if (round.chosen[i]) state_.goals[i] = state_.goals[i] < max_samples_ / 2 ? 2 * state_.goals[i] : max_samples_;
       if (!run_round()) return false;
     }
   }
@@ -108,7 +108,7 @@ class AdaptiveSampling {
 
   /// The next uniform sample count of a half; 0: the initial, uniform iterations are over.
   std::uint32_t next_of_all(std::uint32_t n) const {
-    const std::uint32_t next = std::min({2 * n, kFirstSamples, most_});
+    const std::uint32_t next = std::min({2 * n, kFirstSamples, max_samples_});
     return next > n && affordable(kShareOfTime) >= std::uint64_t{next - n} * pixels_.samples.size() ? next : 0;
   }
 
@@ -121,7 +121,7 @@ class AdaptiveSampling {
   }
 
   void expect(const Round& round, double noise) {
-    const double limit = 2.0 * static_cast<double>(pixels_.samples.size()) * most_;
+    const double limit = 2.0 * static_cast<double>(pixels_.samples.size()) * max_samples_;
     const double total = static_cast<double>(progress_.done()) + 2 * round.samples_to_goal;
     if (total < limit) {
       progress_.expect(static_cast<std::uint64_t>(total), noise_text(noise, settings_.sampling.noise));
@@ -161,7 +161,7 @@ class AdaptiveSampling {
   TilePool& pool_;
   ProgressReporter& progress_;
   film::Partial& state_;
-  std::uint32_t most_;  ///< samples of a half
+  std::uint32_t max_samples_;  ///< samples of a half
   PixelStatistics pixels_;
   NoiseEstimate noise_;
   std::uint64_t unjudged_ = 0;  ///< pixels

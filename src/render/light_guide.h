@@ -39,12 +39,13 @@ struct PixelBlock {
 /// The blocks of an image, in a fixed order.
 std::vector<PixelBlock> blocks_of(int width_px, int height_px);
 
-/// The number of pixels within `reach` of `at` along an axis of the image. The second form counts only pixels whose
-/// coordinate modulo three is `remainder`; none if it is negative.
+/// The number of pixels within `reach` of `at` along an axis of the image. The second overload counts only pixels whose
+/// coordinate modulo three is `remainder`; a negative `remainder` counts none.
 int count_within(int at, int reach, int size);
 int count_within(int at, int reach, int size, int remainder);
 
-/// An estimate of every pixel's radiance that borrows from its neighbours as far as its own samples are uncertain.
+/// An estimate of every pixel's radiance that borrows from its neighbours to the extent that its own samples are
+/// uncertain.
 ///
 /// Errors are relative to the pixel's radiance, but the pixel's own estimate of it fails if light is rare: without a
 /// hit it is zero, and with a single hit the relative error is one half, however rare such hits are. So the mean of the

@@ -31,8 +31,8 @@ void ProgressReporter::add(std::uint64_t samples) {
   last_ = now;
   last_percent_ = percent;
   if (goal_.empty()) return settings_.on_progress({done, total_, now, goal_});
-  most_told_ = std::min(std::max(most_told_, fraction), 1.0);
-  const auto total = most_told_ >= 1 ? done : static_cast<std::uint64_t>(static_cast<double>(done) / most_told_);
+  max_reported_ = std::min(std::max(max_reported_, fraction), 1.0);
+  const auto total = max_reported_ >= 1 ? done : static_cast<std::uint64_t>(static_cast<double>(done) / max_reported_);
   settings_.on_progress({done, std::max(total, done), now, goal_});
 }
 

@@ -40,9 +40,9 @@ class ProgressReporter {
   std::mutex mutex_;  // guards the members below
   std::uint64_t total_;
   std::string goal_;
-  double most_told_ = 0;   ///< 0..1
-  double last_ = 0;        ///< time of the last report, seconds
-  int last_percent_ = -1;  ///< last reported
+  double max_reported_ = 0;  ///< 0..1
+  double last_ = 0;          ///< time of the last report, seconds
+  int last_percent_ = -1;    ///< last reported
   Clock::time_point start_ = Clock::now();
 };
 

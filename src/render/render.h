@@ -24,7 +24,7 @@ struct Settings {
   int threads = 0;  ///< 0: as many as available_threads()
   /// Traversal of all rays. Empty: the faster one in this scene, measured separately for camera and bounced rays.
   std::optional<accel::Traversal> traversal;
-  film::LayerRequest layers;  ///< beside the beauty
+  film::LayerRequest layers;  ///< besides the beauty
   SamplingLimits sampling;
   /// Called from one thread at a time: at each whole percent, and at most ten times a second in between.
   std::function<void(const Progress&)> on_progress;

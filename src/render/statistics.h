@@ -20,7 +20,8 @@ struct Statistics {
   std::string traversal;    ///< e.g. "packet, bounced single": of camera rays, and of bounced rays if different
   int threads = 0;
   std::uint64_t fewest_samples = 0, most_samples = 0;  ///< per pixel
-  /// Of adaptive sampling: the expected noise of the image, and its upper confidence bound, which ends the render.
+  /// Adaptive sampling only: the expected noise of the image, and its upper confidence bound, which is compared with
+  /// the target.
   std::optional<double> expected_noise, noise;
   std::uint64_t unjudged_pixels = 0;  ///< pixels around which too few paths found light for these estimates
   std::string ended_by;               ///< "samples", "noise" or "time"

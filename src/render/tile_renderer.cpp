@@ -8,7 +8,7 @@ namespace orrery::render {
 namespace {
 
 /// Maximum path records that a thread holds at a time: a few megabytes.
-constexpr std::uint32_t kMostRecords = 65536;
+constexpr std::uint32_t kMaxRecords = 65536;
 
 /// Sets the default floating-point environment (rounding, exception masks, flush-to-zero) and restores the host's on
 /// destruction, so that the image does not depend on it.
@@ -82,7 +82,7 @@ void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
 
 void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const {
   const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
-  const auto samples_at_a_time = std::max(1u, kMostRecords / static_cast<std::uint32_t>(pixels));
+  const auto samples_at_a_time = std::max(1u, kMaxRecords / static_cast<std::uint32_t>(pixels));
   const auto place_in_picture = [&](kernel::PixelPlace at) {
     return static_cast<std::size_t>(tile.y + at.y) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(tile.x + at.x);

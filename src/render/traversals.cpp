@@ -12,10 +12,10 @@ namespace {
 
 /// A trial path costs about five ordinary ones: it is rendered, and its rays are traced twice by each traversal.
 constexpr double kTrialShare = 0.002;
-constexpr double kMostTrialPaths = 32 * 1024;
+constexpr double kMaxTrialPaths = 32 * 1024;
 
 /// Fewer tiles than this would sample only a corner of the image.
-constexpr int kFewestTrialTiles = 4;
+constexpr int kMinTrialTiles = 4;
 
 /// Without a trial: in larger scenes bounced rays diverge too soon for packets.
 constexpr std::size_t kManySpheres = 1000;
@@ -24,11 +24,11 @@ constexpr std::size_t kManySpheres = 1000;
 /// rays would be less full than in a render. As in a render, a packet of camera rays spans as many pixels as it needs.
 std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
   const double paths = static_cast<double>(compiled.width) * compiled.height * compiled.samples;
-  const int count = static_cast<int>(std::min(paths * kTrialShare, kMostTrialPaths) / kernel::kStreamSize);
+  const int count = static_cast<int>(std::min(paths * kTrialShare, kMaxTrialPaths) / kernel::kStreamSize);
   const int samples = std::min(compiled.samples, kernel::kPacketSize);
   const int width = std::min(kernel::kStreamSize / samples, compiled.width);
   std::vector<kernel::Tile> tiles;
-  if (count < kFewestTrialTiles) return tiles;
+  if (count < kMinTrialTiles) return tiles;
   for (int i = 0; i < count; ++i) {
     kernel::Tile tile;
     // Evenly spaced vertically, and horizontally by multiples of the golden ratio, which spread well.
@@ -48,8 +48,8 @@ template <class Packet>
 accel::Traversal quicker(accel::Accel& accel, std::vector<Packet>& packets) {
   double best[2] = {1e300, 1e300};
   for (int i = 0; i < 4; ++i) {
-    const auto way = static_cast<accel::Traversal>(i % 2);
-    accel.use({way, way});
+    const auto traversal = static_cast<accel::Traversal>(i % 2);
+    accel.use({traversal, traversal});
     best[i % 2] = std::min(best[i % 2], trace_again(accel.tracer(), packets));
   }
   return best[1] < best[0] ? accel::Traversal::kSingle : accel::Traversal::kPacket;

@@ -12,9 +12,9 @@ namespace orrery::render {
 
 /// Chooses the BVH traversal for a scene.
 ///
-/// Unless a traversal is requested, some thousandths of the image's paths are rendered and the tracing of their rays is
-/// timed with both traversals. If the image has too few paths for that to pay, the number of spheres decides. Hits, and
-/// with them the image, do not depend on the choice.
+/// Unless a traversal is requested, a few thousandths of the image's paths are rendered and the tracing of their rays
+/// is timed with both traversals. If the image has too few paths for that to pay off, the number of spheres decides.
+/// Hits, and with them the image, do not depend on the choice.
 accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel,
                                     std::optional<accel::Traversal> requested);
 

@@ -47,7 +47,7 @@ std::string key_of(const Place& place) {
 
 }  // namespace
 
-Coincidents coincident_spheres(const Scene& scene, std::size_t most_told, const Scene* closing) {
+Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, const Scene* closing) {
   const bool is_fast = scene.render.precision == Precision::kFast;
   const auto number = [is_fast](double x) { return is_fast ? static_cast<double>(static_cast<float>(x)) : x; };
   SphereIndex spheres(scene);
@@ -62,10 +62,10 @@ Coincidents coincident_spheres(const Scene& scene, std::size_t most_told, const 
     std::array<double, 8> path = {p[0], p[1], p[2], p[3], 0, 0, 0, 0};
     if (id >= scene.spheres.size()) return path;  // points files do not move
     const Sphere &from = scene.spheres[id], &to = closing->spheres[id];
-    const Vec3d way = to.center - from.center;
-    path[4] = number(way.x);
-    path[5] = number(way.y);
-    path[6] = number(way.z);
+    const Vec3d displacement = to.center - from.center;
+    path[4] = number(displacement.x);
+    path[5] = number(displacement.y);
+    path[6] = number(displacement.z);
     path[7] = number(std::abs(to.radius) - std::abs(from.radius));
     return path;
   };
@@ -73,8 +73,8 @@ Coincidents coincident_spheres(const Scene& scene, std::size_t most_told, const 
                                                                : base::find_repeated<4>(spheres.count(), place_of);
   Coincidents out;
   out.count = found.size();
-  for (std::size_t i = 0; i < found.size() && i < most_told; ++i)
-    out.told.push_back({key_of(spheres.at(found[i].index)), key_of(spheres.at(found[i].first))});
+  for (std::size_t i = 0; i < found.size() && i < max_reported; ++i)
+    out.reported.push_back({key_of(spheres.at(found[i].index)), key_of(spheres.at(found[i].first))});
   return out;
 }
 

@@ -16,15 +16,15 @@ struct Coincident {
 };
 
 struct Coincidents {
-  std::vector<Coincident> told;  ///< in scene order
-  std::size_t count = 0;         ///< of all coincident spheres, including those not in `told`
+  std::vector<Coincident> reported;  ///< in scene order
+  std::size_t count = 0;             ///< of all coincident spheres, including those not in `reported`
 };
 
-/// Returns the number of spheres that coincide with an earlier one, and the keys of the first `most_told` of them. With
-/// `precision = "fast"`, spheres coincide if they are equal in single precision.
+/// Returns the number of spheres that coincide with an earlier one, and the keys of the first `max_reported` of them.
+/// With `precision = "fast"`, spheres coincide if they are equal in single precision.
 ///
 /// `closing`  the scene at shutter close: spheres that coincide only at shutter open are not counted; null: no motion
 /// Cost       see base::find_repeated
-Coincidents coincident_spheres(const Scene& scene, std::size_t most_told, const Scene* closing = nullptr);
+Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, const Scene* closing = nullptr);
 
 }  // namespace orrery::scene

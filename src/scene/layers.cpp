@@ -10,7 +10,7 @@ namespace orrery::scene {
 namespace {
 
 /// Integers above this are not all exact in a float.
-constexpr std::size_t kMostCounted = std::size_t{1} << 24;
+constexpr std::size_t kMaxFloatId = std::size_t{1} << 24;
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -39,7 +39,7 @@ std::string layer_fault(const Scene& scene, const std::string& layer) {
   static const std::vector<std::string> light = {"diffuse", "specular", "transmission", "background"};
   if (contains(light, layer) && scene.render.shading != Shading::kPath)
     return layer + " requires render.shading = \"path\"";
-  if (layer == "object_id" && scene.sphere_count() >= kMostCounted)
+  if (layer == "object_id" && scene.sphere_count() >= kMaxFloatId)
     return "a float cannot represent the ids of " + std::to_string(scene.sphere_count()) +
            " spheres exactly; use CryptoObject";
   return {};
@@ -54,10 +54,10 @@ std::vector<std::string> available_layers(const Scene& scene) {
 }
 
 std::vector<std::string> requested_layers(const Scene& scene) {
-  const std::vector<std::string>& asked = scene.output.layers;
-  if (!contains(asked, kAllLayers)) return asked;
+  const std::vector<std::string>& requested = scene.output.layers;
+  if (!contains(requested, kAllLayers)) return requested;
   std::vector<std::string> out = available_layers(scene);
-  for (const std::string& name : asked)
+  for (const std::string& name : requested)
     if (name != kAllLayers && !contains(out, name)) out.push_back(name);
   return out;
 }

@@ -7,14 +7,14 @@ namespace orrery::scene {
 inline constexpr double kLongestShutter = 100;
 
 /// Maximum absolute frame number of a [[key]], and maximum turntable length, frames.
-inline constexpr double kMostFrames = 1e6;
+inline constexpr double kMaxFrame = 1e6;
 
-/// Maximum absolute coordinate and radius, scene units: its square and products of squares stay far inside the range
-/// of a double.
+/// Maximum absolute coordinate and radius, scene units: squares and products of squares stay far inside the range of a
+/// double.
 inline constexpr double kLargestLength = 1e18;
 
-/// Minimum absolute radius, and minimum length of a vector that defines a direction, scene units: its square has full
-/// precision.
+/// Minimum absolute radius, and minimum length of a vector that defines a direction, scene units: their squares keep
+/// full precision.
 inline constexpr double kSmallestRadius = 1e-30;
 
 /// Minimum sine of the angle between the view direction and `up`: below it, the camera roll would be rounding error.

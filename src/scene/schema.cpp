@@ -72,10 +72,10 @@ Table animation_table() {
   return {"animation",
           {number<S>("fps", {0.001, 1000}, {"frames per second", "Frame rate, written to the EXR header"},
                      [](S& s) -> double& { return s.animation.fps; }),
-           number<S>("turntable", {-kMostFrames, kMostFrames},
+           number<S>("turntable", {-kMaxFrame, kMaxFrame},
                      {"frames",
-                      "Number of frames per orbit of the camera around `look_at`, about `up`. The camera is at its set "
-                      "position at frame 1 and moves to its right; negative values: to its left. 0: no orbit"},
+                      "Number of frames per orbit of the camera around `look_at`, about `up`. The camera is at "
+                      "`look_from` in frame 1 and moves to its right; negative values: to its left. 0: no orbit"},
                      [](S& s) -> double& { return s.animation.turntable; })}};
 }
 
@@ -122,8 +122,8 @@ Table render_table() {
        choice<S>("sampler", {"independent", "sobol", "blue-noise"},
                  {"",
                   "Sampler. `independent`: uncorrelated random numbers, as in the book. `sobol`: Owen-scrambled Sobol "
-                  "sequence (low discrepancy). `blue-noise`: the same sequence, and decorrelates the errors of "
-                  "neighbouring pixels",
+                  "sequence (low discrepancy). `blue-noise`: one such sequence for neighbouring pixels, whose errors "
+                  "then form blue noise",
                   "`sobol` and `blue-noise` need fewer samples for the same error"},
                  [](S& s) -> Sampler& { return s.render.sampler; }),
        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},
@@ -133,7 +133,7 @@ Table render_table() {
                  {"",
                   "`exact`: double precision without epsilons. `fast`: single precision. `book`: the book's "
                   "intersection formula with its minimum t",
-                  "`fast` and `book` trade accuracy for time"},
+                  "`fast` and `book` trade accuracy for speed"},
                  [](S& s) -> Precision& { return s.render.precision; }),
        choice<S>("shading", {"path", "normal", "flat"},
                  {"", "`path`: path tracing. `normal`: surface normals as colours. `flat`: albedo without lighting",
@@ -282,10 +282,11 @@ const std::vector<Key<Sphere>>& sphere_keys() {
 
 const std::vector<Key<Points>>& points_keys() {
   static const std::vector<Key<Points>> keys = [] {
-    auto file = required(text<Points>("file",
-                                      {"", "PLY file, relative to the scene file",
-                                       "Read once. 32 bytes of scene data per sphere, without BVH; 36 with materials"},
-                                      [](Points& p) -> std::filesystem::path& { return p.file; }));
+    auto file =
+        required(text<Points>("file",
+                              {"", "PLY file, relative to the scene file",
+                               "Read once. 32 bytes of scene data per sphere, or 36 with materials, excluding the BVH"},
+                              [](Points& p) -> std::filesystem::path& { return p.file; }));
     return std::vector<Key<Points>>{
         file,
         optional_number<Points>("radius", kLength, {"scene units", "Radius of every sphere. Overrides the file"},

@@ -109,13 +109,13 @@ std::string material_fault(std::uint32_t material, const Scene& scene) {
          std::to_string(scene.materials.size()) + ", counted from 0";
 }
 
-/// Calls `tell(key suffix, text)` for each fault of a sphere.
-template <class Tell>
-void check_sphere(Vec3d center, double radius, std::uint32_t material, const Scene& scene, Tell tell) {
+/// Calls `report(key suffix, text)` for each fault of a sphere.
+template <class Report>
+void check_sphere(Vec3d center, double radius, std::uint32_t material, const Scene& scene, Report report) {
   if (!in_domain(center))
-    tell(".center", "center " + vector_text(center) + " is not finite or exceeds " + number_text(kLargestLength));
-  if (const std::string fault = radius_fault(radius); !fault.empty()) tell(".radius", fault);
-  if (const std::string fault = material_fault(material, scene); !fault.empty()) tell(".material", fault);
+    report(".center", "center " + vector_text(center) + " is not finite or exceeds " + number_text(kLargestLength));
+  if (const std::string fault = radius_fault(radius); !fault.empty()) report(".radius", fault);
+  if (const std::string fault = material_fault(material, scene); !fault.empty()) report(".material", fault);
 }
 
 void check_spheres(const Scene& scene, Problems& diagnostics) {
@@ -162,7 +162,7 @@ void check_coincident(const Scene& scene, const Scene* closing, Problems& diagno
   for (const Points& p : scene.points)
     if (p.radii.size() != p.centers.size()) return;  // reported above; the arrays must not be indexed
   const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
-  for (const Coincident& c : found.told)
+  for (const Coincident& c : found.reported)
     diagnostics.warning(c.key, "has exactly the same centre and radius as " + c.first + "; only the first is rendered");
   if (found.count > kMaxReported)
     diagnostics.warning("", "and " + std::to_string(found.count - kMaxReported) + " more coincident spheres (" +

@@ -204,7 +204,7 @@ TEST_F(CliValidation, InfoAndBenchTakeOneFrame) {
   EXPECT_TRUE(contains(run("info shot.toml --frame 6").out, "\nframe       6\n"));
   const Outcome many = run("info shot.toml --frames 1-6");
   EXPECT_EQ(many.status, 2);
-  EXPECT_EQ(many.err, "orrery: --frame 1-6 is 6 frames; this command takes one; orrery check takes several\n");
+  EXPECT_EQ(many.err, "orrery: --frame 1-6 selects 6 frames, but this command takes one; orrery check takes several\n");
   const std::string bench = "bench shot.toml -q --rounds 1 --seconds 0.001 --frame ";
   EXPECT_NE(run(bench + "1").out.substr(0, 40), run(bench + "6").out.substr(0, 40)) << "the scene hash differs";
 }

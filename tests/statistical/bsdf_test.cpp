@@ -22,8 +22,8 @@
 namespace orrery::test {
 #ifndef ORRERY_STATISTICAL_BSDF_TEST_CASE_
 #define ORRERY_STATISTICAL_BSDF_TEST_CASE_
-/// A material, met in the plane z = 0 on the top of a unit sphere; the normal is +y.
-struct Met {
+/// A surface interaction at the top of a unit sphere, with the incident ray in the plane z = 0; the normal is +y.
+struct Interaction {
   kernel::MaterialKind kind = kernel::MaterialKind::kLambertian;
   double fuzz = 0;
   double cos_arriving = 1;
@@ -48,29 +48,30 @@ constexpr kernel::Features kAllFeatures{true, true, true, true};
 constexpr double kAlbedo = 0.75;
 
 template <class D>
-k::Surface<D> surface(D d, const Met& met) {
+k::Surface<D> surface(D d, const Interaction& interaction) {
   using T = hn::TFromD<D>;
   k::Surface<D> at;
-  const double arriving[3] = {std::sqrt(1 - met.cos_arriving * met.cos_arriving), -met.cos_arriving, 0};
-  const double up[3] = {0, 1, 0}, center_to_point[3] = {0, met.from_outside ? 1.0 : -1.0, 0};
+  const double arriving[3] = {std::sqrt(1 - interaction.cos_arriving * interaction.cos_arriving),
+                              -interaction.cos_arriving, 0};
+  const double up[3] = {0, 1, 0}, center_to_point[3] = {0, interaction.from_outside ? 1.0 : -1.0, 0};
   at.direction = k::set3(d, arriving);
   at.normal = k::set3(d, up);
   at.offset = k::set3(d, center_to_point);
-  at.from_outside = hn::FirstN(d, met.from_outside ? hn::Lanes(d) : 0);
-  at.fuzz = hn::Set(d, static_cast<T>(met.fuzz));
+  at.from_outside = hn::FirstN(d, interaction.from_outside ? hn::Lanes(d) : 0);
+  at.fuzz = hn::Set(d, static_cast<T>(interaction.fuzz));
   at.eta = hn::Set(d, static_cast<T>(1 / 1.5));
   at.r0 = hn::Set(d, static_cast<T>(0.04));
-  at.kind = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(met.kind));
+  at.kind = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(interaction.kind));
   at.fresnel = hn::Zero(k::IdTag<D>());
   return at;
 }
 
 /// Fills x, y, z and alive with samples first .. first + as many as there is room for, a multiple of 16.
-void sample(const Met& met, std::uint32_t first, Directions& out) {
+void sample(const Interaction& interaction, std::uint32_t first, Directions& out) {
   const hn::ScalableTag<double> d;
   using D = std::remove_const_t<decltype(d)>;
   const k::IdTag<D> du;
-  const auto at = surface(d, met);
+  const auto at = surface(d, interaction);
   HWY_ALIGN double alive[hn::MaxLanes(D())];
   for (std::size_t i = 0; i < out.x.size(); i += hn::Lanes(d)) {
     const auto name = hn::Iota(du, first + i);
@@ -87,10 +88,10 @@ void sample(const Met& met, std::uint32_t first, Directions& out) {
 
 /// Fills pdf and value, in lanes of T.
 template <class T>
-void judge(const Met& met, Directions& out) {
+void judge(const Interaction& interaction, Directions& out) {
   const hn::ScalableTag<T> d;
   using D = std::remove_const_t<decltype(d)>;
-  const auto at = surface(d, met);
+  const auto at = surface(d, interaction);
   const auto albedo = hn::Set(d, static_cast<T>(kAlbedo));
   HWY_ALIGN T lanes[3][hn::MaxLanes(D())];
   for (std::size_t i = 0; i < out.x.size(); i += hn::Lanes(d)) {
@@ -108,8 +109,8 @@ void judge(const Met& met, Directions& out) {
     }
   }
 }
-void judge_double(const Met& met, Directions& out) { judge<double>(met, out); }
-void judge_float(const Met& met, Directions& out) { judge<float>(met, out); }
+void judge_double(const Interaction& interaction, Directions& out) { judge<double>(interaction, out); }
+void judge_float(const Interaction& interaction, Directions& out) { judge<float>(interaction, out); }
 
 }  // namespace orrery::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -124,9 +125,9 @@ HWY_EXPORT(judge_float);
 
 using kernel::MaterialKind;
 
-const std::vector<Met>& cases() {
-  static const std::vector<Met> list = [] {
-    std::vector<Met> all;
+const std::vector<Interaction>& cases() {
+  static const std::vector<Interaction> list = [] {
+    std::vector<Interaction> all;
     for (const double cosine : {1.0, 0.6, 0.05}) {
       for (const bool outside : {true, false}) {
         all.push_back({MaterialKind::kLambertian, 0, cosine, outside});
@@ -145,11 +146,12 @@ struct Chart {
   double axis[2];  ///< x and y; z = 0
   double lowest;
 
-  explicit Chart(const Met& met)
-      : axis{0, 1}, lowest(met.kind == MaterialKind::kMetal ? std::sqrt(1 - met.fuzz * met.fuzz) : 0) {
-    if (met.kind != MaterialKind::kMetal) return;
-    axis[0] = std::sqrt(1 - met.cos_arriving * met.cos_arriving);
-    axis[1] = met.cos_arriving;
+  explicit Chart(const Interaction& interaction)
+      : axis{0, 1},
+        lowest(interaction.kind == MaterialKind::kMetal ? std::sqrt(1 - interaction.fuzz * interaction.fuzz) : 0) {
+    if (interaction.kind != MaterialKind::kMetal) return;
+    axis[0] = std::sqrt(1 - interaction.cos_arriving * interaction.cos_arriving);
+    axis[1] = interaction.cos_arriving;
   }
   void direction(double v, double turn, double& x, double& y, double& z) const {
     const double versine = (1 - lowest) * (1 - v) * (1 + v), c = 1 - versine, s = std::sqrt(versine * (1 + c));
@@ -171,13 +173,14 @@ struct Chart {
 
 /// The density in long double: for metal the sum over the two points at which the line along w leaves and enters the
 /// sphere around the tip of the mirror direction, each t^2 / (4 pi fuzz^2 |cosine|).
-long double closed_form(const Met& met, double x, double y, double z) {
+long double closed_form(const Interaction& interaction, double x, double y, double z) {
   if (y <= 0) return 0;
   const long double pi = std::numbers::pi_v<long double>;
-  if (met.kind == MaterialKind::kLambertian) return y / pi;
-  if (met.kind == MaterialKind::kHemisphere) return 1 / (2 * pi);
-  if (met.kind != MaterialKind::kMetal || met.fuzz == 0) return 0;
-  const long double f = met.fuzz, my = met.cos_arriving, mx = std::sqrt(1 - met.cos_arriving * met.cos_arriving);
+  if (interaction.kind == MaterialKind::kLambertian) return y / pi;
+  if (interaction.kind == MaterialKind::kHemisphere) return 1 / (2 * pi);
+  if (interaction.kind != MaterialKind::kMetal || interaction.fuzz == 0) return 0;
+  const long double f = interaction.fuzz, my = interaction.cos_arriving,
+                    mx = std::sqrt(1 - interaction.cos_arriving * interaction.cos_arriving);
   const long double length =
       std::sqrt(static_cast<long double>(x) * x + static_cast<long double>(y) * y + static_cast<long double>(z) * z);
   const long double c = (mx * x + my * y) / length;
@@ -195,8 +198,8 @@ TEST(StatisticalBsdf, SamplesHaveTheDensity) {
   constexpr int kSide = 16, kFine = 32, kAbsorbed = kSide * kSide, kCut = kAbsorbed + 1;
   constexpr std::uint32_t kBatch = 1 << 14, kBatches = 24;
   Directions batch(kBatch), fine(kFine * kFine);
-  for (const Met& met : cases()) {
-    const Chart chart(met);
+  for (const Interaction& interaction : cases()) {
+    const Chart chart(interaction);
     // Two more bins: what is absorbed; and all that the surface cuts, since the midpoint rule is too rough for each.
     std::vector<double> expected(kCut + 1);
     std::vector<std::uint64_t> counts(kCut + 1);
@@ -206,7 +209,7 @@ TEST(StatisticalBsdf, SamplesHaveTheDensity) {
       const auto v_of = [&](int i) { return (bin / kSide + (i / kFine + 0.5) / kFine) / kSide; };
       for (int i = 0; i < kFine * kFine; ++i)
         chart.direction(v_of(i), (bin % kSide + (i % kFine + 0.5) / kFine) / kSide, fine.x[i], fine.y[i], fine.z[i]);
-      ORRERY_BEST(judge_double)(met, fine);
+      ORRERY_BEST(judge_double)(interaction, fine);
       double sum = 0;
       bool is_cut = false;
       for (int i = 0; i < kFine * kFine; ++i) {
@@ -217,14 +220,14 @@ TEST(StatisticalBsdf, SamplesHaveTheDensity) {
       expected[bin_of[bin]] += sum / (kFine * kFine * kSide * kSide);
       total += sum / (kFine * kFine * kSide * kSide);
     }
-    if (met.kind != MaterialKind::kMetal) {
+    if (interaction.kind != MaterialKind::kMetal) {
       EXPECT_NEAR(total, 1, 1e-3);
     }
     expected[kAbsorbed] = std::max(0.0, 1 - total);
     const double samples = double{kBatch} * kBatches / (total + expected[kAbsorbed]);
     for (double& e : expected) e *= samples;
     for (std::uint32_t n = 0; n < kBatches; ++n) {
-      ORRERY_BEST(sample)(met, n * kBatch, batch);
+      ORRERY_BEST(sample)(interaction, n * kBatch, batch);
       for (std::uint32_t i = 0; i < kBatch; ++i) {
         std::size_t bin = kAbsorbed;
         if (batch.alive[i]) {
@@ -237,8 +240,8 @@ TEST(StatisticalBsdf, SamplesHaveTheDensity) {
       }
     }
     const ChiSquare result = chi_square(counts, expected);
-    EXPECT_LT(std::abs(result.z), kLargestZ)
-        << "kind " << static_cast<int>(met.kind) << ", fuzz " << met.fuzz << ", cosine " << met.cos_arriving;
+    EXPECT_LT(std::abs(result.z), kLargestZ) << "kind " << static_cast<int>(interaction.kind) << ", fuzz "
+                                             << interaction.fuzz << ", cosine " << interaction.cos_arriving;
   }
 }
 
@@ -247,8 +250,8 @@ TEST(StatisticalBsdf, DensityIsTheClosedFormInBothPrecisions) {
   Directions at(kCount);
   std::mt19937_64 random{5};
   std::uniform_real_distribution<double> uniform(0, 1);
-  for (const Met& met : cases()) {
-    const Chart chart(met);
+  for (const Interaction& interaction : cases()) {
+    const Chart chart(interaction);
     int above = 0;
     for (int i = 0; i < kCount; ++i) {
       // Most directions lie inside the cone, but for its rim, where rounding alone changes the density by much.
@@ -258,15 +261,15 @@ TEST(StatisticalBsdf, DensityIsTheClosedFormInBothPrecisions) {
       if (!std::isfinite(at.x[i] + at.z[i])) at.x[i] = 0, at.y[i] = -1, at.z[i] = 0;
     }
     for (const bool in_double : {true, false}) {
-      (in_double ? ORRERY_BEST(judge_double) : ORRERY_BEST(judge_float))(met, at);
+      (in_double ? ORRERY_BEST(judge_double) : ORRERY_BEST(judge_float))(interaction, at);
       // A float's direction is off by 1e-7, and the narrowest cone is 1e-3 wide.
-      const double most = in_double ? 1e-9 : met.fuzz < 0.01 ? 0.03 : 1e-4;
+      const double most = in_double ? 1e-9 : interaction.fuzz < 0.01 ? 0.03 : 1e-4;
       for (int i = 0; i < kCount; ++i) {
         if (!in_double && std::abs(at.y[i]) < 1e-5) continue;
-        const auto expected = static_cast<double>(closed_form(met, at.x[i], at.y[i], at.z[i]));
+        const auto expected = static_cast<double>(closed_form(interaction, at.x[i], at.y[i], at.z[i]));
         ASSERT_NEAR(at.pdf[i], expected, most * std::max(expected, 0.05))
-            << "kind " << static_cast<int>(met.kind) << ", fuzz " << met.fuzz << ", cosine " << met.cos_arriving
-            << ", direction " << at.x[i] << ' ' << at.y[i] << ' ' << at.z[i];
+            << "kind " << static_cast<int>(interaction.kind) << ", fuzz " << interaction.fuzz << ", cosine "
+            << interaction.cos_arriving << ", direction " << at.x[i] << ' ' << at.y[i] << ' ' << at.z[i];
         ASSERT_NEAR(at.value[i], 0.75 * at.pdf[i], 1e-6 * at.pdf[i]);
         above += expected > 0;
       }
@@ -277,9 +280,10 @@ TEST(StatisticalBsdf, DensityIsTheClosedFormInBothPrecisions) {
 
 TEST(StatisticalBsdf, DeltaMaterialsHaveNoDensity) {
   Directions at(16);
-  for (const Met& met : {Met{MaterialKind::kMetal, 0, 0.6}, Met{MaterialKind::kDielectric, 0, 0.6}}) {
-    ORRERY_BEST(sample)(met, 0, at);
-    ORRERY_BEST(judge_double)(met, at);
+  for (const Interaction& interaction :
+       {Interaction{MaterialKind::kMetal, 0, 0.6}, Interaction{MaterialKind::kDielectric, 0, 0.6}}) {
+    ORRERY_BEST(sample)(interaction, 0, at);
+    ORRERY_BEST(judge_double)(interaction, at);
     EXPECT_EQ(at.pdf, std::vector<double>(16, 0.0));
     EXPECT_EQ(at.value, std::vector<double>(16, 0.0));
   }

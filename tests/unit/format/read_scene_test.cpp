@@ -394,7 +394,7 @@ TEST(FormatReadScene, AHundredErrorsAreReportedAndTheRestCounted) {
     read_scene(files.folder() / "scene.toml");
     FAIL() << "no error";
   } catch (const base::Error& error) {
-    ASSERT_EQ(error.diagnostics().size(), kMostErrors + 1);
+    ASSERT_EQ(error.diagnostics().size(), kMaxErrors + 1);
     EXPECT_EQ(error.diagnostics()[0].line, 1);
     EXPECT_EQ(error.diagnostics()[99].line, 25 * 3) << "the first by location: 25 of 50 spheres";
     EXPECT_EQ(error.diagnostics()[100].text, "and 100 more (200 in all)");

@@ -16,8 +16,8 @@ TEST(SceneCoincident, ReportsBothSpheres) {
   scene.spheres = {sphere({0, 0, 0}, 1), sphere({1, 0, 0}, 1), sphere({0, 0, 0}, 1)};
   const auto found = coincident_spheres(scene, 10);
   ASSERT_EQ(found.count, 1u);
-  EXPECT_EQ(found.told[0].key, "sphere[2]");
-  EXPECT_EQ(found.told[0].first, "sphere[0]");
+  EXPECT_EQ(found.reported[0].key, "sphere[2]");
+  EXPECT_EQ(found.reported[0].first, "sphere[0]");
 }
 
 TEST(SceneCoincident, IgnoresTheSignsOfRadiusAndZero) {
@@ -49,7 +49,7 @@ TEST(SceneCoincident, SpheresThatMoveApartDoNotCoincide) {
   EXPECT_EQ(coincident_spheres(opening, 10).count, 2u);
   const auto found = coincident_spheres(opening, 10, &closing);
   ASSERT_EQ(found.count, 1u);
-  EXPECT_EQ(found.told[0].key, "sphere[2]");
+  EXPECT_EQ(found.reported[0].key, "sphere[2]");
 }
 
 TEST(SceneCoincident, ComparesAcrossTablesAndPointsFiles) {
@@ -61,11 +61,11 @@ TEST(SceneCoincident, ComparesAcrossTablesAndPointsFiles) {
   scene.points[2].centers = {{1, 0, 0}, {6, 0, 0}, {5, 0, 0}};
   scene.points[2].radii = {2, 2, 2};
   const auto found = coincident_spheres(scene, 10);
-  ASSERT_EQ(found.told.size(), 2u);
-  EXPECT_EQ(found.told[0].key, "points[2][0]");
-  EXPECT_EQ(found.told[0].first, "sphere[0]");
-  EXPECT_EQ(found.told[1].key, "points[2][2]");
-  EXPECT_EQ(found.told[1].first, "points[0][0]");
+  ASSERT_EQ(found.reported.size(), 2u);
+  EXPECT_EQ(found.reported[0].key, "points[2][0]");
+  EXPECT_EQ(found.reported[0].first, "sphere[0]");
+  EXPECT_EQ(found.reported[1].key, "points[2][2]");
+  EXPECT_EQ(found.reported[1].first, "points[0][0]");
 }
 
 TEST(SceneCoincident, CountsAllAndListsTheFirst) {
@@ -75,7 +75,7 @@ TEST(SceneCoincident, CountsAllAndListsTheFirst) {
   scene.points[0].radii.assign(200000, 1);
   const auto found = coincident_spheres(scene, 3);
   EXPECT_EQ(found.count, 199999u);
-  EXPECT_EQ(found.told.size(), 3u);
+  EXPECT_EQ(found.reported.size(), 3u);
 }
 
 TEST(SceneCoincident, ThreeCoincidentSpheresAreTwoReports) {
