@@ -42,6 +42,7 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
           feature("gradient sky", compiled.features.sky, "constant colour: independent of direction"),
           feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
                   "camera or spheres move while the shutter is open"),
+          feature("lights", compiled.features.lit, "no emitters: no shadow rays"),
           feature("layers", has_layers, "none requested: paths are not recorded"),
           feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading uses the first hit only")};
 }
@@ -71,9 +72,30 @@ std::string points_text(const std::vector<PointsInfo>& points) {
   return out;
 }
 
+std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
+  return static_cast<std::uint64_t>(
+      std::count_if(compiled.sphere_materials.begin(), compiled.sphere_materials.end(),
+                    [&](std::uint32_t m) { return compiled.materials[m].kind == kernel::MaterialKind::kEmitter; }));
+}
+
+/// Describes how the emitters are sampled: "40 emitters, sampled by a light tree (mis)".
+std::string lights_text(const compile::CompiledScene& compiled) {
+  const std::uint64_t count = count_emitters(compiled);
+  if (count == 0) return "none";
+  std::string out;
+  base::append(out, "%llu %s, ", static_cast<unsigned long long>(count), count == 1 ? "emitter" : "emitters");
+  switch (compiled.direct_lighting) {
+    case kernel::DirectLighting::kBsdf: return out + "found by BSDF sampling only";
+    case kernel::DirectLighting::kMis: out += "light and BSDF sampling"; break;
+    case kernel::DirectLighting::kLight: out += "light sampling"; break;
+  }
+  if (count > 1) out += ", chosen by a light tree of " + base::bytes_text(compiled.light_tree.bytes());
+  return out;
+}
+
 std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile::CompiledScene& compiled) {
-  static constexpr const char* kNames[] = {"lambertian", "hemisphere", "metal", "dielectric"};
-  std::array<std::uint64_t, 4> counts{};
+  static constexpr std::array kNames = {"lambertian", "hemisphere", "metal", "dielectric", "emitter"};
+  std::array<std::uint64_t, kNames.size()> counts{};
   for (const kernel::Material& m : compiled.materials) ++counts[static_cast<std::size_t>(m.kind)];
   std::vector<std::pair<std::string, std::uint64_t>> out;
   for (std::size_t i = 0; i < counts.size(); ++i)
@@ -107,6 +129,8 @@ SceneInfo scene_info(const job::SceneRequest& request) {
     info.largest_radius = largest->radius;
   }
   info.materials = count_materials(compiled);
+  info.emitters = count_emitters(compiled);
+  info.lights = lights_text(compiled);
   for (const scene::Points& p : read.scene.points) info.points.push_back({p.file.string(), p.centers.size(), p.unused});
   info.layers = scene::requested_layers(read.scene);
   info.available_layers = scene::available_layers(read.scene);
@@ -149,6 +173,7 @@ std::string info_text(const SceneInfo& info) {
     base::append(out, "%s %llu %s", i == 0 ? "" : ",", static_cast<unsigned long long>(info.materials[i].second),
                  info.materials[i].first.c_str());
   out += '\n' + points_text(info.points);
+  if (info.emitters > 0) base::append(out, "lights      %s\n", info.lights.c_str());
   base::append(out, "layers      %s; available: %s\n", info.layers.empty() ? "none" : base::joined(info.layers).c_str(),
                base::joined(info.available_layers).c_str());
   base::append(out, "kernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
@@ -208,6 +233,7 @@ std::string info_json(const SceneInfo& info) {
       {"bounds", nullptr},
       {"radius", nullptr},
       {"materials", materials},
+      {"emitters", info.emitters},
       {"points", points},
       {"layers", {{"requested", info.layers}, {"available", info.available_layers}}},
       {"features", features},

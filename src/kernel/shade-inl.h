@@ -202,7 +202,10 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     if constexpr (kLoop.lit) {
       if (scene.emission != nullptr && scene.shading == Shading::kPath) {
         auto source = emitted(d, scene, hits, hit);
-        const auto shines = hn::And(hit, max(source.radiance) > hn::Zero(d));
+        const auto zero = hn::Zero(d);
+        const auto dark =
+            hn::And(hn::And(source.radiance.x == zero, source.radiance.y == zero), source.radiance.z == zero);
+        const auto shines = hn::AndNot(dark, hit);
         if (!hn::AllFalse(d, shines)) {
           if (depth > 0)
             source.radiance = source.radiance * emitter_weight<D, kMoves>(d, scene, ray, hits, packet.time + v,

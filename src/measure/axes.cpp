@@ -31,6 +31,7 @@ class Planner {
     roulette();
     depth();
     fresnel();
+    direct_lighting();
     accelerator();
     return std::move(out_);
   }
@@ -142,6 +143,22 @@ class Planner {
     add_one("exact", kernel::FresnelKind::kExact);
     add_one("schlick", kernel::FresnelKind::kSchlick);
     add_one("none", kernel::FresnelKind::kNone);
+  }
+
+  void direct_lighting() {
+    if (!compiled_.features.lit) {
+      out_.left_out.push_back("no lights: no direct lighting axis");
+      return;
+    }
+    const auto add_one = [&](const char* name, kernel::DirectLighting mode) {
+      add("direct lighting", name, flag(kCompared) + " --set render.direct_lighting=" + name, kCompared).apply =
+          [mode](CompiledScene& w) {
+            w.direct_lighting = mode;
+            if (w.light_tree.spheres.empty() && !w.emission.empty()) w.light_tree = compile::build_light_tree(w.view());
+          };
+    };
+    add_one("mis", kernel::DirectLighting::kMis);
+    add_one("bsdf", kernel::DirectLighting::kBsdf);
   }
 
   void accelerator() {

@@ -108,8 +108,8 @@ Table render_table() {
                   [](S& s) -> int& { return s.render.samples; }),
        integer<S>("max_depth", {1, kDeepestPath},
                   {"rays",
-                   "Maximum number of rays per path, counted as in the book: the camera ray is the first. A path whose "
-                   "last ray hits a sphere is black",
+                   "Maximum number of rays per path, counted as in the book: the camera ray is the first. Where the last "
+                   "ray hits a sphere, only the sphere's emission counts",
                    "An upper bound only: most paths leave the scene earlier"},
                   [](S& s) -> int& { return s.render.max_depth; }),
        integer<S>("roulette_depth", {0, kDeepestPath},
@@ -147,9 +147,10 @@ Table render_table() {
                  [](S& s) -> Accelerator& { return s.render.accelerator; }),
        choice<S>("direct_lighting", {"mis", "bsdf", "light"},
                  {"",
-                  "Sampling of direct light. `mis`: multiple importance sampling of lights and BSDFs. `bsdf`: BSDF "
-                  "sampling only, as in the book. `light`: light sampling only, where light can be sampled",
-                  "`mis`: one shadow ray per vertex, only in scenes with emitters or an image background"},
+                  "Sampling of direct light. `mis`: light and BSDF sampling, combined by multiple importance sampling. "
+                  "`bsdf`: BSDF sampling only, as in the book. `light`: light sampling only, except for reflections in "
+                  "mirrors and glass and inside emitters, where it is impossible",
+                  "`mis` and `light`: one shadow ray per diffuse or fuzzy vertex; none in scenes without lights"},
                  [](S& s) -> DirectLighting& { return s.render.direct_lighting; }),
        choice<S>("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
                  {"",

@@ -68,7 +68,7 @@ void expect_agreement(const NamedScene& s, int samples, int seeds) {
     mean += mis.mean[b];
   }
   EXPECT_GT(mean, 0) << s.name;
-  RecordProperty("relative standard error of mis", std::to_string(std::sqrt(light) / mean));
+  testing::Test::RecordProperty("relative standard error of mis", std::to_string(std::sqrt(light) / mean));
   if (std::getenv("ORRERY_PRINT") != nullptr)
     std::printf("%-60s mean %.5f, relative standard error %.2e\n", s.name.c_str(), mean / kBlocks,
                 std::sqrt(light) / mean);

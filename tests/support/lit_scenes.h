@@ -41,6 +41,18 @@ inline void add_ball(scene::Scene& s, math::Vec3d center, double radius, const s
   s.spheres.push_back({center, radius, static_cast<std::uint32_t>(s.materials.size() - 1)});
 }
 
+/// Adds emitters to any scene that has the extent of test::everything(): near, far, touching and around the camera.
+inline scene::Scene with_lamps(scene::Scene s) {
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0.01, 0.02, 0.03};
+  add_lamp(s, {2, 3, 1}, 0.2, {20, 15, 10}, "key");
+  add_lamp(s, {-2, 1.5, 1}, 0.1, {20, 15, 10});
+  add_lamp(s, {1.2, 0.1, 1.4}, 0.1, {0.5, 1, 3});
+  add_lamp(s, {30, 200, -60}, 50, {0.5, 1, 3});
+  add_lamp(s, s.camera.look_from, 2, {0.2, 0.2, 0.1});
+  return s;
+}
+
 /// The stage under lights that are each hard in another way.
 inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
   std::vector<NamedScene> out;

@@ -106,22 +106,24 @@ std::vector<std::pair<Vec3d, Vec3d>> vertices() {
           {{0, 10.5, 0}, {0, 1, 0}}, {{9.9, 9.9, 9.9}, {0, -1, 0}}};
 }
 
-TEST(KernelLights, ProbabilitiesOfAllEmittersSumToOneOrNoneCanBeReached) {
+TEST(KernelLights, ProbabilitiesOfAllEmittersSumToAtMostOne) {
   const CompiledScene compiled = compile(random_lamps(157, 4));
   for (const auto& [point, normal] : vertices()) {
     double sum = 0;
     for (const std::uint32_t id : compiled.light_tree.spheres)
       sum += test::choice_probability(compiled.view(), point, normal, id);
-    // Above the horizon of no emitter, some choice may lead to a node without importance.
+    // Less than one: a bounding sphere may reach above the horizon although no emitter in it does.
     EXPECT_LE(sum, 1 + 1e-12);
-    if (std::abs(point.x) < 1e5 && normal.x <= 0 && point.y < 10) EXPECT_GT(sum, 0.9);
+    if (std::abs(point.x) < 1e5 && normal.x <= 0 && point.y < 10) {
+      EXPECT_GT(sum, 0.5);
+    }
   }
 }
 
 TEST(KernelLights, ChoicesHaveTheProbabilityThatIsReported) {
   const CompiledScene compiled = compile(random_lamps(37, 5));
   for (const auto& [point, normal] : vertices()) {
-    constexpr int kDraws = 100000;
+    constexpr int kDraws = 10000;
     std::vector<int> count(100);
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0, 1);

@@ -8,12 +8,14 @@
 
 #include "compile/compile.h"
 #include "support/everything.h"
+#include "support/lit_scenes.h"
 
 namespace orrery::render {
 namespace {
 
 using math::Vec3d;
 using test::everything;
+using test::with_lamps;
 
 std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
   const compile::CompiledScene compiled = compile::compile(scene);
@@ -30,20 +32,22 @@ std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
 
 TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
-    scene::Scene s = everything();
-    s.render.precision = precision;
-    s.render.accelerator = scene::Accelerator::kEmbree;
-    const auto embree = pixels(s);
-    s.render.accelerator = scene::Accelerator::kList;
-    EXPECT_EQ(pixels(s), embree) << static_cast<int>(precision);
+    for (scene::Scene s : {everything(), with_lamps(everything())}) {
+      s.render.precision = precision;
+      s.render.accelerator = scene::Accelerator::kEmbree;
+      const auto embree = pixels(s);
+      s.render.accelerator = scene::Accelerator::kList;
+      EXPECT_EQ(pixels(s), embree) << static_cast<int>(precision);
+    }
   }
 }
 
 TEST(RenderRender, AnyNumberOfThreadsGivesTheSameBits) {
-  const scene::Scene s = everything();
-  const auto one = pixels(s, 1);
-  EXPECT_EQ(pixels(s, 2), one);
-  EXPECT_EQ(pixels(s, 5), one);
+  for (const scene::Scene& s : {everything(), with_lamps(everything())}) {
+    const auto one = pixels(s, 1);
+    EXPECT_EQ(pixels(s, 2), one);
+    EXPECT_EQ(pixels(s, 5), one);
+  }
 }
 
 TEST(RenderRender, AnotherSeedGivesAnotherImage) {
@@ -65,9 +69,10 @@ scene::Scene scaled(scene::Scene s, double factor) {
 }
 
 TEST(RenderRender, SceneScaleChangesNoBits) {
-  const scene::Scene s = everything();
-  const auto unit = pixels(s);
-  for (const int k : {-60, -17, 1, 30, 48}) EXPECT_EQ(pixels(scaled(s, std::ldexp(1.0, k))), unit) << "2^" << k;
+  for (const scene::Scene& s : {everything(), with_lamps(everything())}) {
+    const auto unit = pixels(s);
+    for (const int k : {-60, -17, 1, 30, 48}) EXPECT_EQ(pixels(scaled(s, std::ldexp(1.0, k))), unit) << "2^" << k;
+  }
 }
 
 TEST(RenderRender, BookPrecisionDependsOnTheSceneScale) {
