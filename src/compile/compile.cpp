@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <type_traits>
 
 #include "compile/camera_basis.h"
@@ -74,10 +75,9 @@ kernel::Material compile_model(const scene::Emitter&) {
 /// Returns the number of a light group, and adds the group if it is new.
 std::uint16_t light_group(CompiledScene& compiled, const std::string& name) {
   std::vector<std::string>& names = compiled.light_groups;
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) names.push_back(name);
-  return static_cast<std::uint16_t>(at == names.end() ? names.size() - 1
-                                                      : static_cast<std::size_t>(at - names.begin()));
+  const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  if (index == names.size()) names.push_back(name);
+  return static_cast<std::uint16_t>(index);
 }
 
 /// Precision  rounded from long double, so that it does not depend on the math library
@@ -189,7 +189,30 @@ void add_motion(const scene::Scene& opening, const scene::Scene& closing, Compil
   compiled.features.motion = camera_moves || !compiled.motion.empty();
 }
 
-void set_background(const scene::Background& from, CompiledScene& compiled) {
+EnvironmentSampling sampling_of(scene::DirectLighting lighting) {
+  switch (lighting) {
+    case scene::DirectLighting::kMis: return EnvironmentSampling::kCompensated;
+    case scene::DirectLighting::kBsdf: return EnvironmentSampling::kNone;
+    case scene::DirectLighting::kLight: return EnvironmentSampling::kComplete;
+  }
+  return EnvironmentSampling::kNone;
+}
+
+/// Compiles an image background; without one, the gradient or constant colour.
+void set_background(const scene::Scene& scene, CompiledScene& compiled) {
+  const scene::Background& from = scene.background;
+  if (from.image) {
+    EnvironmentSettings settings;
+    settings.rotation = from.rotation;
+    settings.scale = stops_to_factor(from.exposure);
+    settings.sampling = sampling_of(scene.render.direct_lighting);
+    settings.light_group = light_group(compiled, from.light_group);
+    settings.visible = from.visible;
+    compiled.environment = std::make_shared<const EnvironmentMap>(from.image, settings);
+    set(compiled.background.bottom, {0, 0, 0});
+    set(compiled.background.top, {0, 0, 0});
+    return;
+  }
   const bool gradient = from.type == scene::BackgroundType::kGradient;
   set(compiled.background.bottom, gradient ? from.bottom : from.color);
   set(compiled.background.top, gradient ? from.top : from.color);
@@ -226,6 +249,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.camera_motion = camera_motion;
   v.camera = camera;
   v.background = background;
+  v.environment = environment ? &environment->view() : nullptr;
   v.features = features;
   v.shading = shading;
   v.max_depth = max_depth;
@@ -269,9 +293,9 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   compiled.accelerator = scene.render.accelerator;
   compiled.camera = compile_camera(scene.camera, scene.image);
   compiled.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
-  set_background(scene.background, compiled);
-  compiled.filter = compile_filter(scene.render);
   compiled.light_groups = {""};
+  set_background(scene, compiled);
+  compiled.filter = compile_filter(scene.render);
   add_spheres(scene, compiled);
   const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
   if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "compile/environment.h"
 #include "compile/light_tree.h"
 #include "compile/pixel_filter.h"
 #include "kernel/precision.h"
@@ -40,6 +42,7 @@ struct CompiledScene {
   kernel::Camera camera;
   kernel::Camera camera_motion;
   kernel::Background background;
+  std::shared_ptr<const EnvironmentMap> environment;  ///< an image background; null: none
   kernel::Features features;
   kernel::Shading shading = kernel::Shading::kPath;
   Precision precision = Precision::kExact;

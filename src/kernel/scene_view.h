@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "kernel/camera.h"
+#include "kernel/environment.h"
 #include "kernel/lights.h"
 #include "kernel/material.h"
 #include "kernel/pixel_filter.h"
@@ -61,6 +62,7 @@ struct SceneView {
   Camera camera;
   Camera camera_motion;  ///< change of its vectors until the shutter closes, if features.motion
   Background background;
+  const Environment* environment = nullptr;  ///< an image background, which replaces `background`; null: none
   Features features;
   Shading shading = Shading::kPath;
   std::uint32_t max_depth = 50;  ///< maximum rays per path, including the camera ray

@@ -21,9 +21,17 @@ constexpr std::array<double, 9> quarter_series(int first) {
   }
   return c;
 }
+
+/// Returns the Taylor coefficients of atan(r) / (2 pi) in powers of r^2; the caller multiplies by r.
+constexpr std::array<double, 11> atan_turn_series() {
+  std::array<double, 11> c{};
+  for (int i = 0; i < 11; ++i) c[static_cast<unsigned>(i)] = (i % 2 == 0 ? 1 : -1) / ((2 * i + 1) * 4 * kHalfPi);
+  return c;
+}
 }  // namespace detail
 
 inline constexpr std::array<double, 9> kSinQuarter = detail::quarter_series(1);
 inline constexpr std::array<double, 9> kCosQuarter = detail::quarter_series(0);
+inline constexpr std::array<double, 11> kAtanTurn = detail::atan_turn_series();
 
 }  // namespace orrery::math

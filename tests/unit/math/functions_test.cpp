@@ -27,6 +27,14 @@ void sin_cos_all(const T* u, T* sine, T* cosine, std::size_t count) {
     hn::StoreU(turn.cos, d, cosine + i);
   }
 }
+template <class T>
+void angle_all(const T* x, const T* y, T* turn, std::size_t count) {
+  const hn::ScalableTag<T> d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d))
+    hn::StoreU(atan2_turn(d, hn::LoadU(d, y + i), hn::LoadU(d, x + i)), d, turn + i);
+}
+void angle_double(const double* x, const double* y, double* turn, std::size_t n) { angle_all(x, y, turn, n); }
+void angle_float(const float* x, const float* y, float* turn, std::size_t n) { angle_all(x, y, turn, n); }
 void sin_cos_double(const double* u, double* s, double* c, std::size_t n) { sin_cos_all(u, s, c, n); }
 void sin_cos_float(const float* u, float* s, float* c, std::size_t n) { sin_cos_all(u, s, c, n); }
 
@@ -39,6 +47,8 @@ namespace {
 
 HWY_EXPORT(sin_cos_double);
 HWY_EXPORT(sin_cos_float);
+HWY_EXPORT(angle_double);
+HWY_EXPORT(angle_float);
 
 constexpr std::size_t kCount = 1 << 16;
 constexpr long double kTwoPi = 6.283185307179586476925286766559005768L;
@@ -67,6 +77,50 @@ double worst_turn_error(Function function) {
 TEST(MathFunctions, SineAndCosineOfATurn) {
   EXPECT_LE(worst_turn_error<double>(ORRERY_BEST(sin_cos_double)), 2.3e-16);
   EXPECT_LE(worst_turn_error<float>(ORRERY_BEST(sin_cos_float)), 1.2e-7);
+}
+
+struct WorstErrors {
+  double absolute = 0, relative = 0;
+};
+
+/// Compares atan2_turn with long double, for angles down to the smallest in all four quadrants.
+template <class T, class Function>
+WorstErrors worst_angle_errors(Function function) {
+  std::vector<T> x(kCount), y(kCount), turn(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    // Odd indices are small angles beside the x axis.
+    const long double angle = i % 2 == 0 ? kTwoPi * static_cast<long double>(i) / kCount
+                                         : std::exp2(-60.0L * static_cast<long double>(i) / kCount);
+    const long double radius = std::exp2(static_cast<long double>(i % 41) - 20);
+    x[i] = static_cast<T>(radius * std::cos(angle));
+    y[i] = static_cast<T>(radius * std::sin(angle));
+  }
+  function(x.data(), y.data(), turn.data(), kCount);
+  WorstErrors worst;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const long double expected = std::atan2(static_cast<long double>(y[i]), static_cast<long double>(x[i])) / kTwoPi;
+    const auto error = static_cast<double>(std::abs(expected - static_cast<long double>(turn[i])));
+    worst.absolute = std::max(worst.absolute, error);
+    worst.relative = std::max(worst.relative, expected == 0 ? error : error / static_cast<double>(std::abs(expected)));
+  }
+  return worst;
+}
+
+TEST(MathFunctions, AngleOfAPoint) {
+  const WorstErrors wide = worst_angle_errors<double>(ORRERY_BEST(angle_double));
+  EXPECT_LE(wide.absolute, 6e-17);
+  EXPECT_LE(wide.relative, 4e-16);
+  const WorstErrors narrow = worst_angle_errors<float>(ORRERY_BEST(angle_float));
+  EXPECT_LE(narrow.absolute, 4e-8);
+  EXPECT_LE(narrow.relative, 2e-7);
+}
+
+TEST(MathFunctions, AnglesOfTheAxesAreExact) {
+  const double x[16] = {0, 1, 0, -1, 0, 1, -1, -1, 1}, y[16] = {0, 0, 2, 0, -3, 1, 1, -1, -1};
+  const double expected[9] = {0, 0, 0.25, 0.5, -0.25, 0.125, 0.375, -0.375, -0.125};
+  double turn[16];
+  ORRERY_BEST(angle_double)(x, y, turn, 16);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(turn[i], expected[i]) << x[i] << ", " << y[i];
 }
 
 TEST(MathFunctions, QuarterTurnsAreExact) {

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+// Image backgrounds: radiance, sampling and density. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_ENVIRONMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_ENVIRONMENT_INL_H_
+#undef ORRERY_KERNEL_ENVIRONMENT_INL_H_
+#else
+#define ORRERY_KERNEL_ENVIRONMENT_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <utility>
+
+#include "kernel/environment.h"
+#include "kernel/gather-inl.h"
+#include "kernel/sample-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+/// Returns a + (b - a) s, which is not negative if a and b are not.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V interpolated(D, V a, V b, V s) {
+  return hn::MulAdd(b - a, s, a);
+}
+
+/// Returns x minus the largest integer up to x: angles in turns, within 0..1.
+template <class V>
+HWY_INLINE V whole_turns_removed(V x) {
+  return x - hn::Floor(x);
+}
+
+/// The sampling weight of texels.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V texel_weight(D d, const Environment& env, const V (&rgb)[4]) {
+  using T = hn::TFromD<D>;
+  const V scale = hn::Set(d, static_cast<T>(env.weight_scale));
+  const V below = hn::MulAdd(rgb[2], scale, hn::Set(d, static_cast<T>(-env.weight_offset)));
+  return hn::Max(hn::MulAdd(rgb[0], scale, hn::MulAdd(rgb[1], scale, below)), hn::Zero(d));
+}
+
+/// The four texels around each lane's direction, and the direction's position between their centres.
+template <class D>
+struct EnvironmentFootprint {
+  using V = hn::Vec<D>;
+  V texel[4][4];  ///< upper left, upper right, lower left, lower right; red, green, blue, unused
+  V right, down;  ///< 0..1, linear in longitude and latitude
+  V cosine_down;  ///< 0..1, linear in the cosine to the pole; only if the map is sampled
+  hn::Mask<D> is_in_sun;
+};
+
+/// Whether directions are inside the sun's cone. The distance of the two unit vectors decides, since their cosine would
+/// round to 1.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> is_in_sun(D d, const Environment& env, const Vec3<V>& direction) {
+  using T = hn::TFromD<D>;
+  const auto between = direction - set3(d, env.sun);
+  return dot(between, between) <= hn::Set(d, static_cast<T>(2 * env.sun_one_minus_cos));
+}
+
+/// Loads the texels around directions.
+///
+/// Space      world; unit
+/// Result     of a direction that is NaN: some texels of the map
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE EnvironmentFootprint<D> environment_footprint(D d, const Environment& env, const Vec3<V>& direction) {
+  using T = hn::TFromD<D>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), half = hn::Set(d, static_cast<T>(0.5));
+  const V width = hn::Set(d, static_cast<T>(env.width)), height = hn::Set(d, static_cast<T>(env.height));
+  const V radius2 = hn::MulAdd(direction.x, direction.x, direction.z * direction.z);
+  const V longitude = atan2_turn(d, direction.x, direction.z);
+  const V colatitude = atan2_turn(d, hn::Sqrt(radius2), direction.y);  // 0..1/2
+  const V u = whole_turns_removed((half - longitude) + hn::Set(d, static_cast<T>(env.turn)));
+  const V across = hn::MulAdd(u, width, hn::Neg(half));
+  const V down = hn::MulAdd(colatitude + colatitude, height, hn::Neg(half));
+  const V column = hn::Floor(across), above = hn::Floor(down);
+  EnvironmentFootprint<D> out;
+  out.right = across - column;
+  out.down = down - above;
+  out.cosine_down = zero;
+
+  HWY_ALIGN T left[kMax], right[kMax], upper[kMax], lower[kMax];
+  // False for NaN, which must not become an index.
+  const auto usable =
+      hn::And(hn::And(across >= hn::Neg(one), across <= width), hn::And(down >= hn::Neg(one), down <= height));
+  const V next = column + one;
+  hn::Store(hn::IfThenElseZero(usable, hn::IfThenElse(column < zero, width - one, hn::Min(column, width - one))), d,
+            left);
+  hn::Store(hn::IfThenElseZero(hn::And(usable, next < width), next), d, right);
+  hn::Store(hn::IfThenElseZero(usable, hn::Min(hn::Max(above, zero), height - one)), d, upper);
+  hn::Store(hn::IfThenElseZero(usable, hn::Min(above + one, height - one)), d, lower);
+  const auto texel = [&](const T(&row)[kMax], const T(&at)[kMax], std::size_t i) {
+    return env.texels + 3 * (static_cast<std::size_t>(row[i]) * env.width + static_cast<std::size_t>(at[i]));
+  };
+  gather4(
+      d, [&](std::size_t i) { return texel(upper, left, i); }, out.texel[0]);
+  gather4(
+      d, [&](std::size_t i) { return texel(upper, right, i); }, out.texel[1]);
+  gather4(
+      d, [&](std::size_t i) { return texel(lower, left, i); }, out.texel[2]);
+  gather4(
+      d, [&](std::size_t i) { return texel(lower, right, i); }, out.texel[3]);
+  if (env.has_sun) out.is_in_sun = is_in_sun(d, env, direction);
+
+  if (env.map_density > 0) {
+    HWY_ALIGN T cell_row[kMax], versine[kMax], row_width[kMax];
+    hn::Store(hn::IfThenElseZero(usable, hn::Min(above + one, height)), d, cell_row);
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      const EnvironmentRow& row = env.rows[static_cast<std::size_t>(cell_row[i])];
+      versine[i] = static_cast<T>(row.versine);
+      row_width[i] = static_cast<T>(row.width);
+    }
+    const V extent = hn::Load(d, row_width);
+    const V tall = one + hn::Abs(direction.y);
+    // To the pole of the row's half of the map.
+    const V from_pole = hn::IfThenElse(extent * direction.y > zero, radius2 / tall, tall);
+    const V t = (from_pole - hn::Load(d, versine)) / extent;
+    out.cosine_down = hn::Min(hn::Max(t, zero), one);
+  }
+  return out;
+}
+
+/// The radiance of footprints: bilinear between the centres of the texels, plus the sun.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> radiance_of(D d, const Environment& env, const EnvironmentFootprint<D>& at) {
+  using T = hn::TFromD<D>;
+  const V scale = hn::Set(d, static_cast<T>(env.scale));
+  const auto channel = [&](std::size_t c) {
+    const V upper = interpolated(d, at.texel[0][c], at.texel[1][c], at.right);
+    const V lower = interpolated(d, at.texel[2][c], at.texel[3][c], at.right);
+    return interpolated(d, upper, lower, at.down) * scale;
+  };
+  const Vec3<V> map = {channel(0), channel(1), channel(2)};
+  if (!env.has_sun) return map;
+  return select(at.is_in_sun, map + set3(d, env.sun_radiance), map);
+}
+
+/// The density of sample_environment at footprints.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V pdf_of(D d, const Environment& env, const EnvironmentFootprint<D>& at) {
+  using T = hn::TFromD<D>;
+  V pdf = hn::Zero(d);
+  if (env.map_density > 0) {
+    const V upper = interpolated(d, texel_weight(d, env, at.texel[0]), texel_weight(d, env, at.texel[1]), at.right);
+    const V lower = interpolated(d, texel_weight(d, env, at.texel[2]), texel_weight(d, env, at.texel[3]), at.right);
+    pdf = interpolated(d, upper, lower, at.cosine_down) * hn::Set(d, static_cast<T>(env.map_density));
+  }
+  if (env.has_sun) pdf = pdf + hn::IfThenElseZero(at.is_in_sun, hn::Set(d, static_cast<T>(env.sun_density)));
+  return pdf;
+}
+
+/// The radiance that arrives from directions: the map's and the sun's.
+///
+/// Space      direction world, unit
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> environment_radiance(D d, const Environment& env, const Vec3<V>& direction) {
+  return radiance_of(d, env, environment_footprint(d, env, direction));
+}
+
+/// The density per steradian with which sample_environment chooses directions.
+///
+/// Space      direction world, unit
+/// Result     zero if the environment is not sampled
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V environment_pdf(D d, const Environment& env, const Vec3<V>& direction) {
+  return pdf_of(d, env, environment_footprint(d, env, direction));
+}
+
+/// One of two parts, chosen with probabilities proportional to their weights. `rest` is uniform in 0..1 again.
+template <class D>
+struct Split {
+  hn::Mask<D> second;
+  hn::Vec<D> rest;
+};
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Split<D> split(D d, V first, V second, V u) {
+  using T = hn::TFromD<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+  const V at = u * (first + second);
+  // A part of weight zero is never chosen, whatever the rounding.
+  const auto beyond = hn::And(at >= first, second > zero);
+  const V chosen = hn::IfThenElse(beyond, second, first);
+  const V rest = hn::IfThenElse(beyond, at - first, at) / hn::IfThenElse(chosen > zero, chosen, one);
+  return {beyond, hn::Min(rest, one)};
+}
+
+/// Samples 0..1 with a density that is linear from `a` at 0 to `b` at 1.
+///
+/// Precision  the stable form of the inverse, which does not cancel
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V sample_linear(D d, V a, V b, V u) {
+  using T = hn::TFromD<D>;
+  const V divisor = a + hn::Sqrt(interpolated(d, a * a, b * b, u));
+  return hn::IfThenElse(divisor > hn::Zero(d), hn::Min(u * (a + b) / divisor, hn::Set(d, T(1))), u);
+}
+
+/// Samples the map: a cell by descending the sums, where every step splits first the rows and then the columns, and a
+/// point in the cell.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
+  using T = hn::TFromD<D>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), two = hn::Set(d, T(2)), half = hn::Set(d, static_cast<T>(0.5));
+  V column = zero, row = zero;
+  HWY_ALIGN T columns[kMax], rows[kMax];
+  const auto descend = [&](V upper_left, V upper_right, V lower_left, V lower_right) {
+    const auto vertical = split(d, upper_left + upper_right, lower_left + lower_right, v);
+    const auto horizontal = split(d, hn::IfThenElse(vertical.second, lower_left, upper_left),
+                                  hn::IfThenElse(vertical.second, lower_right, upper_right), u);
+    v = vertical.rest;
+    u = horizontal.rest;
+    column = hn::MulAdd(column, two, hn::IfThenElseZero(horizontal.second, one));
+    row = hn::MulAdd(row, two, hn::IfThenElseZero(vertical.second, one));
+    hn::Store(column, d, columns);
+    hn::Store(row, d, rows);
+    return std::pair{vertical.second, horizontal.second};
+  };
+  hn::Store(zero, d, columns);
+  hn::Store(zero, d, rows);
+  for (std::uint32_t k = 0; k < env.level_count; ++k) {
+    const EnvironmentLevel& level = env.levels[k];
+    V child[4];
+    gather4(
+        d,
+        [&](std::size_t i) {
+          return level.blocks +
+                 4 * (static_cast<std::size_t>(rows[i]) * level.blocks_per_row + static_cast<std::size_t>(columns[i]));
+        },
+        child);
+    descend(child[0], child[1], child[2], child[3]);
+  }
+
+  // The last step: two by two cells between three by three texels.
+  V weight[3][3];
+  for (std::size_t y = 0; y < 3; ++y) {
+    for (std::size_t x = 0; x < 3; ++x) {
+      V rgb[4];
+      gather4(
+          d,
+          [&](std::size_t i) {
+            // The upper row of texels of cell row 0 is above the map.
+            const std::size_t below = 2 * static_cast<std::size_t>(rows[i]) + y;
+            const std::size_t at = below == 0 ? 0 : below - 1 < env.height ? below - 1 : env.height - 1;
+            return env.texels + 3 * (at * env.width + (2 * static_cast<std::size_t>(columns[i]) + x) % env.width);
+          },
+          rgb);
+      weight[y][x] = texel_weight(d, env, rgb);
+    }
+  }
+  HWY_ALIGN T versine[2][kMax], extent[2][kMax];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const EnvironmentRow& cells = env.rows[2 * static_cast<std::size_t>(rows[i]) + k];
+      versine[k][i] = static_cast<T>(cells.versine);
+      extent[k][i] = static_cast<T>(cells.width);
+    }
+  }
+  const V extents[2] = {hn::Load(d, extent[0]), hn::Load(d, extent[1])};
+  const auto has_right = hn::MulAdd(column, two, one) < hn::Set(d, static_cast<T>(env.width));
+  const auto cell = [&](std::size_t y, std::size_t x) {
+    return ((weight[y][x] + weight[y][x + 1]) + (weight[y + 1][x] + weight[y + 1][x + 1])) * hn::Abs(extents[y]);
+  };
+  const auto [is_lower, is_right] = descend(cell(0, 0), hn::IfThenElseZero(has_right, cell(0, 1)), cell(1, 0),
+                                            hn::IfThenElseZero(has_right, cell(1, 1)));
+
+  V corner[2][2];
+  for (std::size_t y = 0; y < 2; ++y)
+    for (std::size_t x = 0; x < 2; ++x)
+      corner[y][x] = hn::IfThenElse(is_lower, hn::IfThenElse(is_right, weight[y + 1][x + 1], weight[y + 1][x]),
+                                    hn::IfThenElse(is_right, weight[y][x + 1], weight[y][x]));
+  const V down = sample_linear(d, corner[0][0] + corner[0][1], corner[1][0] + corner[1][1], v);
+  const V right = sample_linear(d, interpolated(d, corner[0][0], corner[1][0], down),
+                                interpolated(d, corner[0][1], corner[1][1], down), u);
+
+  const V row_width = hn::IfThenElse(is_lower, extents[1], extents[0]);
+  const V begin = hn::IfThenElse(is_lower, hn::Load(d, versine[1]), hn::Load(d, versine[0]));
+  const V from_pole = hn::Max(hn::MulAdd(row_width, down, begin), zero);
+  const V sine = hn::Sqrt(from_pole * (two - from_pole));
+  const V across = (column + half + right) / hn::Set(d, static_cast<T>(env.width));
+  const auto turn = sin_cos_turn(d, whole_turns_removed((half + hn::Set(d, static_cast<T>(env.turn))) - across));
+  return {turn.sin * sine, hn::IfThenElse(row_width < zero, from_pole - one, one - from_pole), turn.cos * sine};
+}
+
+/// Samples the sun's cone uniformly.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> sample_sun(D d, const Environment& env, V u, V v) {
+  using T = hn::TFromD<D>;
+  const V versine = u * hn::Set(d, static_cast<T>(env.sun_one_minus_cos));
+  const V sine = hn::Sqrt(versine * (hn::Set(d, T(2)) - versine));
+  const auto turn = sin_cos_turn(d, v);
+  const auto axis = set3(d, env.sun);
+  return mul_add(set3(d, env.sun_tangent), sine * turn.cos,
+                 mul_add(set3(d, env.sun_bitangent), sine * turn.sin, neg_mul_add(axis, versine, axis)));
+}
+
+/// Directions sampled for direct lighting, one per lane.
+template <class V>
+struct EnvironmentSample {
+  Vec3<V> direction;  ///< world, unit
+  Vec3<V> radiance;   ///< as of environment_radiance
+  V inverse_pdf;      ///< steradians; 0: nothing was sampled, which only rounding causes
+};
+
+/// Samples a direction with the density environment_pdf.
+///
+/// `u`, `v`   0..1. Nearby numbers give nearby directions except across the boundary between sun and map, so stratified
+///            points stay stratified.
+/// Domain     env.is_sampled
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE EnvironmentSample<V> sample_environment(D d, const Environment& env, V u, V v) {
+  using T = hn::TFromD<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+  const V share = hn::Set(d, static_cast<T>(env.sun_probability));
+  EnvironmentSample<V> out;
+  if (env.map_density > 0) {
+    const auto to_sun = split(d, one - share, share, u);
+    out.direction = sample_map(d, env, to_sun.rest, v);
+    if (env.sun_probability > 0)
+      out.direction = select(to_sun.second, sample_sun(d, env, to_sun.rest, v), out.direction);
+  } else {
+    out.direction = sample_sun(d, env, u, v);
+  }
+  const auto at = environment_footprint(d, env, out.direction);
+  const V pdf = pdf_of(d, env, at);
+  const auto good = pdf > zero;
+  out.radiance = radiance_of(d, env, at);
+  out.inverse_pdf = hn::IfThenElseZero(good, one / hn::IfThenElse(good, pdf, one));
+  return out;
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "math/vec3.h"
+
+namespace orrery::scene {
+
+/// The sun of an image background: a disc of constant radiance, apart from the texels.
+struct Sun {
+  math::Vec3d direction{0, 1, 0};  ///< unit, from the scene to the centre of the disc, in the map's space
+  double one_minus_cos = 0;        ///< of half the angle that the disc subtends
+  math::Vec3d radiance{0, 0, 0};   ///< scene-linear, working space; 0: no sun
+};
+
+/// A latitude-longitude map, as the OpenEXR and USD conventions orient it: rows from +y to -y, longitude 0 at +z, +x at
+/// a quarter of the width.
+class EnvironmentImage {
+ public:
+  EnvironmentImage(int width, int height)
+      : width_(width),
+        height_(height),
+        values_(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + kPadding) {}
+
+  int width() const { return width_; }    ///< texels
+  int height() const { return height_; }  ///< texels
+
+  /// R, G, B of the texels in a row, in the working space, finite and not negative. One more float can be read at the
+  /// end of the last row.
+  float* row(int y) { return &values_[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(width_)]; }
+  const float* row(int y) const { return &values_[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(width_)]; }
+
+  Sun sun;
+
+ private:
+  static constexpr std::size_t kPadding = 1;  ///< the kernel loads texels as four floats
+
+  int width_, height_;
+  std::vector<float> values_;
+};
+
+}  // namespace orrery::scene
