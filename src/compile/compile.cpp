@@ -250,6 +250,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.camera = camera;
   v.background = background;
   v.environment = environment ? &environment->view() : nullptr;
+  v.background_visible = !environment || environment->view().visible;
   v.features = features;
   v.shading = shading;
   v.max_depth = max_depth;
@@ -299,7 +300,7 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   add_spheres(scene, compiled);
   const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
   if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
-  compiled.features.lit = !compiled.emission.empty();
+  compiled.features.lit = !compiled.emission.empty() || compiled.environment != nullptr;
   if (closing != nullptr) add_motion(scene, *closing, compiled);
   switch (scene.render.direct_lighting) {
     case scene::DirectLighting::kMis: compiled.direct_lighting = kernel::DirectLighting::kMis; break;

@@ -9,9 +9,11 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "kernel/compaction-inl.h"
+#include "kernel/environment-inl.h"
 #include "kernel/light-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
@@ -81,6 +83,39 @@ HWY_INLINE Emitted<D> emitted(D d, const SceneView& scene, hn::Vec<IdTag<D>> hit
   return {{rgb[0], rgb[1], rgb[2]}, hn::Load(du, group)};
 }
 
+/// Whether vertices send shadow rays.
+inline bool samples_lights(const SceneView& scene) {
+  return scene.direct_lighting != DirectLighting::kBsdf &&
+         (scene.lights.count > 0 || (scene.environment != nullptr && scene.environment->is_sampled));
+}
+
+/// The probability with which light sampling takes the environment, not an emitter.
+///
+/// A vertex cannot know which of the two matters without tracing shadow rays, so both have the same chance.
+inline double environment_share(const SceneView& scene) {
+  if (scene.environment == nullptr || !scene.environment->is_sampled) return 0;
+  return scene.lights.count > 0 ? 0.5 : 1;
+}
+
+/// Whether vertices choose between several lights.
+inline bool chooses_light(const SceneView& scene) {
+  return scene.lights.count > 1 || (scene.lights.count == 1 && environment_share(scene) > 0);
+}
+
+/// The radiance of the environment along rays with a sampled direction, with its weight.
+///
+/// `pdf`      density of the direction; infinite for delta materials
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> weighted_environment(D d, const SceneView& scene, const Vec3<V>& direction, V pdf) {
+  using T = hn::TFromD<D>;
+  const Environment& environment = *scene.environment;
+  const auto at = environment_footprint(d, environment, direction);
+  const auto radiance = radiance_of(d, environment, at);
+  if (scene.direct_lighting == DirectLighting::kBsdf || !environment.is_sampled) return radiance;
+  const V light_pdf = pdf_of(d, environment, at) * hn::Set(d, static_cast<T>(environment_share(scene)));
+  return radiance * bsdf_sample_weight(d, scene.direct_lighting, light_pdf / pdf);
+}
+
 /// The weight of emitters that rays with a sampled direction have hit.
 ///
 /// `pdf`      density of the direction; infinite for delta materials
@@ -93,58 +128,128 @@ HWY_INLINE V emitter_weight(D d, const SceneView& scene, const Rays<D>& ray, hn:
   const Vertex<D> at{ray.origin, ray.origin_low, normal_along(d, ray.offset, ray.direction)};
   const auto sphere = load_spheres<D, kMoves>(d, scene, hits, times);
   const auto cone = subtended_cone(d, to_center(at, sphere.center), sphere.radius);
-  const V probability = choice_probability(d, scene, at, hits);
+  const V probability =
+      choice_probability(d, scene, at, hits) * hn::Set(d, static_cast<T>(1 - environment_share(scene)));
   const auto can_sample = hn::And(hn::And(cone.distance > sphere.radius, probability > hn::Zero(d)),
                                   pdf < hn::Set(d, std::numeric_limits<T>::infinity()));
   const V inverse = hn::IfThenElseZero(can_sample, probability / (pdf * solid_angle(d, cone.one_minus_cos)));
   return bsdf_sample_weight(d, scene.direct_lighting, inverse);
 }
 
-/// Next-event estimation: chooses a light for each vertex, samples a point on it, and appends shadow rays to it to the
-/// shadow stream.
+/// Light samples, one per lane.
+template <class D>
+struct LightSample {
+  using V = hn::Vec<D>;
+  Vec3<V> direction;  ///< unit
+  Vec3<V> reach;      ///< to the sampled point; of any length for an environment
+  V distance;         ///< maximum distance of an occluder, as a multiple of the length of `reach`
+  V inverse_pdf;      ///< steradians, without the choice of the light
+  V probability;      ///< of the choice; 0: no light can be sampled
+  Vec3<V> radiance;
+  hn::Vec<IdTag<D>> target;  ///< sphere id, or kNoSphere
+  hn::Vec<IdTag<D>> group;   ///< light group
+};
+
+/// Chooses an emitter for each vertex and samples a point that is visible from it.
+template <class D, bool kMoves, class V = hn::Vec<D>>
+HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vertex<D>& at, V u, V v, V choice, V fresh,
+                                         const hn::TFromD<D>* times) {
+  const V one = hn::Set(d, hn::TFromD<D>(1));
+  const auto chosen = choose_light(d, scene, at, choice, fresh);
+  const auto light = load_spheres<D, kMoves>(d, scene, chosen.spheres, times);
+  const auto to = to_center(at, light.center);
+  const auto cone = subtended_cone(d, to, light.radius);
+  const auto point = sample_visible_sphere(d, to, cone, u, v);
+  const auto source = emitted(d, scene, chosen.spheres, hn::FirstN(d, hn::Lanes(d)));
+  return {point.direction,
+          mul_add(point.normal, light.radius, to),
+          one,
+          solid_angle(d, cone.one_minus_cos),
+          hn::IfThenElseZero(cone.distance > light.radius, chosen.probability),
+          source.radiance,
+          chosen.spheres,
+          source.group};
+}
+
+/// Samples a direction to the environment.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment, V u, V v) {
+  using T = hn::TFromD<D>;
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  const auto sample = sample_environment(d, environment, u, v);
+  return {sample.direction,
+          sample.direction,
+          hn::Set(d, std::numeric_limits<T>::max()),
+          sample.inverse_pdf,
+          hn::Set(d, T(1)),
+          sample.radiance,
+          hn::Set(du, static_cast<Id>(kNoSphere)),
+          hn::Set(du, static_cast<Id>(environment.light_group))};
+}
+
+/// Samples the environment or an emitter at each vertex.
+template <class D, bool kMoves, class V = hn::Vec<D>>
+HWY_INLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random,
+                                       const hn::TFromD<D>* times) {
+  using T = hn::TFromD<D>;
+  const double share = environment_share(scene);
+  if (share == 1) return sample_background(d, *scene.environment, random.v[0], random.v[1]);
+  if (share == 0)
+    return sample_emitter<D, kMoves>(d, scene, at, random.v[0], random.v[1], random.v[2], random.v[3], times);
+  const V to_background = hn::Set(d, static_cast<T>(share)), to_emitter = hn::Set(d, static_cast<T>(1 - share));
+  const auto is_background = random.v[2] < to_background;
+  const V rest = hn::IfThenElseZero(hn::Not(is_background), (random.v[2] - to_background) / to_emitter);
+  const auto sky = sample_background(d, *scene.environment, random.v[0], random.v[1]);
+  const auto lamp = sample_emitter<D, kMoves>(d, scene, at, random.v[0], random.v[1], rest, random.v[3], times);
+  const auto ids = hn::RebindMask(IdTag<D>(), is_background);
+  return {select(is_background, sky.direction, lamp.direction),
+          select(is_background, sky.reach, lamp.reach),
+          hn::IfThenElse(is_background, sky.distance, lamp.distance),
+          hn::IfThenElse(is_background, sky.inverse_pdf, lamp.inverse_pdf),
+          hn::IfThenElse(is_background, to_background, lamp.probability * to_emitter),
+          select(is_background, sky.radiance, lamp.radiance),
+          hn::IfThenElse(ids, sky.target, lamp.target),
+          hn::IfThenElse(ids, sky.group, lamp.group)};
+}
+
+/// Next-event estimation: samples a light at each vertex and appends shadow rays to the shadow stream.
 ///
 /// `center`   of the spheres that the vertices lie on
 /// `tinted`   throughput times albedo
 /// `lanes`    vertices whose material is neither delta nor an emitter
+/// Domain     samples_lights(scene)
 template <class D, Loop kLoop, class Lit, class V = hn::Vec<D>>
 HWY_INLINE void connect(D d, const SceneView& scene, const Surface<D>& surface, const Vec3<V>& center,
                         const Vec3<V>& tinted, hn::Mask<D> lanes, hn::Vec<IdTag<D>> self, hn::Vec<IdTag<D>> paths,
                         hn::Vec<IdTag<D>> history, const Four<V>& random, const hn::TFromD<D>* times, Lit& lit) {
-  using T = hn::TFromD<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+  const V zero = hn::Zero(d);
   const auto origin = center + surface.offset;
   const auto unit = normalized(d, surface.offset);
   const Vertex<D> at{origin, sum_error(center, surface.offset, origin),
                      select(surface.from_outside, unit, negated(unit))};
-  const auto chosen = choose_light(d, scene, at, random.v[2], random.v[3]);
-  const auto light = load_spheres<D, kLoop.moves>(d, scene, chosen.spheres, times);
-  const auto to = to_center(at, light.center);
-  const auto cone = subtended_cone(d, to, light.radius);
-  const auto sample = sample_visible_sphere(d, to, cone, random.v[0], random.v[1]);
+  const auto sample = sample_light<D, kLoop.moves>(d, scene, at, random, times);
   const V pdf = pdf_bsdf(d, scene.features, surface, sample.direction);
-  const V factor =
-      light_sample_factor(d, scene.direct_lighting, pdf * solid_angle(d, cone.one_minus_cos) / chosen.probability);
-  lanes = hn::And(lanes, hn::And(cone.distance > light.radius, chosen.probability > zero));
-  lanes = hn::And(lanes, factor > zero);
+  const V factor = light_sample_factor(d, scene.direct_lighting, pdf * sample.inverse_pdf / sample.probability);
+  lanes = hn::And(lanes, hn::And(sample.probability > zero, factor > zero));
   if (hn::AllFalse(d, lanes)) return;
-  const auto source = emitted(d, scene, chosen.spheres, lanes);
 
   auto& shadow = lit.shadow;
   const int n = shadow.count;
   const Compactor<D> compactor(d, lanes);
   compactor.store3(d, center, shadow.base, n);
   compactor.store3(d, surface.offset, shadow.offset, n);
-  compactor.store3(d, mul_add(sample.normal, light.radius, to), shadow.direction, n);
-  compactor.store(d, one, shadow.distance + n);
+  compactor.store3(d, sample.reach, shadow.direction, n);
+  compactor.store(d, sample.distance, shadow.distance + n);
   if constexpr (kLoop.moves)
     if (scene.features.motion) compactor.store(d, hn::Load(d, times), shadow.time + n);
-  compactor.store3(d, source.radiance * tinted * factor, shadow.light, n);
+  compactor.store3(d, sample.radiance * tinted * factor, shadow.light, n);
   compactor.store_ids(d, self, shadow.self + n);
-  compactor.store_ids(d, chosen.spheres, shadow.target + n);
+  compactor.store_ids(d, sample.target, shadow.target + n);
   compactor.store_ids(d, paths, shadow.path + n);
   if constexpr (kLoop.records) {
     compactor.store_ids(d, history, shadow.history + n);
-    compactor.store_ids(d, source.group, shadow.group + n);
+    compactor.store_ids(d, sample.group, shadow.group + n);
   }
   shadow.count += compactor.count();
 }
@@ -202,7 +307,7 @@ HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& t
       });
       Recorder<D> record(d, scene, tile, hn::Load(du, pixel), hn::Load(du, sample));
       record.event(d, lanes, light, hn::LoadU(du, shadow.history + i), hn::LoadU(du, shadow.group + i),
-                   Lobe::kEmission);
+                   Lobe::kEmission /* a surface has scattered it */);
     }
   }
 }

@@ -103,11 +103,6 @@ HWY_INLINE hn::Mask<D> survives_roulette(D d, V u, Vec3<V>& throughput) {
   return survives;
 }
 
-/// Whether vertices send shadow rays.
-inline bool samples_lights(const SceneView& scene) {
-  return scene.direct_lighting != DirectLighting::kBsdf && scene.lights.count > 0;
-}
-
 /// Begins the batch's paths first .. first + count in a lit loop.
 template <class D, class Carried, class Lit>
 HWY_INLINE void begin_lit(D d, int first, Carried& carried, Lit& lit) {
@@ -186,9 +181,17 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     };
     if (!hn::AllFalse(d, missed)) {
       if (depth > 0 || scene.background_visible) {
-        const auto sky = background(d, scene.background, scene.features.sky, ray.direction);
-        const Vec3<hn::Vec<D>> light = sky * throughput;
-        arrive(missed, light, hn::Zero(du), Lobe::kBackground);
+        Vec3<hn::Vec<D>> light;
+        auto groups = hn::Zero(du);
+        if (kLoop.lit && scene.environment != nullptr) {
+          light = depth == 0 ? environment_radiance(d, *scene.environment, ray.direction)
+                             : weighted_environment(d, scene, ray.direction, hn::Load(d, carried.pdf + v));
+          groups = hn::Set(du, static_cast<Id>(scene.environment->light_group));
+        } else {
+          light = background(d, scene.background, scene.features.sky, ray.direction);
+        }
+        light = light * throughput;
+        arrive(missed, light, groups, Lobe::kBackground);
         if constexpr (kRecords) {
           const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
           if (tile.record_guides)
@@ -246,7 +249,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
         const auto connects = hn::AndNot(is_kind(d, at.surface.kind, MaterialKind::kEmitter), has_pdf);
         if (!hn::AllFalse(d, connects)) {
           const auto random_light =
-              second_random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, scene.lights.count > 1);
+              second_random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, chooses_light(scene));
           hn::Vec<IdTag<D>> reflected{};
           if constexpr (kRecords) reflected = continued(d, history, at.surface, at.surface.normal, depth);
           connect<D, kLoop>(d, scene, at.surface, at.sphere.center, tinted, connects, hits, paths, reflected,
