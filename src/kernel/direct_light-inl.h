@@ -106,7 +106,7 @@ inline bool chooses_light(const SceneView& scene) {
 ///
 /// `pdf`      density of the direction; infinite for delta materials
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> weighted_environment(D d, const SceneView& scene, const Vec3<V>& direction, V pdf) {
+HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, const Vec3<V>& direction, V pdf) {
   using T = hn::TFromD<D>;
   const Environment& environment = *scene.environment;
   const auto at = environment_footprint(d, environment, direction);
@@ -120,7 +120,7 @@ HWY_INLINE Vec3<V> weighted_environment(D d, const SceneView& scene, const Vec3<
 ///
 /// `pdf`      density of the direction; infinite for delta materials
 template <class D, bool kMoves, class V = hn::Vec<D>>
-HWY_INLINE V emitter_weight(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
                             const hn::TFromD<D>* times, V pdf) {
   using T = hn::TFromD<D>;
   const V one = hn::Set(d, T(1));
@@ -189,8 +189,10 @@ HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment,
 }
 
 /// Samples the environment or an emitter at each vertex.
+///
+/// Not inlined, like the other large functions of lit loops: all loops of a lane type share one copy.
 template <class D, bool kMoves, class V = hn::Vec<D>>
-HWY_INLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random,
+HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random,
                                        const hn::TFromD<D>* times) {
   using T = hn::TFromD<D>;
   const double share = environment_share(scene);
