@@ -73,10 +73,9 @@ kernel::Material compile_model(const scene::Emitter&) {
 /// Returns the number of a light group, and adds the group if it is new.
 std::uint16_t light_group(CompiledScene& compiled, const std::string& name) {
   std::vector<std::string>& names = compiled.light_groups;
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) names.push_back(name);
-  return static_cast<std::uint16_t>(at == names.end() ? names.size() - 1
-                                                      : static_cast<std::size_t>(at - names.begin()));
+  const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  if (at == names.size()) names.push_back(name);
+  return static_cast<std::uint16_t>(at);
 }
 
 /// Precision  rounded from long double, so that it does not depend on the math library
