@@ -11,6 +11,7 @@
 #include "compile/camera_basis.h"
 #include "compile/pixel_filter.h"
 #include "kernel/sobol_columns.h"
+#include "scene/layers.h"
 
 namespace orrery::compile {
 namespace {
@@ -72,6 +73,7 @@ kernel::Material compile_model(const scene::Emitter&) {
 
 /// Returns the number of a light group, and adds the group if it is new.
 std::uint16_t light_group(CompiledScene& compiled, const std::string& name) {
+  if (name == scene::kDefaultLightGroup) return 0;
   std::vector<std::string>& names = compiled.light_groups;
   const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   if (at == names.size()) names.push_back(name);
@@ -268,6 +270,7 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   compiled.filter = compile_filter(scene.render);
   compiled.light_groups = {""};
   add_spheres(scene, compiled);
+  light_group(compiled, scene::background_light_group(scene.background));
   const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
   if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
   if (closing != nullptr) add_motion(scene, *closing, compiled);
