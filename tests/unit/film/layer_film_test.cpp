@@ -214,9 +214,11 @@ TEST_F(FilmLayerFilm, LightIsRoundedToTheLastBitOfTheBeauty) {
     std::vector<kernel::LightEvent> events;
     for (std::uint16_t g = 0; g < 2; ++g) {
       for (int lobe = 1; lobe < kernel::kLobes; ++lobe) {
-        cells[g][lobe] = uniform(random);
+        const double light = uniform(random);
+        // The radiance of the path has a relative rounding error, as in single precision; all cells share it.
+        cells[g][lobe] = light * (1 + 0x1p-21);
         path.light[0] += cells[g][lobe];
-        events.push_back({{cells[g][lobe], 0, 0}, 0, g, static_cast<kernel::Lobe>(lobe)});
+        events.push_back({{light, 0, 0}, 0, g, static_cast<kernel::Lobe>(lobe)});
       }
     }
     add(path, events, 1);
@@ -242,6 +244,22 @@ TEST_F(FilmLayerFilm, LightIsRoundedToTheLastBitOfTheBeauty) {
   EXPECT_LT(of_lobes, 1.001);
   EXPECT_LT(of_groups, 8);
   EXPECT_GT(of_cells, 0.9) << "as documented";
+}
+
+/// Paths whose rounded sums differ from their events, where the mean of a pixel is half way between two floats and the
+/// rounding of that difference decides.
+TEST_F(FilmLayerFilm, RoundingErrorsNeitherLoseTheLastBitNorMakeLightNegative) {
+  request_.diffuse = true;
+  const kernel::Int128 half_way = (kernel::Int128{1} << 60) + (kernel::Int128{1} << 36);  // 1 + 2^-24
+  pixel_.light.resize(kernel::kLobes);
+  beauty_ = {{3 * half_way + 512, 0, 0}, 3};
+  pixel_.light[1][0] = beauty_.rgb[0] - 300;
+  EXPECT_EQ(value(picture(), "diffuse_direct.R"), 1 + 0x1p-23F);
+  beauty_ = {{3 * half_way, 0, 0}, 3};
+  pixel_.light[1][0] = beauty_.rgb[0] + 300;
+  pixel_.light[2][0] = 1;
+  EXPECT_EQ(value(picture(), "diffuse_direct.R"), 1);
+  EXPECT_EQ(value(picture(), "diffuse_indirect.R"), 0);
 }
 
 /// A lobe layer has the same bits whether or not light groups are requested.
