@@ -13,6 +13,7 @@
 #include "compile/light_tree.h"
 #include "compile/pixel_filter.h"
 #include "kernel/sobol_columns.h"
+#include "scene/layers.h"
 
 namespace orrery::compile {
 namespace {
@@ -74,6 +75,7 @@ kernel::Material compile_model(const scene::Emitter&) {
 
 /// Returns the number of a light group, and adds the group if it is new.
 std::uint16_t light_group(CompiledScene& compiled, const std::string& name) {
+  if (name == scene::kDefaultLightGroup) return 0;
   std::vector<std::string>& names = compiled.light_groups;
   const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   if (index == names.size()) names.push_back(name);
@@ -298,6 +300,7 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   set_background(scene, compiled);
   compiled.filter = compile_filter(scene.render);
   add_spheres(scene, compiled);
+  light_group(compiled, scene::background_light_group(scene.background));
   const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
   if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
   compiled.features.lit = !compiled.emission.empty() || compiled.environment != nullptr;

@@ -6,40 +6,12 @@
 #include <cstring>
 #include <utility>
 
+#include "film/light_cells.h"
+
 namespace orrery::film {
 namespace {
 
 using kernel::Int128;
-using kernel::kLobes;
-
-double mean(Int128 sum, std::int64_t weight) {
-  return weight > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(weight) : 0.0;
-}
-
-/// The lobe AOVs of a pixel as floats whose single-precision sum equals the beauty bit for bit in any order.
-///
-/// Each group is rounded to a multiple of the beauty's last bit, and no partial sum exceeds the beauty, so that all
-/// sums are exact. With a filter that has negative lobes a partial sum can exceed it.
-struct Lights {
-  float rgb[kLobes][3] = {};
-
-  explicit Lights(const LayerPixel& p) {
-    for (int c = 0; c < 3; ++c) {
-      Int128 sum = 0;
-      for (const auto& group : p.light) sum += group[c];
-      const auto beauty = static_cast<double>(static_cast<float>(mean(sum, p.lit)));
-      const double last_bit = std::ldexp(1.0, std::ilogb(beauty) - 23);
-      double so_far = 0;
-      sum = 0;
-      for (int g = 0; g < kLobes && beauty != 0; ++g) {
-        sum += p.light[g][c];
-        const double next = g + 1 < kLobes ? std::nearbyint(mean(sum, p.lit) / last_bit) * last_bit : beauty;
-        rgb[g][c] = static_cast<float>(next - so_far);
-        so_far = next;
-      }
-    }
-  }
-};
 
 /// A relative spread below this is rounding error; the beauty's floats cannot represent it either.
 constexpr double kLeastSpread = 0x1p-48;
@@ -99,9 +71,48 @@ float as_float(std::uint32_t bits) {
   return f;
 }
 
+/// Name of a lobe's layer in a light group; a string only where one is needed.
+struct GroupLayer {
+  const std::string& group;
+  const char* lobe;
+  operator std::string() const { return group + "_" + lobe; }
+};
+
+/// Calls `f(layer, channel, kind, value)` for every channel of the layers made from light events, in file order.
+template <class F>
+void each_light_channel(const LayerRequest& r, const LayerPixel& p, const kernel::PixelSum& beauty, F f) {
+  const LightCells lights(r, p, beauty);
+  const auto channels = [&](const auto& layer, auto value) {
+    for (std::size_t k = 0; k < 3; ++k) f(layer, "RGB"[k], PlaneKind::kLight, value(k));
+  };
+  using enum kernel::Lobe;
+  for (const auto& [requested, lobe] : {std::pair{r.background, kBackground},
+                                        {r.diffuse, kDiffuseDirect},
+                                        {r.diffuse, kDiffuseIndirect},
+                                        {r.specular, kSpecularDirect},
+                                        {r.specular, kSpecularIndirect},
+                                        {r.transmission, kTransmissionDirect},
+                                        {r.transmission, kTransmissionIndirect},
+                                        {r.emission, kEmission}})
+    if (requested)
+      channels(kLobeNames[static_cast<int>(lobe)], [&, lobe = lobe](std::size_t k) { return lights.of_lobe(lobe, k); });
+  if (!r.light_groups) return;
+  for (std::size_t g = 0; g < r.groups.size(); ++g) {
+    const LightGroup& group = r.groups[g];
+    if (!group.has_sources()) continue;
+    channels(group.name, [&](std::size_t k) { return lights.of_group(g, k); });
+    for (int i = 0; i < kernel::kLobes; ++i) {
+      const auto lobe = static_cast<kernel::Lobe>(i);
+      if (group.has(lobe))
+        channels(GroupLayer{group.name, kLobeNames[i]}, [&](std::size_t k) { return lights.of(g, lobe, k); });
+    }
+  }
+}
+
 /// Calls `f(layer, channel, kind, value)` for every requested channel, in file order.
 template <class F>
-void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::SceneView& view, F f) {
+void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::PixelSum& beauty,
+                  const kernel::SceneView& view, F f) {
   const bool hit = p.sphere != kernel::kNoSphere;
   using enum PlaneKind;
   const auto vector = [&](const char* layer, const char* letters, PlaneKind kind, auto value) {
@@ -115,27 +126,8 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Scen
   if (r.normal) means("N", "XYZ", kVector, p.normal);
   if (r.position) vector("P", "XYZ", kData, [&](int k) { return static_cast<float>(p.position[k]); });
   if (r.albedo) means("albedo", "RGB", kLight, p.albedo);
-  if (r.lights()) {
-    const Lights lights(p);
-    const auto light = [&](const char* layer, kernel::Lobe group) {
-      vector(layer, "RGB", kLight, [&](int k) { return lights.rgb[static_cast<int>(group)][k]; });
-    };
-    using kernel::Lobe;
-    if (r.background) light("background", Lobe::kBackground);
-    if (r.diffuse) light("diffuse_direct", Lobe::kDiffuseDirect);
-    if (r.diffuse) light("diffuse_indirect", Lobe::kDiffuseIndirect);
-    if (r.specular) light("specular_direct", Lobe::kSpecularDirect);
-    if (r.specular) light("specular_indirect", Lobe::kSpecularIndirect);
-    if (r.transmission) light("transmission_direct", Lobe::kTransmissionDirect);
-    if (r.transmission) light("transmission_indirect", Lobe::kTransmissionIndirect);
-  }
-  if (r.variance) {
-    vector("variance", "RGB", kData, [&](int c) {
-      Int128 sum = 0;
-      for (const auto& group : p.light) sum += group[c];
-      return variance(p, c, sum);
-    });
-  }
+  if (r.lights()) each_light_channel(r, p, beauty, f);
+  if (r.variance) vector("variance", "RGB", kData, [&](int c) { return variance(p, c, beauty.rgb[c]); });
   if (r.samples) f("samples", 'X', kData, static_cast<float>(p.paths));
   // Ids start at 1; 0 means no hit.
   if (r.object_id) f("object_id", 'X', kData, hit ? static_cast<float>(p.sphere) + 1 : 0.0F);
@@ -183,7 +175,7 @@ std::vector<DeepSample> deep_samples(const LayerPixel& p, bool background_visibl
 
 std::vector<Plane> planes_of(const LayerRequest& request) {
   std::vector<Plane> planes;
-  each_channel(request, LayerPixel{}, {}, [&](const std::string& layer, char channel, PlaneKind kind, float) {
+  each_channel(request, LayerPixel{}, {}, {}, [&](const std::string& layer, char channel, PlaneKind kind, float) {
     planes.push_back({(layer.empty() ? "" : layer + ".") + channel, {}, kind});
   });
   return planes;
@@ -200,9 +192,9 @@ LayerFilm::LayerFilm(const LayerRequest& request, const kernel::SceneView& view,
   deep_.pixels.resize(pixels);
 }
 
-void LayerFilm::set(std::size_t pixel, const LayerPixel& sums) {
+void LayerFilm::set(std::size_t pixel, const LayerPixel& sums, const kernel::PixelSum& beauty) {
   std::size_t plane = 0;
-  each_channel(request_, sums, view_,
+  each_channel(request_, sums, beauty, view_,
                [&](const auto&, char, PlaneKind, float v) { planes_[plane++].values[pixel] = v; });
   if (request_.deep) deep_.pixels[pixel] = deep_samples(sums, !request_.coverage);
   if (request_.coverage && sums.weight > 0)

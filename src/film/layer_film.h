@@ -7,6 +7,7 @@
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "film/picture.h"
+#include "kernel/pixel_sum.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::film {
@@ -22,8 +23,8 @@ class LayerFilm {
 
   /// Sets all layers of a pixel from its sums. Threads may set different pixels concurrently.
   ///
-  /// Domain     `pixel` is an index into the rows from the top left
-  void set(std::size_t pixel, const LayerPixel& sums);
+  /// Domain     `pixel` is an index into the rows from the top left; `beauty` is the sum of the same paths
+  void set(std::size_t pixel, const LayerPixel& sums, const kernel::PixelSum& beauty);
 
   /// Appends the layers to an image of R, G, B, A, and replaces A by the coverage if that was requested.
   void move_to(Picture& picture);

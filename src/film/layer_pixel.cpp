@@ -18,9 +18,9 @@ kernel::Int128 square(double v) {
   return (static_cast<kernel::Int128>(high) << 48) + static_cast<std::int64_t>(units - high * 0x1p48);
 }
 
-template <class T>
-void add3(kernel::Int128 (&sum)[3], const T& value, std::int64_t weight) {
-  for (int k = 0; k < 3; ++k) sum[k] += kernel::to_fixed_point(static_cast<double>(value[k])) * weight;
+template <class Sum, class T>
+void add3(Sum& sum, const T& value, std::int64_t weight) {
+  for (std::size_t k = 0; k < 3; ++k) sum[k] += kernel::to_fixed_point(static_cast<double>(value[k])) * weight;
 }
 
 /// The coverage entry of a sphere, inserted if there is none.
@@ -107,13 +107,12 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
 
   covered += path_weight;
   if (request.albedo) add3(albedo, scene.materials[scene.sphere_materials[path.sphere]].albedo, path_weight);
-  const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
-  const double center[3] = {s.x, s.y, s.z};
   if (request.normal) {
     // Decided per ray, since the lens can straddle the surface.
     double along = 0;
     for (int k = 0; k < 3; ++k) along += path.direction[k] * path.offset[k];
-    const double outward = along > 0 ? -1 / s.radius : 1 / s.radius;
+    const double radius = kernel::sphere_at(scene, path.sphere, path.time).radius;
+    const double outward = along > 0 ? -1 / radius : 1 / radius;
     const double n[3] = {path.offset[0] * outward, path.offset[1] * outward, path.offset[2] * outward};
     add3(normal, n, path_weight);
   }
@@ -121,18 +120,25 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   depth = hit.distance;
   z = hit.z;
   sphere = path.sphere;
+  const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
+  const double center[3] = {s.x, s.y, s.z};
   for (int k = 0; k < 3; ++k) position[k] = center[k] + path.offset[k];
 }
 
-void LayerPixel::add(const kernel::PathRecord& path, const kernel::LightEvent& event, std::int64_t path_weight) {
-  if (is_good(path.light)) add3(light[static_cast<int>(event.lobe)], event.value, path_weight);
+void LayerPixel::add(const LayerRequest& request, const PathRecord& path, const kernel::LightEvent& event,
+                     std::int64_t path_weight) {
+  if (!is_good(path.light)) return;
+  const std::size_t cell = request.light_cell(event);
+  if (cell >= light.size()) light.resize(request.light_cells());
+  add3(light[cell], event.value, path_weight);
 }
 
 void LayerPixel::add(const LayerPixel& other) {
-  const auto add_all = [](Int128(&to)[3], const Int128(&from)[3]) {
-    for (int k = 0; k < 3; ++k) to[k] += from[k];
+  const auto add_all = [](auto& to, const auto& from) {
+    for (std::size_t k = 0; k < 3; ++k) to[k] += from[k];
   };
-  for (int g = 0; g < kernel::kLobes; ++g) add_all(light[g], other.light[g]);
+  light.resize(std::max(light.size(), other.light.size()));
+  for (std::size_t i = 0; i < other.light.size(); ++i) add_all(light[i], other.light[i]);
   add_all(squares, other.squares);
   add_all(negative_light, other.negative_light);
   add_all(negative_squares, other.negative_squares);

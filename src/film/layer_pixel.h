@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -30,13 +31,17 @@ struct LayerPixel {
            std::int64_t weight);
 
   /// Adds one of a path's light events. Ignored if the radiance of the path is invalid.
-  void add(const kernel::PathRecord& path, const kernel::LightEvent& event, std::int64_t weight);
+  ///
+  /// Domain     request.lights()
+  void add(const LayerRequest& request, const kernel::PathRecord& path, const kernel::LightEvent& event,
+           std::int64_t weight);
 
   /// Adds further paths of the same pixel. If both nearest hits are equally distant, the first is kept.
   void add(const LayerPixel& other);
 
   using Int128 = kernel::Int128;
-  Int128 light[kernel::kLobes][3] = {};
+  /// Sums of the radiance by LayerRequest::light_cell; empty if no light events were added.
+  std::vector<std::array<Int128, 3>> light;
   Int128 squares[3] = {};  ///< sums of squared radiance, in units of kSquareUnit
   /// Sums of the radiance and of its square over the paths with negative weight; for the variance only.
   Int128 negative_light[3] = {}, negative_squares[3] = {};
@@ -55,5 +60,10 @@ struct LayerPixel {
 /// Upper bound to which squared radiance is clamped. The radiance itself already reveals a variance that large.
 inline constexpr double kLargestSquare = 0x1p48;
 inline constexpr double kSquareUnit = 0x1p-48;
+
+/// The mean of fixed-point values from their sum and total weight; 0 without weight.
+inline double mean(kernel::Int128 sum, std::int64_t weight) {
+  return weight > 0 ? kernel::from_fixed_point(sum) / static_cast<double>(weight) : 0.0;
+}
 
 }  // namespace orrery::film

@@ -1,12 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "kernel/path_record.h"
+
 namespace orrery::film {
+
+/// The layer of each lobe, by kernel::Lobe.
+inline constexpr const char* kLobeNames[kernel::kLobes] = {
+    "background",        "diffuse_direct",      "diffuse_indirect",      "specular_direct",
+    "specular_indirect", "transmission_direct", "transmission_indirect", "emission"};
+
+/// Maximum number of light groups: a pixel has sums for each, 384 bytes per group.
+inline constexpr std::size_t kMaxLightGroups = 64;
+
+/// A light group of the scene. Its sources are known without its light, so that all frames of a sequence have the same
+/// layers even if a light is black in some of them.
+struct LightGroup {
+  std::string name;             ///< of its layers
+  bool has_emitters = false;    ///< spheres emit its light
+  bool has_background = false;  ///< the background emits its light
+
+  bool has_sources() const { return has_emitters || has_background; }
+  /// Whether the group has a layer for this lobe.
+  bool has(kernel::Lobe lobe) const {
+    if (lobe == kernel::Lobe::kEmission) return has_emitters;
+    if (lobe == kernel::Lobe::kBackground) return has_background;
+    return has_sources();
+  }
+};
 
 /// A Cryptomatte layer: maps every sphere to the hash of its object, material or group name.
 struct Matte {
@@ -17,26 +44,34 @@ struct Matte {
 /// The layers (AOVs) to render in addition to the beauty; docs/output.md defines each.
 struct LayerRequest {
   bool z = false, depth = false, normal = false, position = false, albedo = false;
-  bool diffuse = false, specular = false, transmission = false, background = false;
+  bool diffuse = false, specular = false, transmission = false, background = false, emission = false;
+  bool light_groups = false;
   bool variance = false, samples = false, object_id = false, material_id = false;
   bool guide_albedo = false, guide_normal = false;
   bool coverage = false;                        ///< A is the fraction of the pixel that spheres cover, not 1
   bool deep = false;                            ///< also render a deep image
   int matte_ranks = 6;                          ///< maximum number of ids per pixel in a matte
   std::vector<std::uint32_t> material_numbers;  ///< material_id of each material of the compiled scene
+  std::vector<LightGroup> groups;               ///< of the scene, by kernel::LightEvent::group; for light_groups
   std::vector<Matte> mattes;
 
-  bool lights() const;                                        ///< any lobe AOV
-  bool nearest() const;                                       ///< a property of the nearest hit
-  bool paths_light() const;                                   ///< the radiance of single paths
-  bool light_events() const { return lights() || variance; }  ///< the lobes that radiance came from
-  bool guides() const;                                        ///< a guide for denoising
+  bool lights() const;       ///< radiance by lobe or light group, from light events
+  bool nearest() const;      ///< a property of the nearest hit
+  bool paths_light() const;  ///< the radiance of single paths
+  bool guides() const;       ///< a guide for denoising
   bool any() const;
+
+  /// Number of sums that a pixel's light is divided into: a lobe each, or a lobe of a light group.
+  std::size_t light_cells() const;
+  /// The sum that a light event belongs to.
+  std::size_t light_cell(const kernel::LightEvent& event) const {
+    return (light_groups ? event.group : std::size_t{0}) * kernel::kLobes + static_cast<std::size_t>(event.lobe);
+  }
 };
 
 /// What a layer is computed from.
 enum class LayerSource {
-  kLight,    ///< radiance by lobe
+  kLight,    ///< radiance by lobe or light group
   kNearest,  ///< the first hit nearest to the camera
   kSums,     ///< sums over first hits
   kPaths,    ///< number and radiance of the paths
@@ -61,6 +96,8 @@ inline constexpr LayerType kLayerTypes[] = {
     {"specular", &LayerRequest::specular, LayerSource::kLight},
     {"transmission", &LayerRequest::transmission, LayerSource::kLight},
     {"background", &LayerRequest::background, LayerSource::kLight},
+    {"emission", &LayerRequest::emission, LayerSource::kLight},
+    {"light_groups", &LayerRequest::light_groups, LayerSource::kLight},
     {"variance", &LayerRequest::variance, LayerSource::kPaths},
     {"samples", &LayerRequest::samples, LayerSource::kPaths},
     {"object_id", &LayerRequest::object_id, LayerSource::kNearest},
@@ -88,6 +125,9 @@ inline bool LayerRequest::guides() const { return detail::requests(*this, LayerS
 inline bool LayerRequest::any() const {
   return paths_light() || nearest() || guides() || detail::requests(*this, LayerSource::kSums) || coverage ||
          !mattes.empty();
+}
+inline std::size_t LayerRequest::light_cells() const {
+  return lights() ? (light_groups ? groups.size() : 1) * kernel::kLobes : 0;
 }
 
 /// Z and depth of a pixel without a hit: beyond every scene, and finite so that image filters do not produce NaN.

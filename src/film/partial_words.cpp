@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film/partial_words.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <string>
@@ -13,7 +14,7 @@ namespace {
 
 using kernel::Int128;
 
-constexpr std::uint32_t kFormat = 2;
+constexpr std::uint32_t kFormat = 3;
 
 enum Flag : std::uint32_t { kHasHalves = 1, kHasGoals = 2, kHasLayers = 4, kAllFlags = 7 };
 
@@ -23,6 +24,8 @@ std::uint64_t bits(double v) { return std::bit_cast<std::uint64_t>(v); }
 
 /// Header word of a plane: kConstant is followed by one word for all pixels, kPlane by one word per pixel.
 constexpr std::uint32_t kConstant = 0, kPlane = 1;
+
+constexpr const char* kInconsistent = "its sample data are inconsistent";
 
 /// Appends numbers as 32-bit words, least significant first.
 class Writer {
@@ -92,7 +95,7 @@ class Reader {
     for (std::size_t w = 0; w < kWords; ++w) {
       std::uint32_t kind = 0;
       number(kind);
-      if (kind > kPlane) throw base::Error(base::ErrorKind::kBadData, "its sample data are inconsistent");
+      if (kind > kPlane) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
       steps[w] = kind == kPlane ? 1 : 0;
       const std::size_t size = kind == kPlane ? things.size() : 1;
       need(size);
@@ -149,9 +152,6 @@ void each_sum(Io& io, Sums& sums) {
 template <class Io, class Layers>
 void each_layer_number(Io& io, Layers& layers) {
   for (int k = 0; k < 3; ++k) {
-    for (int g = 0; g < kernel::kLobes; ++g)
-      io.numbers(
-          layers, [=](auto& p) -> auto& { return p.light[g][k]; });
     io.numbers(
         layers, [k](auto& p) -> auto& { return p.squares[k]; });
     io.numbers(
@@ -220,6 +220,30 @@ void each_pixel_number(Io& io, P& partial) {
   if (!partial.layers.empty()) each_layer_number(io, partial.layers);
 }
 
+void write_light(Writer& out, const std::vector<LayerPixel>& layers) {
+  static const Int128 zero = 0;  // a pixel without light events has no sums
+  std::size_t cells = 0;
+  for (const LayerPixel& p : layers) cells = std::max(cells, p.light.size());
+  out.number(static_cast<std::uint32_t>(cells));
+  for (std::size_t i = 0; i < cells; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      out.numbers(
+          layers, [=](auto& p) -> auto& { return i < p.light.size() ? p.light[i][k] : zero; });
+}
+
+void read_light(Reader& in, std::vector<LayerPixel>& layers) {
+  std::uint32_t cells = 0;
+  in.number(cells);
+  if (cells > kMaxLightGroups * kernel::kLobes) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
+  // Each plane has two words at least: a damaged count fails here, before allocation.
+  in.need(cells * std::size_t{3 * 2 * sizeof(Int128) / sizeof(std::uint32_t)});
+  for (LayerPixel& p : layers) p.light.resize(cells);
+  for (std::size_t i = 0; i < cells; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      in.numbers(
+          layers, [=](auto& p) -> auto& { return p.light[i][k]; });
+}
+
 void write_shares(Writer& out, const Partial& partial) {
   std::vector<std::uint32_t> counts;
   std::vector<SphereCoverage> shares;
@@ -263,6 +287,7 @@ std::vector<std::uint32_t> to_words(const Partial& partial) {
     out.number(v);
   each_effort(out, partial.work);
   each_pixel_number(out, partial);
+  if (!partial.layers.empty()) write_light(out, partial.layers);
   if (!partial.layers.empty()) write_shares(out, partial);
   return words;
 }
@@ -283,6 +308,7 @@ Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int he
   if ((flags & kHasLayers) != 0) partial.layers.resize(partial.pixel_count());
   each_effort(in, partial.work);
   each_pixel_number(in, partial);
+  if (!partial.layers.empty()) read_light(in, partial.layers);
   if (!partial.layers.empty()) read_shares(in, partial);
   return partial;
 }

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "film/layer_film.h"
 #include "image/format.h"
 #include "job/text.h"
 
@@ -23,16 +24,20 @@ double compressed_fraction(const std::string& compression, bool is_float) {
   return is_float ? 0.7 : 0.5;
 }
 
-/// Bytes per pixel: of a shard with its preview, of the layers of a shard, of deep samples.
-constexpr double kShardBytes = 27, kShardLayerBytes = 130, kDeepBytes = 24;
+/// Bytes per pixel: of a shard with its preview, of the layers of a shard, of a light group in it, of deep samples. A
+/// light group takes 39 bytes if each pixel has light in one of its lobes.
+constexpr double kShardBytes = 27, kShardLayerBytes = 130, kShardLightGroupBytes = 60, kDeepBytes = 24;
 
-double bytes_per_pixel(const Outputs& outputs, bool is_shard, image::Format format, std::size_t layer_planes) {
+double bytes_per_pixel(const Outputs& outputs, bool is_shard, image::Format format, const ImageSize& size) {
   const image::ExrOptions& exr = outputs.exr;
   switch (format) {
     case image::Format::kExr:
-      if (is_shard) return kShardBytes + (layer_planes > 0 ? kShardLayerBytes : 0);
-      return 4 * (exr.as_float ? 4 : 2) * compressed_fraction(exr.compression, exr.as_float) +
-             4 * static_cast<double>(layer_planes) * compressed_fraction(exr.compression, true);
+      if (is_shard)
+        return kShardBytes + (size.half_planes + size.float_planes > 0 ? kShardLayerBytes : 0) +
+               kShardLightGroupBytes * static_cast<double>(size.light_groups);
+      return static_cast<double>(4 + size.half_planes) * (exr.as_float ? 4 : 2) *
+                 compressed_fraction(exr.compression, exr.as_float) +
+             static_cast<double>(size.float_planes) * 4 * compressed_fraction(exr.compression, true);
     case image::Format::kHdr: return 3;
     case image::Format::kJpeg: return 0.8;
     case image::Format::kPng:
@@ -48,12 +53,22 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+ImageSize image_size(int width_px, int height_px, const film::LayerRequest& layers) {
+  ImageSize size;
+  size.width_px = width_px;
+  size.height_px = height_px;
+  for (const film::Plane& plane : film::planes_of(layers))
+    ++(plane.kind == film::PlaneKind::kData ? size.float_planes : size.half_planes);
+  size.light_groups = layers.light_groups ? layers.groups.size() : 0;
+  return size;
+}
+
 std::map<std::filesystem::path, double> estimate_disk_space(const Outputs& outputs, bool is_shard,
                                                             const ImageSize& size) {
   const double pixels = static_cast<double>(size.width_px) * size.height_px;
   std::map<std::filesystem::path, double> needed;
   for (const auto& [file, format] : outputs.images)
-    needed[folder_of(file)] += pixels * bytes_per_pixel(outputs, is_shard, format, size.layer_planes);
+    needed[folder_of(file)] += pixels * bytes_per_pixel(outputs, is_shard, format, size);
   if (!outputs.deep.empty()) needed[folder_of(outputs.deep)] += pixels * kDeepBytes;
   return needed;
 }

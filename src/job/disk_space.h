@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "film/layers.h"
 #include "job/outputs.h"
 
 namespace orrery::job {
@@ -13,8 +14,13 @@ namespace orrery::job {
 /// Properties of an image that determine the size of its files.
 struct ImageSize {
   int width_px = 0, height_px = 0;
-  std::size_t layer_planes = 0;  ///< besides R, G, B, A
+  // Besides R, G, B, A:
+  std::size_t half_planes = 0;   ///< half unless the file is float
+  std::size_t float_planes = 0;  ///< always float
+  std::size_t light_groups = 0;  ///< with sums of their own in a shard
 };
+
+ImageSize image_size(int width_px, int height_px, const film::LayerRequest& layers);
 
 /// Estimates the bytes that a job writes to each folder, with compression as measured for noisy images.
 ///

@@ -163,8 +163,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.scene_hash = provenance.at("sceneHash");
   report.was_skipped = job.skip_existing && is_up_to_date(job, compiled, provenance, stamp);
   if (report.was_skipped) return;
-  require_disk_space(job.outputs, is_shard(job),
-                     {compiled.width, compiled.height, film::planes_of(layers.request).size()},
+  require_disk_space(job.outputs, is_shard(job), image_size(compiled.width, compiled.height, layers.request),
                      job.resources.disk_limit);
   require_memory(estimate_memory(memory_needs(compiled, layers.request, job.sampling.is_adaptive())),
                  job.resources.memory_limit);

@@ -7,6 +7,7 @@
 
 #include "film/cryptomatte.h"
 #include "scene/layers.h"
+#include "scene/limits.h"
 
 namespace orrery::job {
 namespace {
@@ -104,6 +105,20 @@ void add_material_matte(const scene::Scene& scene, const compile::CompiledScene&
   maker.finish(layers, [ids, &of_sphere](std::uint32_t sphere) { return ids[of_sphere[sphere]]; });
 }
 
+/// The light groups of the scene, in the order of the compiled ones.
+std::vector<film::LightGroup> light_groups(const scene::Scene& scene, const compile::CompiledScene& compiled) {
+  static_assert(film::kMaxLightGroups == scene::kMaxLightGroups);
+  std::vector<film::LightGroup> groups;
+  for (const std::string& name : compiled.light_groups)
+    groups.push_back({name.empty() ? scene::kDefaultLightGroup : name, false, false});
+  for (std::size_t i = 0; i < compiled.emission.size(); ++i)
+    if (compiled.materials[i].kind == kernel::MaterialKind::kEmitter)
+      groups[static_cast<std::size_t>(compiled.emission[i].group)].has_emitters = true;
+  const std::string name = scene::background_light_group(scene.background);
+  for (film::LightGroup& group : groups) group.has_background = group.name == name;
+  return groups;
+}
+
 }  // namespace
 
 Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled) {
@@ -112,6 +127,7 @@ Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& co
   const std::vector<std::string> names = scene::requested_layers(scene);
   const auto requested = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
   for (const film::LayerType& layer : film::kLayerTypes) r.*layer.requested = requested(layer.name);
+  if (r.light_groups) r.groups = light_groups(scene, compiled);
   r.coverage = scene.background.alpha == 0;
   if (requested("CryptoObject")) add_object_matte(scene, out);
   if (r.material_id || requested("CryptoMaterial")) {

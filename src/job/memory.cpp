@@ -30,6 +30,13 @@ constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * size
 /// A layer's value and its copy for the encoder.
 constexpr std::uint64_t kBytesPerLayerPlane = 2 * sizeof(float);
 
+/// A pixel's layer sums, and those of its light, with what the heap adds to an allocation.
+std::uint64_t bytes_of_sums(const MemoryNeeds& needs) {
+  if (!needs.layers) return 0;
+  constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
+  return sizeof(film::LayerPixel) + (needs.light_cells > 0 ? needs.light_cells * kBytesPerCell + kHeapBytes : 0);
+}
+
 /// The number after `key` in a file of "key number unit" lines. An empty key reads a file of one number.
 std::optional<std::uint64_t> number_in(const std::filesystem::path& file, const std::string& key) {
   std::ifstream in(file);
@@ -60,7 +67,7 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   // Image; sample count and target count; with layers, the sums of their pixel; with adaptive sampling, a second sum
   // and seven numbers for the noise estimate.
   const std::uint64_t bytes_per_pixel = kFilmBytesPerPixel + needs.layer_planes * kBytesPerLayerPlane +
-                                        2 * sizeof(std::uint32_t) + (needs.layers ? sizeof(film::LayerPixel) : 0) +
+                                        2 * sizeof(std::uint32_t) + bytes_of_sums(needs) +
                                         (needs.is_adaptive ? sizeof(kernel::PixelSum) + 7 * sizeof(float) : 0);
   MemoryEstimate m;
   m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * bytes_per_pixel;
@@ -76,6 +83,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.spheres = compiled.spheres.size();
   needs.layer_planes = film::planes_of(layers).size();
   needs.layers = layers.any();
+  needs.light_cells = layers.light_cells();
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
   needs.is_adaptive = is_adaptive;
   return needs;

@@ -85,7 +85,7 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   result.picture.pixel_aspect = compiled.pixel_aspect;
   if (partial.layers.empty()) return result;
   film::LayerFilm layers(request, compiled.view(), compiled.width, compiled.height);
-  for (std::size_t i = 0; i < partial.layers.size(); ++i) layers.set(i, partial.layers[i]);
+  for (std::size_t i = 0; i < partial.layers.size(); ++i) layers.set(i, partial.layers[i], partial.film.sums()[i]);
   layers.move_to(result.picture);
   result.deep = layers.take_deep();
   return result;

@@ -96,7 +96,7 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, fi
     const std::uint32_t samples = part.sample_end - begin;
     worker.records.resize(pixels * samples);
     part.records = worker.records.data();
-    if (request_.light_events()) {
+    if (request_.lights()) {
       worker.events.reset(worker.records.size());
       part.events = &worker.events;
     }
@@ -113,8 +113,8 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, fi
     for (const kernel::LightEvent* event = worker.events.begin(); event != worker.events.next; ++event) {
       const auto within = static_cast<int>(event->path / samples);
       const std::uint64_t s = begin + event->path % samples;
-      layers[place_in_picture({within % tile.width, within / tile.width})].add(part.records[event->path], *event,
-                                                                               view_.filter.weight(s, s + 1));
+      film::LayerPixel& pixel = layers[place_in_picture({within % tile.width, within / tile.width})];
+      pixel.add(request_, part.records[event->path], *event, view_.filter.weight(s, s + 1));
     }
   }
 }

@@ -4,10 +4,16 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "scene/limits.h"
 #include "scene/schema.h"
 
 namespace orrery::scene {
 namespace {
+
+/// Names of the lobe AOVs; with an underscore, the endings of the layers of a light group.
+constexpr const char* kLobes[] = {
+    "background",        "diffuse_direct",      "diffuse_indirect",      "specular_direct",
+    "specular_indirect", "transmission_direct", "transmission_indirect", "emission"};
 
 /// Integers above this are not all exact in a float.
 constexpr std::size_t kMaxFloatId = std::size_t{1} << 24;
@@ -27,6 +33,21 @@ const std::vector<std::string>& layer_names() {
   return names;
 }
 
+bool is_emitter(const Material& material) { return std::holds_alternative<Emitter>(material.model); }
+
+bool has_emitters(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(), is_emitter);
+}
+
+/// Whether any light belongs to another group than the default one.
+bool has_light_groups(const Scene& scene) {
+  const auto is_named = [](const std::string& group) { return !group.empty() && group != kDefaultLightGroup; };
+  return is_named(background_light_group(scene.background)) ||
+         std::any_of(scene.materials.begin(), scene.materials.end(), [&](const Material& material) {
+           return is_emitter(material) && is_named(std::get<Emitter>(material.model).light_group);
+         });
+}
+
 bool has_groups(const Scene& scene) {
   const auto has_group = [](const auto& thing) { return !thing.group.empty(); };
   return std::any_of(scene.spheres.begin(), scene.spheres.end(), has_group) ||
@@ -35,8 +56,35 @@ bool has_groups(const Scene& scene) {
 
 }  // namespace
 
+std::string background_light_group(const Background& background) {
+  const bool has_key = background.type == BackgroundType::kImage || background.type == BackgroundType::kSky;
+  return has_key && !background.light_group.empty() ? background.light_group : kDefaultLightGroup;
+}
+
+std::string light_group_fault(const std::string& name) {
+  if (name.empty()) return {};
+  const auto is_word = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  if (!std::all_of(name.begin(), name.end(), is_word) || (name[0] >= '0' && name[0] <= '9'))
+    return "must consist of letters, digits and underscores and not begin with a digit: it becomes the name of layers";
+  if (name.size() > kLongestLightGroup)
+    return "has " + std::to_string(name.size()) + " characters; the maximum is " + std::to_string(kLongestLightGroup);
+  // The beauty's part of a multi-part file, and its channels.
+  static const std::vector<std::string> reserved = {"rgba", "R", "G", "B", "A"};
+  bool is_layer = contains(reserved, name) || name.starts_with("Crypto");
+  for (const std::string& layer : layer_names()) is_layer = is_layer || name == layer.substr(0, layer.find('.'));
+  for (const char* lobe : kLobes) is_layer = is_layer || name == lobe;
+  if (is_layer) return "is the name of another layer; choose a different one";
+  for (const char* lobe : kLobes)
+    if (name.ends_with(std::string("_") + lobe))
+      return std::string("ends in \"_") + lobe + "\", like a layer of another group; choose a different one";
+  return {};
+}
+
 std::string layer_fault(const Scene& scene, const std::string& layer) {
-  static const std::vector<std::string> light = {"diffuse", "specular", "transmission", "background"};
+  static const std::vector<std::string> light = {"diffuse",    "specular", "transmission",
+                                                 "background", "emission", "light_groups"};
   if (contains(light, layer) && scene.render.shading != Shading::kPath)
     return layer + " requires render.shading = \"path\"";
   if (layer == "object_id" && scene.sphere_count() >= kMaxFloatId)
@@ -46,10 +94,13 @@ std::string layer_fault(const Scene& scene, const std::string& layer) {
 }
 
 std::vector<std::string> available_layers(const Scene& scene) {
+  const auto is_empty = [&](const std::string& name) {
+    return (name == "CryptoGroup" && !has_groups(scene)) || (name == "emission" && !has_emitters(scene)) ||
+           (name == "light_groups" && !has_light_groups(scene));
+  };
   std::vector<std::string> out;
   for (const std::string& name : layer_names())
-    if (name != kAllLayers && layer_fault(scene, name).empty() && (name != "CryptoGroup" || has_groups(scene)))
-      out.push_back(name);
+    if (name != kAllLayers && layer_fault(scene, name).empty() && !is_empty(name)) out.push_back(name);
   return out;
 }
 

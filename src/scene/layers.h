@@ -11,6 +11,16 @@ namespace orrery::scene {
 /// Name in [output] that selects every layer of available_layers().
 inline constexpr const char* kAllLayers = "all";
 
+/// Light group of emitters and backgrounds that name none. May also be named explicitly.
+inline constexpr const char* kDefaultLightGroup = "default";
+
+/// Returns the name of the light group that the background belongs to. Gradients and constant colours have no key for
+/// it and belong to the default group.
+std::string background_light_group(const Background& background);
+
+/// Returns why the layers of a light group cannot have this name; empty if they can.
+std::string light_group_fault(const std::string& name);
+
 /// Returns why a scene cannot have a layer; empty if it can.
 std::string layer_fault(const Scene& scene, const std::string& layer);
 

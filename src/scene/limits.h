@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 namespace orrery::scene {
 
 /// Maximum absolute shutter time relative to the frame, frames.
@@ -37,5 +39,13 @@ inline constexpr double kWidestFilter = 32;
 
 /// Maximum path depth, rays: with more, a render would not end in practice.
 inline constexpr int kDeepestPath = 10000;
+
+/// Maximum number of light groups: in the layer `light_groups` each takes 384 bytes of memory per pixel (8 lobes, 3
+/// channels, sums of 16 bytes) and 27 channels of the file.
+inline constexpr std::size_t kMaxLightGroups = 64;
+
+/// Maximum length of a light group's name, bytes: EXR channel names have up to 255, and "_transmission_indirect.R"
+/// has 24.
+inline constexpr std::size_t kLongestLightGroup = 231;
 
 }  // namespace orrery::scene

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "scene/coincident.h"
@@ -157,6 +158,23 @@ void check_layers(const Scene& scene, Problems& diagnostics) {
       diagnostics.error("output.layers[" + std::to_string(i) + "]", fault);
 }
 
+void check_light_groups(const Scene& scene, Problems& diagnostics) {
+  std::set<std::string> names = {kDefaultLightGroup};  // the background's light, or that of an emitter without a group
+  const auto check = [&](const std::string& key, const std::string& name) {
+    if (const std::string fault = light_group_fault(name); !fault.empty())
+      diagnostics.error(key, string_text(name) + " " + fault);
+    const bool is_new = !name.empty() && names.insert(name).second;
+    if (is_new && names.size() == kMaxLightGroups + 1)
+      diagnostics.error(
+          key, "the scene has more than " + std::to_string(kMaxLightGroups) + " light groups, with the default group");
+  };
+  for (const Material& material : scene.materials)
+    if (const auto* emitter = std::get_if<Emitter>(&material.model))
+      check("material." + material.name + ".light_group", emitter->light_group);
+  if (background_light_group(scene.background) != kDefaultLightGroup)
+    check("background.light_group", scene.background.light_group);
+}
+
 /// Warns of coincident spheres: of two identical surfaces only the first is rendered.
 void check_coincident(const Scene& scene, const Scene* closing, Problems& diagnostics) {
   for (const Points& p : scene.points)
@@ -180,6 +198,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene, const Scene* closing) 
   check_spheres(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p)
     check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, diagnostics);
+  check_light_groups(scene, diagnostics);
   check_layers(scene, diagnostics);
   check_coincident(scene, closing, diagnostics);
   return diagnostics.take();

@@ -23,7 +23,8 @@ struct SceneDiagnostic {
 };
 
 /// Checks what the type and range of a single key cannot: a camera without direction, a lens of absurd size, numbers
-/// outside the domain, materials that do not exist, layers that the scene cannot have, coincident spheres (a warning).
+/// outside the domain, materials that do not exist, names of light groups, layers that the scene cannot have,
+/// coincident spheres (a warning).
 ///
 /// `closing`  the scene at shutter close, used only to find coincident spheres; null: no motion
 /// Domain     any scene, including non-finite numbers

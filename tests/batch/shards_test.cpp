@@ -38,7 +38,8 @@ class BatchShards : public ProgramTest {
   }
 
   const std::string settings_ =
-      " --set render.samples=35 --width 70 --height 45 --layers Z,N,P,diffuse,variance,CryptoObject,denoise.albedo "
+      " --set render.samples=35 --width 70 --height 45 --layers "
+      "Z,N,P,diffuse,light_groups,variance,CryptoObject,denoise.albedo "
       "--set background.alpha=0 --set render.filter=mitchell --reproducible -q ";
   std::string whole_;
   std::minstd_rand random_{3};

@@ -39,6 +39,14 @@ const Broken kBroken[] = {
     {"ALayer", "[output]\nlayers = [\"Z\", \"Y\"]\n", "", 65, ":15:16: error: output.layers[1] is \"Y\""},
     {"ALayerWithoutLightPaths", "[output]\nlayers = [\"Z\", \"diffuse\"]\n", "--set render.shading=normal", 65,
      ":15:16: error: output.layers[1]: diffuse requires render.shading"},
+    {"ALightGroupNamedLikeALayer",
+     "[material.lamp]\ntype = \"emitter\"\nradiance = [1, 1, 1]\nlight_group = \"diffuse_direct\"\n", "", 65,
+     ":17:15: error: material.lamp.light_group: \"diffuse_direct\" is the name of another layer"},
+    {"ALightGroupThatIsNotAWord",
+     "[material.lamp]\ntype = \"emitter\"\nradiance = [1, 1, 1]\nlight_group = \"key.left\"\n", "", 65,
+     ":17:15: error: material.lamp.light_group: \"key.left\" must consist of letters, digits and underscores"},
+    {"ALightGroupWithoutLightPaths", "[output]\nlayers = [\"light_groups\"]\n", "--set render.shading=normal", 65,
+     ":15:11: error: output.layers[0]: light_groups requires render.shading"},
     {"ALayerOption", "", "--layers Z,Y", 65, "--layers: error: output.layers[1] is \"Y\""},
     {"ASampleCount", "", "--samples 0", 65, "--samples: error: render.samples is 0; must be in"},
     {"ACameraWithoutDirection", "[camera]\nlook_at = [0, 0, 0]\n", "", 65, "error: camera.look_at: "},
@@ -238,6 +246,15 @@ TEST_F(CliValidation, AllLayersMatchInfo) {
   EXPECT_FALSE(contains(header, "CryptoGroup")) << "no sphere has a group";
   EXPECT_EQ(run("render good.toml -q -o b.exr --set 'output.layers=[Z,N]'").status, 0);
   EXPECT_EQ(run("render good.toml -q -o c.exr --layers all --set render.shading=flat").status, 0);
+}
+
+TEST_F(CliValidation, InfoListsTheLayersOfLights) {
+  EXPECT_FALSE(contains(run("info good.toml").out, "emission"));
+  write("lit.toml", std::string(kGoodScene) +
+                        "[material.lamp]\ntype = \"emitter\"\nradiance = [1, 1, 1]\nlight_group = \"key\"\n"
+                        "[[sphere]]\ncenter = [0, 3, -3]\nradius = 1\nmaterial = \"lamp\"\n");
+  const Outcome info = run("info lit.toml --layers all");
+  EXPECT_TRUE(contains(info.out, "background, emission, light_groups, variance")) << info.out << info.err;
 }
 
 TEST_F(CliValidation, UnusedPointColoursAreReported) {

@@ -34,17 +34,25 @@ class FilmLayerFilm : public testing::Test {
   }
 
   void add(const kernel::PathRecord& path, std::int64_t weight = 1, kernel::Lobe lobe = kernel::Lobe::kDiffuseDirect) {
-    pixel_.add(request_, view_, path, weight);
     kernel::LightEvent event{};
     std::copy_n(path.light, 3, event.value);
     event.lobe = lobe;
-    pixel_.add(path, event, weight);
+    add(path, {event}, weight);
   }
+  void add(const kernel::PathRecord& path, const std::vector<kernel::LightEvent>& events, std::int64_t weight) {
+    pixel_.add(request_, view_, path, weight);
+    if (request_.lights())
+      for (const kernel::LightEvent& event : events) pixel_.add(request_, path, event, weight);
+    if (!kernel::is_good_sample(path.light[0], path.light[1], path.light[2])) return;
+    for (int c = 0; c < 3; ++c) beauty_.rgb[c] += kernel::to_fixed_point(path.light[c]) * weight;
+    beauty_.weight += weight;
+  }
+  void clear() { pixel_ = {}, beauty_ = {}; }
 
   /// An image of one pixel from the paths added so far.
   Picture picture() {
     LayerFilm film(request_, view_, 1, 1);
-    film.set(0, pixel_);
+    film.set(0, pixel_, beauty_);
     deep_ = {};
     Picture out{1, 1, {{"R", {0}}, {"A", {1}}}};
     film.move_to(out);
@@ -63,6 +71,7 @@ class FilmLayerFilm : public testing::Test {
   kernel::SceneView view_;
   LayerRequest request_;
   LayerPixel pixel_;
+  kernel::PixelSum beauty_;
   DeepPicture deep_;
 };
 
@@ -117,37 +126,202 @@ TEST_F(FilmLayerFilm, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
   EXPECT_EQ(value(picture(), "N.Z"), 1);
 }
 
-/// The sum of the lobe AOVs in single precision equals the beauty bit for bit in any order.
-TEST_F(FilmLayerFilm, LightGroupsAddUpToTheBeautyInAnyOrder) {
-  request_.diffuse = request_.specular = request_.transmission = request_.background = true;
+/// Adds `values` in single precision in several orders and expects the same sum each time.
+void expect_sum(std::vector<float> values, float sum, std::mt19937& random, const std::string& what) {
+  for (int order = 0; order < 4; ++order) {
+    float total = 0;
+    for (const float v : values) {
+      ASSERT_GE(v, 0) << what;
+      total += v;
+    }
+    ASSERT_EQ(total, sum) << what;
+    std::shuffle(values.begin(), values.end(), random);
+  }
+}
+
+/// Random light in random lobes and groups: the lobes, the groups, and the lobes of the groups each add up to the
+/// beauty, the lobes of a group to the group, and the parts of a lobe to the lobe.
+TEST_F(FilmLayerFilm, LightAddsUpToTheBeautyInAnyOrder) {
+  request_.diffuse = request_.specular = request_.transmission = request_.background = request_.emission = true;
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> exponent(-30, 12), uniform(0, 1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  // Magnitudes: of common images, below the unit of the sums (2^-60), near the largest sample, and all of these.
+  const std::pair<double, double> exponents[] = {{-30, 12}, {-68, -55}, {15, 30}, {-70, 31}};
   for (int trial = 0; trial < 3000; ++trial) {
-    pixel_ = {};
+    clear();
+    request_.light_groups = trial % 4 != 0;
+    request_.groups.assign(1 + random() % (trial % 50 == 1 ? kMaxLightGroups : 4), {"", true, true});
+    for (std::size_t g = 0; g < request_.groups.size(); ++g) request_.groups[g].name = "g" + std::to_string(g);
+    const auto [low, high] = exponents[trial / 4 % 4];
+    std::uniform_real_distribution<double> exponent(low, high);
+    // Single precision as in the fast kernel, whose rounded path sums differ from the sum of the events.
+    const bool is_fast = random() % 2 == 0;
     const int paths = 1 + static_cast<int>(uniform(random) * 40);
     for (int i = 0; i < paths; ++i) {
       kernel::PathRecord path = path_to(0);
-      for (double& v : path.light) v = uniform(random) < 0.2 ? 0 : std::exp2(exponent(random));
-      add(path, 1, static_cast<kernel::Lobe>(uniform(random) * kernel::kLobes));
+      std::vector<kernel::LightEvent> events(random() % 6);
+      for (kernel::LightEvent& e : events) {
+        e.lobe = static_cast<kernel::Lobe>(random() % kernel::kLobes);
+        e.group = static_cast<std::uint16_t>(random() % request_.groups.size());
+        for (int c = 0; c < 3; ++c) {
+          e.value[c] = uniform(random) < 0.2 || (c == 2 && trial % 3 == 0) ? 0 : std::exp2(exponent(random));
+          if (is_fast) e.value[c] = static_cast<float>(e.value[c]);
+          path.light[c] += e.value[c];
+          if (is_fast) path.light[c] = static_cast<float>(path.light[c]);
+        }
+      }
+      add(path, events, 1);
     }
     const Picture p = picture();
-    std::vector<float> groups;
-    for (const Plane& plane : p.planes)
-      if (plane.name.size() > 2 && plane.name.ends_with(".G")) groups.push_back(plane.values[0]);
-    ASSERT_EQ(groups.size(), 7u);
-    kernel::Int128 sum = 0;
-    for (const auto& group : pixel_.light) sum += group[1];
-    const auto beauty = static_cast<float>(kernel::from_fixed_point(sum) / static_cast<double>(pixel_.lit));
-    for (int order = 0; order < 5; ++order) {
-      float total = 0;
-      for (const float g : groups) {
-        ASSERT_GE(g, 0);
-        total += g;
+    for (int c = 0; c < 3; ++c) {
+      const std::string channel = std::string(".") + "RGB"[c], what = "trial " + std::to_string(trial) + channel;
+      const auto beauty = static_cast<float>(mean(beauty_.rgb[c], beauty_.weight));
+      std::vector<float> lobes, groups, products;
+      for (const char* lobe : kLobeNames) {
+        lobes.push_back(value(p, lobe + channel));
+        std::vector<float> parts;
+        for (const LightGroup& g : request_.groups)
+          if (request_.light_groups) parts.push_back(value(p, g.name + "_" + lobe + channel));
+        if (request_.light_groups) expect_sum(parts, lobes.back(), random, what);
+        products.insert(products.end(), parts.begin(), parts.end());
       }
-      ASSERT_EQ(total, beauty) << "trial " << trial;
-      std::shuffle(groups.begin(), groups.end(), random);
+      expect_sum(lobes, beauty, random, what);
+      if (!request_.light_groups) continue;
+      for (const LightGroup& g : request_.groups) {
+        groups.push_back(value(p, g.name + channel));
+        std::vector<float> parts;
+        for (const char* lobe : kLobeNames) parts.push_back(value(p, g.name + "_" + lobe + channel));
+        expect_sum(parts, groups.back(), random, what);
+      }
+      expect_sum(groups, beauty, random, what);
+      expect_sum(products, beauty, random, what);
     }
+    if (HasFatalFailure()) return;
   }
+}
+
+/// The rounding errors of the layers, in units of the beauty's last bit, and cells without light.
+TEST_F(FilmLayerFilm, LightIsRoundedToTheLastBitOfTheBeauty) {
+  request_.diffuse = request_.emission = request_.light_groups = true;
+  request_.groups = {{"a", true, true}, {"b", true, true}, {"c", true, true}};
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  double of_cells = 0, of_lobes = 0, of_groups = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    clear();
+    double cells[3][kernel::kLobes] = {};
+    kernel::PathRecord path = path_to(0);
+    std::vector<kernel::LightEvent> events;
+    for (std::uint16_t g = 0; g < 2; ++g) {
+      for (int lobe = 1; lobe < kernel::kLobes; ++lobe) {
+        const double light = uniform(random);
+        // The radiance of the path has a relative rounding error, as in single precision; all cells share it.
+        cells[g][lobe] = light * (1 + 0x1p-21);
+        path.light[0] += cells[g][lobe];
+        events.push_back({{light, 0, 0}, 0, g, static_cast<kernel::Lobe>(lobe)});
+      }
+    }
+    add(path, events, 1);
+    const Picture p = picture();
+    const double unit = std::ldexp(1, std::ilogb(static_cast<float>(path.light[0])) - 23);
+    for (std::size_t g = 0; g < 3; ++g) {
+      double sum = 0;
+      for (int lobe = 0; lobe < kernel::kLobes; ++lobe) {
+        const float v = value(p, request_.groups[g].name + "_" + kLobeNames[lobe] + ".R");
+        sum += cells[g][lobe];
+        of_cells = std::max(of_cells, std::abs(v - cells[g][lobe]) / unit);
+        if (cells[g][lobe] == 0) {
+          ASSERT_EQ(v, 0);
+        }
+      }
+      of_groups = std::max(of_groups, std::abs(value(p, request_.groups[g].name + ".R") - sum) / unit);
+    }
+    for (int lobe : {1, 2, 7})
+      of_lobes = std::max(
+          of_lobes, std::abs(value(p, kLobeNames[lobe] + std::string(".R")) - cells[0][lobe] - cells[1][lobe]) / unit);
+  }
+  EXPECT_LT(of_cells, 1.001);
+  EXPECT_LT(of_lobes, 1.001);
+  EXPECT_LT(of_groups, 8);
+  EXPECT_GT(of_cells, 0.9) << "as documented";
+}
+
+/// Paths whose rounded sums differ from their events, where the mean of a pixel is half way between two floats and the
+/// rounding of that difference decides.
+TEST_F(FilmLayerFilm, RoundingErrorsNeitherLoseTheLastBitNorMakeLightNegative) {
+  request_.diffuse = true;
+  const kernel::Int128 half_way = (kernel::Int128{1} << 60) + (kernel::Int128{1} << 36);  // 1 + 2^-24
+  pixel_.light.resize(kernel::kLobes);
+  beauty_ = {{3 * half_way + 512, 0, 0}, 3};
+  pixel_.light[1][0] = beauty_.rgb[0] - 300;
+  EXPECT_EQ(value(picture(), "diffuse_direct.R"), 1 + 0x1p-23F);
+  beauty_ = {{3 * half_way, 0, 0}, 3};
+  pixel_.light[1][0] = beauty_.rgb[0] + 300;
+  pixel_.light[2][0] = 1;
+  EXPECT_EQ(value(picture(), "diffuse_direct.R"), 1);
+  EXPECT_EQ(value(picture(), "diffuse_indirect.R"), 0);
+}
+
+/// A lobe layer has the same bits whether or not light groups are requested.
+TEST_F(FilmLayerFilm, LightGroupsDoNotChangeTheLobes) {
+  request_.diffuse = request_.specular = request_.background = request_.emission = true;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (int trial = 0; trial < 300; ++trial) {
+    kernel::PathRecord path = path_to(0);
+    std::vector<kernel::LightEvent> events(1 + random() % 9);
+    float sum = 0;
+    for (kernel::LightEvent& e : events) {
+      const float light = uniform(random);
+      e = {{light, light, light}, 0, static_cast<std::uint16_t>(random() % 3), static_cast<kernel::Lobe>(random() % 8)};
+      sum += light;
+    }
+    std::fill_n(path.light, 3, double{sum});
+    Picture pictures[2];
+    for (const bool with_groups : {false, true}) {
+      clear();
+      request_.light_groups = with_groups;
+      request_.groups.assign(with_groups ? 3 : 0, {"g", true, true});
+      add(path, events, 1);
+      pictures[with_groups] = picture();
+    }
+    for (const Plane& plane : pictures[0].planes) EXPECT_EQ(plane.values, pictures[1].find(plane.name)->values);
+  }
+}
+
+/// A group has layers only for the lobes that its sources can have, and none without sources.
+TEST_F(FilmLayerFilm, LightGroupsHaveTheLayersOfTheirSources) {
+  request_.light_groups = true;
+  request_.groups = {{"default", false, false}, {"key", true, false}, {"sky", false, true}};
+  std::string names;
+  for (const Plane& plane : planes_of(request_)) {
+    EXPECT_EQ(plane.kind, PlaneKind::kLight);
+    if (plane.name.ends_with(".R")) names += plane.layer() + " ";
+  }
+  EXPECT_EQ(names,
+            "key key_diffuse_direct key_diffuse_indirect key_specular_direct key_specular_indirect "
+            "key_transmission_direct key_transmission_indirect key_emission "
+            "sky sky_background sky_diffuse_direct sky_diffuse_indirect sky_specular_direct sky_specular_indirect "
+            "sky_transmission_direct sky_transmission_indirect ");
+  // Light too small for the sums is not lost where there is no first group.
+  kernel::PathRecord path = path_to(0, 0x1.8p-60);
+  add(path, std::vector<kernel::LightEvent>(2, {{0x1.8p-61, 0, 0}, 0, 1, kernel::Lobe::kEmission}), 1);
+  EXPECT_EQ(value(picture(), "key.R"), 0x1p-60F);
+}
+
+/// Shards have sums of the same paths in two pixels.
+TEST_F(FilmLayerFilm, MergedPixelsAddTheirLight) {
+  request_.light_groups = true;
+  request_.groups = {{"a", true, true}, {"b", true, true}};
+  const kernel::PathRecord path = path_to(0, 0.5);
+  add(path, {{{0.5, 0.5, 0.5}, 0, 1, kernel::Lobe::kEmission}}, 1);
+  const LayerPixel first = pixel_;
+  pixel_ = {};
+  pixel_.add(first);  // a pixel that this shard does not own
+  add(path, {{{0.5, 0.5, 0.5}, 0, 0, kernel::Lobe::kDiffuseDirect}}, 1);
+  pixel_.add(LayerPixel{});
+  EXPECT_EQ(value(picture(), "b_emission.R"), 0.25F);
+  EXPECT_EQ(value(picture(), "a.G"), 0.25F);
 }
 
 TEST_F(FilmLayerFilm, InvalidRadianceIsIgnored) {
@@ -166,7 +340,7 @@ TEST_F(FilmLayerFilm, VarianceIsThatOfTheMean) {
   request_.variance = true;
   for (const double light : {1.0, 2.0, 3.0, 6.0}) add(path_to(0, light));
   EXPECT_FLOAT_EQ(value(picture(), "variance.R"), 14.0F / 12);
-  pixel_ = {};
+  clear();
   add(path_to(0, 4));
   EXPECT_EQ(value(picture(), "variance.R"), 0);  // one path has no sample variance
 }
@@ -178,19 +352,20 @@ TEST_F(FilmLayerFilm, VarianceTreatsPositiveAndNegativeWeightsSeparately) {
   for (const double light : {1.0, 2.0, 3.0}) add(path_to(0, light));
   add(path_to(0, 1), -1);
   const LayerPixel part = pixel_;
+  const kernel::PixelSum beauty_of_part = beauty_;
   pixel_ = {};
   add(path_to(0, 6));
   add(path_to(0, 3), -1);
   pixel_.add(part);
   EXPECT_FLOAT_EQ(value(picture(), "variance.R"), (4 * 14.0F / 3 + 2 * 2) / 4);
-  pixel_ = part;  // one negative path: uses the variance of the positive ones, which is 1
+  pixel_ = part, beauty_ = beauty_of_part;  // one negative path: uses the variance of the positive ones, which is 1
   EXPECT_FLOAT_EQ(value(picture(), "variance.R"), 4.0F / 4);
 }
 
 TEST_F(FilmLayerFilm, ConstantRadianceHasNoVariance) {
   request_.variance = true;
   for (const double light : {0.3, 1.0 / 3, 7.7, 1e-3, 123456.7}) {
-    pixel_ = {};
+    clear();
     for (int i = 0; i < 100; ++i) add(path_to(0, light), i % 16 == 15 ? -1 : 1);
     EXPECT_EQ(value(picture(), "variance.R"), 0) << light;
   }
@@ -300,7 +475,7 @@ TEST_F(FilmLayerFilm, ATransparentBackgroundHasNoDeepSample) {
 
 TEST_F(FilmLayerFilm, LayersHaveTheirChannelNamesAndKinds) {
   request_.z = request_.depth = request_.normal = request_.position = request_.albedo = true;
-  request_.diffuse = request_.specular = request_.transmission = request_.background = true;
+  request_.diffuse = request_.specular = request_.transmission = request_.background = request_.emission = true;
   request_.variance = request_.samples = request_.object_id = request_.material_id = true;
   request_.guide_albedo = request_.guide_normal = true;
   std::string names;
@@ -312,8 +487,9 @@ TEST_F(FilmLayerFilm, LayersHaveTheirChannelNamesAndKinds) {
   }
   EXPECT_EQ(names,
             "Z data, depth.X data, N.X vector, P.X data, albedo.R, background.R, diffuse_direct.R, diffuse_indirect.R, "
-            "specular_direct.R, specular_indirect.R, transmission_direct.R, transmission_indirect.R, variance.R data, "
-            "samples.X data, object_id.X data, material_id.X data, denoise.albedo.R, denoise.normal.X vector, ");
+            "specular_direct.R, specular_indirect.R, transmission_direct.R, transmission_indirect.R, emission.R, "
+            "variance.R data, samples.X data, object_id.X data, material_id.X data, denoise.albedo.R, denoise.normal.X "
+            "vector, ");
 }
 
 }  // namespace

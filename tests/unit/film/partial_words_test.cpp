@@ -12,7 +12,7 @@ namespace orrery::film {
 namespace {
 
 /// A partial render with a different value in every number.
-Partial full_partial(bool halves, bool goals, bool layers) {
+Partial full_partial(bool halves, bool goals, bool layers, std::size_t light_groups = 1) {
   Partial p(5, 3);
   std::mt19937_64 random(3);
   const auto number = [&] { return static_cast<std::int64_t>(random()); };
@@ -28,8 +28,9 @@ Partial full_partial(bool halves, bool goals, bool layers) {
     for (const std::uint32_t n : p.counts) p.goals.push_back(n + 7);
   if (layers) p.layers.resize(15);
   for (LayerPixel& l : p.layers) {
-    for (auto& group : l.light)
-      for (auto& v : group) v = large();
+    l.light.resize(light_groups * kernel::kLobes);
+    for (auto& cell : l.light)
+      for (auto& v : cell) v = large();
     for (auto* vector :
          {&l.squares, &l.negative_light, &l.negative_squares, &l.normal, &l.albedo, &l.guide_albedo, &l.guide_normal})
       for (auto& v : *vector) v = large();
@@ -65,6 +66,19 @@ TEST(FilmPartialWords, RoundTrip) {
     EXPECT_TRUE(q.layers[2].negative_squares[1] == p.layers[2].negative_squares[1]);
     EXPECT_EQ(q.layers[9].position[1], p.layers[9].position[1]);
   }
+}
+
+TEST(FilmPartialWords, LightGroupsRoundTrip) {
+  Partial p = full_partial(false, false, true, 3);
+  p.layers[4].light.clear();  // a pixel of another shard
+  const std::vector<std::uint32_t> words = to_words(p);
+  const Partial q = from_words(words, 5, 3);
+  EXPECT_EQ(to_words(q), words);
+  ASSERT_EQ(q.layers[14].light.size(), 24u);
+  for (std::size_t i = 0; i < 24; ++i) EXPECT_TRUE(q.layers[14].light[i] == p.layers[14].light[i]);
+  EXPECT_TRUE(q.layers[4].light[23][2] == 0);
+  for (LayerPixel& l : p.layers) l.light.clear();  // layers without light
+  EXPECT_TRUE(from_words(to_words(p), 5, 3).layers[14].light.empty());
 }
 
 TEST(FilmPartialWords, TruncatedWordsAreRefused) {

@@ -20,10 +20,10 @@ class JobDiskSpace : public testing::Test {
   }
 
   /// Ratio of the estimated to the actual size of a file.
-  double ratio(const std::string& name, std::size_t layer_planes = 0) {
+  double ratio(const std::string& name, const film::LayerRequest& layers = {}) {
     job_.outputs.images = {folder_ / name};
     run_job(job_);
-    const auto needed = estimate_disk_space(job_.outputs, is_shard(job_), {200, 112, layer_planes});
+    const auto needed = estimate_disk_space(job_.outputs, is_shard(job_), image_size(200, 112, layers));
     EXPECT_EQ(needed.size(), 1u);
     return needed.begin()->second / static_cast<double>(std::filesystem::file_size(folder_ / name));
   }
@@ -51,8 +51,24 @@ TEST_F(JobDiskSpace, TheEstimateIsNearTheFiles) {
 
 TEST_F(JobDiskSpace, LayersIncreaseTheEstimate) {
   job_.scene.overrides.push_back("output.layers=[\"Z\", \"N\", \"variance\"]");
-  EXPECT_GT(ratio("a.exr", 7), 0.8);
-  EXPECT_LT(ratio("b.exr", 7), 3);  // distances compress better than noise
+  film::LayerRequest layers;
+  layers.z = layers.normal = layers.variance = true;
+  EXPECT_GT(ratio("a.exr", layers), 0.8);
+  EXPECT_LT(ratio("b.exr", layers), 2);  // distances compress better than noise
+}
+
+/// The light of one group, which is the whole image.
+TEST_F(JobDiskSpace, LightGroupsIncreaseTheEstimate) {
+  job_.scene.overrides.push_back("output.layers=[\"light_groups\"]");
+  film::LayerRequest layers;
+  layers.light_groups = true;
+  layers.groups = {{"default", false, true}};
+  EXPECT_EQ(image_size(200, 112, layers).half_planes, 24u);
+  EXPECT_GT(ratio("a.exr", layers), 0.8);
+  EXPECT_LT(ratio("a.exr", layers), 3);  // in most pixels most lobes are black
+  job_.sampling.sample_end = 2;
+  EXPECT_GT(ratio("shard.exr", layers), 0.8);
+  EXPECT_LT(ratio("shard.exr", layers), 5);  // there are no other layers
 }
 
 TEST_F(JobDiskSpace, ALimitReplacesTheFreeSpace) {

@@ -12,6 +12,8 @@
 #include "film/cryptomatte.h"
 #include "film/layer_film.h"
 #include "job/matte_manifest.h"
+#include "scene/layers.h"
+#include "scene/limits.h"
 #include "scene/schema.h"
 #include "support/everything.h"
 #include "support/temp_dir.h"
@@ -82,6 +84,38 @@ TEST(JobLayers, GroupsHoldOnlySpheresWithAGroup) {
   EXPECT_EQ(layers.request.mattes[0].id_of_sphere(1), film::matte_id("left"));
   EXPECT_EQ(layers.request.mattes[0].id_of_sphere(2), 0u);
   EXPECT_EQ(layers.request.mattes[0].id_of_sphere(3), film::matte_id("left"));
+}
+
+TEST(JobLayers, LightGroupsAreThoseOfEmittersAndTheBackground) {
+  scene::Scene s = with_layers({"light_groups"});
+  s.materials[0].model = scene::Emitter{{1, 1, 1}, 0, "key"};
+  s.materials[1].model = scene::Emitter{{1, 1, 1}, 0, "default"};
+  s.materials[2].model = scene::Emitter{};
+  s.materials.push_back({"unused", scene::Emitter{{1, 1, 1}, 0, "unused"}});
+  for (std::uint32_t i = 0; i < 3; ++i) s.spheres[i].material = i;
+  const auto text = [&] {
+    std::string out;
+    for (const film::LightGroup& g : layers_of(s).request.groups)
+      out += g.name + (g.has_emitters ? " emitters" : "") + (g.has_background ? " background" : "") + ", ";
+    return out;
+  };
+  EXPECT_EQ(text(), "default emitters background, key emitters, ");
+  s.background.type = scene::BackgroundType::kSky;
+  s.background.light_group = "sky";
+  EXPECT_EQ(text(), "default emitters, key emitters, sky background, ");
+  s.background.light_group = "key";
+  EXPECT_EQ(text(), "default emitters, key emitters background, ");
+  s.output.layers = {"emission"};
+  EXPECT_TRUE(layers_of(s).request.groups.empty());
+}
+
+/// The scene refuses names that collide with the lobe AOVs, whose names the film has.
+TEST(JobLayers, LightGroupsAreNotNamedLikeLobes) {
+  for (const char* lobe : film::kLobeNames) {
+    EXPECT_NE(scene::light_group_fault(lobe), "") << lobe;
+    EXPECT_NE(scene::light_group_fault(std::string("key_") + lobe), "") << lobe;
+    EXPECT_LE(scene::kLongestLightGroup + 1 + std::string(lobe).size() + 2, 255u) << lobe;
+  }
 }
 
 /// Inverted glass is a second material in the kernel, but not in the scene.

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "compile/compile.h"
+#include "job/layers.h"
 #include "support/temp_dir.h"
 
 namespace orrery::job {
@@ -72,6 +74,23 @@ TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
   EXPECT_GT(estimate(10, 0, true, 0, true).film, estimate(10, 0, true).film);
   EXPECT_EQ(estimate(1, 100, false).accelerator, 0u);
   EXPECT_EQ(estimate(1, 100, true).accelerator, 100 * estimate(1, 1, true).accelerator);
+}
+
+TEST(JobMemoryEstimate, GrowsWithLightGroups) {
+  scene::Scene scene;
+  scene.materials = {{"a", scene::Emitter{{1, 1, 1}, 0, "a"}}, {"b", scene::Emitter{{1, 1, 1}, 0, "b"}}};
+  scene.spheres = {{{0, 0, 0}, 1, 0, ""}, {{3, 0, 0}, 1, 1, ""}};
+  scene.image = {100, 10};
+  const auto film_of = [&](std::vector<std::string> layers) {
+    scene.output.layers = std::move(layers);
+    const compile::CompiledScene compiled = compile::compile(scene);
+    const film::LayerRequest request = choose_layers(scene, compiled).request;
+    return estimate_memory(memory_needs(compiled, request)).film;
+  };
+  // The light of a pixel with emitters in two groups and the background in a third.
+  const std::uint64_t sum = 8 * 3 * 16, planes = (2 * 8 + 8) * 3 * 8, heap = 16;
+  EXPECT_EQ(film_of({"light_groups"}) - film_of({"samples"}), 1000 * (3 * sum + heap + planes - 8));
+  EXPECT_EQ(film_of({"emission"}) - film_of({"samples"}), 1000 * (sum + heap + 3 * 8 - 8));
 }
 
 TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {

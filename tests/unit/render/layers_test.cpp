@@ -19,7 +19,8 @@ namespace {
 film::LayerRequest all_layers() {
   film::LayerRequest r;
   r.z = r.depth = r.normal = r.position = r.albedo = true;
-  r.diffuse = r.specular = r.transmission = r.background = true;
+  r.diffuse = r.specular = r.transmission = r.background = r.emission = r.light_groups = true;
+  r.groups = {{"default", true, true}, {"other", true, false}};
   r.variance = r.samples = r.object_id = r.material_id = r.guide_albedo = r.guide_normal = r.deep = true;
   r.material_numbers.assign(16, 1);
   r.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return 0x3f000000u + sphere; }}};
@@ -65,19 +66,27 @@ TEST(RenderLayers, ThreadsAndAcceleratorsGiveTheSameBits) {
   expect_equal(render_with(s, all_layers()), one);
 }
 
-TEST(RenderLayers, LightGroupsAddUpToTheBeauty) {
+TEST(RenderLayers, LobesAndLightGroupsAddUpToTheBeauty) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     scene::Scene s = test::everything();
     s.render.precision = precision;
     const Result r = render_with(s, all_layers());
     for (const char* c : {"R", "G", "B"}) {
-      std::vector<float> sum(plane(r, c).size());
-      for (const char* group : {"background", "diffuse_direct", "diffuse_indirect", "specular_direct",
-                                "specular_indirect", "transmission_direct", "transmission_indirect"}) {
-        const auto& values = plane(r, (std::string(group) + "." + c).c_str());
+      const std::vector<float>& beauty = plane(r, c);
+      std::vector<float> lobes(beauty.size()), groups = lobes, products = lobes;
+      const auto add = [&](std::vector<float>& sum, const std::string& layer) {
+        const auto& values = plane(r, (layer + "." + c).c_str());
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+      };
+      for (const std::string lobe : film::kLobeNames) {
+        add(lobes, lobe);
+        add(products, "default_" + lobe);
+        if (lobe != "background") add(products, "other_" + lobe);
       }
-      EXPECT_EQ(sum, plane(r, c)) << c;
+      for (const char* group : {"default", "other"}) add(groups, group);
+      EXPECT_EQ(lobes, beauty) << c;
+      EXPECT_EQ(groups, beauty) << c;
+      EXPECT_EQ(products, beauty) << c;
     }
   }
 }

@@ -68,6 +68,8 @@ compile::CompiledScene world_of_everything() {
 Settings with_layers(Settings settings = {}) {
   film::LayerRequest& r = settings.layers;
   r.z = r.depth = r.normal = r.position = r.albedo = r.diffuse = r.specular = r.transmission = r.background = true;
+  r.emission = r.light_groups = true;
+  r.groups = {{"default", true, true}, {"other", true, false}};
   r.variance = r.samples = r.object_id = r.guide_albedo = r.guide_normal = r.coverage = r.deep = true;
   r.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return sphere + 1; }}};
   return settings;

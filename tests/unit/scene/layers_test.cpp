@@ -16,7 +16,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 /// "key: text" of the first diagnostic of a scene with one sphere.
 std::string problem_of(Scene scene) {
-  scene.materials.resize(1);
+  if (scene.materials.empty()) scene.materials.resize(1);
   scene.spheres.resize(1);
   const std::vector<SceneDiagnostic> diagnostics = validate(scene);
   return diagnostics.empty() ? "" : diagnostics[0].key + ": " + diagnostics[0].text;
@@ -57,6 +57,59 @@ TEST(SceneLayers, AllSelectsEveryAvailableLayer) {
   s.render.shading = Shading::kFlat;
   EXPECT_FALSE(contains(requested_layers(s), "diffuse"));
   EXPECT_EQ(problem_of(s), "") << "layers that the scene cannot have are left out";
+}
+
+TEST(SceneLayers, AllIncludesTheLayersOfLightsThatTheSceneHas) {
+  Scene s;
+  s.output.layers = {"all"};
+  s.materials = {{"lamp", Emitter{}}};
+  EXPECT_TRUE(contains(requested_layers(s), "emission"));
+  EXPECT_FALSE(contains(requested_layers(s), "light_groups")) << "the default group is the beauty";
+  std::get<Emitter>(s.materials[0].model).light_group = "default";
+  EXPECT_FALSE(contains(requested_layers(s), "light_groups"));
+  std::get<Emitter>(s.materials[0].model).light_group = "key";
+  EXPECT_TRUE(contains(requested_layers(s), "light_groups"));
+  s.materials.clear();
+  s.background.light_group = "sky";
+  EXPECT_FALSE(contains(requested_layers(s), "light_groups")) << "a gradient belongs to the default group";
+  s.background.type = BackgroundType::kImage;
+  EXPECT_TRUE(contains(requested_layers(s), "light_groups"));
+  EXPECT_FALSE(contains(requested_layers(s), "emission"));
+  s.render.shading = Shading::kFlat;
+  EXPECT_FALSE(contains(requested_layers(s), "light_groups"));
+}
+
+TEST(SceneLayers, LightGroupsHaveNamesOfLayers) {
+  for (const char* good : {"", "default", "key", "Key_2", "_", "diffuse_direct_2", "emissions", "direct"})
+    EXPECT_EQ(light_group_fault(good), "") << good;
+  for (const char* bad : {"key.left", "key-left", "a b", "2nd", "caf\xc3\xa9"})
+    EXPECT_NE(light_group_fault(bad).find("must consist of letters, digits and underscores"), std::string::npos) << bad;
+  for (const char* taken : {"Z", "N", "variance", "diffuse", "diffuse_direct", "emission", "denoise", "CryptoObject",
+                            "CryptoLight", "rgba", "R", "all", "light_groups"})
+    EXPECT_EQ(light_group_fault(taken), "is the name of another layer; choose a different one") << taken;
+  EXPECT_EQ(light_group_fault("key_emission"),
+            "ends in \"_emission\", like a layer of another group; choose a different one");
+  EXPECT_EQ(light_group_fault(std::string(231, 'a')), "");
+  EXPECT_EQ(light_group_fault(std::string(232, 'a')), "has 232 characters; the maximum is 231");
+}
+
+TEST(SceneLayers, LightGroupsAreValidated) {
+  Scene s;
+  s.materials = {{"lamp", Emitter{{1, 1, 1}, 0, "a.b"}}};
+  EXPECT_EQ(problem_of(s),
+            "material.lamp.light_group: \"a.b\" must consist of letters, digits and underscores and not begin with a "
+            "digit: it becomes the name of layers");
+  s.materials.clear();
+  s.background.light_group = "N";
+  EXPECT_EQ(problem_of(s), "") << "a gradient has no light group";
+  s.background.type = BackgroundType::kSky;
+  EXPECT_EQ(problem_of(s), "background.light_group: \"N\" is the name of another layer; choose a different one");
+  s.background = {};
+  for (int i = 0; i < 63; ++i) s.materials.push_back({"m", Emitter{{1, 1, 1}, 0, "g" + std::to_string(i)}});
+  s.materials.push_back({"m", Emitter{{1, 1, 1}, 0, "default"}});
+  EXPECT_EQ(problem_of(s), "");
+  s.materials.push_back({"m", Emitter{{1, 1, 1}, 0, "h"}});
+  EXPECT_EQ(problem_of(s), "material.m.light_group: the scene has more than 64 light groups, with the default group");
 }
 
 TEST(SceneLayers, NamesBesideAllAreAdded) {

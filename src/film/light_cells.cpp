@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film/light_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orrery::film {
+namespace {
+
+using kernel::Int128;
+using kernel::kLobes;
+
+Int128 magnitude(Int128 v) { return v < 0 ? -v : v; }
+
+}  // namespace
+
+LightCells::LightCells(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty)
+    : groups_(request.light_cells() / kLobes), values_(request.light_cells() * 3) {
+  for (std::size_t c = 0; c < 3; ++c) divide(request, pixel, beauty, c);
+}
+
+/// Rounds the cumulative sums of the cells, not the cells, so that the errors do not add up. All groups of one lobe
+/// precede those of the next: the lobes then have the same bits with and without groups.
+void LightCells::divide(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty,
+                        std::size_t c) {
+  const auto whole = static_cast<double>(static_cast<float>(mean(beauty.rgb[c], beauty.weight)));
+  if (whole == 0) return;
+  const double last_bit = std::ldexp(1.0, std::ilogb(whole) - 23);
+  Int128 total = 0, all = 0;
+  for (const auto& sum : pixel.light) {
+    total += sum[c];
+    all += magnitude(sum[c]);
+  }
+  if (all == 0) {
+    // The events are below the unit of the sums, but their sum, a few units at most, is not.
+    const auto with_sources = [](const LightGroup& group) { return group.has_sources(); };
+    const auto group = std::find_if(request.groups.begin(), request.groups.end(), with_sources);
+    const bool found = request.light_groups && group != request.groups.end();
+    cell(found ? static_cast<std::size_t>(group - request.groups.begin()) : 0, 1, c) = whole;
+    return;
+  }
+  // A path's radiance is the rounded sum of its events; the difference is spread over the cells in proportion.
+  const double excess = mean(beauty.rgb[c] - total, beauty.weight);
+  const double units = whole / last_bit;
+  Int128 sum = 0, seen = 0;
+  double so_far = 0;
+  for (std::size_t lobe = 0; lobe < kLobes; ++lobe) {
+    for (std::size_t group = 0; group < groups_; ++group) {
+      const std::size_t i = group * kLobes + lobe;
+      if (i >= pixel.light.size() || pixel.light[i][c] == 0) continue;
+      sum += pixel.light[i][c];
+      seen += magnitude(pixel.light[i][c]);
+      const double share = static_cast<double>(seen) / static_cast<double>(all);
+      double next = std::nearbyint((mean(sum, beauty.weight) + excess * share) / last_bit);
+      if (total == all) next = std::clamp(next, so_far, units);  // `excess` is rounded; no cell must become negative
+      if (seen == all) next = units;
+      cell(group, lobe, c) = (next - so_far) * last_bit;
+      so_far = next;
+    }
+  }
+}
+
+float LightCells::of(std::size_t group, kernel::Lobe lobe, std::size_t channel) const {
+  return static_cast<float>(values_[(group * kLobes + static_cast<std::size_t>(lobe)) * 3 + channel]);
+}
+
+float LightCells::of_lobe(kernel::Lobe lobe, std::size_t channel) const {
+  double sum = 0;
+  for (std::size_t group = 0; group < groups_; ++group) sum += of(group, lobe, channel);
+  return static_cast<float>(sum);
+}
+
+float LightCells::of_group(std::size_t group, std::size_t channel) const {
+  double sum = 0;
+  for (int lobe = 0; lobe < kLobes; ++lobe) sum += of(group, static_cast<kernel::Lobe>(lobe), channel);
+  return static_cast<float>(sum);
+}
+
+}  // namespace orrery::film
