@@ -43,6 +43,9 @@ done
 for name in glass defocus contrast; do
   picture "scenes/trade/$name.toml" "trade-$name" --samples 400
 done
+for name in three-point thousand-lamps caustic eclipse-ground eclipse-space; do
+  picture "scenes/light/$name.toml" "light-$name" --samples 1000
+done
 for count in 30 1000 100000; do
   "$program" generate cloud --count $count -o "$work/cloud-$count.toml"
   picture "$work/cloud-$count.toml" cloud-$count --samples 300

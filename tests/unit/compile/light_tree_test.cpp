@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -183,6 +184,30 @@ TEST(KernelLights, IrradianceOfASphereIsExactAtAnyDistance) {
     }
     const double expected = std::numbers::pi / (distance * distance);
     EXPECT_NEAR(mean * test::visible_point({0, 0, distance}, 1, 0.5, 0.5).solid_angle / expected, 1, 1e-12) << distance;
+  }
+}
+
+TEST(KernelLights, IrradianceOfASphereThatTheHorizonCuts) {
+  for (const double height : {-0.5, -0.1, 0.2, 0.7}) {
+    const Vec3d center{3, 0, height};
+    const double distance = math::length(center);
+    const double angle = std::acos(height / distance), half_apex = std::asin(1 / distance);
+    // Quadrature over the rings of the cone; the part of a ring above the horizon has a closed form.
+    double expected = 0;
+    constexpr int kRings = 200000;
+    for (int i = 0; i < kRings; ++i) {
+      const double theta = half_apex * (i + 0.5) / kRings;
+      const double at_center = std::cos(angle) * std::cos(theta), across = std::sin(angle) * std::sin(theta);
+      const double phi = std::acos(std::clamp(-at_center / across, -1.0, 1.0));
+      expected += 2 * (at_center * phi + across * std::sin(phi)) * std::sin(theta) * half_apex / kRings;
+    }
+    double mean = 0;
+    constexpr int kSteps = 1500;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j)
+        mean += std::max(0.0, test::visible_point(center, 1, (i + 0.5) / kSteps, (j + 0.5) / kSteps).direction.z);
+    mean /= 1.0 * kSteps * kSteps;
+    EXPECT_NEAR(mean * test::visible_point(center, 1, 0.5, 0.5).solid_angle / expected, 1, 1e-6) << height;
   }
 }
 
