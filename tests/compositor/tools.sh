@@ -18,7 +18,7 @@ fail() {
   exit 1
 }
 layers=Z,depth,N,P,albedo,diffuse,specular,transmission,background,variance,samples,object_id,material_id
-layers=$layers,denoise.albedo,denoise.normal,CryptoObject,CryptoMaterial
+layers=$layers,emission,light_groups,denoise.albedo,denoise.normal,CryptoObject,CryptoMaterial
 "$orrery" render "$here/bunny.toml" -q --samples 32 -o one.exr --layers "$layers" --deep deep.exr --type float
 "$orrery" render "$here/bunny.toml" -q --samples 32 -o parts.exr --layers "$layers" --multipart --type float
 "$orrery" render "$here/bunny.toml" -q --samples 32 -o over.exr --layers Z --set image.overscan=8
@@ -37,15 +37,18 @@ grep -q 'dataWindow (type box2i): (-8 -8) - (247 167)' over.exr.header || fail "
 exrstdattr -part 0 -string comments 'seen' one.exr copy.exr || fail "exrstdattr rejects one.exr"
 
 # The layers sum to the beauty. idiff compares in float; the sum is exact in the order of the channels.
-sum="oiiotool one.exr --ch background.R,background.G,background.B"
-for group in diffuse specular transmission; do
-  for way in direct indirect; do
-    sum="$sum one.exr --ch ${group}_$way.R,${group}_$way.G,${group}_$way.B --add"
-  done
-done
-$sum --chnames R,G,B -d float -o sum.exr
 oiiotool one.exr --ch R,G,B -d float -o beauty.exr
-idiff -q -fail 0 -warn 0 sum.exr beauty.exr || fail "the sum of the layers is not the beauty"
+lobes="diffuse_direct diffuse_indirect specular_direct specular_indirect transmission_direct transmission_indirect"
+for group in "" default_; do
+  sum="oiiotool one.exr --ch ${group}background.R,${group}background.G,${group}background.B"
+  for lobe in $lobes; do
+    sum="$sum one.exr --ch $group$lobe.R,$group$lobe.G,$group$lobe.B --add"
+  done
+  $sum --chnames R,G,B -d float -o sum.exr
+  idiff -q -fail 0 -warn 0 sum.exr beauty.exr || fail "the sum of the layers ${group}* is not the beauty"
+done
+oiiotool one.exr --ch R=default.R,G=default.G,B=default.B -d float -o group.exr
+idiff -q -fail 0 -warn 0 group.exr beauty.exr || fail "the only light group is not the beauty"
 # A multipart file has the same pixels as a single-part one; the flattened deep image is the beauty.
 oiiotool parts.exr --subimage 0 --ch R,G,B -d float -o part.exr
 idiff -q -fail 0 -warn 0 part.exr beauty.exr || fail "the first part is not the beauty"
