@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "compile/atmosphere.h"
 #include "compile/scattering.h"
@@ -112,48 +113,49 @@ std::vector<ColumnAngle> column_angles(int width, double sun_azimuth) {
   return out;
 }
 
-void put(std::vector<float>& texels, std::size_t at, Vec3d color) {
-  texels[3 * at] = static_cast<float>(color.x);
-  texels[3 * at + 1] = static_cast<float>(color.y);
-  texels[3 * at + 2] = static_cast<float>(color.z);
+void put(float* texel, Vec3d color) {
+  texel[0] = static_cast<float>(color.x);
+  texel[1] = static_cast<float>(color.y);
+  texel[2] = static_cast<float>(color.z);
 }
 
 }  // namespace
 
-Sky bake_sky(const scene::Background& background, const SkyQuality& quality) {
+scene::EnvironmentImage bake_sky(const scene::Background& background, const SkyQuality& quality) {
   const double elevation = background.sun_elevation * kPi / 180, azimuth = background.sun_azimuth * kPi / 180;
   const Atmosphere air(background.turbidity, quality.density);
   const ColumnTable columns(quality.refinement);
   const Scattering scattering(air, columns, elevation, reflectance_of(background.ground_albedo), quality.refinement);
 
-  Sky sky;
-  sky.width = quality.width;
-  sky.height = quality.width / 2;
-  const auto width = static_cast<std::size_t>(sky.width), half = static_cast<std::size_t>(sky.height) / 2;
-  sky.texels.resize(3 * width * 2 * half);
-  const std::vector<ColumnAngle> angles = column_angles(sky.width, azimuth);
-  const double texel = kPi / sky.height;
+  const int width = quality.width, height = width / 2;
+  scene::EnvironmentImage sky(width, height);
+  const std::vector<ColumnAngle> angles = column_angles(width, azimuth);
+  const double texel = kPi / height;
   Vec3d irradiance;  // of the ground by the sky
   SkyRow light(24 * quality.refinement);
-  for (std::size_t row = 0; row < half; ++row) {
-    const double up = kPi / 2 - (static_cast<double>(row) + 0.5) * texel;
+  for (int y = 0; y < height / 2; ++y) {
+    const double up = kPi / 2 - (y + 0.5) * texel;
     light.compute(scattering, up, 40 * quality.refinement);
     const double top = sine(up + texel / 2), bottom = sine(up - texel / 2);
-    const double projected = (top * top - bottom * bottom) / 2 * (2 * kPi / sky.width);
-    for (std::size_t column = 0; column < width; ++column) {
-      const Vec3d color = inside_gamut(light.radiance(angles[column].angle, angles[column].cosine));
+    const double projected = (top * top - bottom * bottom) / 2 * (2 * kPi / width);
+    float* at = sky.row(y);
+    for (const ColumnAngle& column : angles) {
+      const Vec3d color = inside_gamut(light.radiance(column.angle, column.cosine));
       irradiance = irradiance + color * projected;
-      put(sky.texels, row * width + column, color);
+      put(at, color);
+      at += 3;
     }
   }
 
   const Disc disc = disc_of(air, columns, elevation);
   const Vec3d ground = background.ground_albedo * (irradiance + inside_gamut(rgb_of(disc.irradiance))) / kPi;
-  for (std::size_t i = half * width; i < 2 * half * width; ++i) put(sky.texels, i, ground);
+  for (int y = height / 2; y < height; ++y)
+    for (int x = 0; x < width; ++x) put(sky.row(y) + 3 * x, ground);
 
-  const double half_sine = sine(kSunAngularRadius / 2), solid_angle = 4 * kPi * half_sine * half_sine;
+  const double half_sine = sine(kSunAngularRadius / 2);
+  sky.sun.one_minus_cos = 2 * half_sine * half_sine;
   sky.sun.direction = {cosine(elevation) * sine(azimuth), sine(elevation), cosine(elevation) * cosine(azimuth)};
-  if (background.sun) sky.sun.radiance = inside_gamut(rgb_of(disc.radiance)) / solid_angle;
+  if (background.sun) sky.sun.radiance = inside_gamut(rgb_of(disc.radiance)) / (2 * kPi * sky.sun.one_minus_cos);
   return sky;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "compile/atmosphere.h"
 
@@ -15,8 +16,6 @@ namespace {
 using math::Vec3d;
 
 constexpr double kPi = std::numbers::pi;
-/// Small images, for speed.
-constexpr SkyQuality kSmall{64};
 
 scene::Background at(double elevation, double turbidity = 3, double azimuth = 0, double albedo = 0.2) {
   scene::Background b;
@@ -28,45 +27,52 @@ scene::Background at(double elevation, double turbidity = 3, double azimuth = 0,
   return b;
 }
 
+using Sky = scene::EnvironmentImage;
+
+/// A small image, for speed.
+Sky small_sky(const scene::Background& background) { return bake_sky(background, {64}); }
+
+std::vector<float> values(const Sky& sky) {
+  return {sky.row(0), sky.row(0) + 3 * static_cast<std::size_t>(sky.width()) * static_cast<std::size_t>(sky.height())};
+}
+
 Vec3d texel(const Sky& sky, int x, int y) {
-  const float* p = &sky.texels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(sky.width) +
-                                    static_cast<std::size_t>(x))];
+  const float* const p = sky.row(y) + 3 * x;
   return {p[0], p[1], p[2]};
 }
 
 /// Elevation and azimuth in degrees.
 Vec3d radiance(const Sky& sky, double elevation, double azimuth) {
-  const int y = std::clamp(static_cast<int>((90 - elevation) / 180 * sky.height), 0, sky.height - 1);
-  const int x = std::clamp(static_cast<int>((180 - azimuth) / 360 * sky.width), 0, sky.width - 1);
+  const int y = std::clamp(static_cast<int>((90 - elevation) / 180 * sky.height()), 0, sky.height() - 1);
+  const int x = std::clamp(static_cast<int>((180 - azimuth) / 360 * sky.width()), 0, sky.width() - 1);
   return texel(sky, x, y);
 }
 
 /// Irradiance of the ground by the sky.
 Vec3d irradiance(const Sky& sky) {
   Vec3d sum;
-  for (int y = 0; y < sky.height / 2; ++y) {
-    const double top = std::sin(kPi / 2 - y * kPi / sky.height),
-                 bottom = std::sin(kPi / 2 - (y + 1) * kPi / sky.height);
-    for (int x = 0; x < sky.width; ++x)
-      sum = sum + texel(sky, x, y) * ((top * top - bottom * bottom) * kPi / sky.width);
+  for (int y = 0; y < sky.height() / 2; ++y) {
+    const double top = std::sin(kPi / 2 - y * kPi / sky.height()),
+                 bottom = std::sin(kPi / 2 - (y + 1) * kPi / sky.height());
+    for (int x = 0; x < sky.width(); ++x)
+      sum = sum + texel(sky, x, y) * ((top * top - bottom * bottom) * kPi / sky.width());
   }
   return sum;
 }
 
 /// Irradiance of a surface perpendicular to the sun.
-Vec3d direct(const Sky& sky) {
-  return sky.sun.radiance * (2 * kPi * (1 - std::cos(sky.sun.angular_diameter / 2 * kPi / 180)));
-}
+Vec3d direct(const Sky& sky) { return sky.sun.radiance * (2 * kPi * sky.sun.one_minus_cos); }
 
 // The luminance of the sun above the atmosphere is pi by definition. It is a little warmer than the white point.
 TEST(CompileDaylight, WithoutAtmosphereTheSkyIsBlackAndTheSunUnattenuated) {
   const Sky sky = bake_sky(at(30), {64, 1, 0});
-  for (int y = 0; y < sky.height / 2; ++y)
-    for (int x = 0; x < sky.width; ++x) EXPECT_EQ(texel(sky, x, y), Vec3d());
+  EXPECT_NEAR(sky.sun.one_minus_cos, 1 - std::cos(0.533 / 2 * kPi / 180), 1e-12);
+  for (int y = 0; y < sky.height() / 2; ++y)
+    for (int x = 0; x < sky.width(); ++x) EXPECT_EQ(texel(sky, x, y), Vec3d());
   EXPECT_NEAR(luminance(direct(sky)), kPi, 1e-5);
   EXPECT_GT(direct(sky).x, direct(sky).y);
   EXPECT_GT(direct(sky).y, direct(sky).z);
-  EXPECT_NEAR(luminance(texel(sky, 0, sky.height - 1)), 0.2 * 0.5, 1e-5);  // albedo * sin(elevation)
+  EXPECT_NEAR(luminance(texel(sky, 0, sky.height() - 1)), 0.2 * 0.5, 1e-5);  // albedo * sin(elevation)
 }
 
 TEST(CompileDaylight, TheSunIsWhereElevationAndAzimuthSay) {
@@ -82,11 +88,11 @@ TEST(CompileDaylight, TheSunIsWhereElevationAndAzimuthSay) {
 // Longitude decreases from pi at the left edge; the brightest texel is the one around the sun.
 TEST(CompileDaylight, TheSkyIsBrightestAroundTheSun) {
   for (const double azimuth : {-135.0, 80.0, 190.0}) {
-    const Sky sky = bake_sky(at(40, 3, azimuth), kSmall);
-    const auto brightest = std::max_element(sky.texels.begin(), sky.texels.end()) - sky.texels.begin();
-    const auto pixel = static_cast<int>(brightest / 3);
-    const double longitude = kPi - (pixel % sky.width + 0.5) / sky.width * 2 * kPi;
-    const double latitude = kPi / 2 - (pixel / sky.width + 0.5) / sky.height * kPi;
+    const Sky sky = small_sky(at(40, 3, azimuth));
+    const std::vector<float> all = values(sky);
+    const auto pixel = static_cast<int>((std::max_element(all.begin(), all.end()) - all.begin()) / 3);
+    const double longitude = kPi - (pixel % sky.width() + 0.5) / sky.width() * 2 * kPi;
+    const double latitude = kPi / 2 - (pixel / sky.width() + 0.5) / sky.height() * kPi;
     const Vec3d direction{std::cos(latitude) * std::sin(longitude), std::sin(latitude),
                           std::cos(latitude) * std::cos(longitude)};
     EXPECT_GT(math::dot(direction, sky.sun.direction), std::cos(6 * kPi / 180)) << azimuth;
@@ -94,16 +100,16 @@ TEST(CompileDaylight, TheSkyIsBrightestAroundTheSun) {
 }
 
 TEST(CompileDaylight, IsSymmetricAboutTheAzimuthOfTheSun) {
-  const Sky sky = bake_sky(at(20), kSmall);
-  for (int y = 0; y < sky.height; ++y)
-    for (int x = 0; x < sky.width / 2; ++x) ASSERT_EQ(texel(sky, x, y), texel(sky, sky.width - 1 - x, y));
+  const Sky sky = small_sky(at(20));
+  for (int y = 0; y < sky.height(); ++y)
+    for (int x = 0; x < sky.width() / 2; ++x) ASSERT_EQ(texel(sky, x, y), texel(sky, sky.width() - 1 - x, y));
 }
 
 TEST(CompileDaylight, AzimuthRotatesTheImage) {
-  const Sky a = bake_sky(at(20, 3, 0), kSmall), b = bake_sky(at(20, 3, 90), kSmall);
-  for (int y = 0; y < a.height; ++y) {
-    for (int x = 0; x < a.width; ++x) {
-      const Vec3d difference = texel(a, x, y) - texel(b, (x + a.width - a.width / 4) % a.width, y);
+  const Sky a = small_sky(at(20, 3, 0)), b = small_sky(at(20, 3, 90));
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) {
+      const Vec3d difference = texel(a, x, y) - texel(b, (x + a.width() - a.width() / 4) % a.width(), y);
       ASSERT_LT(math::length(difference), 1e-6 * math::length(texel(a, x, y)));
     }
   }
@@ -173,7 +179,7 @@ TEST(CompileDaylight, TheGroundReceivesNoMoreThanTheSunEmits) {
   for (const double elevation : {90.0, 10.0}) {
     for (const double turbidity : {1.0, 10.0}) {
       for (const double albedo : {0.0, 1.0}) {
-        const Sky sky = bake_sky(at(elevation, turbidity, 0, albedo), kSmall);
+        const Sky sky = small_sky(at(elevation, turbidity, 0, albedo));
         const double height = std::sin(elevation * kPi / 180);
         const double absorbed = (1 - albedo) * luminance(direct(sky) * height + irradiance(sky));
         EXPECT_LE(absorbed, kPi * height);
@@ -186,7 +192,7 @@ TEST(CompileDaylight, TheGroundReceivesNoMoreThanTheSunEmits) {
 }
 
 TEST(CompileDaylight, TheGroundReflectsSunAndSky) {
-  const Sky sky = bake_sky(at(30, 3, 0, 0.4), kSmall);
+  const Sky sky = small_sky(at(30, 3, 0, 0.4));
   const Vec3d expected = (irradiance(sky) + direct(sky) * 0.5) * (0.4 / kPi);
   for (const double azimuth : {0.0, 120.0}) {
     const Vec3d ground = radiance(sky, -30, azimuth);
@@ -195,7 +201,7 @@ TEST(CompileDaylight, TheGroundReflectsSunAndSky) {
 }
 
 TEST(CompileDaylight, NoonIsBlueAndSunsetRed) {
-  const Sky noon = bake_sky(at(60, 2), kSmall), sunset = bake_sky(at(1, 2), kSmall);
+  const Sky noon = small_sky(at(60, 2)), sunset = small_sky(at(1, 2));
   EXPECT_GT(radiance(noon, 80, 180).z, 1.5 * radiance(noon, 80, 180).x);
   const auto redness = [](Vec3d c) { return c.x / c.z; };
   EXPECT_GT(redness(direct(sunset)), 10 * redness(direct(noon)));
@@ -203,7 +209,7 @@ TEST(CompileDaylight, NoonIsBlueAndSunsetRed) {
 }
 
 TEST(CompileDaylight, HazeBrightensAndWhitensTheSky) {
-  const Sky pure = bake_sky(at(40, 1), kSmall), hazy = bake_sky(at(40, 6), kSmall);
+  const Sky pure = small_sky(at(40, 1)), hazy = small_sky(at(40, 6));
   EXPECT_GT(luminance(irradiance(hazy)), 2 * luminance(irradiance(pure)));
   EXPECT_LT(luminance(direct(hazy)), luminance(direct(pure)));
   const auto blueness = [](Vec3d c) { return c.z / c.x; };
@@ -211,9 +217,9 @@ TEST(CompileDaylight, HazeBrightensAndWhitensTheSky) {
 }
 
 TEST(CompileDaylight, TwilightIsDarkAndNightFinite) {
-  double brighter = luminance(irradiance(bake_sky(at(3), kSmall)));
+  double brighter = luminance(irradiance(small_sky(at(3))));
   for (const double elevation : {0.0, -6.0, -12.0, -18.0}) {
-    const Sky sky = bake_sky(at(elevation), kSmall);
+    const Sky sky = small_sky(at(elevation));
     const double light = luminance(irradiance(sky));
     EXPECT_GT(light, 0);
     EXPECT_LT(light, brighter / 2);
@@ -223,7 +229,7 @@ TEST(CompileDaylight, TwilightIsDarkAndNightFinite) {
     }
   }
   for (const double elevation : {-30.0, -90.0}) {
-    for (const float value : bake_sky(at(elevation), kSmall).texels) {
+    for (const float value : values(small_sky(at(elevation)))) {
       ASSERT_TRUE(std::isfinite(value));
       ASSERT_GE(value, 0);
       ASSERT_LT(value, 1e-8F);
@@ -245,15 +251,15 @@ TEST(CompileDaylight, TheDiscSetsGradually) {
 TEST(CompileDaylight, WithoutTheSunTheSkyIsTheSame) {
   scene::Background b = at(30);
   b.sun = false;
-  const Sky without = bake_sky(b, kSmall), with = bake_sky(at(30), kSmall);
+  const Sky without = small_sky(b), with = small_sky(at(30));
   EXPECT_EQ(without.sun.radiance, Vec3d());
-  EXPECT_EQ(without.texels, with.texels);
+  EXPECT_EQ(values(without), values(with));
 }
 
 TEST(CompileDaylight, EveryValueOfTheSchemaGivesFiniteLight) {
   for (const double elevation : {-90.0, 0.0, 90.0}) {
     for (const double turbidity : {1.0, 10.0}) {
-      for (const float value : bake_sky(at(elevation, turbidity, 360, 1), {16}).texels) {
+      for (const float value : values(bake_sky(at(elevation, turbidity, 360, 1), {16}))) {
         ASSERT_TRUE(std::isfinite(value));
         ASSERT_GE(value, 0);
       }
