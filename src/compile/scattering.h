@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "compile/atmosphere.h"
+
+namespace orrery::compile {
+
+/// A ray through the atmosphere, to space or to the ground, in segments.
+struct Ray {
+  struct Segment {
+    double distance;  ///< m, of its middle from the start of the ray
+    double radius;    ///< m, of its middle from the Earth's centre
+    Amounts here;     ///< densities in the middle
+    /// Parts of the light that passes the segment's middle which are scattered in the segment and reach the start of
+    /// the ray, without phase function: by molecules, by aerosol, and by both without forward scattering.
+    Spectrum molecules, aerosol, diffuse;
+  };
+
+  std::vector<Segment> segments;
+  double length = 0;  ///< m
+  bool hits_ground = false;
+  Spectrum transmittance;  ///< of the whole ray, for light that may also be scattered forward
+};
+
+/// Sunlight that the atmosphere scatters.
+///
+/// Single scattering is integrated along rays with the exact phase functions. The light of all higher orders is assumed
+/// to be isotropic; its infinite series has a closed form if it is about the same in the surroundings of a point as at
+/// the point.
+///
+/// Units      all light is relative to the irradiance of the sun above the atmosphere
+/// Precision  docs/decisions/0024-daylight-model.md
+/// Reference  hillaire2020, section 5; nakajima1988
+class Scattering {
+ public:
+  /// `sun_elevation`  radians, at the ground point from which the sky is seen
+  /// `refinement`     factor of all numbers of nodes
+  Scattering(const Atmosphere& air, const ColumnTable& columns, double sun_elevation, const Spectrum& ground_albedo,
+             int refinement);
+
+  double sun_sine() const { return sun_sine_; }
+  double sun_cosine() const { return sun_cosine_; }
+
+  /// Returns the ray from the ground point in a direction above the horizon, of whose elevation the sine is given.
+  Ray ray_from_ground(double sine, int steps) const;
+
+  /// Light that reaches the ground point along a ray.
+  struct Light {
+    Spectrum molecules{}, aerosol{};  ///< scattered once, without phase function
+    Spectrum multiple{};              ///< scattered more often
+  };
+  /// `toward_sun`  cosine between the ray and the direction to the sun
+  Light toward_ground(const Ray& ray, double toward_sun) const;
+
+ private:
+  struct Direction;
+
+  /// Returns the light of the sun at a point, 0 where it is below the horizon.
+  Spectrum sunlight(double radius, double local_sine) const;
+  Spectrum multiple_scattering(double radius, double local_sine) const;
+  void tabulate(const Spectrum& ground_albedo);
+
+  Atmosphere air_;
+  const ColumnTable& columns_;
+  double sun_sine_, sun_cosine_;
+  int refinement_;
+
+  /// Logarithm of the radiance of light that has been scattered at least once; by altitude, spaced quadratically, and
+  /// by the sine of the local elevation of the sun. Twilight falls exponentially.
+  std::vector<Spectrum> multiple_;
+  int altitudes_, suns_;
+  double lowest_sine_, highest_sine_;
+};
+
+}  // namespace orrery::compile
