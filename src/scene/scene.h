@@ -60,16 +60,16 @@ struct Background {
   Vec3d color{1, 1, 1};    ///< constant
   int alpha = 1;           ///< 0: the background is transparent
   // Image and sky.
-  std::shared_ptr<const EnvironmentImage> image;  ///< the texels of `file`, or the baked sky; null until loaded
-  std::filesystem::path file;                     ///< image: latitude-longitude map, relative to the scene file
-  std::string color_space;                        ///< image: empty: by the file's attribute, else the scene's
-  double rotation = 0;                            ///< degrees about +y
-  double exposure = 0;                            ///< stops
-  std::string light_group = {};                   ///< empty: the default group
-  bool visible = true;                            ///< to the camera; scattered rays always see the background
-  double sun_elevation = 45;                      ///< sky: degrees above the horizon
-  double sun_azimuth = 0;                         ///< sky: degrees from +z towards +x
-  double turbidity = 3;                           ///< sky: amount of haze; 1 is pure air
+  std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`, or the baked sky; null until loaded
+  std::filesystem::path file = {};                     ///< image: latitude-longitude map, relative to the scene file
+  std::string color_space = {};                        ///< image: empty: by the file's attribute, else the scene's
+  double rotation = 0;                                 ///< degrees about +y
+  double exposure = 0;                                 ///< stops
+  std::string light_group = {};                        ///< empty: the default group
+  bool visible = true;                                 ///< to the camera; scattered rays always see the background
+  double sun_elevation = 45;                           ///< sky: degrees above the horizon
+  double sun_azimuth = 0;                              ///< sky: degrees from +z towards +x
+  double turbidity = 3;                                ///< sky: amount of haze; 1 is pure air
   Vec3d ground_albedo{0.2, 0.2, 0.2};
   bool sun = true;  ///< sky: includes the sun's disc
 };
