@@ -26,6 +26,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 // Weights of the power heuristic in one variable: x is the density of BSDF sampling divided by that of light sampling.
 // The product of BSDF and cosine is albedo times the density, so a light sample contributes albedo * radiance * x, and
 // nothing is divided by a density. With the heuristic's weights, no sample exceeds albedo * radiance.
+// Reference: veach1995.
 
 /// The factor of albedo and radiance for light samples: x / (1 + x^2), and x if only lights are sampled.
 template <class D, class V = hn::Vec<D>>

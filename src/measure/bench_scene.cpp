@@ -53,7 +53,8 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
   static const std::vector<std::pair<const char*, bool kernel::Features::*>> known = {
       {"thin lens", &kernel::Features::lens},
       {"hemisphere", &kernel::Features::hemisphere},
-      {"gradient sky", &kernel::Features::sky}};
+      {"gradient sky", &kernel::Features::sky},
+      {"lights", &kernel::Features::lit}};
   return known;
 }
 
