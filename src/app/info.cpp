@@ -39,7 +39,8 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
           feature("metal", of(kernel::MaterialKind::kMetal), "not used by any sphere"),
           feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no metal has fuzz above 0"),
           feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
-          feature("gradient sky", compiled.features.sky, "constant colour: independent of direction"),
+          feature("gradient sky", compiled.features.sky, "no gradient: independent of direction"),
+          feature("image background", compiled.environment != nullptr, "no image: no texture lookups"),
           feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
                   "camera or spheres move while the shutter is open"),
           feature("lights", compiled.features.lit, "no emitters: no shadow rays"),
@@ -106,7 +107,9 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 }  // namespace
 
 SceneInfo scene_info(const job::SceneRequest& request) {
-  job::LoadedScene loaded = job::load_scene(request);
+  job::SceneRequest with_any_background = request;
+  with_any_background.skips_large_background = true;
+  job::LoadedScene loaded = job::load_scene(with_any_background);
   const format::ReadResult& read = loaded.read;
   const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   const film::LayerRequest layers = job::choose_layers(read.scene, compiled).request;
@@ -142,7 +145,14 @@ SceneInfo scene_info(const job::SceneRequest& request) {
   }
   info.isa = kernel::isa_name();
   info.traversal = render::planned_traversal(compiled);
-  info.memory = job::estimate_memory(job::memory_needs(compiled, layers));
+  job::MemoryNeeds needs = job::memory_needs(compiled, layers);
+  if (loaded.background) {
+    needs.background = loaded.background->bytes;
+    if (!loaded.background->image) info.scene_hash.clear();  // it depends on the pixels, which were not read
+    info.background_file = read.scene.background.file.string();
+    info.background = std::move(loaded.background);
+  }
+  info.memory = job::estimate_memory(needs);
   info.warnings = std::move(loaded.warnings);
   for (const std::string& advice : precision_advice(compiled)) {
     info.warnings.push_back(base::file_diagnostic(base::Severity::kWarning, request.source.file.string(), advice));
@@ -160,7 +170,7 @@ void measure_savings(const job::SceneRequest& request, SceneInfo& info) {
 
 std::string info_text(const SceneInfo& info) {
   std::string out;
-  base::append(out, "scene       %s\n", info.scene_hash.c_str());
+  base::append(out, "scene       %s\n", info.scene_hash.empty() ? "unknown" : info.scene_hash.c_str());
   base::append(out, "frame       %d\n", info.frame);
   base::append(out, "image       %d x %d, %d samples per pixel, max depth %d\n", info.width, info.height, info.samples,
                info.max_depth);
@@ -173,15 +183,17 @@ std::string info_text(const SceneInfo& info) {
     base::append(out, "%s %llu %s", i == 0 ? "" : ",", static_cast<unsigned long long>(info.materials[i].second),
                  info.materials[i].first.c_str());
   out += '\n' + points_text(info.points);
+  if (info.background)
+    base::append(out, "background  %s: %d x %d, %s\n", info.background_file.c_str(), info.background->width,
+                 info.background->height, info.background->color_space.c_str());
   if (info.emitters > 0) base::append(out, "lights      %s\n", info.lights.c_str());
   base::append(out, "layers      %s; available: %s\n", info.layers.empty() ? "none" : base::joined(info.layers).c_str(),
                base::joined(info.available_layers).c_str());
   base::append(out, "kernel      %s, precision %s, accelerator %s\n", info.isa.c_str(), info.precision.c_str(),
                info.accelerator.c_str());
   base::append(out, "traversal   %s\n", info.traversal.c_str());
-  base::append(out, "memory      about %s: film %s, spheres %s, accelerator %s\n",
-               base::bytes_text(info.memory.total()).c_str(), base::bytes_text(info.memory.film).c_str(),
-               base::bytes_text(info.memory.spheres).c_str(), base::bytes_text(info.memory.accelerator).c_str());
+  base::append(out, "memory      about %s: %s\n", base::bytes_text(info.memory.total()).c_str(),
+               job::text_of(info.memory).c_str());
   for (const bool required : {true, false}) {
     out += required ? "requires   " : "left out   ";
     bool first = true;
@@ -221,30 +233,38 @@ std::string info_json(const SceneInfo& info) {
   for (const auto& [name, count] : info.materials) materials[name] = count;
   for (const base::Diagnostic& w : info.warnings)
     warnings.push_back({{"file", w.file}, {"line", w.line}, {"column", w.column}, {"text", w.text}});
-  json out = {
-      {"schema", "orrery.info/1"},
-      {"scene_hash", info.scene_hash},
-      {"frame", info.frame},
-      {"width", info.width},
-      {"height", info.height},
-      {"samples", info.samples},
-      {"max_depth", info.max_depth},
-      {"spheres", info.spheres},
-      {"bounds", nullptr},
-      {"radius", nullptr},
-      {"materials", materials},
-      {"emitters", info.emitters},
-      {"points", points},
-      {"layers", {{"requested", info.layers}, {"available", info.available_layers}}},
-      {"features", features},
-      {"precision", info.precision},
-      {"accelerator", info.accelerator},
-      {"isa", info.isa},
-      {"traversal", info.traversal},
-      {"memory_bytes",
-       {{"film", info.memory.film}, {"spheres", info.memory.spheres}, {"accelerator", info.memory.accelerator}}},
-      {"settings", settings},
-      {"warnings", warnings}};
+  json out = {{"schema", "orrery.info/1"},
+              {"scene_hash", info.scene_hash.empty() ? json(nullptr) : json(info.scene_hash)},
+              {"frame", info.frame},
+              {"width", info.width},
+              {"height", info.height},
+              {"samples", info.samples},
+              {"max_depth", info.max_depth},
+              {"spheres", info.spheres},
+              {"bounds", nullptr},
+              {"radius", nullptr},
+              {"materials", materials},
+              {"emitters", info.emitters},
+              {"points", points},
+              {"layers", {{"requested", info.layers}, {"available", info.available_layers}}},
+              {"features", features},
+              {"precision", info.precision},
+              {"accelerator", info.accelerator},
+              {"isa", info.isa},
+              {"traversal", info.traversal},
+              {"memory_bytes",
+               {{"film", info.memory.film},
+                {"spheres", info.memory.spheres},
+                {"accelerator", info.memory.accelerator},
+                {"background", info.memory.background}}},
+              {"background", nullptr},
+              {"settings", settings},
+              {"warnings", warnings}};
+  if (info.background)
+    out["background"] = {{"file", info.background_file},
+                         {"width", info.background->width},
+                         {"height", info.background->height},
+                         {"color_space", info.background->color_space}};
   if (info.spheres > 0) {
     out["bounds"] = {{"lower", info.lower}, {"upper", info.upper}};
     out["radius"] = {{"smallest", info.smallest_radius}, {"largest", info.largest_radius}};

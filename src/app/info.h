@@ -45,6 +45,8 @@ struct SceneInfo {
   std::string precision, accelerator, isa;
   std::string traversal;  ///< BVH traversal, as far as it is known before rendering
   job::MemoryEstimate memory;
+  std::optional<job::LoadedBackground> background;  ///< of an image background
+  std::string background_file;
   struct Setting {
     std::string key, value, origin;
   };

@@ -64,7 +64,9 @@ std::string memory_warning(const app::SceneInfo& info) {
 /// Checks the frames of one scene. Prints equal messages of several frames once.
 class FrameChecks {
  public:
-  explicit FrameChecks(job::SceneRequest request) : request_(std::move(request)) {}
+  explicit FrameChecks(job::SceneRequest request) : request_(std::move(request)) {
+    request_.background_cache = std::make_shared<job::BackgroundCache>();
+  }
 
   /// Result     the exit status
   int run(const std::vector<int>& frames) {

@@ -176,6 +176,17 @@ void set_sun(const scene::Sun& sun, const EnvironmentSettings& settings, kernel:
 
 }  // namespace
 
+std::uint64_t environment_bytes(int width, int height, EnvironmentSampling sampling) {
+  const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  // A quarter of a float per texel for the finest sums, a sixteenth for the next, and so on.
+  return texels * 3 * sizeof(float) + (sampling == EnvironmentSampling::kNone ? 0 : texels * sizeof(float) / 3);
+}
+
+std::uint64_t EnvironmentMap::bytes() const noexcept {
+  return environment_bytes(image_->width(), image_->height(), EnvironmentSampling::kNone) +
+         sums_.size() * sizeof(float);
+}
+
 EnvironmentMap::EnvironmentMap(std::shared_ptr<const EnvironmentImage> image, const EnvironmentSettings& settings)
     : image_(std::move(image)) {
   view_.texels = image_->row(0);

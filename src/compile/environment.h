@@ -25,6 +25,9 @@ struct EnvironmentSettings {
   bool visible = true;
 };
 
+/// Returns the memory of a map of this size and of the tables of its distribution, in bytes.
+std::uint64_t environment_bytes(int width, int height, EnvironmentSampling sampling);
+
 /// An image background ready for rendering: shares the texels of the scene and owns the tables of their distribution.
 ///
 /// Cost       4/3 bytes per texel in addition to the 12 bytes of the texels; none if it is not sampled
@@ -37,6 +40,9 @@ class EnvironmentMap {
 
   /// The view for the kernel; valid as long as this object.
   const kernel::Environment& view() const noexcept { return view_; }
+
+  /// The memory of texels and tables.
+  std::uint64_t bytes() const noexcept;
 
  private:
   std::shared_ptr<const scene::EnvironmentImage> image_;

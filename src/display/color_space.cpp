@@ -2,6 +2,7 @@
 #include "display/color_space.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "display/find_color_space.h"
@@ -81,6 +82,33 @@ void convert_colors(const std::string& config_file, const std::string& from, con
     throw base::Error(base::ErrorKind::kBadData,
                       "the OCIO config " + source.source + " cannot be used: " + error.what());
   }
+}
+
+PixelConversion pixel_conversion(const std::string& config_file, const std::string& from, const std::string& to) {
+  if (from == to || (known_space(from) != nullptr && known_space(from) == known_space(to))) return {};
+  const Config source = load_config(config_file);
+  try {
+    const ocio::ConstCPUProcessorRcPtr processor =
+        source.config->getProcessor(find_color_space(source, from).c_str(), find_scene_linear(source, to).c_str())
+            ->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+    return [processor](float* rgb, std::size_t pixels) {
+      ocio::PackedImageDesc image(rgb, static_cast<long>(pixels), 1, 3);
+      processor->apply(image);
+    };
+  } catch (const ocio::Exception& error) {
+    throw base::Error(base::ErrorKind::kBadData,
+                      "the OCIO config " + source.source + " cannot be used: " + error.what());
+  }
+}
+
+const KnownSpace* known_space(const std::array<float, 8>& chromaticities) {
+  constexpr float kTolerance = 5e-4F;  // files hold the numbers with three or four digits
+  for (const Entry& entry : entries()) {
+    const auto& known = entry.space.chromaticities;
+    const auto is_near = [](float a, float b) { return std::abs(a - b) <= kTolerance; };
+    if (std::equal(known.begin(), known.end(), chromaticities.begin(), is_near)) return &entry.space;
+  }
+  return nullptr;
 }
 
 const KnownSpace* known_space(const std::string& name) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,16 @@ namespace orrery::display {
 void convert_colors(const std::string& config_file, const std::string& from, const std::string& to,
                     std::vector<std::array<double, 3>>& colors);
 
+/// Converts RGB pixels in place. Threads may call it at the same time.
+using PixelConversion = std::function<void(float* rgb, std::size_t pixels)>;
+
+/// Returns the conversion of an image from its colour space, of any encoding, to a scene-linear space. Empty if both
+/// are the same, in which case no config is loaded.
+///
+/// Domain     `config_file` as Settings::config
+/// Errors     as convert_colors
+PixelConversion pixel_conversion(const std::string& config_file, const std::string& from, const std::string& to);
+
 /// Primaries and white point of a scene-linear space with a Color Interop Forum id.
 struct KnownSpace {
   const char* interop_id;               ///< "lin_rec709_scene"
@@ -24,5 +36,8 @@ struct KnownSpace {
 ///
 /// Reference  color-interop-forum
 const KnownSpace* known_space(const std::string& name);
+
+/// The space that orrery knows by its primaries and white point; null if unknown.
+const KnownSpace* known_space(const std::array<float, 8>& chromaticities);
 
 }  // namespace orrery::display

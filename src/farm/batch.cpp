@@ -62,6 +62,7 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{job::SceneSource().frame} : batch.frames;
   std::vector<job::Job> jobs;
   common.files = std::make_shared<base::FileSet>();
+  common.background_cache = std::make_shared<job::BackgroundCache>();
   base::FileSet& files = *common.files;
   if (!batch.log.empty()) files.add_output(batch.log, "--log");
   for (const fs::path& scene : batch.scenes)

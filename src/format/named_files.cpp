@@ -14,6 +14,7 @@ NamedFiles named_files(const std::filesystem::path& scene_file, const std::vecto
   if (root.empty()) diagnostics.raise_errors(scene_file.string());
   NamedFiles out;
   out.ocio_config = root["color"]["config"].value_or(std::string());
+  out.background = root["background"]["file"].value_or(std::string());
   if (const toml::array* points = root["points"].as_array())
     for (const toml::node& node : *points)
       if (const toml::table* table = node.as_table())

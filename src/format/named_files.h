@@ -9,9 +9,10 @@
 
 namespace orrery::format {
 
-/// The files that a scene names, as written in it: relative to its folder, points files with frame patterns.
+/// The files that a scene names, as written in it: relative to its folder, with frame patterns.
 struct NamedFiles {
   std::vector<std::string> points;
+  std::string background;
   std::string ocio_config;
 };
 

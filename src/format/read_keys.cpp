@@ -112,6 +112,12 @@ std::optional<Value> read_window(Reading& reading, const toml::node& node, const
   return scene::Window{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
 }
 
+std::optional<Value> read_boolean(Reading& reading, const toml::node& node, const std::string& name) {
+  if (const toml::value<bool>* value = node.as_boolean()) return value->get();
+  wrong_type(reading, node, name, "true or false");
+  return {};
+}
+
 /// Reads a list of enumerators. Reports each invalid element separately.
 std::optional<Value> read_words(Reading& reading, const toml::node& node, const std::string& name,
                                 const std::vector<std::string>& choices) {
@@ -151,6 +157,7 @@ std::optional<Value> read_value(Reading& reading, const toml::node& node, const 
     case ValueType::kText: return read_text(reading, node, name, {});
     case ValueType::kChoice: return read_text(reading, node, name, choices);
     case ValueType::kWindow: return read_window(reading, node, name, range);
+    case ValueType::kBoolean: return read_boolean(reading, node, name);
     case ValueType::kChoices: return read_words(reading, node, name, choices);
   }
   return {};

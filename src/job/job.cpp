@@ -64,7 +64,9 @@ void require_bits(const display::Choice& display, const Job& job) {
 
 /// Loads the scene and checks it against the job's output formats.
 LoadedScene load(const Job& job, JobReport& report) {
-  const SceneRequest request{job.scene, job.outputs.display, job.outputs.has_display_format()};
+  SceneRequest request{job.scene, job.outputs.display, job.outputs.has_display_format()};
+  request.memory_limit = job.resources.memory_limit;
+  request.background_cache = job.background_cache;
   LoadedScene loaded = load_scene(request);
   for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
   if (request.develops) {
@@ -166,7 +168,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   require_disk_space(job.outputs, is_shard(job), image_size(compiled.width, compiled.height, layers.request),
                      job.resources.disk_limit);
   require_memory(estimate_memory(memory_needs(compiled, layers.request, job.sampling.is_adaptive())),
-                 job.resources.memory_limit);
+                 job.resources.memory_limit, compiled.environment ? compiled.environment->bytes() : 0);
   read.scene.points = {};  // keep no second copy of ten million spheres during the BVH build
   report.hosts = {provenance.at("host")};
   report.width = compiled.width;

@@ -14,6 +14,7 @@
 #include "job/checkpoint.h"
 #include "job/hooks.h"
 #include "job/job_report.h"
+#include "job/load_background.h"
 #include "job/outputs.h"
 #include "job/scene_source.h"
 #include "render/sampling_limits.h"
@@ -54,6 +55,7 @@ struct Job {
   bool skip_existing = false;  ///< do nothing if all files exist, are intact, and come from this job
   /// Files of the batch that this job belongs to; null: the job stands alone.
   std::shared_ptr<base::FileSet> files = nullptr;
+  std::shared_ptr<BackgroundCache> background_cache = nullptr;  ///< shared by the jobs of a batch
 };
 
 /// True if the scene's sample count limits adaptive sampling, because an override sets it.

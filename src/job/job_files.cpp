@@ -13,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPointsRole = "points file";
+constexpr const char* kBackgroundRole = "background image";
 
 }  // namespace
 
@@ -38,19 +39,22 @@ void add_named_files(const SceneSource& scene, const std::vector<int>& frames, b
   scene::Color color;
   color.config = named.ocio_config;
   add_ocio_configs(config_of(scene_file, color), files);
-  for (const std::string& name : named.points) {
+  const auto add = [&](const std::string& name, const char* role) {
     if (!base::has_frame_pattern(name)) {
-      files.add_input(scene_file.parent_path() / name, kPointsRole);
-      continue;
+      files.add_input(scene_file.parent_path() / name, role);
+      return;
     }
-    for (const int frame : frames)
-      files.add_input(scene_file.parent_path() / base::with_frame(name, frame), kPointsRole);
-  }
+    for (const int frame : frames) files.add_input(scene_file.parent_path() / base::with_frame(name, frame), role);
+  };
+  for (const std::string& name : named.points) add(name, kPointsRole);
+  if (!named.background.empty()) add(named.background, kBackgroundRole);
 }
 
 void add_scene_files(const fs::path& scene_file, const scene::Scene& scene, base::FileSet& files) {
   add_ocio_configs(config_of(scene_file, scene.color), files);
   for (const scene::Points& points : scene.points) files.add_input(scene_file.parent_path() / points.file, kPointsRole);
+  if (!scene.background.file.empty())
+    files.add_input(scene_file.parent_path() / scene.background.file, kBackgroundRole);
 }
 
 void add_ocio_configs(const std::string& config, base::FileSet& files) {

@@ -53,6 +53,10 @@ Origin origin_of(display::Name name, const display::Settings& options, const sce
   return {};
 }
 
+bool has_image(const scene::Background& background) {
+  return background.type == scene::BackgroundType::kImage && !background.file.empty();
+}
+
 /// Looks up the colour names of a scene's [color] and of the command line.
 class ColorCheck {
  public:
@@ -98,10 +102,19 @@ class ColorCheck {
 LoadedScene load_scene(const SceneRequest& request) {
   LoadedScene out;
   ColorCheck check(request);
-  out.read = format::read_scene(request.source.file, request.source.overrides, request.source.frame,
-                                [&](const scene::Scene& scene) { return check(scene); });
+  const auto check_and_load = [&](const scene::Scene& scene) {
+    std::vector<scene::SceneDiagnostic> diagnostics = check(scene);
+    if (!diagnostics.empty() || !has_image(scene.background)) return diagnostics;
+    const BackgroundRequest background{request.source.file.parent_path() / scene.background.file,
+                                       settings_of(request, scene.color).config, request.memory_limit,
+                                       request.skips_large_background, request.background_cache};
+    out.background = load_background(background, scene);
+    return out.background->diagnostics;
+  };
+  out.read = format::read_scene(request.source.file, request.source.overrides, request.source.frame, check_and_load);
   out.choice = check.take();
   scene::Scene& scene = out.read.scene;
+  if (out.background) scene.background.image = out.background->image;
   out.display = settings_of(request, scene.color);
   out.warnings = std::move(out.read.warnings);
   if (out.choice)

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "display/develop.h"
 #include "format/read_scene.h"
+#include "job/load_background.h"
 #include "job/scene_source.h"
 
 namespace orrery::job {
@@ -15,18 +18,23 @@ namespace orrery::job {
 /// A scene to load, and the display transform of its images.
 struct SceneRequest {
   SceneSource source;
-  display::Settings display;  ///< from the command line; the scene's [color] replaces empty values
-  bool develops = false;      ///< true if display formats will be written
+  display::Settings display;            ///< from the command line; the scene's [color] replaces empty values
+  bool develops = false;                ///< true if display formats will be written
+  std::uint64_t memory_limit = 0;       ///< bytes that an image background may take; 0: the free memory
+  bool skips_large_background = false;  ///< see BackgroundRequest::skips_large
+  std::shared_ptr<BackgroundCache> background_cache = nullptr;
 };
 
 struct LoadedScene {
-  format::ReadResult read;                ///< colours are in the working space
-  display::Settings display;              ///< from the command line and the scene
-  std::optional<display::Choice> choice;  ///< if `develops`, or if a colour name is set
+  format::ReadResult read;                     ///< colours are in the working space
+  display::Settings display;                   ///< from the command line and the scene
+  std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
+  std::optional<LoadedBackground> background;  ///< of an image background; the scene has its image
   std::vector<base::Diagnostic> warnings;
 };
 
-/// Reads a scene, checks everything that a render would reject, and converts its colours to the working space. All
+/// Reads a scene with its image background, checks everything that a render would reject, and converts its colours to
+/// the working space. All
 /// commands load scenes here, so that they accept the same scenes.
 ///
 /// Names in [color] are always looked up. A default config is loaded only if `develops`.

@@ -72,6 +72,7 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   MemoryEstimate m;
   m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * bytes_per_pixel;
   m.spheres = needs.spheres * kBytesPerSphere;
+  m.background = needs.background;
   m.accelerator = needs.embree ? needs.spheres * kAcceleratorBytesPerSphere : 0;
   return m;
 }
@@ -81,6 +82,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.width = compiled.width;
   needs.height = compiled.height;
   needs.spheres = compiled.spheres.size();
+  if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.layer_planes = film::planes_of(layers).size();
   needs.layers = layers.any();
   needs.light_cells = layers.light_cells();
@@ -108,14 +110,20 @@ std::optional<std::uint64_t> available_memory(const std::filesystem::path& root)
   return least;
 }
 
-void require_memory(const MemoryEstimate& needed, std::uint64_t limit) {
-  const std::uint64_t allowed = limit > 0 ? limit : available_memory().value_or(needed.total());
+std::string text_of(const MemoryEstimate& m) {
+  std::string out = fmt::format("film {}, spheres {}, accelerator {}", base::bytes_text(m.film),
+                                base::bytes_text(m.spheres), base::bytes_text(m.accelerator));
+  if (m.background > 0) out += ", background " + base::bytes_text(m.background);
+  return out;
+}
+
+void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held) {
+  const std::uint64_t allowed = limit > 0 ? limit : available_memory().value_or(needed.total()) + held;
   if (needed.total() <= allowed) return;
   using base::bytes_text;
   throw base::Error(
       base::ErrorKind::kNoMemory,
-      fmt::format("the render needs about {} (spheres {}, accelerator {}, film {}), and {}", bytes_text(needed.total()),
-                  bytes_text(needed.spheres), bytes_text(needed.accelerator), bytes_text(needed.film),
+      fmt::format("the render needs about {} ({}), and {}", bytes_text(needed.total()), text_of(needed),
                   limit > 0 ? "--memory-limit allows " + bytes_text(allowed) + "; raise it"
                             : bytes_text(allowed) + " is free; free some, or override with --memory-limit"));
 }

@@ -13,15 +13,16 @@ namespace orrery::job {
 
 /// Estimated peak memory of a render, in bytes, computed without building anything.
 struct MemoryEstimate {
-  std::uint64_t film = 0, spheres = 0, accelerator = 0;
+  std::uint64_t film = 0, spheres = 0, accelerator = 0, background = 0;
 
-  std::uint64_t total() const { return film + spheres + accelerator; }
+  std::uint64_t total() const { return film + spheres + accelerator + background; }
 };
 
 /// Properties of a render that determine its memory use.
 struct MemoryNeeds {
   int width = 0, height = 0;       ///< px
   std::uint64_t spheres = 0;       ///< from tables and points files
+  std::uint64_t background = 0;    ///< bytes of an image background
   std::uint64_t layer_planes = 0;  ///< besides R, G, B, A
   bool layers = false;             ///< any layers, including those without planes
   std::uint64_t light_cells = 0;   ///< LayerRequest::light_cells()
@@ -43,10 +44,14 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
 /// Reference  proc_meminfo(5); the kernel's documentation of control groups, version 2, memory.max
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
+/// Formats the parts of an estimate: "film 1 MiB, spheres 2 MiB, accelerator 3 MiB".
+std::string text_of(const MemoryEstimate& estimate);
+
 /// Checks that a render fits into memory.
 ///
 /// `limit`    bytes; 0: available_memory()
+/// `held`     bytes of `needed` that are allocated already and thus not available any more
 /// Errors     base::Error(kNoMemory) with the needed and the allowed size
-void require_memory(const MemoryEstimate& needed, std::uint64_t limit);
+void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held = 0);
 
 }  // namespace orrery::job

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_hash.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include <fmt/core.h>
@@ -29,6 +30,32 @@ class Hash {
 template <std::size_t N>
 void add_all(Hash& hash, const double (&values)[N]) {
   for (const double v : values) hash.add(v);
+}
+
+void add_map(Hash& hash, const kernel::Environment& map) {
+  for (const double v : {double(map.width), double(map.height), map.scale, map.turn, map.visible ? 1.0 : 0.0,
+                         double(map.light_group), map.sun_one_minus_cos})
+    hash.add(v);
+  add_all(hash, map.sun);
+  add_all(hash, map.sun_radiance);
+  // Two texels' values per word.
+  const std::size_t count = 3 * std::size_t{map.width} * map.height;
+  for (std::size_t i = 0; i < count; i += 2) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, map.texels + i, std::min<std::size_t>(2, count - i) * sizeof(float));
+    hash.add_bits(bits);
+  }
+}
+
+/// Adds everything about lights. Scenes without lights keep the hash that they had before there were lights.
+void add_lights(Hash& hash, const compile::CompiledScene& compiled) {
+  if (compiled.emission.empty() && !compiled.environment) return;
+  hash.add_bits(static_cast<std::uint64_t>(compiled.direct_lighting));
+  for (const kernel::Emission& e : compiled.emission) {
+    add_all(hash, e.radiance);
+    hash.add(e.group);
+  }
+  if (compiled.environment) add_map(hash, compiled.environment->view());
 }
 
 }  // namespace
@@ -64,6 +91,7 @@ std::string scene_hash(const compile::CompiledScene& compiled) {
         std::uint64_t(compiled.sampler.kind), std::uint64_t(compiled.shading), std::uint64_t(compiled.precision)})
     hash.add_bits(v);
   for (const double v : compiled.filter.above) hash.add(v);
+  add_lights(hash, compiled);
   return hash.text();
 }
 

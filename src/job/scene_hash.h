@@ -8,8 +8,9 @@
 
 namespace orrery::job {
 
-/// Hash of everything that determines the image, as sixteen hexadecimal digits: spheres, materials, camera, background,
-/// samples, seed. Excludes names, comments and the accelerator, which change no bit of the image. Not cryptographic.
+/// Hash of everything that determines the image, as sixteen hexadecimal digits: spheres, materials, lights, camera,
+/// background, samples, seed. Excludes names, comments and the accelerator, which change no bit of the image. Not
+/// cryptographic.
 ///
 /// Reference  fnv
 std::string scene_hash(const compile::CompiledScene& compiled);

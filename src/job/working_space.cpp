@@ -28,6 +28,7 @@ std::vector<BoundedColor> colors_of(scene::Scene& scene) {
     std::visit(
         [&](auto& model) {
           if constexpr (requires { model.albedo; }) out.push_back({&model.albedo, 1});
+          if constexpr (requires { model.radiance; }) out.push_back({&model.radiance, kNoLimit});
         },
         material.model);
   return out;

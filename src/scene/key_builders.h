@@ -58,6 +58,19 @@ template <class Target, class At>
 Key<Target> text(const char* name, const KeyDoc& about, At at) {
   return key_of<Target>(name, ValueType::kText, {}, about, at, string_text);
 }
+template <class Target, class At>
+Key<Target> boolean(const char* name, const KeyDoc& about, At at) {
+  return {name,
+          ValueType::kBoolean,
+          {},
+          {},
+          about.unit,
+          about.doc,
+          about.cost,
+          false,
+          [at](Target& t, const Value& v) { at(t) = std::get<bool>(v); },
+          [at](const Target& t) -> std::string { return at(const_cast<Target&>(t)) ? "true" : "false"; }};
+}
 /// Builds a key for an optional number; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_number(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {

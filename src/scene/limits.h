@@ -28,6 +28,9 @@ inline constexpr int kLargestSide = 65536;
 /// Maximum background radiance: the sum of a pixel's samples then fits into 128 bits.
 inline constexpr double kBrightestBackground = 1e6;
 
+/// Maximum absolute rotation of the background, degrees: an animation may make many turns.
+inline constexpr double kLargestRotation = 1e6;
+
 /// Maximum overscan, px: a wider border calls for a larger frame.
 inline constexpr int kWidestOverscan = 4096;
 

@@ -24,6 +24,7 @@ const char* type_name(const Key<Target>& key) {
     case ValueType::kChoice: return "one of";
     case ValueType::kChoices: return "list of";
     case ValueType::kWindow: return "[x, y, width, height]";
+    case ValueType::kBoolean: return "boolean";
   }
   return "";
 }
@@ -38,6 +39,7 @@ std::string range_text(const Key<Target>& key) {
     case ValueType::kWindow: return "inside the image";
     case ValueType::kVector: return "each " + key.range.text();
     case ValueType::kText: return "any";
+    case ValueType::kBoolean: return "`true`, `false`";
     case ValueType::kChoice:
     case ValueType::kChoices: return "`" + base::joined(key.choices) + "`";
   }

@@ -83,10 +83,10 @@ Table background_table() {
   const char* const unit = "scene-linear";
   return {
       "background",
-      {choice<S>("type", {"gradient", "constant"},
+      {choice<S>("type", {"gradient", "constant", "image"},
                  {"",
                   "`gradient`: from `bottom` to `top`, linear in the y component of the unit ray direction. "
-                  "`constant`: `color`"},
+                  "`constant`: `color`. `image`: the latitude-longitude map in `file`"},
                  [](S& s) -> BackgroundType& { return s.background.type; }),
        vector<S>("bottom", kLight, {unit, "Gradient: radiance from straight below"},
                  [](S& s) -> Vec3d& { return s.background.bottom; }),
@@ -97,7 +97,28 @@ Table background_table() {
        integer<S>("alpha", {0, 1},
                   {"", "1: the background is opaque. 0: the image is transparent where only the background is visible",
                    "0: costs as much as one layer"},
-                  [](S& s) -> int& { return s.background.alpha; })}};
+                  [](S& s) -> int& { return s.background.alpha; }),
+       text<S>("file",
+               {"",
+                "Image: EXR or HDR file, relative to the scene file, with the poles at +y and -y, +z at the centre and "
+                "+x halfway to the left edge. May contain a frame pattern such as `####`",
+                "12 bytes per texel; 13.3 with `direct_lighting` other than `bsdf`"},
+               [](S& s) -> std::filesystem::path& { return s.background.file; }),
+       text<S>("color_space",
+               {"",
+                "Image: colour space of `file`, if the file does not declare one. Any space of the OCIO config. "
+                "Default: `color.space`"},
+               [](S& s) -> std::string& { return s.background.color_space; }),
+       number<S>("rotation", {-kLargestRotation, kLargestRotation},
+                 {"degrees", "Image: rotation about +y; 90 turns +z to +x"},
+                 [](S& s) -> double& { return s.background.rotation; }),
+       number<S>("exposure", {-kMaxStops, kMaxStops}, {"stops", "Image: multiplies the radiance by 2 to this power"},
+                 [](S& s) -> double& { return s.background.exposure; }),
+       text<S>("light_group", {"", "Image: light group. Default: the group `default`"},
+               [](S& s) -> std::string& { return s.background.light_group; }),
+       boolean<S>("visible",
+                  {"", "Image: visible to the camera. If `false`, camera rays see black; reflections still see it"},
+                  [](S& s) -> bool& { return s.background.visible; })}};
 }
 
 Table render_table() {
@@ -106,12 +127,13 @@ Table render_table() {
       {integer<S>("samples", {1, std::numeric_limits<std::int32_t>::max()},
                   {"per pixel", "Paths per pixel", "Time scales linearly; four times as many samples halve the noise"},
                   [](S& s) -> int& { return s.render.samples; }),
-       integer<S>("max_depth", {1, kDeepestPath},
-                  {"rays",
-                   "Maximum number of rays per path, counted as in the book: the camera ray is the first. Where the last "
-                   "ray hits a sphere, only the sphere's emission counts",
-                   "An upper bound only: most paths leave the scene earlier"},
-                  [](S& s) -> int& { return s.render.max_depth; }),
+       integer<S>(
+           "max_depth", {1, kDeepestPath},
+           {"rays",
+            "Maximum number of rays per path, counted as in the book: the camera ray is the first. Where the last "
+            "ray hits a sphere, only the sphere's emission counts",
+            "An upper bound only: most paths leave the scene earlier"},
+           [](S& s) -> int& { return s.render.max_depth; }),
        integer<S>("roulette_depth", {0, kDeepestPath},
                   {"scattering events",
                    "Scattering events before Russian roulette begins. It terminates paths with a probability that "

@@ -15,9 +15,9 @@
 namespace orrery::scene {
 
 /// Value of a key in a scene file.
-using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window>;
+using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window, bool>;
 
-enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWindow };
+enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWindow, kBoolean };
 
 /// Interval of allowed numbers, closed unless an end is marked open; for a vector it applies to each component.
 struct Range {

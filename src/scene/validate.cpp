@@ -85,6 +85,25 @@ void check_shutter(const Camera& camera, Problems& diagnostics) {
                                                   ", before it opens at " + number_text(camera.shutter_open));
 }
 
+/// Checks that the keys of the background belong to its type. The colours of other types are ignored silently, so that
+/// switching the type with --set is convenient; a file that is not read is probably a mistake.
+void check_background(const Background& background, Problems& diagnostics) {
+  const bool is_image = background.type == BackgroundType::kImage;
+  const bool has_map = is_image || background.type == BackgroundType::kSky;
+  if (is_image && background.file.empty())
+    diagnostics.error("background.file", "type \"image\" needs an EXR or HDR file");
+  const auto unused_unless = [&](bool is_used, const char* key, bool is_set) {
+    if (is_set && !is_used)
+      diagnostics.warning(std::string("background.") + key, "has no effect; set background.type to \"image\"");
+  };
+  unused_unless(is_image, "file", !background.file.empty());
+  unused_unless(is_image, "color_space", !background.color_space.empty());
+  unused_unless(has_map, "rotation", background.rotation != 0);
+  unused_unless(has_map, "exposure", background.exposure != 0);
+  unused_unless(has_map, "light_group", !background.light_group.empty());
+  unused_unless(has_map, "visible", !background.visible);
+}
+
 /// Ray origins on the lens must be inside the domain of coordinates.
 void check_lens(const Camera& camera, Problems& diagnostics) {
   if (!(camera.defocus_angle > 0)) return;
@@ -193,6 +212,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene, const Scene* closing) 
   Problems diagnostics;
   check_image(scene.image, diagnostics);
   check_camera(scene.camera, diagnostics);
+  check_background(scene.background, diagnostics);
   check_lens(scene.camera, diagnostics);
   check_shutter(scene.camera, diagnostics);
   check_spheres(scene, diagnostics);

@@ -2,11 +2,13 @@
 // Every command reports the same errors for an invalid scene.
 #include <sys/stat.h>
 
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "cli/program.h"
+#include "support/exr_file.h"
 
 namespace orrery::test {
 namespace {
@@ -79,6 +81,23 @@ const Broken kBroken[] = {
      "more.ply:11: error: 9 bytes"},
     {"MissingPointsAndAnUnknownKey", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,
      ": 2 errors"},
+    {"AnImageBackgroundWithoutAFile", "[background]\ntype = \"image\"\n", "", 65,
+     "error: background.file: type \"image\" needs an EXR or HDR file"},
+    {"AMissingBackground", "[background]\ntype = \"image\"\nfile = \"none.exr\"\n", "", 66,
+     ":16:8: error: background.file: cannot open none.exr: No such file"},
+    {"APipeAsBackground", "[background]\ntype = \"image\"\nfile = \"pipe\"\n", "", 66,
+     "cannot open pipe: it is not a regular file"},
+    {"AFolderAsBackground", "[background]\ntype = \"image\"\nfile = \".\"\n", "", 66,
+     "cannot open .: it is a directory"},
+    {"ADisplayImageAsBackground", "[background]\ntype = \"image\"\nfile = \"good.toml\"\n", "", 65,
+     "an environment map must be an exr or hdr file"},
+    {"ATruncatedBackground", "[background]\ntype = \"image\"\nfile = \"cut.exr\"\n", "", 65,
+     ":16:8: error: background.file: cannot read image cut.exr: "},
+    {"ABackgroundOfNoSize", "[background]\ntype = \"image\"\nfile = \"empty.hdr\"\n", "", 65,
+     ":16:8: error: background.file: cannot read image empty.hdr: "},
+    {"ABackgroundSpace", "[background]\ntype = \"image\"\nfile = \"sky.exr\"\ncolor_space = \"foo\"\n", "", 65,
+     ":17:15: error: background.color_space: "},
+    {"AVisibility", "[background]\nvisible = 1\n", "", 65, "background.visible must be true or false, not an integer"},
     {"InvalidToml", "[[[", "", 65, ":14:3: error: "},
 };
 
@@ -92,6 +111,10 @@ class CliValidation : public ProgramTest {
         "property float radius\nend_header\n";
     write("two.ply", "ply\nformat ascii 2.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n");
     write("lines.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3\n1\n0 2 -3 1\n");
+    const support::ExrFile sky = support::ExrFile::constant(8, 4, {1, 1, 1});
+    write("sky.exr", sky.bytes());
+    write("cut.exr", sky.bytes().substr(0, sky.bytes().size() - 50));
+    write("empty.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n");
     write("more.ply", "ply\nformat ascii 1.0\n" + rows + "0 0 -3 1\n0 2 -3 1\n0 4 -3 1\n");
   }
   void write_bad(const std::string& text) { write("bad.toml", kGoodScene + text); }
@@ -255,6 +278,60 @@ TEST_F(CliValidation, InfoListsTheLayersOfLights) {
                         "[[sphere]]\ncenter = [0, 3, -3]\nradius = 1\nmaterial = \"lamp\"\n");
   const Outcome info = run("info lit.toml --layers all");
   EXPECT_TRUE(contains(info.out, "background, emission, light_groups, variance")) << info.out << info.err;
+}
+
+constexpr const char* kImageBackground = "[background]\ntype = \"image\"\nfile = ";
+
+TEST_F(CliValidation, FaultsOfABackgroundImageAreWarnings) {
+  support::ExrFile odd = support::ExrFile::constant(7, 4, {1, 1, 1});
+  odd.rgb[3] = std::numeric_limits<float>::quiet_NaN();
+  write("odd.exr", odd.bytes());
+  write("a.toml", std::string(kGoodScene) + kImageBackground + "\"odd.exr\"\n");
+  const Outcome check = run("check a.toml");
+  EXPECT_EQ(check.status, 0);
+  EXPECT_TRUE(contains(check.err, "a.toml:16:8: warning: background.file: 7 x 4 texels; a latitude-longitude map"))
+      << check.err;
+  EXPECT_TRUE(contains(check.err, "1 values are NaN, 0 infinite and 0 negative; they count as 0")) << check.err;
+  const Outcome render = run("render a.toml -o a.exr");
+  EXPECT_EQ(render.status, 0);
+  EXPECT_TRUE(contains(render.err, check.err)) << render.err;
+  const Outcome unused = run("check a.toml --set background.type=constant");
+  EXPECT_EQ(unused.status, 0);
+  EXPECT_TRUE(contains(unused.err, "background.file: has no effect; set background.type to")) << unused.err;
+}
+
+TEST_F(CliValidation, ABackgroundImageIsNotOverwritten) {
+  write("a.toml", std::string(kGoodScene) + kImageBackground + "\"sky.exr\"\n");
+  const std::string before = text_of(folder_ / "sky.exr");
+  for (const char* frames : {"", " --frames 1", " --log a.log"}) {
+    const Outcome r = run(std::string("render a.toml -q -o sky.exr") + frames);
+    EXPECT_EQ(r.status, 2);
+    EXPECT_TRUE(contains(r.err, "would overwrite sky.exr (background image)")) << r.err;
+  }
+  EXPECT_EQ(text_of(folder_ / "sky.exr"), before);
+}
+
+TEST_F(CliValidation, ABackgroundImageMayBeASequence) {
+  write("s.0001.exr", support::ExrFile::constant(8, 4, {1, 1, 1}).bytes());
+  write("s.0002.exr", support::ExrFile::constant(8, 4, {2, 2, 2}).bytes());
+  write("a.toml", std::string(kGoodScene) + kImageBackground + "\"s.####.exr\"\n");
+  EXPECT_EQ(run("check a.toml --frames 1-2").out, "a.toml: ok, 2 frames\n");
+  EXPECT_EQ(run("check a.toml --frames 1-3").status, 66);
+  EXPECT_NE(run("info a.toml --frame 1").out.substr(0, 30), run("info a.toml --frame 2").out.substr(0, 30));
+  EXPECT_EQ(run("render a.toml -q -o s.%04d.exr --frames 2").status, 2) << "an output would be an input";
+}
+
+TEST_F(CliValidation, TheMemoryOfABackgroundImageIsCheckedBeforeItIsRead) {
+  write("huge.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 65536\n");
+  write("a.toml", std::string(kGoodScene) + kImageBackground + "\"huge.hdr\"\n");
+  const Outcome r = run("render a.toml -q -o a.exr --memory-limit 1G");
+  EXPECT_EQ(r.status, 1);
+  EXPECT_EQ(r.err,
+            "orrery: huge.hdr: an image of 65536 x 32768 texels needs about 26.7 GiB, and --memory-limit allows "
+            "1.0 GiB\n");
+  write("b.toml", std::string(kGoodScene) + kImageBackground + "\"sky.exr\"\n");
+  EXPECT_TRUE(contains(run("info b.toml").out, "background  sky.exr: 8 x 4, lin_rec709\n"));
+  EXPECT_TRUE(contains(run("info b.toml").out, ", background 0.4 KiB\n")) << run("info b.toml").out;
 }
 
 TEST_F(CliValidation, UnusedPointColoursAreReported) {

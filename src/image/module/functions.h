@@ -4,6 +4,7 @@
 #include "image/library.h"
 #include "image/partial_file.h"
 #include "image/read.h"
+#include "image/read_map.h"
 #include "image/verify.h"
 #include "image/write.h"
 
@@ -15,6 +16,8 @@ struct Functions {
   decltype(&image::set_threads) set_threads;
   decltype(&image::oiio_version) oiio_version;
   decltype(&image::read) read;
+  decltype(&image::read_map_header) read_map_header;
+  decltype(&image::read_map) read_map;
   decltype(&image::write_exr) write_exr;
   decltype(&image::write_deep) write_deep;
   decltype(&image::write_hdr) write_hdr;

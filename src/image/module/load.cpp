@@ -46,6 +46,12 @@ std::string oiio_version() { return module().oiio_version(); }
 
 film::Picture read(const std::filesystem::path& file) { return module().read(file); }
 
+MapHeader read_map_header(const std::filesystem::path& file) { return module().read_map_header(file); }
+
+void read_map(const std::filesystem::path& file, const std::function<void(int row, float* rgb)>& take) {
+  module().read_map(file, take);
+}
+
 WriteReport write_exr(const std::filesystem::path& file, const film::Picture& picture, const Header& header,
                       const ExrOptions& options) {
   return module().write_exr(file, picture, header, options);

@@ -30,6 +30,14 @@ TEST(FormatReadKeys, WrongTypesAreNamed) {
   EXPECT_EQ(text_of("render.shading = 1"), "render.shading must be one of path, normal, flat, not an integer");
 }
 
+TEST(FormatReadKeys, BooleansAreTrueOrFalse) {
+  SceneFiles files;
+  EXPECT_TRUE(files.read("").scene.background.visible);
+  EXPECT_FALSE(files.read("background.visible = false").scene.background.visible);
+  EXPECT_EQ(text_of("background.visible = 0"), "background.visible must be true or false, not an integer");
+  EXPECT_EQ(text_of("background.visible = \"no\""), "background.visible must be true or false, not a string");
+}
+
 TEST(FormatReadKeys, AnIntegerIsANumberButNotViceVersa) {
   SceneFiles files;
   EXPECT_EQ(files.read("camera.vfov = 20").scene.camera.vfov, 20);

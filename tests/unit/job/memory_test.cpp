@@ -93,6 +93,20 @@ TEST(JobMemoryEstimate, GrowsWithLightGroups) {
   EXPECT_EQ(film_of({"emission"}) - film_of({"samples"}), 1000 * (sum + heap + 3 * 8 - 8));
 }
 
+TEST(JobMemoryEstimate, CountsTheBackgroundOnce) {
+  MemoryNeeds needs;
+  needs.background = 1000 * kMega;
+  const MemoryEstimate estimate = estimate_memory(needs);
+  EXPECT_EQ(estimate.total(), 1000 * kMega);
+  EXPECT_NE(text_of(estimate).find(", background 1000.0 MiB"), std::string::npos) << text_of(estimate);
+  // What is held already needs no free memory, but counts against a limit.
+  const std::uint64_t free_memory = available_memory().value_or(0);
+  needs.background = free_memory + (1 << 30);
+  EXPECT_THROW(require_memory(estimate_memory(needs), 0), base::Error);
+  EXPECT_NO_THROW(require_memory(estimate_memory(needs), 0, needs.background));
+  EXPECT_THROW(require_memory(estimate_memory(needs), kMega, needs.background), base::Error);
+}
+
 TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {
   const MemoryEstimate million = estimate(1, 1'000'000, true);
   EXPECT_NO_THROW(require_memory(million, million.total()));

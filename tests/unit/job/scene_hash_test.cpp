@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <memory>
 #include <set>
 
 #include "compile/compile.h"
 #include "generate/generate.h"
+#include "scene/environment_image.h"
 
 namespace orrery::job {
 namespace {
@@ -60,6 +63,51 @@ TEST(JobSceneHash, ChangesWithEverythingThatChangesTheImage) {
     changes[i](scene);
     EXPECT_TRUE(hashes.insert(hash_of(scene)).second) << "change " << i << " is not seen";
   }
+}
+
+/// A scene with a lamp and an image background.
+scene::Scene lit_scene(float texel = 1) {
+  scene::Scene s = small_scene();
+  s.materials[s.spheres[1].material].model = scene::Emitter{};
+  auto image = std::make_shared<scene::EnvironmentImage>(3, 1);
+  std::fill_n(image->row(0), 9, 1.0F);
+  image->row(0)[8] = texel;
+  s.background.type = scene::BackgroundType::kImage;
+  s.background.image = image;
+  return s;
+}
+
+TEST(JobSceneHash, ChangesWithLights) {
+  using Change = std::function<void(scene::Scene&)>;
+  const auto emitter = [](scene::Scene& s) -> scene::Emitter& {
+    return std::get<scene::Emitter>(s.materials[s.spheres[1].material].model);
+  };
+  const std::vector<Change> changes = {
+      [](scene::Scene&) {},
+      [&](scene::Scene& s) { emitter(s).radiance.y += 1e-12; },
+      [&](scene::Scene& s) { emitter(s).exposure = 1; },
+      [&](scene::Scene& s) { emitter(s).light_group = "key"; },
+      [](scene::Scene& s) { s.background = lit_scene(2).background; },
+      [](scene::Scene& s) { s.background.rotation = 10; },
+      [](scene::Scene& s) { s.background.exposure = 1; },
+      [](scene::Scene& s) { s.background.visible = false; },
+      [](scene::Scene& s) { s.background.light_group = "sky"; },
+      [](scene::Scene& s) { s.background = {}; },
+      [](scene::Scene& s) { s.render.direct_lighting = scene::DirectLighting::kBsdf; },
+      [](scene::Scene& s) { s.render.direct_lighting = scene::DirectLighting::kLight; },
+  };
+  std::set<std::string> hashes;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    scene::Scene scene = lit_scene();
+    changes[i](scene);
+    EXPECT_TRUE(hashes.insert(hash_of(scene)).second) << "change " << i << " is not seen";
+  }
+}
+
+TEST(JobSceneHash, DirectLightingDoesNotMatterWithoutLights) {
+  scene::Scene scene = small_scene();
+  scene.render.direct_lighting = scene::DirectLighting::kBsdf;
+  EXPECT_EQ(hash_of(scene), hash_of(small_scene()));
 }
 
 TEST(JobSceneHash, IgnoresWhatDoesNotChangeTheImage) {

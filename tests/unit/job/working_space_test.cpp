@@ -40,6 +40,14 @@ TEST_F(JobWorkingSpace, ColoursAreConverted) {
   EXPECT_EQ(std::get<scene::Dielectric>(s.materials[4].model).ior, 1.5);
 }
 
+TEST_F(JobWorkingSpace, RadianceOfEmittersIsConverted) {
+  scene::Scene s;
+  s.materials = {{"lamp", scene::Emitter{{20, 0, 0}}}};
+  s.color.working = "ACEScg";
+  EXPECT_EQ(to_working_space({}, s), 0);
+  EXPECT_NEAR(std::get<scene::Emitter>(s.materials[0].model).radiance.x, 20 * 0.613097, 1e-3);
+}
+
 TEST_F(JobWorkingSpace, ClampsAndCountsColoursOutOfRange) {
   scene::Scene s = test::everything();
   s.color.space = "ACEScg";

@@ -34,6 +34,7 @@ Value other_value(const Key<Target>& key) {
     case ValueType::kText: return std::string("other");
     case ValueType::kChoice: return key.choices.back();
     case ValueType::kWindow: return Window{1, 2, 3, 4};
+    case ValueType::kBoolean: return false;
     case ValueType::kChoices: return std::vector<std::string>{key.choices.back(), key.choices.front()};
   }
   return {};

@@ -56,6 +56,29 @@ TEST(SceneValidate, FramePlusOverscanIsLimited) {
   EXPECT_EQ(told(scene), Told{"image.overscan: frame plus overscan exceeds the limit of 65536 pixels per side"});
 }
 
+TEST(SceneValidate, AnImageBackgroundNeedsAFile) {
+  Scene scene;
+  scene.background.type = BackgroundType::kImage;
+  EXPECT_EQ(told(scene), Told{"background.file: type \"image\" needs an EXR or HDR file"});
+  scene.background.file = "sky.exr";
+  scene.background.color_space = "acescg";
+  scene.background.rotation = 30;
+  scene.background.visible = false;
+  EXPECT_EQ(told(scene), Told{});
+}
+
+TEST(SceneValidate, KeysOfImageBackgroundsHaveNoEffectOnOthers) {
+  Scene scene;
+  scene.background.file = "sky.exr";
+  scene.background.exposure = 1;
+  EXPECT_EQ(told(scene), (Told{"(background.file: has no effect; set background.type to \"image\")",
+                               "(background.exposure: has no effect; set background.type to \"image\")"}));
+  scene = {};
+  scene.background.type = BackgroundType::kConstant;
+  scene.background.light_group = "sky";
+  EXPECT_EQ(told(scene).size(), 1u);
+}
+
 TEST(SceneValidate, CameraMustHaveADirection) {
   Scene scene;
   scene.camera.look_at = scene.camera.look_from;

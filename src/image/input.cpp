@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/input.h"
+
+#include "base/error.h"
+#include "base/input_file.h"
+#include "image/format.h"
+#include "image/library.h"
+
+namespace orrery::image {
+namespace {
+
+/// Maximum side of an image, as in scenes, px. A header with a larger one is rejected as damaged.
+constexpr int kLargestSide = 65536;
+
+/// Rows decoded at a time: a multiple of the block height of every EXR compression except dwab.
+constexpr int kRowsAtATime = 64;
+
+const char* library_name(Format format) {
+  switch (format) {
+    case Format::kExr: return "openexr";
+    case Format::kHdr: return "hdr";
+    case Format::kPng: return "png";
+    case Format::kTiff: return "tiff";
+    case Format::kJpeg: return "jpeg";
+    case Format::kPpm: return "pnm";
+  }
+  return "";
+}
+
+void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+  const auto too_large = [](int side) { return side < 1 || side > kLargestSide; };
+  if (too_large(spec.width) || too_large(spec.height) || too_large(spec.full_width) || too_large(spec.full_height))
+    fail_to_read(file, "its header says " + std::to_string(spec.full_width) + " x " + std::to_string(spec.full_height) +
+                           " pixels; a side must be 1 to " + std::to_string(kLargestSide));
+  if (spec.deep) fail_to_read(file, "its pixels are deep; flatten them first");
+}
+
+}  // namespace
+
+void fail_to_read(const std::filesystem::path& file, const std::string& reason) {
+  throw base::Error(base::ErrorKind::kBadData, "cannot read image " + file.string() + ": " + reason);
+}
+
+int Input::row_step() const { return spec.tile_width == 0 ? kRowsAtATime : spec.tile_height; }
+
+bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const {
+  if (spec.tile_width == 0) return in->read_scanlines(0, 0, begin, end, 0, first_channel, end_channel, type, out);
+  return in->read_tiles(0, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
+}
+
+std::string Input::complaint() const {
+  const std::string text = in->geterror();
+  return text.empty() ? "its pixels cannot be decoded" : text;
+}
+
+Input open_input(const std::filesystem::path& file) {
+  prepare_library();
+  const Format format = format_of(file);
+  base::require_readable(file);
+  Input out{OIIO::ImageInput::create(library_name(format)), {}};
+  if (!out.in)
+    throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read " + file.string() + OIIO::geterror());
+  if (!out.in->open(file.string(), out.spec)) fail_to_read(file, out.in->geterror());
+  check_spec(file, out.spec);
+  return out;
+}
+
+}  // namespace orrery::image

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace orrery::image {
+
+/// Throws the error of an image that cannot be read: base::Error(kBadData).
+[[noreturn]] void fail_to_read(const std::filesystem::path& file, const std::string& reason);
+
+/// An open image file: the first part of a multi-part EXR.
+struct Input {
+  std::unique_ptr<OIIO::ImageInput> in;
+  OIIO::ImageSpec spec;
+
+  /// Rows to decode at a time.
+  int row_step() const;
+  /// Decodes rows begin..end of a channel range; false if that fails.
+  bool decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const;
+  /// The reason why decoding failed.
+  std::string complaint() const;
+};
+
+/// Opens an image and checks its header.
+///
+/// Errors     as read()
+Input open_input(const std::filesystem::path& file);
+
+}  // namespace orrery::image

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace orrery::support {
+
+/// An uncompressed EXR file with the channels R, G and B in single precision, which may hold any bits and declare any
+/// colour space.
+struct ExrFile {
+  int width = 0, height = 0;
+  std::vector<float> rgb;             ///< width * height * 3, rows from the top
+  std::string color_interop_id = {};  ///< empty: none
+  std::vector<float> chromaticities{};
+
+  static ExrFile constant(int width, int height, std::array<float, 3> color) {
+    ExrFile out{width, height, {}};
+    for (int i = 0; i < width * height; ++i) out.rgb.insert(out.rgb.end(), color.begin(), color.end());
+    return out;
+  }
+
+  /// The bytes of the file.
+  ///
+  /// Reference  the OpenEXR file layout
+  std::string bytes() const {
+    std::string out("\x76\x2f\x31\x01\x02\0\0\0", 8);
+    const auto add = [&out](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
+    const auto attribute = [&](const std::string& name, const std::string& type, const std::string& value) {
+      out += name + '\0' + type + '\0';
+      add(static_cast<std::int32_t>(value.size()));
+      out += value;
+    };
+    const auto packed = [](const auto& values) {
+      return std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+    };
+    std::string channels;
+    for (const char* name : {"B", "G", "R"}) {
+      channels += name + std::string(1, '\0');
+      channels += packed(std::array<std::int32_t, 4>{2, 0, 1, 1});  // float, not linear, every pixel
+    }
+    const std::string window = packed(std::array<std::int32_t, 4>{0, 0, width - 1, height - 1});
+    const std::string one = packed(std::array<float, 1>{1});
+    attribute("channels", "chlist", channels + '\0');
+    if (!chromaticities.empty()) attribute("chromaticities", "chromaticities", packed(chromaticities));
+    if (!color_interop_id.empty()) attribute("colorInteropID", "string", color_interop_id);
+    attribute("compression", "compression", std::string(1, '\0'));
+    attribute("dataWindow", "box2i", window);
+    attribute("displayWindow", "box2i", window);
+    attribute("lineOrder", "lineOrder", std::string(1, '\0'));
+    attribute("pixelAspectRatio", "float", one);
+    attribute("screenWindowCenter", "v2f", packed(std::array<float, 2>{0, 0}));
+    attribute("screenWindowWidth", "float", one);
+    out += '\0';
+    const std::size_t line = 8 + 12 * static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
+    const std::size_t first = out.size() + 8 * rows;
+    for (std::size_t y = 0; y < rows; ++y) add(static_cast<std::uint64_t>(first + y * line));
+    for (std::size_t y = 0; y < rows; ++y) {
+      add(static_cast<std::int32_t>(y));
+      add(static_cast<std::int32_t>(12 * width));
+      for (std::size_t c = 3; c-- > 0;)
+        for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x)
+          add(rgb[3 * (y * static_cast<std::size_t>(width) + x) + c]);
+    }
+    return out;
+  }
+};
+
+}  // namespace orrery::support

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/load_background.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+
+#include "base/error.h"
+#include "support/exr_file.h"
+#include "support/temp_dir.h"
+
+namespace orrery::job {
+namespace {
+
+using support::ExrFile;
+
+class JobLoadBackground : public testing::Test {
+ protected:
+  void SetUp() override {
+    ::unsetenv("OCIO");
+    scene_.background.type = scene::BackgroundType::kImage;
+    scene_.background.file = "a.exr";
+    request_.file = folder_ / "a.exr";
+  }
+  LoadedBackground load(const ExrFile& exr) {
+    support::write_bytes(folder_ / "a.exr", exr.bytes());
+    return load_background(request_, scene_);
+  }
+  /// "key: text" of each diagnostic.
+  static std::vector<std::string> texts(const LoadedBackground& loaded) {
+    std::vector<std::string> out;
+    for (const scene::SceneDiagnostic& d : loaded.diagnostics) out.push_back(d.key + ": " + d.text);
+    return out;
+  }
+  using Texts = std::vector<std::string>;
+
+  support::TempDir folder_;
+  scene::Scene scene_;
+  BackgroundRequest request_;
+};
+
+TEST_F(JobLoadBackground, TexelsAreThoseOfTheFile) {
+  const LoadedBackground loaded = load({2, 1, {1, 2, 3, 4, 5, 6}});
+  EXPECT_EQ(texts(loaded), Texts{});
+  ASSERT_NE(loaded.image, nullptr);
+  EXPECT_EQ(std::vector<float>(loaded.image->row(0), loaded.image->row(0) + 6), (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(loaded.color_space, "lin_rec709");
+  EXPECT_EQ(loaded.bytes, 2u * 12 + 2 * 4 / 3);
+}
+
+/// Red in ACEScg is (1.7051, -0.1302, -0.0240) in Rec.709.
+TEST_F(JobLoadBackground, TheDeclaredColourSpaceComesBeforeTheScenes) {
+  ExrFile exr = ExrFile::constant(2, 1, {1, 0.5F, 0.5F});
+  const auto red = [](const LoadedBackground& loaded) { return loaded.image->row(0)[0]; };
+  EXPECT_EQ(red(load(exr)), 1);
+  scene_.color.space = "ACEScg";
+  scene_.color.working = "lin_rec709";
+  const float converted = red(load(exr));
+  EXPECT_NEAR(converted, 0.5 * 1.7051 + 0.5, 1e-3) << "color.space";
+  scene_.background.color_space = "lin_rec709";
+  EXPECT_EQ(red(load(exr)), 1) << "background.color_space";
+  exr.chromaticities = {0.713F, 0.293F, 0.165F, 0.83F, 0.128F, 0.044F, 0.3217F, 0.3377F};
+  scene_.background.color_space = "acescg";
+  EXPECT_EQ(texts(load(exr)), Texts{}) << "the same space by another name";
+  scene_.background.color_space = "lin_rec709";
+  EXPECT_NEAR(red(load(exr)), converted, 1e-6);
+  EXPECT_EQ(texts(load(exr)),
+            Texts{"background.color_space: is ignored: a.exr declares the colour space `lin_ap1_scene`"});
+  exr.color_interop_id = "lin_rec709_scene";
+  EXPECT_EQ(red(load(exr)), 1) << "colorInteropID comes before chromaticities";
+}
+
+TEST_F(JobLoadBackground, AnUnknownDeclaredSpaceIsAWarningAndAnUnknownKeyAnError) {
+  ExrFile exr = ExrFile::constant(2, 1, {1, 1, 1});
+  exr.color_interop_id = "foo_scene";
+  LoadedBackground loaded = load(exr);
+  ASSERT_EQ(loaded.diagnostics.size(), 1u);
+  EXPECT_EQ(loaded.diagnostics[0].severity, base::Severity::kWarning);
+  EXPECT_NE(loaded.image, nullptr);
+  exr.color_interop_id.clear();
+  exr.chromaticities = {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F, 0.8F};
+  loaded = load(exr);
+  EXPECT_EQ(texts(loaded),
+            Texts{"background.file: its chromaticities are those of no known colour space and are ignored"});
+  exr.chromaticities.clear();
+  scene_.background.color_space = "foo";
+  loaded = load(exr);
+  ASSERT_EQ(loaded.diagnostics.size(), 1u);
+  EXPECT_EQ(loaded.diagnostics[0].severity, base::Severity::kError);
+  EXPECT_EQ(loaded.diagnostics[0].key, "background.color_space");
+  EXPECT_EQ(loaded.image, nullptr);
+}
+
+TEST_F(JobLoadBackground, DisplaySpacesAreLinearized) {
+  scene_.background.color_space = "srgb_texture";
+  const LoadedBackground loaded = load(ExrFile::constant(2, 1, {0.5F, 0.5F, 0.5F}));
+  EXPECT_EQ(texts(loaded), Texts{});
+  EXPECT_NEAR(loaded.image->row(0)[1], 0.21404, 1e-4);
+}
+
+TEST_F(JobLoadBackground, ValuesThatAreNoRadianceCountAsZero) {
+  ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
+  exr.rgb[0] = std::numeric_limits<float>::quiet_NaN();
+  exr.rgb[4] = std::numeric_limits<float>::infinity();
+  exr.rgb[5] = -std::numeric_limits<float>::infinity();
+  exr.rgb[8] = -1e-6F;
+  exr.rgb[9] = -0.0F;
+  const LoadedBackground loaded = load(exr);
+  EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are NaN, 2 infinite and 1 negative; they count as 0"});
+  for (int i = 0; i < 24; ++i)
+    EXPECT_EQ(loaded.image->row(0)[i], i == 0 || i == 4 || i == 5 || i == 8 || i == 9 ? 0 : 1) << i;
+}
+
+TEST_F(JobLoadBackground, ColoursOutsideTheWorkingSpaceAreClamped) {
+  ExrFile exr = ExrFile::constant(2, 1, {0, 1, 0});
+  exr.color_interop_id = "lin_ap1_scene";
+  const LoadedBackground loaded = load(exr);
+  EXPECT_EQ(texts(loaded), Texts{"background.file: 4 values are out of range in lin_rec709 and were clamped"});
+  EXPECT_EQ(loaded.image->row(0)[0], 0);
+}
+
+TEST_F(JobLoadBackground, OtherProportionsAreAWarning) {
+  EXPECT_EQ(texts(load(ExrFile::constant(3, 2, {1, 1, 1}))),
+            Texts{"background.file: 3 x 2 texels; a latitude-longitude map is twice as wide as high"});
+}
+
+TEST_F(JobLoadBackground, MemoryIsCheckedBeforePixelsAreRead) {
+  support::write_bytes(folder_ / "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 65536\n");
+  request_.file = folder_ / "a.hdr";
+  request_.memory_limit = 1 << 30;
+  try {
+    load_background(request_, scene_);
+    FAIL() << "a file without pixels";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory);
+    EXPECT_NE(std::string(error.what()).find("needs about 26.7 GiB, and --memory-limit allows 1.0 GiB"),
+              std::string::npos)
+        << error.what();
+  }
+  scene_.render.direct_lighting = scene::DirectLighting::kBsdf;
+  request_.skips_large = true;
+  const LoadedBackground loaded = load_background(request_, scene_);
+  EXPECT_EQ(loaded.bytes, std::uint64_t{12} << 31) << "without tables";
+  EXPECT_EQ(loaded.image, nullptr);
+  ASSERT_EQ(loaded.diagnostics.size(), 1u);
+  EXPECT_EQ(loaded.diagnostics[0].severity, base::Severity::kWarning);
+}
+
+TEST_F(JobLoadBackground, FramesShareAnUnchangedImage) {
+  request_.cache = std::make_shared<BackgroundCache>();
+  ExrFile exr = ExrFile::constant(3, 2, {1, 1, 1});
+  const LoadedBackground first = load(exr), second = load_background(request_, scene_);
+  EXPECT_EQ(first.image, second.image);
+  EXPECT_EQ(texts(first), texts(second)) << "warnings are repeated";
+  scene_.background.color_space = "acescg";
+  EXPECT_NE(load_background(request_, scene_).image, first.image) << "another conversion";
+  scene_.background.color_space = "";
+  const LoadedBackground third = load_background(request_, scene_);
+  EXPECT_EQ(load(ExrFile::constant(5, 2, {2, 2, 2})).image->row(0)[0], 2) << "the file has changed";
+  EXPECT_EQ(third.image->row(0)[0], 1);
+}
+
+}  // namespace
+}  // namespace orrery::job
