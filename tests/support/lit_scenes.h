@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "scene/environment_image.h"
 #include "scene/scene.h"
 
 namespace orrery::test {
@@ -53,6 +55,16 @@ inline scene::Scene with_lamps(scene::Scene s) {
   return s;
 }
 
+/// A latitude-longitude map: dim sky above, dark ground below, and a bright texel.
+inline std::shared_ptr<scene::EnvironmentImage> bright_texel_map(float radiance) {
+  auto map = std::make_shared<scene::EnvironmentImage>(32, 16);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 32; ++x)
+      for (int c = 0; c < 3; ++c) map->row(y)[3 * x + c] = (y < 8 ? 0.2F : 0.05F) + 0.05F * static_cast<float>(c);
+  for (int c = 0; c < 3; ++c) map->row(4)[3 * 11 + c] = radiance;
+  return map;
+}
+
 /// The stage under lights that are each hard in another way.
 inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
   std::vector<NamedScene> out;
@@ -79,6 +91,19 @@ inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
   scene::Scene& hemisphere = add("hemisphere material beside a lamp that touches the floor");
   hemisphere.materials[1].model = scene::Hemisphere{{0.6, 0.6, 0.6}};
   add_lamp(hemisphere, {1.5, 0.4, 1}, 0.4, {8, 8, 8});
+  scene::Scene& image = add("image sky with a bright texel");
+  image.background.type = scene::BackgroundType::kImage;
+  image.background.image = bright_texel_map(60);
+  add_ball(image, {1.6, 0.6, 0.5}, 0.6, scene::Metal{{0.9, 0.7, 0.5}, 0.3});
+  scene::Scene& sun = add("image sky with the sun, and a lamp");
+  const auto map = bright_texel_map(1);
+  map->sun.direction = math::normalized(math::Vec3d{1, 2, 2});
+  map->sun.one_minus_cos = 0.0024;  // 8 degrees across
+  map->sun.radiance = {150, 140, 120};
+  sun.background.type = scene::BackgroundType::kImage;
+  sun.background.image = map;
+  sun.background.rotation = 30;
+  add_lamp(sun, {-1.5, 1.5, 1}, 0.2, {40, 20, 10});
   return out;
 }
 
