@@ -25,8 +25,8 @@ double compressed_fraction(const std::string& compression, bool is_float) {
 }
 
 /// Bytes per pixel: of a shard with its preview, of the layers of a shard, of a light group in it, of deep samples. A
-/// light group takes 39 bytes if each pixel has light in one of its lobes.
-constexpr double kShardBytes = 27, kShardLayerBytes = 130, kShardLightGroupBytes = 60, kDeepBytes = 24;
+/// light group with light in one lobe per pixel takes 39 bytes.
+constexpr double kShardBytes = 27, kShardLayerBytes = 130, kShardLightGroupBytes = 40, kDeepBytes = 24;
 
 double bytes_per_pixel(const Outputs& outputs, bool is_shard, image::Format format, const ImageSize& size) {
   const image::ExrOptions& exr = outputs.exr;

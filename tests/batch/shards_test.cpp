@@ -16,6 +16,9 @@ class BatchShards : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
+    write("good.toml", std::string(kGoodScene) +
+                           "[material.lamp]\ntype = \"emitter\"\nradiance = [4, 5, 6]\nlight_group = \"key\"\n"
+                           "[[sphere]]\ncenter = [0.5, 0.7, -1]\nradius = 0.2\nmaterial = \"lamp\"\n");
     ASSERT_EQ(run("render good.toml -o whole.exr" + settings_).status, 0);
     whole_ = text_of(folder_ / "whole.exr");
   }
@@ -39,7 +42,7 @@ class BatchShards : public ProgramTest {
 
   const std::string settings_ =
       " --set render.samples=35 --width 70 --height 45 --layers "
-      "Z,N,P,diffuse,light_groups,variance,CryptoObject,denoise.albedo "
+      "Z,N,P,diffuse,emission,light_groups,variance,CryptoObject,denoise.albedo "
       "--set background.alpha=0 --set render.filter=mitchell --reproducible -q ";
   std::string whole_;
   std::minstd_rand random_{3};

@@ -271,13 +271,22 @@ TEST_F(CliValidation, AllLayersMatchInfo) {
   EXPECT_EQ(run("render good.toml -q -o c.exr --layers all --set render.shading=flat").status, 0);
 }
 
-TEST_F(CliValidation, InfoListsTheLayersOfLights) {
+TEST_F(CliValidation, LightsHaveLayers) {
   EXPECT_FALSE(contains(run("info good.toml").out, "emission"));
   write("lit.toml", std::string(kGoodScene) +
                         "[material.lamp]\ntype = \"emitter\"\nradiance = [1, 1, 1]\nlight_group = \"key\"\n"
                         "[[sphere]]\ncenter = [0, 3, -3]\nradius = 1\nmaterial = \"lamp\"\n");
   const Outcome info = run("info lit.toml --layers all");
   EXPECT_TRUE(contains(info.out, "background, emission, light_groups, variance")) << info.out << info.err;
+  for (const char* parts : {"", " --multipart"}) {
+    ASSERT_EQ(run(std::string("render lit.toml -q -o a.exr --layers all") + parts).status, 0);
+    const std::string header = text_of(folder_ / "a.exr").substr(0, 200000);
+    for (const char* channel : {"emission.B", "key.R", "key_diffuse_direct.G", "key_transmission_indirect.B",
+                                "key_emission.R", "default.R", "default_background.B", "default_specular_direct.R"})
+      EXPECT_TRUE(contains(header, channel)) << channel;
+    EXPECT_FALSE(contains(header, "key_background")) << "only the background has this lobe";
+    EXPECT_FALSE(contains(header, "default_emission")) << "all emitters are in another group";
+  }
 }
 
 constexpr const char* kImageBackground = "[background]\ntype = \"image\"\nfile = ";

@@ -66,27 +66,48 @@ TEST(RenderLayers, ThreadsAndAcceleratorsGiveTheSameBits) {
   expect_equal(render_with(s, all_layers()), one);
 }
 
+/// A scene with emitters in two light groups, and a background in the default group.
+scene::Scene with_lamps(scene::Scene s) {
+  s.materials.push_back({"key", scene::Emitter{{15, 14, 12}, 0, "key"}});
+  s.materials.push_back({"rim", scene::Emitter{{0.1, 0.2, 7}, 0, "rim"}});
+  const auto key = static_cast<std::uint32_t>(s.materials.size() - 2);
+  s.spheres.push_back({{-0.8, 1.5, -0.5}, 0.4, key, ""});
+  s.spheres.push_back({{1, 1.3, -1}, 0.2, key + 1, ""});
+  return s;
+}
+
 TEST(RenderLayers, LobesAndLightGroupsAddUpToTheBeauty) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
-    scene::Scene s = test::everything();
-    s.render.precision = precision;
-    const Result r = render_with(s, all_layers());
-    for (const char* c : {"R", "G", "B"}) {
-      const std::vector<float>& beauty = plane(r, c);
-      std::vector<float> lobes(beauty.size()), groups = lobes, products = lobes;
-      const auto add = [&](std::vector<float>& sum, const std::string& layer) {
-        const auto& values = plane(r, (layer + "." + c).c_str());
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
-      };
-      for (const std::string lobe : film::kLobeNames) {
-        add(lobes, lobe);
-        add(products, "default_" + lobe);
-        if (lobe != "background") add(products, "other_" + lobe);
+    for (const scene::Scene& scene : {test::everything(), with_lamps(test::everything())}) {
+      scene::Scene s = scene;
+      s.render.precision = precision;
+      film::LayerRequest request = all_layers();
+      request.groups = {{"default", true, true}, {"key", true, true}, {"rim", true, true}};
+      const Result r = render_with(s, request);
+      for (const char* c : {"R", "G", "B"}) {
+        const std::vector<float>& beauty = plane(r, c);
+        std::vector<float> lobes(beauty.size()), groups = lobes, products = lobes;
+        const auto add = [&](std::vector<float>& sum, const std::string& layer) {
+          const auto& values = plane(r, (layer + "." + c).c_str());
+          for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+        };
+        for (const std::string lobe : film::kLobeNames) {
+          add(lobes, lobe);
+          for (const film::LightGroup& group : request.groups) add(products, group.name + "_" + lobe);
+        }
+        for (const film::LightGroup& group : request.groups) add(groups, group.name);
+        EXPECT_EQ(lobes, beauty) << c;
+        EXPECT_EQ(groups, beauty) << c;
+        EXPECT_EQ(products, beauty) << c;
       }
-      for (const char* group : {"default", "other"}) add(groups, group);
-      EXPECT_EQ(lobes, beauty) << c;
-      EXPECT_EQ(groups, beauty) << c;
-      EXPECT_EQ(products, beauty) << c;
+      // Light of a group goes to its own layers.
+      const bool lit = scene.materials.size() > test::everything().materials.size();
+      for (const char* layer : {"key_diffuse_direct.R", "key_emission.R", "rim.B", "emission.G"}) {
+        const auto& values = plane(r, layer);
+        EXPECT_EQ(std::any_of(values.begin(), values.end(), [](float v) { return v > 0; }), lit) << layer;
+      }
+      const auto& none = plane(r, "key_background.R");
+      EXPECT_EQ(std::count(none.begin(), none.end(), 0.0F), static_cast<std::ptrdiff_t>(none.size()));
     }
   }
 }
