@@ -122,7 +122,7 @@ HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, const Vec
 /// `pdf`      density of the direction; infinite for delta materials
 template <class D, bool kMoves, class V = hn::Vec<D>>
 HWY_NOINLINE V emitter_weight(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
-                            const hn::TFromD<D>* times, V pdf) {
+                              const hn::TFromD<D>* times, V pdf) {
   using T = hn::TFromD<D>;
   const V one = hn::Set(d, T(1));
   if (scene.direct_lighting == DirectLighting::kBsdf || scene.lights.count == 0) return one;
@@ -194,7 +194,7 @@ HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment,
 /// Not inlined, like the other large functions of lit loops: all loops of a lane type share one copy.
 template <class D, bool kMoves, class V = hn::Vec<D>>
 HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random,
-                                       const hn::TFromD<D>* times) {
+                                         const hn::TFromD<D>* times) {
   using T = hn::TFromD<D>;
   const double share = environment_share(scene);
   if (share == 1) return sample_background(d, *scene.environment, random.v[0], random.v[1]);

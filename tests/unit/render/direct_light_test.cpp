@@ -107,11 +107,11 @@ TEST(RenderDirectLight, RadianceOfAFloorUnderASphereLightCutByTheHorizon) {
 }
 
 /// Fraction of the Sun's disc that the Moon leaves, for discs with these angular radii and distance of the centres.
-double uncovered(double sun, double moon, double apart) {
-  if (apart >= sun + moon) return 1;
-  if (apart <= std::abs(sun - moon)) return moon >= sun ? 0 : 1 - (moon / sun) * (moon / sun);
-  const double x = (apart * apart + sun * sun - moon * moon) / (2 * apart);
-  const double y = apart - x;
+double uncovered(double sun, double moon, double separation) {
+  if (separation >= sun + moon) return 1;
+  if (separation <= std::abs(sun - moon)) return moon >= sun ? 0 : 1 - (moon / sun) * (moon / sun);
+  const double x = (separation * separation + sun * sun - moon * moon) / (2 * separation);
+  const double y = separation - x;
   const double covered = sun * sun * std::acos(x / sun) - x * std::sqrt(sun * sun - x * x) +
                          moon * moon * std::acos(y / moon) - y * std::sqrt(std::max(moon * moon - y * y, 0.0));
   return 1 - covered / (std::numbers::pi * sun * sun);
