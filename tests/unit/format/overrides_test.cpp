@@ -112,7 +112,8 @@ TEST(FormatOverrides, MessagesNameTheShortOption) {
             "    --set camera.vfov=0\n"
             "                      ^\n"
             "--layers: error: output.layers[1] is \"Q\"; must be one of Z, depth, N, P, albedo, diffuse, specular, "
-            "transmission, background, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, "
+            "transmission, background, emission, light_groups, variance, samples, object_id, material_id, "
+            "denoise.albedo, denoise.normal, "
             "CryptoObject, CryptoMaterial, CryptoGroup, all\n"
             "    --layers Z,Q,N\n"
             "               ^\n");
@@ -131,7 +132,8 @@ TEST(FormatOverrides, ListsOfWordsNeedNoQuotes) {
   EXPECT_EQ(
       told("output.layers=[Z,,N]"),
       "--set: error: output.layers[1] is \"\"; must be one of Z, depth, N, P, albedo, diffuse, specular, transmission, "
-      "background, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, CryptoObject, "
+      "background, emission, light_groups, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, "
+      "CryptoObject, "
       "CryptoMaterial, CryptoGroup, all");
   EXPECT_EQ(told("camera.up=[0,1,x]"), "--set: error: camera.up[2] must be a number, not a string");
 }
@@ -144,7 +146,7 @@ TEST(FormatOverrides, AreCheckedLikeTheFile) {
   EXPECT_EQ(told("render.samples=1.5"), "--set: error: render.samples must be an integer, not a floating-point number");
   EXPECT_EQ(told("camera=3"), "--set: error: `camera` must be a table; write [camera]");
   EXPECT_EQ(told("material.new.fuzz=0.5"),
-            "--set: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric");
+            "--set: error: material.new needs `type`; one of lambertian, hemisphere, metal, dielectric, emitter");
 }
 
 TEST(FormatOverrides, InvalidOverridesAreReported) {

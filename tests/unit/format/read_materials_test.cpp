@@ -50,13 +50,14 @@ TEST(FormatReadMaterials, AKeyOfAnotherTypeNamesThatType) {
 
 TEST(FormatReadMaterials, WithoutATypeKeysAreCheckedAgainstAllTypes) {
   SceneFiles files;
-  EXPECT_EQ(files.diagnostics("[material.a]\nalbedo = [1, 1, 1]\nfuz = 0.5\n"),
-            "scene.toml:1:1: error: material.a needs `type`; one of lambertian, hemisphere, metal, dielectric\n"
-            "    [material.a]\n"
-            "    ^~~~~~~~~~~~\n"
-            "scene.toml:3:1: error: unknown key `fuz` in material.a; did you mean `fuzz`?\n"
-            "    fuz = 0.5\n"
-            "    ^~~\n");
+  EXPECT_EQ(
+      files.diagnostics("[material.a]\nalbedo = [1, 1, 1]\nfuz = 0.5\n"),
+      "scene.toml:1:1: error: material.a needs `type`; one of lambertian, hemisphere, metal, dielectric, emitter\n"
+      "    [material.a]\n"
+      "    ^~~~~~~~~~~~\n"
+      "scene.toml:3:1: error: unknown key `fuz` in material.a; did you mean `fuzz`?\n"
+      "    fuz = 0.5\n"
+      "    ^~~\n");
 }
 
 TEST(FormatReadMaterials, RangesOfValuesAreChecked) {

@@ -69,7 +69,7 @@ TEST_F(MeasureBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
 }
 
 TEST_F(MeasureBenchScene, MeasuresTheFeaturesThatTheSceneLacks) {
-  EXPECT_EQ(names(bench_scene(request()).features), (std::vector<std::string>{"thin lens", "hemisphere"}));
+  EXPECT_EQ(names(bench_scene(request()).features), (std::vector<std::string>{"thin lens", "hemisphere", "lights"}));
 }
 
 TEST_F(MeasureBenchScene, RequiredFeaturesAreThoseOfTheScene) {

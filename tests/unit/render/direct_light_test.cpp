@@ -144,6 +144,12 @@ TEST(RenderDirectLight, NoVertexContributesMoreThanOneAndAHalfTimesAlbedoAndRadi
     for (const scene::Material& m : s.materials)
       if (const auto* lamp = std::get_if<scene::Emitter>(&m.model))
         brightest = std::max({brightest, lamp->radiance.x, lamp->radiance.y, lamp->radiance.z});
+    if (s.background.image) {
+      brightest = std::max(brightest, s.background.image->sun.radiance.x);
+      for (int y = 0; y < s.background.image->height(); ++y)
+        for (int x = 0; x < 3 * s.background.image->width(); ++x)
+          brightest = std::max(brightest, static_cast<double>(s.background.image->row(y)[x]));
+    }
     // Two rays: the emission that the camera sees, or one vertex. One sample per pixel, many seeds.
     s.render.max_depth = 2;
     s.render.samples = 1;
