@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "base/error.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/signals.h"
 #include "generate/generate_files.h"
+#include "scene/limits.h"
+#include "scene/value_text.h"
 
 namespace orrery::cli {
 namespace {
@@ -13,12 +18,17 @@ namespace {
 struct GenerateOptions {
   generate::FinalScene final_scene;
   generate::Cloud cloud;
+  std::string environment;
+  int width = generate::kEnvironmentWidth;
+  scene::Background sky;
+  double ground_albedo = 0.2;
+  bool no_sun = false;
   std::filesystem::path output;
 };
 
 constexpr std::uint64_t kMaxSeed = std::numeric_limits<std::uint64_t>::max();
 
-/// Adds the options of all generators.
+/// Adds the options of all scene generators.
 void add_common(Command& command, std::filesystem::path& output, std::uint64_t& seed) {
   command.add_option("-o,--output", output, "Scene file to write")->required()->type_name("FILE");
   command.add_option("--seed", seed, "Random seed; default: 1")->transform(whole_number(0, kMaxSeed))->type_name("N");
@@ -63,18 +73,87 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
   });
 }
 
+constexpr const char* kSkyHeading = "Options of sky";
+
+/// Adds the options of daylight skies.
+void add_sky_options(Command& command, GenerateOptions& options) {
+  const OptionGroup group(command, kSkyHeading);
+  scene::Background& sky = options.sky;
+  options.ground_albedo = sky.ground_albedo.x;
+  command
+      .add_option("--sun-elevation", sky.sun_elevation,
+                  "Degrees from the horizon to the sun; default: " + scene::number_text(sky.sun_elevation))
+      ->check(real_number(-90, 90))
+      ->type_name("DEG");
+  command
+      .add_option("--sun-azimuth", sky.sun_azimuth,
+                  "Degrees from +z towards +x; default: " + scene::number_text(sky.sun_azimuth))
+      ->check(real_number(-360, 360))
+      ->type_name("DEG");
+  command
+      .add_option("--turbidity", sky.turbidity,
+                  "Amount of haze, 1 to 10; 1: pure air; default: " + scene::number_text(sky.turbidity))
+      ->check(real_number(scene::kLowestTurbidity, scene::kHighestTurbidity))
+      ->type_name("T");
+  command
+      .add_option("--ground-albedo", options.ground_albedo,
+                  "Reflectance of the ground; default: " + scene::number_text(options.ground_albedo))
+      ->check(real_number(0, 1))
+      ->type_name("A");
+  command.add_flag("--no-sun", options.no_sun, "Leave out the sun's disc");
+}
+
+void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+  Command& command =
+      *generate.add_subcommand("env", "A latitude-longitude image to light scenes with: a photo studio, or daylight");
+  command.add_option("KIND", options->environment, "studio or sky")
+      ->required()
+      ->check(one_of({"studio", "sky"}))
+      ->type_name("NAME");
+  command.add_option("-o,--output", options->output, "EXR file to write")->required()->type_name("FILE");
+  command
+      .add_option(
+          "--width", options->width,
+          "Pixels, a multiple of 4; the height is half of it; default: " + std::to_string(generate::kEnvironmentWidth))
+      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment))
+      ->type_name("PX");
+  add_sky_options(command, *options);
+  command.footer(
+      "Examples:\n"
+      "  orrery generate env studio -o studio.exr\n"
+      "  orrery generate env sky -o evening.exr --sun-elevation 4 --sun-azimuth -60");
+  command.callback([options, &command, &action] {
+    const std::vector<std::string> of_sky = command.arguments(kSkyHeading);
+    if (options->environment != "sky" && !of_sky.empty())
+      throw base::Error(base::ErrorKind::kUsage, of_sky.front() + " is an option of `sky`");
+    action = [options] {
+      end_on_signals();
+      if (options->environment == "studio") {
+        generate::generate_studio(options->width, options->output);
+        return 0;
+      }
+      options->sky.sun = !options->no_sun;
+      options->sky.ground_albedo = math::Vec3d{1, 1, 1} * options->ground_albedo;
+      generate::generate_sky(options->sky, options->width, options->output);
+      return 0;
+    };
+  });
+}
+
 }  // namespace
 
 void add_generate(Command& program, Action& action) {
   const auto options = std::make_shared<GenerateOptions>();
-  Command& command = *program.add_subcommand("generate", "Generate a scene file");
+  Command& command = *program.add_subcommand("generate", "Generate a scene file, or an image to light scenes with");
   command.require_subcommand();
   add_final(command, options, action);
   add_cloud(command, options, action);
+  add_env(command, options, action);
   command.footer(
       "Examples:\n"
       "  orrery generate final -o final.toml --seed 7\n"
-      "  orrery generate cloud -o cloud.toml --count 1000000");
+      "  orrery generate cloud -o cloud.toml --count 1000000\n"
+      "  orrery generate env studio -o studio.exr");
 }
 
 }  // namespace orrery::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "film/picture.h"
 #include "scene/scene.h"
 
 namespace orrery::generate {
@@ -57,5 +58,29 @@ struct Cloud {
 ///            scene::kSmallestRadius..kLargestCloudRadius
 /// Cost       36 bytes per sphere
 scene::Scene make_cloud(const Cloud& options, const std::filesystem::path& points_file = "cloud.ply");
+
+/// Limits of the width of a generated environment, px.
+inline constexpr int kSmallestEnvironment = 16, kLargestEnvironment = 8192;
+
+/// Default width of a generated environment, px: a texel is about two thirds of the sun's disc wide.
+inline constexpr int kEnvironmentWidth = 1024;
+
+/// Returns a latitude-longitude image of a photo studio, for tests of materials: a dark room with a grey floor, three
+/// soft boxes and an overhead one. What the boxes illuminate is computed, for the floor, the walls and the ceiling. The
+/// camera is expected at +z.
+///
+/// Space      metres: the ball is at the origin, the floor at y = -1.2; orientation as for scene::EnvironmentImage
+/// Units      lin_rec709. The key light's irradiance at the ball is about pi: there, a white diffuse surface that faces
+///            it has radiance 1
+/// Result     planes R, G, B; the same bits on every machine
+/// Errors     base::Error(kUsage) for a width that is not a multiple of 4 in kSmallestEnvironment..kLargestEnvironment
+film::Picture make_studio(int width = kEnvironmentWidth);
+
+/// Returns a latitude-longitude image of the daylight sky of compile::bake_sky, including the sun's disc: texels hold
+/// the mean over their area, so that the irradiance does not depend on the width.
+///
+/// `sky`      the members that type = "sky" uses
+/// Errors     base::Error(kUsage) for a width as for make_studio, and for members out of range
+film::Picture make_sky(const scene::Background& sky, int width = kEnvironmentWidth);
 
 }  // namespace orrery::generate

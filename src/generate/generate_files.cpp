@@ -8,6 +8,8 @@
 #include "base/file_set.h"
 #include "format/write_ply.h"
 #include "format/write_scene.h"
+#include "image/format.h"
+#include "image/write.h"
 #include "scene/schema.h"
 
 namespace orrery::generate {
@@ -64,6 +66,25 @@ void check(const std::filesystem::path& file, bool has_points) {
                           ": the existing file was not written by orrery generate; move it, or choose another -o");
 }
 
+void check_environment(const std::filesystem::path& file) {
+  if (image::format_of(file) != image::Format::kExr)
+    throw base::Error(base::ErrorKind::kUsage, file.string() + ": environments are written as EXR; name it, e.g. " +
+                                                   std::filesystem::path(file).replace_extension(".exr").string());
+  base::check_creatable(file);
+}
+
+void write_environment(const film::Picture& picture, const std::string& command, const std::filesystem::path& file) {
+  image::Header header;
+  header.software = "orrery";
+  header.color_interop_id = picture.color_interop_id;
+  header.attributes = {
+      {"orrery/command", "orrery generate env " + command + " --width " + std::to_string(picture.width)}};
+  image::ExrOptions options;
+  options.as_float = true;  // the sun is brighter than the largest half
+  options.compression = "zip";
+  image::write_exr(file, picture, header, options);
+}
+
 }  // namespace
 
 void generate_final(const FinalScene& options, const std::filesystem::path& file) {
@@ -75,6 +96,20 @@ void generate_final(const FinalScene& options, const std::filesystem::path& file
 void generate_cloud(const Cloud& options, const std::filesystem::path& file) {
   check(file, true);
   format::write_scene(make_cloud(options, points_file_of(file)), comment(options, file.filename().string()), file);
+}
+
+void generate_studio(int width, const std::filesystem::path& file) {
+  check_environment(file);
+  write_environment(make_studio(width), "studio", file);
+}
+
+void generate_sky(const scene::Background& sky, int width, const std::filesystem::path& file) {
+  check_environment(file);
+  std::string command = "sky --sun-elevation " + scene::number_text(sky.sun_elevation) + " --sun-azimuth " +
+                        scene::number_text(sky.sun_azimuth) + " --turbidity " + scene::number_text(sky.turbidity) +
+                        " --ground-albedo " + scene::number_text(sky.ground_albedo.x);
+  if (!sky.sun) command += " --no-sun";
+  write_environment(make_sky(sky, width), command, file);
 }
 
 }  // namespace orrery::generate

@@ -37,6 +37,9 @@ inline constexpr int kWidestOverscan = 4096;
 /// Maximum absolute exposure, stops: no scene needs more, and 2^100 is as good as infinity.
 inline constexpr double kMaxStops = 100;
 
+/// Range of the turbidity of a daylight sky: from pure air to haze in which the model's errors become large.
+inline constexpr double kLowestTurbidity = 1, kHighestTurbidity = 10;
+
 /// Maximum pixel filter width, px: a wider filter is a blur.
 inline constexpr double kWidestFilter = 32;
 

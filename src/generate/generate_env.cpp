@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "base/error.h"
+#include "compile/daylight.h"
+#include "generate/generate.h"
+#include "scene/limits.h"
+#include "scene/value_text.h"
+
+namespace orrery::generate {
+namespace {
+
+using math::Vec3d;
+
+constexpr double kPi = std::numbers::pi;
+
+// Rounded from long double, so that they do not depend on the math library.
+double sine(double angle) { return static_cast<double>(std::sin(static_cast<long double>(angle))); }
+double cosine(double angle) { return static_cast<double>(std::cos(static_cast<long double>(angle))); }
+
+void check_width(int width) {
+  if (width < kSmallestEnvironment || width > kLargestEnvironment || width % 4 != 0)
+    throw base::Error(base::ErrorKind::kUsage, "width is " + std::to_string(width) + "; must be a multiple of 4 in " +
+                                                   std::to_string(kSmallestEnvironment) + ".." +
+                                                   std::to_string(kLargestEnvironment));
+}
+
+void check_range(const char* name, double value, double from, double to) {
+  if (!(value >= from && value <= to))
+    throw base::Error(base::ErrorKind::kUsage, std::string(name) + " is " + scene::number_text(value) +
+                                                   "; must be in " + scene::number_text(from) + ".." +
+                                                   scene::number_text(to));
+}
+
+film::Picture picture_of(int width) {
+  film::Picture out;
+  out.width = width;
+  out.height = width / 2;
+  out.color_interop_id = "lin_rec709_scene";
+  const std::size_t texels = static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
+  for (const char* name : {"R", "G", "B"}) out.planes.push_back({name, std::vector<float>(texels)});
+  return out;
+}
+
+/// Directions of points of a latitude-longitude image, at a number of positions per texel and axis.
+class Directions {
+ public:
+  Directions(int width, int positions) : positions_(positions) {
+    for (int i = 0; i < width * positions; ++i) {
+      const double longitude = kPi - (i + 0.5) / (width * positions) * 2 * kPi;
+      longitudes_.push_back({sine(longitude), cosine(longitude)});
+    }
+    for (int i = 0; i < width / 2 * positions; ++i) {
+      const double latitude = kPi / 2 - (i + 0.5) / (width * positions) * 2 * kPi;
+      latitudes_.push_back({sine(latitude), cosine(latitude)});
+    }
+  }
+
+  Vec3d operator()(int x, int y, int i = 0, int j = 0) const {
+    const auto& [sin_x, cos_x] = longitudes_[static_cast<std::size_t>(x * positions_ + i)];
+    const auto& [sin_y, cos_y] = latitudes_[static_cast<std::size_t>(y * positions_ + j)];
+    return {cos_y * sin_x, sin_y, cos_y * cos_x};
+  }
+
+ private:
+  struct SinCos {
+    double sin, cos;
+  };
+  int positions_;
+  std::vector<SinCos> longitudes_, latitudes_;
+};
+
+/// A soft box: a rectangle that emits towards its front.
+struct SoftBox {
+  Vec3d center;
+  Vec3d right, up;  ///< from the centre to the edges
+  Vec3d normal;     ///< unit, to the front
+  double radiance;  ///< in the centre
+};
+
+/// Returns a soft box that faces a point, with horizontal upper and lower edges.
+SoftBox facing(Vec3d center, Vec3d target, double width, double height, double radiance) {
+  const Vec3d normal = math::normalized(target - center);
+  const Vec3d side = std::abs(normal.y) > 0.99 ? Vec3d{1, 0, 0} : math::normalized(math::cross({0, 1, 0}, normal));
+  return {center, side * (width / 2), math::cross(normal, side) * (height / 2), normal, radiance};
+}
+
+// Metres. The values are documented in docs/orrery.1.
+constexpr double kFloor = -1.2, kCeiling = 2.4, kWall = 3;
+constexpr double kFloorAlbedo = 0.3, kWallAlbedo = 0.08;
+/// Radiance at the edge of a soft box, relative to its centre: the cloth is illuminated from behind the centre.
+constexpr double kEdge = 0.6;
+
+std::array<SoftBox, 4> soft_boxes() {
+  return {facing({-1.7, 1.3, 1.6}, {0, 0, 0}, 1.2, 1.2, 18),   // key: left of the camera
+          facing({2.1, 0.5, 1.3}, {0, 0, 0}, 0.8, 1.6, 3),     // fill: right of the camera
+          facing({1.3, 0.9, -2.2}, {0, 0, 0}, 0.35, 1.8, 25),  // rim: a strip behind the ball
+          facing({0, 2.2, -0.4}, {0, 0, -0.4}, 1.8, 1.0, 4)};  // overhead
+}
+
+/// Returns the radiance of a soft box at a position of -1..1 in both directions.
+double radiance_at(const SoftBox& box, double x, double y) {
+  return box.radiance * (1 - (1 - kEdge) * (x * x + y * y) / 2);
+}
+
+/// The point of the room in a direction from the origin.
+struct Surface {
+  Vec3d position, normal;
+  double albedo;
+};
+Surface room_at(Vec3d d) {
+  const double to_floor = (d.y < 0 ? kFloor : kCeiling) / d.y;
+  const double to_x = kWall / std::abs(d.x), to_z = kWall / std::abs(d.z);
+  if (to_floor <= to_x && to_floor <= to_z)
+    return {d * to_floor, {0, d.y < 0 ? 1.0 : -1.0, 0}, d.y < 0 ? kFloorAlbedo : kWallAlbedo};
+  if (to_x <= to_z) return {d * to_x, {d.x < 0 ? 1.0 : -1.0, 0, 0}, kWallAlbedo};
+  return {d * to_z, {0, 0, d.z < 0 ? 1.0 : -1.0}, kWallAlbedo};
+}
+
+/// Returns the radiance of a diffuse surface that the soft boxes illuminate, without shadows.
+double reflected(const Surface& s, const std::array<SoftBox, 4>& boxes) {
+  constexpr int kNodes = 6;
+  double irradiance = 0;
+  for (const SoftBox& box : boxes) {
+    const double area = 4 * math::length(box.right) * math::length(box.up) / (kNodes * kNodes);
+    for (int i = 0; i < kNodes; ++i) {
+      for (int j = 0; j < kNodes; ++j) {
+        const double x = (2 * i + 1.0) / kNodes - 1, y = (2 * j + 1.0) / kNodes - 1;
+        const Vec3d way = box.center + box.right * x + box.up * y - s.position;
+        const double squared = math::dot(way, way);
+        const double cosines = std::max(math::dot(way, s.normal), 0.0) * std::max(-math::dot(way, box.normal), 0.0);
+        irradiance += radiance_at(box, x, y) * area * cosines / (squared * squared);
+      }
+    }
+  }
+  return s.albedo / kPi * irradiance;
+}
+
+/// Returns the radiance of the soft boxes in a direction, and adds to `uncovered` if there is none.
+double emitted(Vec3d d, const std::array<SoftBox, 4>& boxes, int& uncovered) {
+  for (const SoftBox& box : boxes) {
+    const double facing_it = math::dot(d, box.normal);
+    if (facing_it >= 0) continue;  // away from the box, or at its back
+    const double t = math::dot(box.center, box.normal) / facing_it;
+    if (t <= 0) continue;
+    const Vec3d from_center = d * t - box.center;
+    const double x = math::dot(from_center, box.right) / math::dot(box.right, box.right);
+    const double y = math::dot(from_center, box.up) / math::dot(box.up, box.up);
+    if (std::abs(x) <= 1 && std::abs(y) <= 1) return radiance_at(box, x, y);
+  }
+  ++uncovered;
+  return 0;
+}
+
+/// Adds the part of the sun's disc that is above the horizon: every texel receives the mean over its area.
+void add_sun(const scene::Sun& sun, film::Picture& picture) {
+  // Some fifteen positions across the disc, also if a texel is much larger.
+  const int positions = std::max(8, 10240 / picture.width);
+  const Directions directions(picture.width, positions);
+  // A direction is in the disc if the squared length of its difference to the centre is at most this.
+  const double disc = 2 * sun.one_minus_cos;
+  const double diagonal = 2 * kPi / picture.width;  // at least half the diagonal of a texel
+  const double nearby = (std::sqrt(disc) + diagonal) * (std::sqrt(disc) + diagonal);
+  struct Part {
+    std::size_t texel;
+    double covered;
+  };
+  std::vector<Part> parts;
+  double solid_angle = 0;
+  const Directions centers(picture.width, 1);
+  for (int y = 0; y < picture.height / 2; ++y) {
+    const double row = 2 * kPi / picture.width *
+                       (sine(kPi / 2 - y * kPi / picture.height) - sine(kPi / 2 - (y + 1) * kPi / picture.height));
+    for (int x = 0; x < picture.width; ++x) {
+      const Vec3d center = centers(x, y) - sun.direction;
+      if (math::dot(center, center) > nearby) continue;
+      int inside = 0;
+      for (int j = 0; j < positions; ++j) {
+        for (int i = 0; i < positions; ++i) {
+          const Vec3d d = directions(x, y, i, j) - sun.direction;
+          inside += math::dot(d, d) <= disc ? 1 : 0;
+        }
+      }
+      if (inside == 0) continue;
+      const double covered = static_cast<double>(inside) / (positions * positions);
+      const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width);
+      parts.push_back({at + static_cast<std::size_t>(x), covered});
+      solid_angle += covered * row;
+    }
+  }
+  if (parts.empty()) return;
+  // Positions in texels are counted, so the area of the disc is not exact.
+  const double exact = 2 * kPi * sun.one_minus_cos / solid_angle;
+  for (const Part& part : parts) {
+    picture.planes[0].values[part.texel] += static_cast<float>(sun.radiance.x * part.covered * exact);
+    picture.planes[1].values[part.texel] += static_cast<float>(sun.radiance.y * part.covered * exact);
+    picture.planes[2].values[part.texel] += static_cast<float>(sun.radiance.z * part.covered * exact);
+  }
+}
+
+}  // namespace
+
+film::Picture make_studio(int width) {
+  check_width(width);
+  constexpr int kPositions = 4;
+  const Directions centers(width, 1), directions(width, kPositions);
+  const std::array<SoftBox, 4> boxes = soft_boxes();
+  film::Picture picture = picture_of(width);
+  std::size_t at = 0;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x, ++at) {
+      int uncovered = 0;
+      double light = 0;
+      for (int j = 0; j < kPositions; ++j)
+        for (int i = 0; i < kPositions; ++i) light += emitted(directions(x, y, i, j), boxes, uncovered);
+      if (uncovered > 0) light += uncovered * reflected(room_at(centers(x, y)), boxes);
+      for (film::Plane& plane : picture.planes)
+        plane.values[at] = static_cast<float>(light / (kPositions * kPositions));
+    }
+  }
+  return picture;
+}
+
+film::Picture make_sky(const scene::Background& sky, int width) {
+  check_width(width);
+  check_range("sun elevation", sky.sun_elevation, -90, 90);
+  check_range("sun azimuth", sky.sun_azimuth, -360, 360);
+  check_range("turbidity", sky.turbidity, scene::kLowestTurbidity, scene::kHighestTurbidity);
+  check_range("ground albedo", sky.ground_albedo.x, 0, 1);
+  const scene::EnvironmentImage image = compile::bake_sky(sky, {width});
+  film::Picture picture = picture_of(width);
+  for (int y = 0; y < picture.height; ++y) {
+    const float* from = image.row(y);
+    const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x)
+      for (film::Plane& plane : picture.planes) plane.values[at + x] = *from++;
+  }
+  add_sun(image.sun, picture);
+  return picture;
+}
+
+}  // namespace orrery::generate
