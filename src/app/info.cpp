@@ -149,7 +149,8 @@ SceneInfo scene_info(const job::SceneRequest& request) {
   if (loaded.background) {
     needs.background = loaded.background->bytes;
     if (!loaded.background->image) info.scene_hash.clear();  // it depends on the pixels, which were not read
-    info.background_file = read.scene.background.file.string();
+    const bool is_sky = read.scene.background.type == scene::BackgroundType::kSky;
+    info.background_file = is_sky ? "sky" : read.scene.background.file.string();
     info.background = std::move(loaded.background);
   }
   info.memory = job::estimate_memory(needs);

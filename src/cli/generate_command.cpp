@@ -88,7 +88,7 @@ void add_sky_options(Command& command, GenerateOptions& options) {
   command
       .add_option("--sun-azimuth", sky.sun_azimuth,
                   "Degrees from +z towards +x; default: " + scene::number_text(sky.sun_azimuth))
-      ->check(real_number(-360, 360))
+      ->check(real_number(-scene::kLargestRotation, scene::kLargestRotation))
       ->type_name("DEG");
   command
       .add_option("--turbidity", sky.turbidity,

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "compile/camera_basis.h"
+#include "compile/daylight.h"
 #include "compile/light_tree.h"
 #include "compile/pixel_filter.h"
 #include "kernel/sobol_columns.h"
@@ -200,17 +201,20 @@ EnvironmentSampling sampling_of(scene::DirectLighting lighting) {
   return EnvironmentSampling::kNone;
 }
 
-/// Compiles an image background; without one, the gradient or constant colour.
+/// Compiles an image background or a sky; without one, the gradient or constant colour.
 void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   const scene::Background& from = scene.background;
-  if (from.image) {
+  std::shared_ptr<const scene::EnvironmentImage> image = from.image;
+  if (!image && from.type == scene::BackgroundType::kSky)
+    image = std::make_shared<const scene::EnvironmentImage>(bake_sky(from));
+  if (image) {
     EnvironmentSettings settings;
     settings.rotation = from.rotation;
     settings.scale = stops_to_factor(from.exposure);
     settings.sampling = sampling_of(scene.render.direct_lighting);
     settings.light_group = light_group(compiled, from.light_group);
     settings.visible = from.visible;
-    compiled.environment = std::make_shared<const EnvironmentMap>(from.image, settings);
+    compiled.environment = std::make_shared<const EnvironmentMap>(image, settings);
     set(compiled.background.bottom, {0, 0, 0});
     set(compiled.background.top, {0, 0, 0});
     return;

@@ -228,7 +228,7 @@ film::Picture make_studio(int width) {
 film::Picture make_sky(const scene::Background& sky, int width) {
   check_width(width);
   check_range("sun elevation", sky.sun_elevation, -90, 90);
-  check_range("sun azimuth", sky.sun_azimuth, -360, 360);
+  check_range("sun azimuth", sky.sun_azimuth, -scene::kLargestRotation, scene::kLargestRotation);
   check_range("turbidity", sky.turbidity, scene::kLowestTurbidity, scene::kHighestTurbidity);
   check_range("ground albedo", sky.ground_albedo.x, 0, 1);
   const scene::EnvironmentImage image = compile::bake_sky(sky, {width});

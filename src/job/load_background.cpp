@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "compile/daylight.h"
 #include "compile/environment.h"
 #include "display/color_space.h"
 #include "image/read_map.h"
@@ -28,6 +29,11 @@ struct Replaced {
   std::uint64_t nan = 0, infinite = 0, negative = 0, out_of_range = 0;
 };
 
+compile::EnvironmentSampling sampling_of(const scene::Scene& scene) {
+  return scene.render.direct_lighting == scene::DirectLighting::kBsdf ? compile::EnvironmentSampling::kNone
+                                                                      : compile::EnvironmentSampling::kComplete;
+}
+
 class Loader {
  public:
   Loader(const BackgroundRequest& request, const scene::Scene& scene) : request_(request), scene_(scene) {}
@@ -37,7 +43,7 @@ class Loader {
       const image::MapHeader header = image::read_map_header(request_.file);
       out_.width = header.width;
       out_.height = header.height;
-      out_.bytes = compile::environment_bytes(header.width, header.height, sampling());
+      out_.bytes = compile::environment_bytes(header.width, header.height, sampling_of(scene_));
       if (header.width != 2 * header.height)
         warn(kFileKey, fmt::format("{} x {} texels; a latitude-longitude map is twice as wide as high", header.width,
                                    header.height));
@@ -54,11 +60,6 @@ class Loader {
   }
 
  private:
-  compile::EnvironmentSampling sampling() const {
-    return scene_.render.direct_lighting == scene::DirectLighting::kBsdf ? compile::EnvironmentSampling::kNone
-                                                                         : compile::EnvironmentSampling::kComplete;
-  }
-
   void warn(const char* key, std::string text) {
     out_.diagnostics.push_back({base::Severity::kWarning, key, std::move(text)});
   }
@@ -165,7 +166,49 @@ std::string key_of(const BackgroundRequest& request, const scene::Scene& scene) 
                      scene.color.space, scene.color.working_space());
 }
 
+/// Converts a colour, and replaces negative components by 0.
+math::Vec3d converted(const display::PixelConversion& convert, math::Vec3d color) {
+  if (!convert) return color;
+  float rgb[3] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
+  convert(rgb, 1);
+  const auto component = [](float v) { return static_cast<double>(std::max(v, 0.0F)); };
+  return {component(rgb[0]), component(rgb[1]), component(rgb[2])};
+}
+
 }  // namespace
+
+LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& scene) {
+  LoadedBackground out;
+  out.color_space = "lin_rec709";
+  display::PixelConversion to_sky, to_working;
+  try {
+    to_sky = display::pixel_conversion(ocio_config, scene.color.space, out.color_space);
+    to_working = display::pixel_conversion(ocio_config, out.color_space, scene.color.working_space());
+  } catch (const base::Error& error) {
+    if (error.kind() != base::ErrorKind::kUsage) throw;
+    out.diagnostics.push_back({base::Severity::kError, "background.type",
+                               std::string("a sky needs linear Rec.709: ") + error.what(), base::ErrorKind::kBadData});
+    return out;
+  }
+  scene::Background background = scene.background;
+  const math::Vec3d albedo = converted(to_sky, background.ground_albedo);
+  background.ground_albedo = {std::min(albedo.x, 1.0), std::min(albedo.y, 1.0), std::min(albedo.z, 1.0)};
+  const auto image = std::make_shared<scene::EnvironmentImage>(compile::bake_sky(background));
+  if (to_working) {
+    const auto width = static_cast<std::size_t>(image->width());
+    for (int y = 0; y < image->height(); ++y) {
+      float* const row = image->row(y);
+      to_working(row, width);
+      for (std::size_t i = 0; i < 3 * width; ++i) row[i] = std::max(row[i], 0.0F);
+    }
+    image->sun.radiance = converted(to_working, image->sun.radiance);
+  }
+  out.width = image->width();
+  out.height = image->height();
+  out.bytes = compile::environment_bytes(out.width, out.height, sampling_of(scene));
+  out.image = image;
+  return out;
+}
 
 LoadedBackground load_background(const BackgroundRequest& request, const scene::Scene& scene) {
   if (!request.cache) return Loader(request, scene).load();

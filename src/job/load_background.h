@@ -14,10 +14,10 @@
 
 namespace orrery::job {
 
-/// An image background that was read, and what was found out about its file.
+/// An image background that was read, and what was found out about its file; or a sky.
 struct LoadedBackground {
   int width = 0, height = 0;  ///< texels
-  std::string color_space;    ///< of the file
+  std::string color_space;    ///< of the file or of the sky
   std::uint64_t bytes = 0;    ///< estimated memory of the texels and of the tables to sample them
   std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
   std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
@@ -48,5 +48,13 @@ struct BackgroundRequest {
 /// Errors     those of the file and of colour spaces become diagnostics; base::Error(kNoMemory) if the image does not
 ///            fit into memory, before its pixels are read
 LoadedBackground load_background(const BackgroundRequest& request, const scene::Scene& scene);
+
+/// Computes the sky of scene.background and converts it to the working space.
+///
+/// `ocio_config`  in the form of display::Settings
+/// Domain         the background is a sky
+/// Errors         an OCIO config without linear Rec.709, in which the sky is computed, becomes a diagnostic; base::Error
+///                as for display::pixel_conversion
+LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& scene);
 
 }  // namespace orrery::job

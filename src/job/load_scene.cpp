@@ -104,7 +104,12 @@ LoadedScene load_scene(const SceneRequest& request) {
   ColorCheck check(request);
   const auto check_and_load = [&](const scene::Scene& scene) {
     std::vector<scene::SceneDiagnostic> diagnostics = check(scene);
-    if (!diagnostics.empty() || !has_image(scene.background)) return diagnostics;
+    if (!diagnostics.empty()) return diagnostics;
+    if (scene.background.type == scene::BackgroundType::kSky) {
+      out.background = load_sky(settings_of(request, scene.color).config, scene);
+      return out.background->diagnostics;
+    }
+    if (!has_image(scene.background)) return diagnostics;
     const BackgroundRequest background{request.source.file.parent_path() / scene.background.file,
                                        settings_of(request, scene.color).config, request.memory_limit,
                                        request.skips_large_background, request.background_cache};

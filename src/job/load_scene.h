@@ -29,13 +29,12 @@ struct LoadedScene {
   format::ReadResult read;                     ///< colours are in the working space
   display::Settings display;                   ///< from the command line and the scene
   std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
-  std::optional<LoadedBackground> background;  ///< of an image background; the scene has its image
+  std::optional<LoadedBackground> background;  ///< of an image background or sky; the scene has its image
   std::vector<base::Diagnostic> warnings;
 };
 
-/// Reads a scene with its image background, checks everything that a render would reject, and converts its colours to
-/// the working space. All
-/// commands load scenes here, so that they accept the same scenes.
+/// Reads a scene with its image background or sky, checks everything that a render would reject, and converts its colours
+/// to the working space. All commands load scenes here, so that they accept the same scenes.
 ///
 /// Names in [color] are always looked up. A default config is loaded only if `develops`.
 ///

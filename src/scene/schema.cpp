@@ -83,10 +83,11 @@ Table background_table() {
   const char* const unit = "scene-linear";
   return {
       "background",
-      {choice<S>("type", {"gradient", "constant", "image"},
+      {choice<S>("type", {"gradient", "constant", "image", "sky"},
                  {"",
                   "`gradient`: from `bottom` to `top`, linear in the y component of the unit ray direction. "
-                  "`constant`: `color`. `image`: the latitude-longitude map in `file`"},
+                  "`constant`: `color`. `image`: the latitude-longitude map in `file`. `sky`: daylight, computed from "
+                  "the scattering of sunlight in the atmosphere; see [Daylight](#daylight)"},
                  [](S& s) -> BackgroundType& { return s.background.type; }),
        vector<S>("bottom", kLight, {unit, "Gradient: radiance from straight below"},
                  [](S& s) -> Vec3d& { return s.background.bottom; }),
@@ -110,15 +111,30 @@ Table background_table() {
                 "Default: `color.space`"},
                [](S& s) -> std::string& { return s.background.color_space; }),
        number<S>("rotation", {-kLargestRotation, kLargestRotation},
-                 {"degrees", "Image: rotation about +y; 90 turns +z to +x"},
+                 {"degrees", "Image and sky: rotation about +y; 90 turns +z to +x"},
                  [](S& s) -> double& { return s.background.rotation; }),
-       number<S>("exposure", {-kMaxStops, kMaxStops}, {"stops", "Image: multiplies the radiance by 2 to this power"},
+       number<S>("exposure", {-kMaxStops, kMaxStops},
+                 {"stops", "Image and sky: multiplies the radiance by 2 to this power"},
                  [](S& s) -> double& { return s.background.exposure; }),
-       text<S>("light_group", {"", "Image: light group. Default: the group `default`"},
+       text<S>("light_group", {"", "Image and sky: light group. Default: the group `default`"},
                [](S& s) -> std::string& { return s.background.light_group; }),
-       boolean<S>("visible",
-                  {"", "Image: visible to the camera. If `false`, camera rays see black; reflections still see it"},
-                  [](S& s) -> bool& { return s.background.visible; })}};
+       boolean<S>(
+           "visible",
+           {"", "Image and sky: visible to the camera. If `false`, camera rays see black; reflections still see it"},
+           [](S& s) -> bool& { return s.background.visible; }),
+       number<S>("sun_elevation", {-90, 90},
+                 {"degrees", "Sky: angle from the horizon to the sun. Negative: the sun has set"},
+                 [](S& s) -> double& { return s.background.sun_elevation; }),
+       number<S>("sun_azimuth", {-kLargestRotation, kLargestRotation},
+                 {"degrees", "Sky: angle from +z to the sun; 90 is +x"},
+                 [](S& s) -> double& { return s.background.sun_azimuth; }),
+       number<S>("turbidity", {kLowestTurbidity, kHighestTurbidity},
+                 {"", "Sky: amount of haze. 1: pure air, 2: a clear day, 6: hazy"},
+                 [](S& s) -> double& { return s.background.turbidity; }),
+       vector<S>("ground_albedo", kUnit, {unit, "Sky: reflectance of the ground, which also brightens the sky"},
+                 [](S& s) -> Vec3d& { return s.background.ground_albedo; }),
+       boolean<S>("sun", {"", "Sky: includes the sun's disc, which is sampled as a light of its own"},
+                  [](S& s) -> bool& { return s.background.sun; })}};
 }
 
 Table render_table() {

@@ -86,22 +86,31 @@ void check_shutter(const Camera& camera, Problems& diagnostics) {
 }
 
 /// Checks that the keys of the background belong to its type. The colours of other types are ignored silently, so that
-/// switching the type with --set is convenient; a file that is not read is probably a mistake.
+/// switching the type with --set is convenient; a setting of an image or a sky that is not used is probably
+/// a mistake.
 void check_background(const Background& background, Problems& diagnostics) {
   const bool is_image = background.type == BackgroundType::kImage;
-  const bool has_map = is_image || background.type == BackgroundType::kSky;
+  const bool is_sky = background.type == BackgroundType::kSky, has_map = is_image || is_sky;
+  const Background unset;
   if (is_image && background.file.empty())
     diagnostics.error("background.file", "type \"image\" needs an EXR or HDR file");
-  const auto unused_unless = [&](bool is_used, const char* key, bool is_set) {
+  const auto unused_unless = [&](bool is_used, const char* types, const char* key, bool is_set) {
     if (is_set && !is_used)
-      diagnostics.warning(std::string("background.") + key, "has no effect; set background.type to \"image\"");
+      diagnostics.warning(std::string("background.") + key,
+                          std::string("has no effect; set background.type to ") + types);
   };
-  unused_unless(is_image, "file", !background.file.empty());
-  unused_unless(is_image, "color_space", !background.color_space.empty());
-  unused_unless(has_map, "rotation", background.rotation != 0);
-  unused_unless(has_map, "exposure", background.exposure != 0);
-  unused_unless(has_map, "light_group", !background.light_group.empty());
-  unused_unless(has_map, "visible", !background.visible);
+  constexpr const char *kImage = "\"image\"", *kSky = "\"sky\"", *kMap = "\"image\" or \"sky\"";
+  unused_unless(is_image, kImage, "file", !background.file.empty());
+  unused_unless(is_image, kImage, "color_space", !background.color_space.empty());
+  unused_unless(has_map, kMap, "rotation", background.rotation != unset.rotation);
+  unused_unless(has_map, kMap, "exposure", background.exposure != unset.exposure);
+  unused_unless(has_map, kMap, "light_group", background.light_group != unset.light_group);
+  unused_unless(has_map, kMap, "visible", background.visible != unset.visible);
+  unused_unless(is_sky, kSky, "sun_elevation", background.sun_elevation != unset.sun_elevation);
+  unused_unless(is_sky, kSky, "sun_azimuth", background.sun_azimuth != unset.sun_azimuth);
+  unused_unless(is_sky, kSky, "turbidity", background.turbidity != unset.turbidity);
+  unused_unless(is_sky, kSky, "ground_albedo", background.ground_albedo != unset.ground_albedo);
+  unused_unless(is_sky, kSky, "sun", background.sun != unset.sun);
 }
 
 /// Ray origins on the lens must be inside the domain of coordinates.

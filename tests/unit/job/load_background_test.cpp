@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
+#include "compile/daylight.h"
 #include "support/exr_file.h"
 #include "support/temp_dir.h"
 
@@ -159,6 +162,60 @@ TEST_F(JobLoadBackground, FramesShareAnUnchangedImage) {
   const LoadedBackground third = load_background(request_, scene_);
   EXPECT_EQ(load(ExrFile::constant(5, 2, {2, 2, 2})).image->row(0)[0], 2) << "the file has changed";
   EXPECT_EQ(third.image->row(0)[0], 1);
+}
+
+scene::Scene evening() {
+  scene::Scene scene;
+  scene.background.type = scene::BackgroundType::kSky;
+  scene.background.sun_elevation = 10;
+  return scene;
+}
+
+TEST(JobLoadSky, InRec709ItIsTheModel) {
+  const LoadedBackground loaded = load_sky("", evening());
+  ASSERT_NE(loaded.image, nullptr);
+  EXPECT_TRUE(loaded.diagnostics.empty());
+  EXPECT_EQ(loaded.width, 512);
+  EXPECT_EQ(loaded.height, 256);
+  EXPECT_EQ(loaded.color_space, "lin_rec709");
+  const scene::EnvironmentImage model = compile::bake_sky(evening().background);
+  for (const int y : {0, 100, 255})
+    EXPECT_TRUE(std::equal(model.row(y), model.row(y) + 3 * 512, loaded.image->row(y))) << y;
+  EXPECT_EQ(loaded.image->sun.radiance, model.sun.radiance);
+}
+
+/// White is the same in both spaces, so the grey ground stays grey, and the luminance stays the same: about
+/// 0.2722 R + 0.6741 G + 0.0537 B in ACEScg.
+TEST(JobLoadSky, IsConvertedToTheWorkingSpace) {
+  ::unsetenv("OCIO");
+  scene::Scene scene = evening();
+  const LoadedBackground rec709 = load_sky("", scene);
+  scene.color.working = "acescg";
+  const LoadedBackground acescg = load_sky("", scene);
+  ASSERT_NE(acescg.image, nullptr);
+  const auto luminance = [](const double r, const double g, const double b) {
+    return std::pair{0.2126 * r + 0.7152 * g + 0.0722 * b, 0.2722 * r + 0.6741 * g + 0.0537 * b};
+  };
+  for (const int y : {0, 60, 120, 200}) {
+    const float *const a = rec709.image->row(y), *const b = acescg.image->row(y);
+    EXPECT_NE(a[0], b[0]);
+    EXPECT_NEAR(luminance(b[0], b[1], b[2]).second / luminance(a[0], a[1], a[2]).first, 1, 0.01) << y;
+  }
+  const math::Vec3d a = rec709.image->sun.radiance, b = acescg.image->sun.radiance;
+  EXPECT_NEAR(luminance(b.x, b.y, b.z).second / luminance(a.x, a.y, a.z).first, 1, 0.01);
+}
+
+TEST(JobLoadSky, TheAlbedoIsInTheSpaceOfTheScene) {
+  ::unsetenv("OCIO");
+  scene::Scene scene = evening();
+  scene.background.ground_albedo = {0.1, 0.4, 0.1};
+  const LoadedBackground rec709 = load_sky("", scene);
+  scene.color.space = scene.color.working = "acescg";
+  scene.background.ground_albedo = {0.1, 0.4, 0.1};
+  const LoadedBackground acescg = load_sky("", scene);
+  const float *const a = rec709.image->row(200), *const b = acescg.image->row(200);
+  EXPECT_NEAR(b[1] / b[0] / (a[1] / a[0]), 1, 0.3) << "green ground is about as green";
+  EXPECT_NE(a[0], b[0]);
 }
 
 }  // namespace

@@ -72,11 +72,26 @@ TEST(SceneValidate, KeysOfImageBackgroundsHaveNoEffectOnOthers) {
   scene.background.file = "sky.exr";
   scene.background.exposure = 1;
   EXPECT_EQ(told(scene), (Told{"(background.file: has no effect; set background.type to \"image\")",
-                               "(background.exposure: has no effect; set background.type to \"image\")"}));
+                               "(background.exposure: has no effect; set background.type to \"image\" or \"sky\")"}));
   scene = {};
   scene.background.type = BackgroundType::kConstant;
   scene.background.light_group = "sky";
   EXPECT_EQ(told(scene).size(), 1u);
+}
+
+TEST(SceneValidate, KeysOfSkiesHaveNoEffectOnOthers) {
+  Scene scene;
+  scene.background.sun_elevation = 5;
+  scene.background.sun = false;
+  EXPECT_EQ(told(scene), (Told{"(background.sun_elevation: has no effect; set background.type to \"sky\")",
+                               "(background.sun: has no effect; set background.type to \"sky\")"}));
+  scene.background.turbidity = 4;
+  scene.background.sun_azimuth = 4;
+  scene.background.ground_albedo = {0, 0, 0};
+  EXPECT_EQ(told(scene).size(), 5u);
+  scene.background.exposure = 1;
+  scene.background.type = BackgroundType::kSky;
+  EXPECT_EQ(told(scene), Told{});
 }
 
 TEST(SceneValidate, CameraMustHaveADirection) {
