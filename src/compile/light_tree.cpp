@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 
 namespace orrery::compile {
 namespace {
@@ -17,77 +16,68 @@ using kernel::Lights;
 /// Rounding may make a bounding sphere this much too small, relative to its radius.
 constexpr double kRounding = 1 + 0x1p-45;
 
-/// The smallest sphere around two spheres.
-LightNode merged(const LightNode& a, const LightNode& b) {
-  const double between[3] = {b.center[0] - a.center[0], b.center[1] - a.center[1], b.center[2] - a.center[2]};
-  const double distance = std::sqrt((between[0] * between[0] + between[1] * between[1]) + between[2] * between[2]);
-  LightNode out = a.radius >= b.radius ? a : b;
-  out.power = a.power + b.power;
-  if (distance + std::min(a.radius, b.radius) <= out.radius) return out;
-  out.radius = (a.radius + b.radius + distance) / 2;
-  const double share = (out.radius - a.radius) / distance;
-  for (int k = 0; k < 3; ++k) out.center[k] = a.center[k] + between[k] * share;
-  out.radius *= kRounding;
-  return out;
-}
-
-/// Spreads the low 21 bits: bit i moves to bit 3i.
-std::uint64_t spread(std::uint64_t v) {
-  v = (v | v << 32) & 0x001f00000000ffff;
-  v = (v | v << 16) & 0x001f0000ff0000ff;
-  v = (v | v << 8) & 0x100f00f00f00f00f;
-  v = (v | v << 4) & 0x10c30c30c30c30c3;
-  return (v | v << 2) & 0x1249249249249249;
-}
-
+/// Sorts leaves so that halves of every range are separated along its longest axis, and computes the nodes.
 class Builder {
  public:
-  Builder(const kernel::SceneView& scene, LightTree& tree) : scene_(scene), tree_(tree) {}
+  Builder(const kernel::SceneView& scene, LightTree& tree) : scene_(scene), tree_(tree) {
+    leaves_.reserve(tree.spheres.size());
+    for (const std::uint32_t id : tree.spheres) leaves_.push_back({kernel::light_leaf(scene, id), id});
+  }
 
   void build() {
-    sort_leaves();
-    tree_.nodes.resize(tree_.spheres.size());
-    if (!tree_.spheres.empty()) fill({0, static_cast<std::uint32_t>(tree_.spheres.size())});
+    tree_.nodes.resize(leaves_.size());
+    divide({0, static_cast<std::uint32_t>(leaves_.size())});
+    for (std::size_t i = 0; i < leaves_.size(); ++i) tree_.spheres[i] = leaves_[i].sphere;
   }
 
  private:
-  /// Sorts the leaves along the Morton curve through their bounding cube.
-  void sort_leaves() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    double lower[3] = {kInfinity, kInfinity, kInfinity}, extent = 0;
-    const auto center = [&](std::uint32_t id, int k) { return (&scene_.spheres[id].x)[k]; };
-    for (int k = 0; k < 3; ++k) {
-      double upper = -kInfinity;
-      for (const std::uint32_t id : tree_.spheres) {
-        lower[k] = std::min(lower[k], center(id, k));
-        upper = std::max(upper, center(id, k));
-      }
-      extent = std::max(extent, upper - lower[k]);
-    }
-    constexpr double kCells = 0x1p21 - 1;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-    order.reserve(tree_.spheres.size());
-    for (const std::uint32_t id : tree_.spheres) {
-      std::uint64_t code = 0;
-      for (int k = 0; k < 3; ++k) {
-        const double at = extent > 0 ? (center(id, k) - lower[k]) / extent : 0;
-        code |= spread(static_cast<std::uint64_t>(at * kCells)) << k;
-      }
-      order.emplace_back(code, id);
-    }
-    std::sort(order.begin(), order.end());
-    for (std::size_t i = 0; i < order.size(); ++i) tree_.spheres[i] = order[i].second;
-  }
+  struct Leaf {
+    LightNode node;
+    std::uint32_t sphere;
+  };
 
-  LightNode fill(LightRange range) {
-    if (range.end - range.begin == 1) return kernel::light_leaf(scene_, tree_.spheres[range.begin]);
+  /// Returns the power of the range. Nothing depends on the order in which the library leaves the halves.
+  double divide(LightRange range) {
+    if (range.end - range.begin == 1) return leaves_[range.begin].node.power;
     const std::uint32_t middle = Lights::middle(range);
-    const LightNode left = fill({range.begin, middle});
-    return tree_.nodes[middle] = merged(left, fill({middle, range.end}));
+    const auto begin = leaves_.begin() + range.begin, end = leaves_.begin() + range.end;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    LightNode& node = tree_.nodes[middle];
+    int longest = 0;
+    double extent = -1;
+    for (int k = 0; k < 3; ++k) {
+      double lower = kInfinity, upper = -kInfinity;
+      for (auto leaf = begin; leaf != end; ++leaf) {
+        lower = std::min(lower, leaf->node.center[k] - leaf->node.radius);
+        upper = std::max(upper, leaf->node.center[k] + leaf->node.radius);
+      }
+      node.center[k] = lower + (upper - lower) / 2;
+      if (upper - lower > extent) {
+        extent = upper - lower;
+        longest = k;
+      }
+    }
+    node.radius = 0;
+    for (auto leaf = begin; leaf != end; ++leaf) {
+      double square = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double away = leaf->node.center[k] - node.center[k];
+        square += away * away;
+      }
+      node.radius = std::max(node.radius, std::sqrt(square) + leaf->node.radius);
+    }
+    node.radius *= kRounding;
+    std::nth_element(begin, leaves_.begin() + middle, end, [longest](const Leaf& a, const Leaf& b) {
+      return a.node.center[longest] != b.node.center[longest] ? a.node.center[longest] < b.node.center[longest]
+                                                              : a.sphere < b.sphere;
+    });
+    const double power = divide({range.begin, middle});
+    return node.power = power + divide({middle, range.end});
   }
 
   const kernel::SceneView& scene_;
   LightTree& tree_;
+  std::vector<Leaf> leaves_;
 };
 
 }  // namespace

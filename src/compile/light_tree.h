@@ -9,9 +9,10 @@
 
 namespace orrery::compile {
 
-/// The emitters of a scene and the tree by which light sampling chooses between them; see kernel::Lights.
+/// The emitters of a scene and the tree by which light sampling chooses between them; see kernel::Lights. Ranges of
+/// leaves are split at the median of their longest axis, ties by id.
 struct LightTree {
-  std::vector<std::uint32_t> spheres;    ///< sphere id of each leaf, in Morton order of the centres, ties by id
+  std::vector<std::uint32_t> spheres;    ///< sphere id of each leaf
   std::vector<kernel::LightNode> nodes;  ///< one per leaf; the first is unused
   std::vector<std::uint32_t> leaves;     ///< leaf of each sphere from first_sphere on, or kernel::Lights::kNoLeaf
   std::uint32_t first_sphere = 0;
@@ -23,7 +24,7 @@ struct LightTree {
 
 /// Builds the tree of all spheres that emit. Deterministic; scaling the scene by a power of two changes no choice.
 ///
-/// Cost       O(n log n) for n emitters; 48 bytes each if their ids are consecutive
+/// Cost       O(n log n) for n emitters; 48 bytes each if their ids are consecutive, and 96 during the build
 LightTree build_light_tree(const kernel::SceneView& scene);
 
 }  // namespace orrery::compile

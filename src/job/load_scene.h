@@ -33,8 +33,8 @@ struct LoadedScene {
   std::vector<base::Diagnostic> warnings;
 };
 
-/// Reads a scene with its image background or sky, checks everything that a render would reject, and converts its colours
-/// to the working space. All commands load scenes here, so that they accept the same scenes.
+/// Reads a scene with its image background or sky, checks everything that a render would reject, and converts its
+/// colours to the working space. All commands load scenes here, so that they accept the same scenes.
 ///
 /// Names in [color] are always looked up. A default config is loaded only if `develops`.
 ///

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "compile/compile.h"
@@ -140,6 +141,34 @@ TEST(KernelLights, ChoicesHaveTheProbabilityThatIsReported) {
       EXPECT_NEAR(count[id], p * kDraws, 6) << id;
     }
   }
+}
+
+TEST(KernelLights, TheTreeHasAThirdOfTheErrorOfChoosingByPower) {
+  // The exact variance of a light sample without occlusion, for the light of small spheres: power cos / distance^2.
+  const CompiledScene compiled = compile(random_lamps(10000, 8));
+  const kernel::SceneView view = compiled.view();
+  double power = 0;
+  for (const std::uint32_t id : compiled.light_tree.spheres) power += kernel::light_leaf(view, id).power;
+  double error2_of_power = 0, error2_of_tree = 0;
+  for (const auto& [point, normal] : vertices()) {
+    if (math::length(point) > 20) continue;
+    double light = 0, by_power = 0, by_tree = 0;
+    for (const std::uint32_t id : compiled.light_tree.spheres) {
+      const kernel::LightNode lamp = kernel::light_leaf(view, id);
+      const Vec3d to = Vec3d{lamp.center[0], lamp.center[1], lamp.center[2]} - point;
+      const double d2 = math::dot(to, to), cosine = math::dot(to, normal) / std::sqrt(d2);
+      if (cosine <= 0 || d2 < lamp.radius * lamp.radius) continue;
+      const double value = lamp.power * cosine / std::max(d2, 0.01);
+      light += value;
+      by_power += value * value / (lamp.power / power);
+      by_tree += value * value / test::choice_probability(view, point, normal, id);
+    }
+    if (light == 0) continue;
+    error2_of_power += by_power / (light * light) - 1;
+    error2_of_tree += by_tree / (light * light) - 1;
+  }
+  RecordProperty("error by the tree / by power", std::to_string(std::sqrt(error2_of_tree / error2_of_power)));
+  EXPECT_LT(std::sqrt(error2_of_tree / error2_of_power), 1.0 / 3);
 }
 
 TEST(KernelLights, ScalingTheSceneByAPowerOfTwoChangesNoChoice) {
