@@ -46,6 +46,13 @@ done
 for name in three-point thousand-lamps caustic eclipse-ground eclipse-space; do
   picture "scenes/light/$name.toml" "light-$name" --samples 1000
 done
+balls=scenes/light/grey-and-chrome.toml
+picture $balls light-grey-and-chrome --samples 400
+for elevation in 12 3; do
+  picture $balls light-grey-and-chrome-$elevation --samples 400 --set background.sun_elevation=$elevation
+done
+"$program" generate env studio -o "$work/studio.exr"
+picture $balls light-studio --samples 400 --set background.type=image --set "background.file=$work/studio.exr"
 for count in 30 1000 100000; do
   "$program" generate cloud --count $count -o "$work/cloud-$count.toml"
   picture "$work/cloud-$count.toml" cloud-$count --samples 300
