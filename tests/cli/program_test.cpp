@@ -193,6 +193,19 @@ TEST_F(CliProgram, GeneratedScenesRender) {
   EXPECT_EQ(run("generate final -o g.toml --grid 5000").status, 2);
 }
 
+TEST_F(CliProgram, SkiesRenderAndFollowKeyframes) {
+  write("sky.toml", text_of(folder_ / "good.toml") +
+                        "[background]\ntype = \"sky\"\nturbidity = 4\n"
+                        "[[key]]\ntarget = \"background.sun_elevation\"\nframes = [1, 2]\nvalues = [40, -10]\n");
+  ASSERT_EQ(run("render sky.toml -o a.####.ppm -q --frames 1-2 --threads 1").status, 0);
+  ASSERT_EQ(run("render sky.toml -o b.####.ppm -q --frames 1-2 --threads 3").status, 0);
+  EXPECT_EQ(text_of(folder_ / "a.0001.ppm"), text_of(folder_ / "b.0001.ppm"));
+  EXPECT_EQ(text_of(folder_ / "a.0002.ppm"), text_of(folder_ / "b.0002.ppm"));
+  EXPECT_NE(text_of(folder_ / "a.0001.ppm"), text_of(folder_ / "a.0002.ppm"));
+  EXPECT_TRUE(contains(run("info sky.toml").out, "background  sky: 512 x 256, lin_rec709\n"));
+  EXPECT_TRUE(contains(run("check good.toml --set background.turbidity=4").err, "set background.type to \"sky\""));
+}
+
 TEST_F(CliProgram, GeneratedEnvironmentsAreTheSameEveryTime) {
   for (const char* kind : {"studio", "sky --sun-elevation 5 --ground-albedo 0.1"}) {
     ASSERT_EQ(run("generate env -o a.exr --width 64 " + std::string(kind)).status, 0);

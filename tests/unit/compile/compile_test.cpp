@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compile/camera_basis.h"
+#include "compile/daylight.h"
 
 namespace orrery::compile {
 namespace {
@@ -92,6 +93,24 @@ TEST(CompileCameraBasis, FocusesOnLookAtByDefault) {
   camera.look_from = {3, 0, 4};
   camera.look_at = {0, 0, 0};
   EXPECT_EQ(focus_distance(camera), 5);
+}
+
+TEST(CompileCompile, SkiesAreBakedWithTheirSun) {
+  scene::Scene s;
+  s.background.type = scene::BackgroundType::kSky;
+  s.background.exposure = 1;
+  s.background.rotation = 90;
+  const CompiledScene compiled = compile(s);
+  ASSERT_NE(compiled.environment, nullptr);
+  const kernel::Environment& view = compiled.environment->view();
+  EXPECT_TRUE(view.has_sun);
+  EXPECT_TRUE(compiled.features.lit);
+  EXPECT_EQ(view.scale, 2);
+  EXPECT_NEAR(view.sun[0], std::sqrt(0.5), 1e-12);  // from +z, turned to +x
+  EXPECT_NEAR(view.sun[1], std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(view.sun_radiance[1], 2 * bake_sky(s.background, {16}).sun.radiance.y, 1e-6 * view.sun_radiance[1]);
+  s.background.sun = false;
+  EXPECT_FALSE(compile(s).environment->view().has_sun);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <vector>
 
@@ -263,6 +264,35 @@ TEST(CompileDaylight, EveryValueOfTheSchemaGivesFiniteLight) {
         ASSERT_TRUE(std::isfinite(value));
         ASSERT_GE(value, 0);
       }
+    }
+  }
+}
+
+// The illuminance of the sun above the atmosphere is 133.1 klx (astm-g173). Expected values are those of the clear sky
+// of ies1984, which has an illuminance of 127.5 klx above the atmosphere, and for the end of twilight those of ams2024.
+TEST(CompileDaylight, IlluminancesAreThoseOfAClearSky) {
+  constexpr double kKilolux = 133.1 / kPi;
+  std::printf(
+      "sun elevation: direct normal, sky (clear sky of ies1984), klx; direct / sky, horizontal; zenith kcd/m2\n");
+  for (const double elevation : {60.0, 45.0, 30.0, 20.0, 10.0}) {
+    const Sky sky = bake_sky(at(elevation, 2), {128});
+    const double height = std::sin(elevation * kPi / 180);
+    const double sun = kKilolux * luminance(direct(sky)), diffuse = kKilolux * luminance(irradiance(sky));
+    const double expected_sun = 127.5 * std::exp(-0.21 / height), expected_sky = 0.8 + 15.5 * std::sqrt(height);
+    std::printf("%4.0f: %6.1f (%5.1f), %5.1f (%4.1f); %4.2f (%4.2f); %4.2f\n", elevation, sun, expected_sun, diffuse,
+                expected_sky, sun * height / diffuse, expected_sun * height / expected_sky,
+                kKilolux * luminance(radiance(sky, 89.9, 180)));
+    EXPECT_NEAR(sun / expected_sun, 1, 0.1) << elevation;
+    EXPECT_NEAR(diffuse / expected_sky, 1, 0.35) << elevation;
+  }
+  for (const double elevation : {-0.833, -6.0, -12.0}) {
+    const double lux = 1000 * kKilolux * luminance(irradiance(bake_sky(at(elevation, 2), {128})));
+    std::printf("%5.1f: %.3g lx\n", elevation, lux);
+    if (elevation > -1) {
+      EXPECT_NEAR(lux, 585, 100);
+    } else if (elevation == -6) {
+      EXPECT_GT(lux, 2);
+      EXPECT_LT(lux, 8);
     }
   }
 }
