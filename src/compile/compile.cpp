@@ -301,9 +301,9 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   compiled.camera = compile_camera(scene.camera, scene.image);
   compiled.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
   compiled.light_groups = {""};
-  set_background(scene, compiled);
   compiled.filter = compile_filter(scene.render);
   add_spheres(scene, compiled);
+  set_background(scene, compiled);  // after the spheres: light groups are in the order of first use
   light_group(compiled, scene::background_light_group(scene.background));
   const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
   if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
