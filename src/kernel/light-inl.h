@@ -43,12 +43,16 @@ HWY_INLINE Vec3<hn::Vec<D>> to_center(const Vertex<D>& at, const Vec3<hn::Vec<D>
 template <class D>
 class LightNodes {
  public:
-  void set(std::size_t lane, const LightNode& node) {
-    using T = hn::TFromD<D>;
-    for (int k = 0; k < 3; ++k) center_[k][lane] = static_cast<T>(node.center[k]);
-    radius_[lane] = static_cast<T>(node.radius);
-    power_[lane] = static_cast<T>(node.power);
+  void set(std::size_t lane, const SceneView& scene, LightRange range) {
+    if (range.end - range.begin > 1) {
+      node_[lane] = &scene.lights.nodes[Lights::middle(range)];
+    } else {
+      leaf_[lane] = light_leaf(scene, scene.lights.spheres[range.begin]);
+      node_[lane] = &leaf_[lane];
+    }
   }
+  /// A lane whose importance does not matter.
+  void set_any(std::size_t lane, const SceneView& scene) { node_[lane] = scene.lights.nodes; }
 
   /// An estimate of the irradiance at the vertices: power / distance^2 times the largest cosine to the normal that a
   /// point of the bounding sphere can have. Zero only if the whole sphere is below the horizon, or dark.
@@ -56,8 +60,13 @@ class LightNodes {
     using T = hn::TFromD<D>;
     using V = hn::Vec<D>;
     const V zero = hn::Zero(d), one = hn::Set(d, T(1));
-    const V radius = hn::Load(d, radius_);
-    const Vec3<V> to = to_center<D>(at, {hn::Load(d, center_[0]), hn::Load(d, center_[1]), hn::Load(d, center_[2])});
+    V sphere[4];
+    gather4(
+        d, [&](std::size_t i) { return node_[i]->center; }, sphere);
+    HWY_ALIGN T power[kMax];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) power[i] = static_cast<T>(node_[i]->power);
+    const V radius = sphere[3];
+    const Vec3<V> to = to_center<D>(at, {sphere[0], sphere[1], sphere[2]});
     const auto cone = subtended_cone(d, to, radius);
     const V sin = radius / cone.distance;
     const V cos_center = dot(to, at.normal) / cone.distance;
@@ -67,12 +76,13 @@ class LightNodes {
     const auto outside = cone.distance > radius;
     const V cosine = hn::IfThenElse(outside, hn::Max(nearest, zero), one);
     const V distance = hn::Max(cone.distance, radius);
-    return hn::Load(d, power_) * cosine / (distance * distance);
+    return hn::Load(d, power) * cosine / (distance * distance);
   }
 
  private:
   static constexpr std::size_t kMax = hn::MaxLanes(D());
-  HWY_ALIGN hn::TFromD<D> center_[3][kMax], radius_[kMax], power_[kMax];
+  const LightNode* node_[kMax];
+  LightNode leaf_[kMax];
 };
 
 /// Emitters that were chosen for vertices.
@@ -99,9 +109,6 @@ HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, 
   V probability = one;
   LightNodes<D> left, right;
   HWY_ALIGN T is_inner[kMax], goes_left[kMax];
-  const auto set = [&](LightNodes<D>& nodes, std::size_t lane, LightRange r) {
-    nodes.set(lane, r.end - r.begin > 1 ? lights.nodes[Lights::middle(r)] : light_leaf(scene, lights.spheres[r.begin]));
-  };
   for (int level = 0;; ++level) {
     bool any = false;
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) any = any || range[i].end - range[i].begin > 1;
@@ -109,9 +116,14 @@ HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, 
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
       const bool inner = range[i].end - range[i].begin > 1;
       is_inner[i] = inner ? T(1) : T(0);
-      const std::uint32_t m = inner ? Lights::middle(range[i]) : range[i].end;
-      set(left, i, {range[i].begin, m});
-      set(right, i, inner ? LightRange{m, range[i].end} : LightRange{range[i].begin, m});
+      if (inner) {
+        const std::uint32_t m = Lights::middle(range[i]);
+        left.set(i, scene, {range[i].begin, m});
+        right.set(i, scene, {m, range[i].end});
+      } else {
+        left.set_any(i, scene);
+        right.set_any(i, scene);
+      }
     }
     const auto inner = hn::Load(d, is_inner) != zero;
     const V of_left = left.importance(d, at);

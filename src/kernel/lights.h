@@ -13,7 +13,7 @@ enum class DirectLighting : std::uint8_t {
   kLight,  ///< light sampling only, wherever the light can be sampled
 };
 
-/// A bounding sphere of emitters and their power. Fetched as five doubles.
+/// A bounding sphere of emitters and their power. Centre and radius are fetched as four doubles.
 struct LightNode {
   double center[3];
   double radius;

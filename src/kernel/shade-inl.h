@@ -50,7 +50,7 @@ HWY_INLINE void deposit(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, h
   hn::Store(samples, IdTag<D>(), sample);
   hn::Store(hn::IfThenElseZero(lanes, hn::Set(d, T(1))), d, in);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-    if (in[i] == T(0)) continue;
+    if (in[i] == T(0) || (rgb[0][i] == T(0) && rgb[1][i] == T(0) && rgb[2][i] == T(0))) continue;
     const PixelPlace at = place_of(pixel[i], scene);
     PixelSum& sum = tile.sums[(at.y - tile.y) * tile.row_stride + (at.x - tile.x)];
     const auto r = static_cast<double>(rgb[0][i]), g = static_cast<double>(rgb[1][i]),

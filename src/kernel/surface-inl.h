@@ -34,15 +34,12 @@ struct Lookup {
   hn::Vec<D> eta_outside, eta_inside, r0_outside, r0_inside;
 };
 
-/// Loads the spheres of the hits; lanes without a hit get sphere 0.
+/// Loads the spheres with these ids, one per lane.
 ///
 /// `times`    of the rays; read only where kMoves
 template <class D, bool kMoves>
-HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
-  using Id = hn::TFromD<IdTag<D>>;
-  const IdTag<D> du;
-  HWY_ALIGN Id id[hn::MaxLanes(D())];
-  hn::Store(hn::IfThenZeroElse(hits == hn::Set(du, static_cast<Id>(kNoSphere)), hits), du, id);
+HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD<IdTag<D>>* id,
+                                   const hn::TFromD<D>* times) {
   hn::Vec<D> sphere[4];
   gather4(
       d, [&](std::size_t i) { return &scene.spheres[id[i]].x; }, sphere);
@@ -55,6 +52,15 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>
   const auto time = hn::Load(d, times);
   return {mul_add(Vec3<hn::Vec<D>>{change[0], change[1], change[2]}, time, at_opening.center),
           hn::MulAdd(change[3], time, at_opening.radius)};
+}
+/// Loads the spheres of the hits; lanes without a hit get sphere 0.
+template <class D, bool kMoves>
+HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  HWY_ALIGN Id id[hn::MaxLanes(D())];
+  hn::Store(hn::IfThenZeroElse(hits == hn::Set(du, static_cast<Id>(kNoSphere)), hits), du, id);
+  return load_spheres<D, kMoves>(d, scene, id, times);
 }
 
 /// Loads spheres and materials of the hits; lanes without a hit get those of sphere 0.
@@ -79,7 +85,7 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
   gather4(
       d, [&](std::size_t i) { return material[i]->eta; }, glass);
   Lookup<D> out;
-  out.sphere = load_spheres<D, kMoves>(d, scene, hits, times);
+  out.sphere = load_spheres<D, kMoves>(d, scene, id, times);
   out.albedo = {color[0], color[1], color[2]};
   out.surface.fuzz = color[3];
   out.eta_outside = glass[0];
