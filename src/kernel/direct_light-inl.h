@@ -114,7 +114,9 @@ HWY_NOINLINE Vec3<V> weighted_environment(D d, const SceneView& scene, const Vec
   const auto radiance = radiance_of(d, environment, at);
   if (scene.direct_lighting == DirectLighting::kBsdf || !environment.is_sampled) return radiance;
   const V light_pdf = pdf_of(d, environment, at) * hn::Set(d, static_cast<T>(environment_share(scene)));
-  return radiance * bsdf_sample_weight(d, scene.direct_lighting, light_pdf / pdf);
+  // Rounding may make both densities 0.
+  const V inverse = hn::IfThenElseZero(light_pdf > hn::Zero(d), light_pdf / pdf);
+  return radiance * bsdf_sample_weight(d, scene.direct_lighting, inverse);
 }
 
 /// The weight of emitters that rays with a sampled direction have hit.
