@@ -79,9 +79,8 @@ std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
                     [&](std::uint32_t m) { return compiled.materials[m].kind == kernel::MaterialKind::kEmitter; }));
 }
 
-/// Describes how the emitters are sampled: "40 emitters, sampled by a light tree (mis)".
-std::string lights_text(const compile::CompiledScene& compiled) {
-  const std::uint64_t count = count_emitters(compiled);
+/// Describes how the emitters are sampled: "40 emitters, light and BSDF sampling, chosen by a light tree of 1.9 KiB".
+std::string lights_text(const compile::CompiledScene& compiled, std::uint64_t count) {
   if (count == 0) return "none";
   std::string out;
   base::append(out, "%llu %s, ", static_cast<unsigned long long>(count), count == 1 ? "emitter" : "emitters");
@@ -133,7 +132,7 @@ SceneInfo scene_info(const job::SceneRequest& request) {
   }
   info.materials = count_materials(compiled);
   info.emitters = count_emitters(compiled);
-  info.lights = lights_text(compiled);
+  info.lights = lights_text(compiled, info.emitters);
   for (const scene::Points& p : read.scene.points) info.points.push_back({p.file.string(), p.centers.size(), p.unused});
   info.layers = scene::requested_layers(read.scene);
   info.available_layers = scene::available_layers(read.scene);

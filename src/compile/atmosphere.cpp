@@ -46,8 +46,6 @@ double power(double x, double exponent) {
   return static_cast<double>(std::pow(static_cast<long double>(x), static_cast<long double>(exponent)));
 }
 
-double logarithm(double x) { return static_cast<double>(std::log(static_cast<long double>(x))); }
-
 // Limits of the amounts along rays, m: an amount that changes nothing, and the length of the longest ray.
 constexpr double kTrace = 1e-30, kLargest = 3e6;
 
@@ -176,8 +174,8 @@ ColumnTable::ColumnTable(int refinement) : altitudes_(48 * refinement), directio
       const double d = std::max(shortest + (longest - shortest) * j / (directions_ - 1), 1.0);
       const double sine = (shortest * (2 * kGroundRadius + kAtmosphereThickness + altitude) - d * d) / (2 * radius * d);
       const Amounts a = integrate(altitude, std::clamp(sine, -1.0, 1.0), 64 * refinement);
-      table_.push_back(
-          {logarithm((a.molecules + kTrace) / kLargest), logarithm((a.aerosol + kTrace) / kLargest), a.ozone});
+      table_.push_back({math::logarithm((a.molecules + kTrace) / kLargest),
+                        math::logarithm((a.aerosol + kTrace) / kLargest), a.ozone});
     }
   }
 }

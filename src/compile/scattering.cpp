@@ -80,7 +80,6 @@ Ray march(const Atmosphere& air, double altitude, double sine, double length, in
 constexpr double kDarkest = 1e-20;
 
 // Rounded from long double, so that they do not depend on the math library.
-double logarithm(double x) { return static_cast<double>(std::log(static_cast<long double>(x))); }
 double sine(double angle) { return static_cast<double>(std::sin(static_cast<long double>(angle))); }
 double cosine(double angle) { return static_cast<double>(std::cos(static_cast<long double>(angle))); }
 
@@ -226,7 +225,7 @@ void Scattering::tabulate(const Spectrum& ground_albedo) {
       const double radiance = albedo * (direct + irradiance[sun][b]) / (1 - albedo * back[b]);
       for (std::size_t i = 0; i < of_ground.size(); ++i) {
         double& value = multiple_[i * suns + sun][b];
-        value = logarithm(std::max(value + radiance * of_ground[i][b], kDarkest));
+        value = math::logarithm(std::max(value + radiance * of_ground[i][b], kDarkest));
       }
     }
   }

@@ -19,8 +19,7 @@ struct Ray {
   };
 
   std::vector<Segment> segments;
-  double length = 0;  ///< m
-  bool hits_ground = false;
+  double length = 0;       ///< m
   Spectrum transmittance;  ///< of the whole ray, for light that may also be scattered forward
 };
 

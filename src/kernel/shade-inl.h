@@ -26,7 +26,6 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// Path state of a packet's rays besides their geometry, in the packet's lane order.
 template <class T, class Id>
 struct alignas(64) PathPayload {
-  T base[3][kPacketSize];
   T throughput[3][kPacketSize];
   Id pixel[kPacketSize];
   Id sample[kPacketSize];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 namespace orrery::math {
@@ -34,5 +35,8 @@ constexpr double exp_nonpositive(double x) {
   p = p * r + 1;
   return p * std::bit_cast<double>((std::bit_cast<std::uint64_t>(shifted) + 1023) << 52);
 }
+
+/// Returns the natural logarithm, rounded from long double, so that it does not depend on the math library.
+inline double logarithm(double x) { return static_cast<double>(std::log(static_cast<long double>(x))); }
 
 }  // namespace orrery::math

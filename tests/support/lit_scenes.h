@@ -13,7 +13,6 @@ namespace orrery::test {
 struct NamedScene {
   std::string name;
   scene::Scene scene;
-  const scene::Scene* closing = nullptr;
 };
 
 /// A floor, a diffuse ball and a black sky; material 0 is the floor, 1 the ball.
