@@ -25,6 +25,20 @@ find_dependency(fmt CONFIG)
 find_dependency(OpenColorIO CONFIG PATHS /usr/share/cmake)
 find_dependency(OpenImageIO CONFIG)
 find_dependency(JPEG)
+find_dependency(LibArchive)
+find_dependency(pugixml CONFIG)
+find_dependency(HDF5 COMPONENTS C)
+
+# Debian 12 has gemmi as headers alone, Debian 13 with a library; neither has a CMake config.
+if(NOT TARGET orrery::gemmi)
+  find_path(ORRERY_GEMMI_INCLUDE gemmi/pdb.hpp REQUIRED)
+  find_library(ORRERY_GEMMI_LIBRARY gemmi_cpp)
+  add_library(orrery::gemmi INTERFACE IMPORTED)
+  target_include_directories(orrery::gemmi SYSTEM INTERFACE ${ORRERY_GEMMI_INCLUDE})
+  if(ORRERY_GEMMI_LIBRARY)
+    target_link_libraries(orrery::gemmi INTERFACE ${ORRERY_GEMMI_LIBRARY})
+  endif()
+endif()
 
 # Debian's configs of these two list include directories that do not exist, which CMake rejects when it generates.
 foreach(target IN ITEMS OpenImageIO::OpenImageIO OpenColorIO::OpenColorIO)

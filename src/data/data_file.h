@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/table.h"
+
+namespace orrery::data {
+
+enum class Format { kLammpsDump, kLammpsData, kXyz, kPdb, kMmcif, kPly, kCsv, kNpy, kNpz, kLas, kGsd, kHdf5, kVtk };
+
+/// The name of a format, for messages.
+constexpr const char* format_name(Format format) {
+  constexpr const char* kNames[] = {"LAMMPS dump", "LAMMPS data", "XYZ", "PDB", "mmCIF", "PLY", "CSV",
+                                    "NPY",         "NPZ",         "LAS", "GSD", "HDF5",  "VTK"};
+  return kNames[static_cast<std::size_t>(format)];
+}
+
+struct OpenOptions {
+  std::optional<int> component = {};  ///< HDF5: particle type, N of /PartTypeN; default: the only one that is not empty
+  /// Maximum size of decompressed data, bytes.
+  std::uint64_t decompressed_limit = std::uint64_t{16} << 30;
+};
+
+/// An opened data file. Not thread-safe; reading uses several threads where that pays.
+class DataFile {
+ public:
+  virtual ~DataFile() = default;
+
+  virtual Format format() const = 0;
+
+  /// Returns the number of frames, at least 1; models of a PDB file are frames. May scan the file once.
+  ///
+  /// Errors     base::Error(kBadData), as for read()
+  virtual int frame_count() = 0;
+
+  /// Describes a frame.
+  ///
+  /// Domain     0 <= frame < frame_count()
+  /// Errors     base::Error(kBadData) with diagnostics: location and remedy; kIo
+  virtual FrameInfo describe(int frame) = 0;
+
+  /// Reads columns of a frame, each listed by describe(). Columns that are not requested cost no memory.
+  ///
+  /// Numbers may be NaN or infinite if the file has them.
+  ///
+  /// Errors     base::Error(kBadData) with diagnostics for truncated or malformed data; kIo
+  /// Cost       memory in proportion to the rows in the file, never to a count that its header merely declares
+  virtual Table read(int frame, const std::vector<std::string>& columns) = 0;
+};
+
+/// Opens a data file. Its format is recognised by its content; CSV, TSV and plain XYZ, which have no signature, also by
+/// the extension.
+///
+/// Errors     base::Error: kMissingInput, kIo; kBadData with a remedy for unknown formats, LAZ and ADIOS2
+std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options = {});
+
+/// The first bytes of a file and its extension, by which formats are recognised.
+struct Signature {
+  std::string head;       ///< up to 64 KiB, decompressed
+  std::string extension;  ///< lower case, without ".gz", ".zst": ".xyz"; may be empty
+};
+
+}  // namespace orrery::data

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/faults.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+
+namespace orrery::data {
+namespace {
+
+/// Errors of one kind that are listed; the others are counted.
+constexpr std::uint64_t kMaxListed = 10;
+
+}  // namespace
+
+void Faults::add(std::uint64_t line, const std::string& text, const std::string& remedy) {
+  base::Diagnostic diagnostic;
+  diagnostic.file = file_;
+  diagnostic.line = static_cast<int>(std::min<std::uint64_t>(line, std::numeric_limits<int>::max()));
+  diagnostic.text = text;
+  diagnostic.remedy = remedy;
+  diagnostics_.push_back(std::move(diagnostic));
+}
+
+void Faults::add_of_many(std::uint64_t line, const std::string& text) {
+  if (++many_ <= kMaxListed) add(line, text);
+}
+
+void Faults::fail(std::uint64_t line, const std::string& text, const std::string& remedy) {
+  add(line, text, remedy);
+  raise();
+}
+
+void Faults::raise_if_any() {
+  if (has_any()) raise();
+}
+
+void Faults::raise() {
+  if (many_ > kMaxListed)
+    add(0, "and " + std::to_string(many_ - kMaxListed) + " more (" + std::to_string(many_) + " in all)");
+  throw base::Error(base::ErrorKind::kBadData, "cannot use " + file_, std::move(diagnostics_));
+}
+
+}  // namespace orrery::data

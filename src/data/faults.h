@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+
+namespace orrery::data {
+
+/// Collects the errors in a data file. Only the first ten of many equal ones are kept.
+class Faults {
+ public:
+  explicit Faults(const std::filesystem::path& file) : file_(file.string()) {}
+
+  /// `line`     1-based; 0: a binary file, or the whole file
+  void add(std::uint64_t line, const std::string& text, const std::string& remedy = {});
+  /// Adds one of possibly millions of errors.
+  void add_of_many(std::uint64_t line, const std::string& text);
+  /// Adds an error and raises it with all that were added before.
+  [[noreturn]] void fail(std::uint64_t line, const std::string& text, const std::string& remedy = {});
+  bool has_any() const { return many_ > 0 || !diagnostics_.empty(); }
+  /// Raises base::Error(kBadData), "cannot use FILE", if there are errors.
+  void raise_if_any();
+
+ private:
+  [[noreturn]] void raise();
+
+  std::string file_;
+  std::vector<base::Diagnostic> diagnostics_;
+  std::uint64_t many_ = 0;
+};
+
+}  // namespace orrery::data

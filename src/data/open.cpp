@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
+
+#include "base/error.h"
+#include "data/readers.h"
+
+namespace orrery::data {
+namespace {
+
+constexpr std::size_t kHeadBytes = std::size_t{64} << 10;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string extension_of(const std::filesystem::path& file) {
+  const std::string last = lower(file.extension().string());
+  const bool is_compressed = last == ".gz" || last == ".zst" || last == ".bz2" || last == ".xz";
+  return is_compressed ? lower(file.stem().extension().string()) : last;
+}
+
+/// Formats that end users meet, but that no reader supports; what to do about each.
+[[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
+  std::string text = "unknown file format";
+  std::string remedy =
+      "supported are LAMMPS dump and data, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5 (Gadget, SWIFT), VTP and "
+      "VTU";
+  if (signature.head.empty()) {
+    text = "the file is empty";
+    remedy.clear();
+  } else if (signature.extension == ".bp" || signature.extension == ".bp4" || signature.extension == ".bp5") {
+    text = "ADIOS2 files are not supported";
+    remedy = "convert it, e.g. with `bpls -d` to CSV, or write HDF5 from the simulation";
+  }
+  Faults(bytes.file()).fail(0, text, remedy);
+}
+
+}  // namespace
+
+std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
+  const Bytes bytes = ByteSource::open(file, options.decompressed_limit);
+  const Signature signature{bytes->text(0, kHeadBytes), extension_of(file)};
+  if (is_ply(signature)) return open_ply(bytes);
+  if (is_hdf5(signature)) return open_hdf5(bytes, options);
+  if (is_gsd(signature)) return open_gsd(bytes);
+  if (is_las(signature)) return open_las(bytes);
+  if (is_npy(signature)) return open_npy(bytes);
+  if (is_npz(signature)) return open_npz(bytes);
+  if (is_vtk(signature)) return open_vtk(bytes);
+  if (is_lammps_dump(signature)) return open_lammps_dump(bytes);
+  if (is_mmcif(signature)) return open_mmcif(bytes);
+  if (is_pdb(signature)) return open_pdb(bytes);
+  if (is_xyz(signature)) return open_xyz(bytes);
+  if (is_lammps_data(signature)) return open_lammps_data(bytes);
+  if (is_csv(signature)) return open_csv(bytes);
+  refuse(*bytes, signature);
+}
+
+}  // namespace orrery::data

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "math/vec3.h"
+
+/// Particle data files as tables of named columns. The readers decide nothing that a scene decides: no radius is
+/// guessed, nothing is filtered or coloured.
+namespace orrery::data {
+
+using math::Vec3d;
+
+/// A text column. Each distinct text is stored once.
+struct Words {
+  std::vector<std::string> words;    ///< distinct, in order of first appearance
+  std::vector<std::uint32_t> index;  ///< one per row, into `words`
+};
+
+/// The values of a column, one per row, in the type in which the file stores them. Numbers of text files are float64,
+/// or int64 if the format declares the column an integer.
+using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>,
+                            std::vector<std::int32_t>, std::vector<std::uint16_t>, std::vector<std::uint8_t>, Words>;
+
+/// The alternatives of Values, in its order.
+enum class ColumnType { kFloat64, kFloat32, kInt64, kInt32, kUint16, kUint8, kText };
+
+/// "float64", "int32", "text"
+constexpr const char* type_name(ColumnType type) {
+  constexpr const char* kNames[] = {"float64", "float32", "int64", "int32", "uint16", "uint8", "text"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+struct ColumnInfo {
+  std::string name;
+  ColumnType type = ColumnType::kFloat64;
+};
+
+struct Column {
+  std::string name;
+  Values values;
+
+  ColumnType type() const { return static_cast<ColumnType>(values.index()); }
+  std::size_t size() const {
+    return std::visit(
+        [](const auto& v) {
+          if constexpr (requires { v.index; })
+            return v.index.size();
+          else
+            return v.size();
+        },
+        values);
+  }
+  /// The value of a row as a number; NaN in a text column.
+  double number(std::size_t row) const {
+    return std::visit(
+        [row](const auto& v) {
+          if constexpr (requires { v.index; })
+            return std::numeric_limits<double>::quiet_NaN();
+          else
+            return static_cast<double>(v[row]);
+        },
+        values);
+  }
+};
+
+/// Names of the columns whose meaning is known, from the format or from customary names; empty: there is none.
+struct Roles {
+  std::array<std::string, 3> position;  ///< x, y, z, in the file's unit of length; always set
+  std::string radius;                   ///< radius, or diameter
+  double radius_scale = 1;              ///< 0.5 if `radius` is a diameter
+  std::string element;                  ///< text: chemical symbol
+  std::string type;                     ///< particle type or class, a number or a text
+  std::string id;                       ///< identifies a particle in all frames
+  std::string chain;                    ///< text: chain name, for assemblies
+  std::array<std::string, 3> rgb;       ///< red, green, blue, display-referred sRGB
+  double rgb_maximum = 255;             ///< value of full intensity
+  std::array<std::string, 3> image;     ///< counts of periodic images, for unwrapping
+};
+
+/// A simulation box: a parallelepiped.
+struct Box {
+  Vec3d origin{0, 0, 0};
+  std::array<Vec3d, 3> edges = {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< a, b, c
+  std::array<bool, 3> periodic = {true, true, true};
+};
+
+/// Copies of some chains: p -> rotation p + translation.
+struct Transform {
+  std::array<Vec3d, 3> rows = {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
+  Vec3d translation{0, 0, 0};
+};
+struct AssemblyPart {
+  std::vector<std::string> chains;     ///< empty: all
+  std::vector<Transform> transforms;
+};
+
+/// A biological assembly: the file's atoms, copied.
+struct Assembly {
+  std::string name;  ///< "1"
+  std::vector<AssemblyPart> parts;
+};
+
+/// What a frame contains, known without reading its rows.
+struct FrameInfo {
+  std::uint64_t rows = 0;
+  std::vector<ColumnInfo> columns;
+  Roles roles;
+  std::optional<Box> box;
+  std::vector<Assembly> assemblies;
+  std::optional<double> step;  ///< time step, or the number that the file gives the frame
+  std::string title;           ///< comment or title of the file; may be empty
+  bool z_up = true;            ///< customary for the format
+};
+
+/// Columns of a frame. Rows are in file order.
+struct Table {
+  std::size_t rows = 0;
+  std::vector<Column> columns;
+
+  /// Returns a column; null if there is none.
+  const Column* find(std::string_view name) const {
+    for (const Column& column : columns)
+      if (column.name == name) return &column;
+    return nullptr;
+  }
+};
+
+}  // namespace orrery::data

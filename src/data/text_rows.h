@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "data/byte_source.h"
+#include "data/faults.h"
+#include "data/table.h"
+
+namespace orrery::data {
+
+inline constexpr std::uint64_t kRowsToEnd = std::numeric_limits<std::uint64_t>::max();
+
+/// A column of a text table: kFloat64, kInt64 or kText.
+struct TextColumn {
+  ColumnType type = ColumnType::kFloat64;
+  bool is_wanted = true;  ///< false: skipped, and not even checked
+};
+
+/// Rows of a text table: one line each.
+struct TextLayout {
+  std::uint64_t begin = 0;          ///< offset of the first row
+  std::uint64_t rows = kRowsToEnd;  ///< number of rows; kRowsToEnd: up to the end of the file, except blank lines
+  std::uint64_t first_line = 1;     ///< line number of the first row
+  char separator = ' ';             ///< ' ': any number of blanks and tabs; else one character, values may be quoted
+  bool allows_more = false;         ///< rows may have values beyond the last column
+  bool allows_missing = false;      ///< an empty value is NaN (only with a separator other than ' ')
+  std::vector<TextColumn> columns;
+};
+
+struct TextTable {
+  std::uint64_t rows = 0;
+  std::vector<Values> values;  ///< one per column; empty if it is not wanted
+  std::uint64_t end = 0;       ///< offset behind the last row
+};
+
+/// Parses the rows of a text table in parallel. Numbers are correctly rounded and independent of the locale; `nan`,
+/// `inf`, and Fortran's exponents `d` and `D` are read. Lines may end in LF or CRLF.
+///
+/// Errors     base::Error(kBadData) by `faults`: too few or too many values, malformed numbers, a file that ends before
+///            the last row, each with its line
+/// Cost       one pass over the bytes; memory of the wanted columns, 4 MiB per thread
+TextTable read_text_rows(const ByteSource& bytes, const TextLayout& layout, Faults& faults);
+
+/// Parses a number as in read_text_rows().
+///
+/// Result     false unless the whole word is a number
+bool parse_number(std::string_view word, double& value);
+
+}  // namespace orrery::data
