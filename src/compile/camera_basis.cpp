@@ -34,7 +34,9 @@ double focus_distance(const scene::Camera& camera) {
 kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& image) {
   const CameraAxes axes = camera_axes(camera);
   const double focus = focus_distance(camera);
-  const double pixel = 2 * tangent_of_half(camera.vfov) * focus / image.height;
+  const bool is_orthographic = camera.projection == scene::Projection::kOrthographic;
+  const double pixel = is_orthographic ? camera.width.value_or(0) / (image.width * image.pixel_aspect)
+                                       : 2 * tangent_of_half(camera.vfov) * focus / image.height;
   const double lens_radius = camera.defocus_angle > 0 ? tangent_of_half(camera.defocus_angle) * focus : 0;
   kernel::Camera out;
   set(out.origin, camera.look_from);
@@ -43,6 +45,7 @@ kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& i
   set(out.down, axes.y * -pixel);
   set(out.lens_u, axes.x * lens_radius);
   set(out.lens_v, axes.y * lens_radius);
+  out.is_orthographic = is_orthographic;
   out.half_width = image.width / 2.0 - image.data_window().x;
   out.half_height = image.height / 2.0 - image.data_window().y;
   return out;

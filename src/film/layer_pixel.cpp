@@ -35,7 +35,7 @@ SphereCoverage& share_of(std::vector<SphereCoverage>& shares, std::uint32_t sphe
 
 /// Position of a path's first hit.
 struct Hit {
-  double distance;  ///< from the camera, scene units
+  double distance;  ///< from the camera, with an orthographic one from its plane, scene units
   double z;         ///< distance along the view axis, scene units
   double exit_z;    ///< the same of the point where the ray leaves the sphere
 };
@@ -67,8 +67,8 @@ Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
     through += path.direction[k] * path.offset[k];
   }
   length = std::sqrt(length);
-  hit.distance = std::sqrt(far);
   hit.z /= length;
+  hit.distance = scene.camera.is_orthographic ? hit.z : std::sqrt(far);
   // The far end of the chord. From inside the sphere the first hit is the exit.
   hit.exit_z = hit.z + std::max(0.0, -2 * through) * along / length;
   return hit;

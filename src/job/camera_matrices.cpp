@@ -47,8 +47,14 @@ CameraMatrices camera_matrices(const scene::Camera& camera, const scene::Image& 
                        -math::dot(from, y),
                        -math::dot(from, z),
                        1};
-  const double tangent = std::tan(camera.vfov / 360 * std::numbers::pi);
   const double aspect = image.width * image.pixel_aspect / image.height;
+  if (camera.projection == scene::Projection::kOrthographic) {
+    // x = X / width + 1/2, y = 1/2 - Y / height, z = Z
+    const double width = camera.width.value_or(0);
+    const Matrix parallel = {1 / width, 0, 0, 0, 0, -aspect / width, 0, 0, 0, 0, 1, 0, 0.5, 0.5, 0, 1};
+    return {as_float(view), as_float(product(view, parallel))};
+  }
+  const double tangent = std::tan(camera.vfov / 360 * std::numbers::pi);
   // x / w = (X / (Z tangent aspect) + 1) / 2, y / w = (1 - Y / (Z tangent)) / 2, z / w = 1: layers hold the depth.
   const Matrix projection = {0.5 / (tangent * aspect), 0, 0, 0, 0, -0.5 / tangent, 0, 0, 0.5, 0.5, 1, 1, 0, 0, 0, 0};
   return {as_float(view), as_float(product(view, projection))};

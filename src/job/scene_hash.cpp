@@ -76,6 +76,7 @@ std::string scene_hash(const compile::CompiledScene& compiled) {
   const kernel::Camera& c = compiled.camera;
   hash.add(c.half_width);
   hash.add(c.half_height);
+  if (c.is_orthographic) hash.add_bits(1);  // others keep the hash that they had before there was a choice
   for (const auto* v : {&c.origin, &c.forward, &c.right, &c.down, &c.lens_u, &c.lens_v}) add_all(hash, *v);
   if (compiled.features.motion) {
     for (const kernel::Sphere& s : compiled.motion)

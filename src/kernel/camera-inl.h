@@ -22,7 +22,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// A ray from the camera's origin plus `offset`.
 template <class V>
 struct CameraRay {
-  Vec3<V> offset;     ///< on the lens; zero for a pinhole
+  Vec3<V> offset;     ///< on the lens, with an orthographic camera on the film; zero for a pinhole
   Vec3<V> direction;  ///< unit
 };
 
@@ -95,6 +95,13 @@ HWY_INLINE CameraRay<V> camera_ray(D d, const SceneView& scene, const CameraVect
   using T = hn::TFromD<D>;
   const V x = pixel_x - hn::Set(d, static_cast<T>(scene.camera.half_width)) + random.v[0];
   const V y = pixel_y - hn::Set(d, static_cast<T>(scene.camera.half_height)) + random.v[1];
+  if (scene.camera.is_orthographic) {
+    const auto film = mul_add(camera.down, y, camera.right * x);
+    if (!scene.features.lens) return {film, normalized(d, camera.forward)};
+    const auto lens = sample_unit_disc(d, random.v[2], random.v[3]);
+    const auto on_lens = mul_add(camera.lens_u, lens.x, camera.lens_v * lens.y);
+    return {film + on_lens, normalized(d, camera.forward - on_lens)};
+  }
   const auto to_focus = mul_add(camera.down, y, mul_add(camera.right, x, camera.forward));
   if (!scene.features.lens) return {{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, normalized(d, to_focus)};
   const auto lens = sample_unit_disc(d, random.v[2], random.v[3]);

@@ -3,11 +3,12 @@
 
 namespace orrery::kernel {
 
-/// A thin-lens camera as the kernel reads it. The ray through the film point (x, y), in pixels from the film's centre
-/// with y down, and the lens point (u, v) on the unit disc starts at origin + u lens_u + v lens_v and points to
-/// origin + forward + x right + y down.
+/// A thin-lens camera as the kernel reads it. The ray through the film point p = x right + y down, with (x, y) in pixels
+/// from the film's centre and y down, and the lens point l = u lens_u + v lens_v, with (u, v) on the unit disc, starts at
+/// origin + l and points to origin + forward + p. With an orthographic camera, it starts at origin + p + l and points to
+/// origin + p + forward.
 ///
-/// Space      world; the vectors reach to the focus plane, so all rays of a film point intersect there
+/// Space      world; `forward` reaches to the focus plane, so all rays of a film point intersect there
 struct Camera {
   double origin[3] = {0, 0, 0};
   double forward[3] = {0, 0, -1};  ///< to the centre of the focus plane
@@ -17,6 +18,7 @@ struct Camera {
   double lens_v[3] = {0, 0, 0};    ///< lens radius along up
   double half_width = 0;           ///< px, from the left edge of the rendered window to the centre of the frame
   double half_height = 0;          ///< px, the same from the upper edge
+  bool is_orthographic = false;
 };
 
 }  // namespace orrery::kernel

@@ -40,15 +40,19 @@ struct Image {
   }
 };
 
+enum class Projection { kPerspective, kOrthographic };
+
 struct Camera {
   Vec3d look_from{0, 0, 0};
   Vec3d look_at{0, 0, -1};
   Vec3d up{0, 1, 0};
-  double vfov = 90;          ///< degrees, vertical
+  double vfov = 90;          ///< perspective: degrees, vertical
   double defocus_angle = 0;  ///< degrees, apex angle of the cone from a point in focus to the lens; 0: pinhole
   std::optional<double> focus_distance;  ///< scene units; default: distance from look_from to look_at
   double shutter_open = 0;               ///< frames, relative to the frame
   double shutter_close = 0;              ///< frames, relative to the frame; equal to shutter_open: no motion blur
+  Projection projection = Projection::kPerspective;
+  std::optional<double> width;  ///< orthographic: scene units, width of the frame
 };
 
 enum class BackgroundType { kGradient, kConstant, kImage, kSky };

@@ -40,15 +40,23 @@ Table image_table() {
 
 Table camera_table() {
   return {"camera",
-          {vector<S>("look_from", kAnyLength, {"scene units", "Camera position. May be inside a sphere"},
+          {choice<S>("projection", {"perspective", "orthographic"},
+                     {"",
+                      "`perspective`: rays start at `look_from`. `orthographic`: parallel rays start on the plane through "
+                      "`look_from`; what is behind this plane is not visible"},
+                     [](S& s) -> Projection& { return s.camera.projection; }),
+           vector<S>("look_from", kAnyLength, {"scene units", "Camera position. May be inside a sphere"},
                      [](S& s) -> Vec3d& { return s.camera.look_from; }),
            vector<S>("look_at", kAnyLength, {"scene units", "Point at the centre of the image"},
                      [](S& s) -> Vec3d& { return s.camera.look_at; }),
            vector<S>("up", kAnyLength,
                      {"any length", "Up direction of the image. Must not be parallel to the view direction"},
                      [](S& s) -> Vec3d& { return s.camera.up; }),
-           number<S>("vfov", {0, 180, true, true}, {"degrees", "Vertical field of view"},
+           number<S>("vfov", {0, 180, true, true}, {"degrees", "Perspective: vertical field of view"},
                      [](S& s) -> double& { return s.camera.vfov; }),
+           optional_number<S>("width", kLength, {"scene units", "Orthographic: width of the image"},
+                              "none; required for orthographic",
+                              [](S& s) -> std::optional<double>& { return s.camera.width; }),
            number<S>(
                "defocus_angle", {0, 180, false, true},
                {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",

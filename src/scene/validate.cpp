@@ -79,6 +79,17 @@ void check_camera(const Camera& camera, Problems& diagnostics) {
   }
 }
 
+/// Checks that the keys of the camera belong to its projection.
+void check_projection(const Camera& camera, Problems& diagnostics) {
+  const bool is_orthographic = camera.projection == Projection::kOrthographic;
+  if (is_orthographic && !camera.width)
+    diagnostics.error("camera.projection", "orthographic needs `width`, the width of the image in scene units");
+  if (is_orthographic && camera.vfov != Camera().vfov)
+    diagnostics.warning("camera.vfov", "has no effect; an orthographic camera has `width`");
+  if (!is_orthographic && camera.width)
+    diagnostics.warning("camera.width", "has no effect; set camera.projection to \"orthographic\"");
+}
+
 void check_shutter(const Camera& camera, Problems& diagnostics) {
   if (camera.shutter_close < camera.shutter_open)
     diagnostics.error("camera.shutter_close", "the shutter closes at " + number_text(camera.shutter_close) +
@@ -223,6 +234,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene, const Scene* closing) 
   check_camera(scene.camera, diagnostics);
   check_background(scene.background, diagnostics);
   check_lens(scene.camera, diagnostics);
+  check_projection(scene.camera, diagnostics);
   check_shutter(scene.camera, diagnostics);
   check_spheres(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p)

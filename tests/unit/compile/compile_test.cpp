@@ -80,6 +80,20 @@ TEST(CompileCameraBasis, SpansTheImageOnTheFocusPlane) {
   EXPECT_EQ(c.half_width, 100);
 }
 
+TEST(CompileCameraBasis, AnOrthographicImageHasItsWidthAtAnyDistance) {
+  scene::Camera camera;
+  camera.projection = scene::Projection::kOrthographic;
+  camera.width = 3;
+  for (const double distance : {1e-3, 7.0, 1e9}) {
+    camera.look_from = {0, 0, distance};
+    camera.look_at = {0, 0, 0};
+    const kernel::Camera c = compile_camera(camera, {200, 100, 2});
+    EXPECT_TRUE(c.is_orthographic);
+    EXPECT_DOUBLE_EQ(c.right[0] * 200, 3);
+    EXPECT_DOUBLE_EQ(c.down[1] * 100, -0.75) << "pixels are twice as wide as high";
+  }
+}
+
 TEST(CompileCompile, HemisphereFeatureIsSetOnlyIfUsed) {
   scene::Scene s = one_of_each();
   s.materials[0].model = scene::Hemisphere{{1, 1, 1}};

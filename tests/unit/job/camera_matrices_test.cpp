@@ -94,5 +94,27 @@ TEST(JobCameraMatrices, PointsProjectToThePixelWhoseRaysHitThem) {
   }
 }
 
+TEST(JobCameraMatrices, OrthographicPointsProjectToThePixelWhoseRaysHitThem) {
+  scene::Camera camera = book_camera();
+  camera.projection = scene::Projection::kOrthographic;
+  camera.width = 5;
+  const scene::Image image{1200, 675, 1.5};
+  const CameraMatrices m = camera_matrices(camera, image);
+  const kernel::Camera rays = compile::compile_camera(camera, image);
+  for (const double px : {0.0, 17.5, 1199.0}) {
+    for (const double py : {0.0, 674.0}) {
+      const double x = px - rays.half_width, y = py - rays.half_height;
+      const auto at = [&](int i) {
+        return rays.origin[i] + 0.7 * rays.forward[i] + x * rays.right[i] + y * rays.down[i];
+      };
+      const Point4 p = times({at(0), at(1), at(2)}, m.world_to_ndc);
+      EXPECT_EQ(p.w, 1);
+      EXPECT_NEAR(p.x * image.width, px, 1e-3);
+      EXPECT_NEAR(p.y * image.height, py, 1e-3);
+      EXPECT_NEAR(p.z, 0.7 * math::length(camera.look_from), 1e-4);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace orrery::job

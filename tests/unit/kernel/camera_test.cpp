@@ -106,6 +106,35 @@ TEST(KernelCamera, PinholeRaysStartAtThePinhole) {
   EXPECT_NEAR(c.direction[1] / c.direction[2], (3 - 0.5) / -10, 1e-15);
 }
 
+TEST(KernelCamera, OrthographicRaysAreParallel) {
+  for (const double place : {0.0, 0.25, 0.9}) {
+    CameraCase c = lens_case();
+    c.has_lens = false;
+    c.camera.is_orthographic = true;
+    c.random[0] = place;
+    c.pixel[1] = 5;
+    ORRERY_BEST(camera_case)(c);
+    EXPECT_EQ(c.offset[0], place - 4);
+    EXPECT_EQ(c.offset[1], -2.5);
+    EXPECT_EQ(c.offset[2], 0);
+    EXPECT_EQ(c.direction[0], 0);
+    EXPECT_EQ(c.direction[1], 0);
+    EXPECT_EQ(c.direction[2], -1);
+  }
+}
+
+TEST(KernelCamera, OrthographicLensRaysMeetOnTheFocusPlane) {
+  CameraCase c = lens_case();
+  c.camera.is_orthographic = true;
+  c.random[2] = 0.1;
+  c.random[3] = 0.7;
+  ORRERY_BEST(camera_case)(c);
+  const double along = -10 / c.direction[2];
+  EXPECT_NE(c.direction[0], 0);
+  EXPECT_NEAR(c.offset[0] + along * c.direction[0], 0.5 - 4, 1e-13);
+  EXPECT_NEAR(c.offset[1] + along * c.direction[1], 3 - 0.5, 1e-13);
+}
+
 }  // namespace
 }  // namespace orrery::kernel
 #endif

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -200,6 +201,30 @@ TEST(RenderLayers, DepthNormalAndPositionMatchTheSphere) {
     EXPECT_FLOAT_EQ(plane(r, "denoise.normal.Z")[i], plane(r, "N.Z")[i]);
   }
   EXPECT_GT(inside, 300);
+}
+
+/// A sphere seen along its axis, from any distance, is a disc; depths are measured from the camera's plane.
+TEST(RenderLayers, OrthographicDepthsAreMeasuredAlongTheView) {
+  for (const double distance : {2.0, 5.0, 1e6}) {
+    scene::Scene s;
+    s.image = {32, 16};
+    s.camera.projection = scene::Projection::kOrthographic;
+    s.camera.width = 8;
+    s.camera.look_from = {0, 0, distance};
+    s.camera.look_at = {0, 0, 0};
+    s.render.samples = 16;
+    s.materials = {{"one", scene::Lambertian{{0.5, 0.25, 0.125}}}};
+    s.spheres = {{{1, 0, 0}, 1, 0, ""}};
+    const Result r = render_with(s, all_layers());
+    double covered = 0;
+    for (std::size_t i = 0; i < plane(r, "Z").size(); ++i) {
+      covered += static_cast<double>(plane(r, "CryptoObject00.G")[i]);
+      if (plane(r, "object_id.X")[i] == 0) continue;
+      EXPECT_EQ(plane(r, "Z")[i], plane(r, "depth.X")[i]);
+      EXPECT_NEAR(static_cast<double>(plane(r, "Z")[i]) / (distance - plane(r, "P.Z")[i]), 1, 1e-6);
+    }
+    EXPECT_NEAR(covered, std::numbers::pi * 16, 0.5) << "four pixels per unit; at " << distance;
+  }
 }
 
 /// The lens extends into a sphere, so paths of one pixel hit its surface from both sides. Each path's normal faces its

@@ -107,6 +107,28 @@ TEST(SceneValidate, CameraMustHaveADirection) {
   EXPECT_EQ(told(scene), Told{});
 }
 
+TEST(SceneValidate, AnOrthographicCameraNeedsAWidth) {
+  Scene scene;
+  scene.camera.projection = Projection::kOrthographic;
+  ASSERT_EQ(validate(scene).size(), 1u);
+  EXPECT_EQ(validate(scene)[0].severity, base::Severity::kError);
+  EXPECT_EQ(validate(scene)[0].key, "camera.projection");
+  scene.camera.width = 3;
+  EXPECT_TRUE(validate(scene).empty());
+}
+
+TEST(SceneValidate, KeysOfTheOtherProjectionHaveNoEffect) {
+  Scene scene;
+  scene.camera.width = 3;
+  ASSERT_EQ(validate(scene).size(), 1u);
+  EXPECT_EQ(validate(scene)[0].severity, base::Severity::kWarning);
+  EXPECT_EQ(validate(scene)[0].key, "camera.width");
+  scene.camera.projection = Projection::kOrthographic;
+  scene.camera.vfov = 20;
+  ASSERT_EQ(validate(scene).size(), 1u);
+  EXPECT_EQ(validate(scene)[0].key, "camera.vfov");
+}
+
 TEST(SceneValidate, UpMustNotBeZeroTinyOrParallel) {
   Scene scene;
   scene.camera.up = {0, 0, 0};
