@@ -112,6 +112,24 @@ std::optional<Value> read_window(Reading& reading, const toml::node& node, const
   return scene::Window{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
 }
 
+std::optional<Value> read_interval(Reading& reading, const toml::node& node, const std::string& name,
+                                   const scene::Range& range) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->size() != 2) {
+    reading.error(place_of(node), name + " must be two numbers like [0, 1], not " +
+                                      (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+    return {};
+  }
+  const auto low = read_number(reading, *array->get(0), name + "[0]", range);
+  const auto high = read_number(reading, *array->get(1), name + "[1]", range);
+  if (!low || !high) return {};
+  if (!(*low < *high)) {
+    reading.error(place_of(node), name + " is " + scene::interval_text({*low, *high}) + "; the first number must be less than the second");
+    return {};
+  }
+  return scene::Interval{*low, *high};
+}
+
 std::optional<Value> read_boolean(Reading& reading, const toml::node& node, const std::string& name) {
   if (const toml::value<bool>* value = node.as_boolean()) return value->get();
   wrong_type(reading, node, name, "true or false");
@@ -159,8 +177,44 @@ std::optional<Value> read_value(Reading& reading, const toml::node& node, const 
     case ValueType::kWindow: return read_window(reading, node, name, range);
     case ValueType::kBoolean: return read_boolean(reading, node, name);
     case ValueType::kChoices: return read_words(reading, node, name, choices);
+    case ValueType::kInterval: return read_interval(reading, node, name, range);
+    case ValueType::kName:
+      if (const toml::value<std::int64_t>* number = node.as_integer()) return std::to_string(number->get());
+      return read_text(reading, node, name, {});
   }
   return {};
+}
+
+const toml::node* node_at(const toml::table& table, const std::string& dotted_name) {
+  const std::size_t dot = dotted_name.find('.');
+  const toml::node* const node = table.get(dotted_name.substr(0, dot));
+  if (dot == std::string::npos || node == nullptr) return node;
+  const toml::table* const inner = node->as_table();
+  return inner != nullptr ? node_at(*inner, dotted_name.substr(dot + 1)) : nullptr;
+}
+
+bool has_subkeys(const std::vector<std::string>& known, const std::string& name) {
+  return std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k.starts_with(name + "."); });
+}
+
+void report_unknown_keys(Reading& reading, const toml::table& table, const std::string& table_name,
+                         const std::vector<std::string>& known) {
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    if (node.is_table() && has_subkeys(known, name)) {
+      std::vector<std::string> inner;
+      for (const std::string& k : known)
+        if (k.starts_with(name + ".")) inner.push_back(k.substr(name.size() + 1));
+      report_unknown_keys(reading, *node.as_table(), table_name + "." + name, inner);
+    } else if (std::find(known.begin(), known.end(), name) == known.end()) {
+      std::vector<std::string> direct;
+      for (const std::string& k : known)
+        if (const std::string first = k.substr(0, k.find('.'));
+            std::find(direct.begin(), direct.end(), first) == direct.end())
+          direct.push_back(first);
+      report_unknown_key(reading, key, table_name, direct);
+    }
+  }
 }
 
 void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,

@@ -38,9 +38,19 @@ std::optional<scene::Value> read_value(Reading& reading, const toml::node& node,
                                        scene::ValueType type, const scene::Range& range,
                                        const std::vector<std::string>& choices);
 
+/// Returns the node that a dotted name leads to; null if there is none.
+const toml::node* node_at(const toml::table& table, const std::string& dotted_name);
+
+/// Reports the keys of a table and its subtables that are not known; `known` are dotted names.
+void report_unknown_keys(Reading& reading, const toml::table& table, const std::string& table_name,
+                         const std::vector<std::string>& known);
+
 /// Reports an unknown key; `hint` replaces the suggestion.
 void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint = {});
+
+/// Whether a key can be a table: whether `known` has dotted names that begin with it.
+bool has_subkeys(const std::vector<std::string>& known, const std::string& name);
 
 /// Reads a table into a target according to its keys. Keys in `also` are valid, but read by the caller.
 template <class Target>
@@ -48,11 +58,11 @@ void read_keys(Reading& reading, const toml::table& table, const std::string& ta
                const std::vector<scene::Key<Target>>& keys, const std::vector<std::string>& also, Target& target) {
   std::vector<std::string> known = also;
   for (const auto& key : keys) known.push_back(key.name);
-  for (const auto& [key, node] : table)
-    if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(reading, key, table_name, known);
+  report_unknown_keys(reading, table, table_name, known);
   for (const auto& key : keys) {
-    const toml::node* node = table.get(key.name);
+    const toml::node* node = node_at(table, key.name);
+    // `radius` may be a number or a table, whose keys are `radius.column` and so on.
+    if (node != nullptr && node->is_table() && has_subkeys(known, key.name)) continue;
     const std::string full_name = table_name + "." + key.name;
     if (node == nullptr) {
       if (!key.required) continue;

@@ -108,7 +108,7 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
            "\nmaterial = " + string_text(material_name(scene, points.material)) + "\n";
     if (!points.name.empty()) out += "name = " + string_text(points.name) + "\n";
     if (!points.group.empty()) out += "group = " + string_text(points.group) + "\n";
-    if (points.radius) out += "radius = " + number_text(*points.radius) + "\n";
+    if (points.radius.value) out += "radius = " + number_text(*points.radius.value) + "\n";
     out += '\n';
   }
   if (!out.empty()) out.pop_back();  // the blank line after the last block

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Helpers for the definition of keys; used only by schema.cpp.
+// Helpers for the definition of keys; used only by schema.cpp and points_keys.cpp.
 #pragma once
 
 #include <string>
@@ -108,6 +108,13 @@ Key<Target> choice(const char* name, std::vector<std::string> choices, const Key
             return string_text(choices[static_cast<std::size_t>(at(const_cast<Target&>(t)))]);
           }};
 }
+/// Builds a key for one of several words, stored as text; empty: none.
+template <class Target, class At>
+Key<Target> choice_of_text(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
+  Key<Target> key = key_of<Target>(name, ValueType::kChoice, {}, about, at, string_text);
+  key.choices = std::move(choices);
+  return key;
+}
 /// Builds a key for an optional window; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_window(const char* name, const KeyDoc& about, const char* otherwise, At at) {
@@ -125,6 +132,28 @@ Key<Target> optional_window(const char* name, const KeyDoc& about, const char* o
     return w ? window_text(*w) : otherwise;
   };
   return key;
+}
+/// Builds a key for an optional integer; `otherwise` describes its default.
+template <class Target, class At>
+Key<Target> optional_integer(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
+  Key<Target> key = key_of<Target>(name, ValueType::kInteger, range, about, at, [otherwise](const auto& x) {
+    return x ? std::to_string(*x) : std::string(otherwise);
+  });
+  key.set = [at](Target& t, const Value& v) { at(t) = static_cast<int>(std::get<std::int64_t>(v)); };
+  return key;
+}
+/// Builds a key for an optional interval; `otherwise` describes its default.
+template <class Target, class At>
+Key<Target> optional_interval(const char* name, const KeyDoc& about, const char* otherwise, At at) {
+  Key<Target> key = key_of<Target>(name, ValueType::kInterval, {-kLargestLength, kLargestLength}, about, at,
+                                   [otherwise](const auto& x) { return x ? interval_text(*x) : std::string(otherwise); });
+  key.set = [at](Target& t, const Value& v) { at(t) = std::get<Interval>(v); };
+  return key;
+}
+/// Builds a key for a string or an integer.
+template <class Target, class At>
+Key<Target> name_or_number(const char* name, const KeyDoc& about, At at) {
+  return key_of<Target>(name, ValueType::kName, {}, about, at, string_text);
 }
 /// Builds a key for a list of choices in any order.
 template <class Target, class At>

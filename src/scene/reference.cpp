@@ -25,6 +25,8 @@ const char* type_name(const Key<Target>& key) {
     case ValueType::kChoices: return "list of";
     case ValueType::kWindow: return "[x, y, width, height]";
     case ValueType::kBoolean: return "boolean";
+    case ValueType::kInterval: return "[low, high]";
+    case ValueType::kName: return "string or integer";
   }
   return "";
 }
@@ -38,7 +40,9 @@ std::string range_text(const Key<Target>& key) {
     case ValueType::kNumber: return key.range.text();
     case ValueType::kWindow: return "inside the image";
     case ValueType::kVector: return "each " + key.range.text();
-    case ValueType::kText: return "any";
+    case ValueType::kText:
+    case ValueType::kName: return "any";
+    case ValueType::kInterval: return "low below high";
     case ValueType::kBoolean: return "`true`, `false`";
     case ValueType::kChoice:
     case ValueType::kChoices: return "`" + base::joined(key.choices) + "`";

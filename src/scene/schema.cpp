@@ -289,6 +289,10 @@ std::string window_text(const Window& w) {
          std::to_string(w.height) + "]";
 }
 
+std::string interval_text(const Interval& interval) {
+  return "[" + number_text(interval.low) + ", " + number_text(interval.high) + "]";
+}
+
 std::string Range::text() const {
   if (!from_open && !to_open) return number_text(from) + ".." + number_text(to);
   return std::string(from_open ? "above " : "at least ") + number_text(from) +
@@ -342,26 +346,6 @@ const std::vector<Key<Sphere>>& sphere_keys() {
                    [](Sphere& s) -> std::string& { return s.name; }),
       text<Sphere>("group", {"", "CryptoGroup name; objects of a group share one matte"},
                    [](Sphere& s) -> std::string& { return s.group; })};
-  return keys;
-}
-
-const std::vector<Key<Points>>& points_keys() {
-  static const std::vector<Key<Points>> keys = [] {
-    auto file =
-        required(text<Points>("file",
-                              {"", "PLY file, relative to the scene file",
-                               "Read once. 32 bytes of scene data per sphere, or 36 with materials, excluding the BVH"},
-                              [](Points& p) -> std::filesystem::path& { return p.file; }));
-    return std::vector<Key<Points>>{
-        file,
-        optional_number<Points>("radius", kLength, {"scene units", "Radius of every sphere. Overrides the file"},
-                                "as in the file", [](Points& p) -> std::optional<double>& { return p.radius; }),
-        text<Points>("name",
-                     {"", "Name in the CryptoObject matte, shared by all spheres of the file. Default: the file name"},
-                     [](Points& p) -> std::string& { return p.name; }),
-        text<Points>("group", {"", "CryptoGroup name; objects of a group share one matte"},
-                     [](Points& p) -> std::string& { return p.group; })};
-  }();
   return keys;
 }
 

@@ -14,10 +14,10 @@
 /// `--settings` and the documentation are derived. Defaults are the member initialisers in scene/scene.h.
 namespace orrery::scene {
 
-/// Value of a key in a scene file.
-using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window, bool>;
+/// Value of a key in a scene file. A kName is a string or an integer, and stored as a string.
+using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window, bool, Interval>;
 
-enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWindow, kBoolean };
+enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWindow, kBoolean, kInterval, kName };
 
 /// Interval of allowed numbers, closed unless an end is marked open; for a vector it applies to each component.
 struct Range {
@@ -34,7 +34,11 @@ struct Range {
 /// Formats a window for a scene file: "[0, 0, 640, 360]".
 std::string window_text(const Window& window);
 
-/// One key of a table in a scene file.
+/// Formats an interval for a scene file: "[0, 12]".
+std::string interval_text(const Interval& interval);
+
+/// One key of a table in a scene file. A dotted name is that of a key in a subtable: "radius.column" is `column` in
+/// `radius = { column = "diameter" }`.
 template <class Target>
 struct Key {
   std::string name;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/validate.h"
+
+namespace orrery::points {
+
+struct LoadRequest {
+  std::filesystem::path file;   ///< the data file
+  std::filesystem::path folder; ///< of the scene file, for the file of a colour map
+  std::string key;              ///< "points[0]", for diagnostics
+  int frame = 1;                ///< the rendered frame
+  std::size_t materials = 0;    ///< number of materials of the scene
+  std::uint64_t memory_limit = 0;  ///< bytes that the spheres may take; 0: no limit
+};
+
+/// Reads the spheres of a data file into `points`, as its keys say: selects rows, determines radii and colours, copies
+/// and transforms. The spheres are in the order of the particle ids, if the file has any, so that all frames have the
+/// same order.
+///
+/// Result     diagnostics about keys of the scene file: unknown columns, missing radii, selections that match nothing;
+///            `points` has no spheres if one of them is an error
+/// Errors     base::Error: those of data::open and data::DataFile; kNoMemory
+/// Cost       one read of the needed columns
+std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points);
+
+}  // namespace orrery::points

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
+#include "scene/key_builders.h"
+#include "scene/limits.h"
+#include "scene/schema.h"
+
+namespace orrery::scene {
+namespace {
+
+using P = Points;
+
+constexpr Range kAnyLength{-kLargestLength, kLargestLength};
+constexpr Range kLength{kSmallestRadius, kLargestLength};
+constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
+constexpr int kMaxCopies = 1000;
+
+std::vector<Key<P>> make_keys() {
+  std::vector<Key<P>> keys = {
+      required(text<P>("file",
+                       {"",
+                        "Data file, relative to the scene file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, "
+                        "HDF5 or VTK; see [Data files](data.md). May contain a frame pattern such as `####`",
+                        "Read once. 32 bytes of scene data per sphere, 36 with materials, 34 with colours, excluding "
+                        "the BVH"},
+                       [](P& p) -> std::filesystem::path& { return p.file; })),
+      optional_integer<P>("frame", {1, kMaxFrameOfFile}, {"", "Frame of the file, counted from 1"},
+                          "the rendered frame, if the file has several", [](P& p) -> std::optional<int>& { return p.frame; }),
+      optional_integer<P>("component", {0, 1000}, {"", "HDF5: particle type, N of `PartTypeN`"},
+                          "the only one", [](P& p) -> std::optional<int>& { return p.component; }),
+      optional_number<P>("radius", kLength, {"scene units", "Radius of every sphere. Overrides the file"},
+                         "as in the file", [](P& p) -> std::optional<double>& { return p.radius.value; }),
+      text<P>("radius.column", {"", "Radius by a column of the file"},
+              [](P& p) -> std::string& { return p.radius.column; }),
+      choice_of_text<P>("radius.element", {"vdw", "covalent", "ball"},
+                        {"",
+                         "Radius by chemical element, in Angstrom. `vdw`: van der Waals radius. `covalent`: covalent "
+                         "radius. `ball`: a quarter of the van der Waals radius"},
+                        [](P& p) -> std::string& { return p.radius.element; }),
+      number<P>("radius.scale", {0, kLargestLength, true, false},
+                {"", "Multiplies the radius by column or element: 0.5 if the column is a diameter"},
+                [](P& p) -> double& { return p.radius.scale; }),
+      text<P>("color.column", {"", "Colour by a column of the file, through `map`"},
+              [](P& p) -> std::string& { return p.color.column; }),
+      text<P>("color.map",
+              {"",
+               "Colour map: `fast`, `coolwarm`, `viridis`, `magma`, `inferno`, `plasma`, `cividis`, `batlow`, `turbo`, a "
+               "categorical set, or a text file relative to the scene file; see [Data files](data.md)"},
+              [](P& p) -> std::string& { return p.color.map; }),
+      optional_interval<P>("color.range", {"", "Values of the column at both ends of the map, e.g. `[-2, 2]`"},
+                           "minimum and maximum of the frame", [](P& p) -> std::optional<Interval>& { return p.color.range; }),
+      vector<P>("color.nan_color", {0, 1}, {"scene-linear", "Colour of values that are not numbers"},
+                [](P& p) -> Vec3d& { return p.color.nan_color; }),
+      choice_of_text<P>("color.element", {"jmol"}, {"", "Colour by chemical element. `jmol`: the colours of Jmol"},
+                        [](P& p) -> std::string& { return p.color.element; }),
+      boolean<P>("color.rgb", {"", "Colours of the file: sRGB"}, [](P& p) -> bool& { return p.color.rgb; }),
+      text<P>("select",
+              {"", "Condition on the columns, e.g. `type == 2 && z > 0`; see [Selections](data.md#selections)"},
+              [](P& p) -> std::string& { return p.select; }),
+      vector<P>("replicate", {1, kMaxCopies},
+                {"", "Number of copies of the periodic box along each of its edges", "As many spheres as copies"},
+                [](P& p) -> Vec3d& { return p.replicate; }),
+      boolean<P>("unwrap", {"", "Moves particles out of the periodic box by the image counts in the file"},
+                 [](P& p) -> bool& { return p.unwrap; }),
+      name_or_number<P>("assembly", {"", "PDB and mmCIF: biological assembly", "As many spheres as copies"},
+                        [](P& p) -> std::string& { return p.assembly; }),
+      number<P>("transform.scale", {0, kLargestLength, true, false},
+                {"", "Scale of coordinates and radii"}, [](P& p) -> double& { return p.transform.scale; }),
+      vector<P>("transform.rotate", {-kLargestRotation, kLargestRotation},
+                {"degrees", "Rotation about the x axis, then y, then z; after the scale"},
+                [](P& p) -> Vec3d& { return p.transform.rotate; }),
+      vector<P>("transform.translate", kAnyLength, {"scene units", "Translation, after the rotation"},
+                [](P& p) -> Vec3d& { return p.transform.translate; }),
+      boolean<P>("skip_bad", {"", "Leaves out rows whose coordinates or radius are not finite numbers"},
+                 [](P& p) -> bool& { return p.skip_bad; }),
+      text<P>("name",
+              {"", "Name in the CryptoObject matte, shared by all spheres of the file. Default: the file name"},
+              [](P& p) -> std::string& { return p.name; }),
+      text<P>("group", {"", "CryptoGroup name; objects of a group share one matte"},
+              [](P& p) -> std::string& { return p.group; })};
+  return keys;
+}
+
+}  // namespace
+
+const std::vector<Key<Points>>& points_keys() {
+  static const std::vector<Key<Points>> keys = make_keys();
+  return keys;
+}
+
+}  // namespace orrery::scene
