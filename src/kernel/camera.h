@@ -3,10 +3,10 @@
 
 namespace orrery::kernel {
 
-/// A thin-lens camera as the kernel reads it. The ray through the film point p = x right + y down, with (x, y) in pixels
-/// from the film's centre and y down, and the lens point l = u lens_u + v lens_v, with (u, v) on the unit disc, starts at
-/// origin + l and points to origin + forward + p. With an orthographic camera, it starts at origin + p + l and points to
-/// origin + p + forward.
+/// A thin-lens camera as the kernel reads it. The ray through the film point p = x right + y down, with (x, y) in
+/// pixels from the film's centre and y down, and the lens point l = u lens_u + v lens_v, with (u, v) on the unit disc,
+/// starts at origin + l and points to origin + forward + p. With an orthographic camera, it starts at origin + p + l
+/// and points to origin + p + forward.
 ///
 /// Space      world; `forward` reaches to the focus plane, so all rays of a film point intersect there
 struct Camera {

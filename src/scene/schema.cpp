@@ -39,41 +39,42 @@ Table image_table() {
 }
 
 Table camera_table() {
-  return {"camera",
-          {choice<S>("projection", {"perspective", "orthographic"},
-                     {"",
-                      "`perspective`: rays start at `look_from`. `orthographic`: parallel rays start on the plane through "
-                      "`look_from`; what is behind this plane is not visible"},
-                     [](S& s) -> Projection& { return s.camera.projection; }),
-           vector<S>("look_from", kAnyLength, {"scene units", "Camera position. May be inside a sphere"},
-                     [](S& s) -> Vec3d& { return s.camera.look_from; }),
-           vector<S>("look_at", kAnyLength, {"scene units", "Point at the centre of the image"},
-                     [](S& s) -> Vec3d& { return s.camera.look_at; }),
-           vector<S>("up", kAnyLength,
-                     {"any length", "Up direction of the image. Must not be parallel to the view direction"},
-                     [](S& s) -> Vec3d& { return s.camera.up; }),
-           number<S>("vfov", {0, 180, true, true}, {"degrees", "Perspective: vertical field of view"},
-                     [](S& s) -> double& { return s.camera.vfov; }),
-           optional_number<S>("width", kLength, {"scene units", "Orthographic: width of the image"},
-                              "none; required for orthographic",
-                              [](S& s) -> std::optional<double>& { return s.camera.width; }),
-           number<S>(
-               "defocus_angle", {0, 180, false, true},
-               {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",
-                "Above 0: one lens sample per path"},
-               [](S& s) -> double& { return s.camera.defocus_angle; }),
-           optional_number<S>("focus_distance", kLength,
-                              {"scene units", "Distance from the camera to the plane of focus"}, "distance to look_at",
-                              [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
-           number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
-                     {"frames", "Shutter opening time, relative to the frame"},
-                     [](S& s) -> double& { return s.camera.shutter_open; }),
-           number<S>("shutter_close", {-kLongestShutter, kLongestShutter},
-                     {"frames",
-                      "Shutter closing time, relative to the frame. If later than `shutter_open`, camera and spheres "
-                      "that move during the interval are motion-blurred",
-                      "Only if something moves: one extra random dimension per vertex, and motion-blurred bounds"},
-                     [](S& s) -> double& { return s.camera.shutter_close; })}};
+  return {
+      "camera",
+      {choice<S>("projection", {"perspective", "orthographic"},
+                 {"",
+                  "`perspective`: rays start at `look_from`. `orthographic`: parallel rays start on the plane through "
+                  "`look_from`; what is behind this plane is not visible"},
+                 [](S& s) -> Projection& { return s.camera.projection; }),
+       vector<S>("look_from", kAnyLength, {"scene units", "Camera position. May be inside a sphere"},
+                 [](S& s) -> Vec3d& { return s.camera.look_from; }),
+       vector<S>("look_at", kAnyLength, {"scene units", "Point at the centre of the image"},
+                 [](S& s) -> Vec3d& { return s.camera.look_at; }),
+       vector<S>("up", kAnyLength,
+                 {"any length", "Up direction of the image. Must not be parallel to the view direction"},
+                 [](S& s) -> Vec3d& { return s.camera.up; }),
+       number<S>("vfov", {0, 180, true, true}, {"degrees", "Perspective: vertical field of view"},
+                 [](S& s) -> double& { return s.camera.vfov; }),
+       optional_number<S>("width", kLength, {"scene units", "Orthographic: width of the image"},
+                          "none; required for orthographic",
+                          [](S& s) -> std::optional<double>& { return s.camera.width; }),
+       number<S>(
+           "defocus_angle", {0, 180, false, true},
+           {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",
+            "Above 0: one lens sample per path"},
+           [](S& s) -> double& { return s.camera.defocus_angle; }),
+       optional_number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the plane of focus"},
+                          "distance to look_at",
+                          [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
+       number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
+                 {"frames", "Shutter opening time, relative to the frame"},
+                 [](S& s) -> double& { return s.camera.shutter_open; }),
+       number<S>("shutter_close", {-kLongestShutter, kLongestShutter},
+                 {"frames",
+                  "Shutter closing time, relative to the frame. If later than `shutter_open`, camera and spheres "
+                  "that move during the interval are motion-blurred",
+                  "Only if something moves: one extra random dimension per vertex, and motion-blurred bounds"},
+                 [](S& s) -> double& { return s.camera.shutter_close; })}};
 }
 
 Table animation_table() {
