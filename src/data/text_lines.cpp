@@ -19,6 +19,22 @@ const char* line_end(const char* at) {
   return static_cast<const char*>(std::memchr(at, '\n', std::numeric_limits<std::size_t>::max() / 2));
 }
 
+std::uint64_t newline_count(const char* begin, const char* end) {
+  // Counts in bytes, which compilers vectorize.
+  constexpr std::ptrdiff_t kLanes = 32;
+  constexpr std::ptrdiff_t kBlock = kLanes * 255;
+  std::uint64_t count = 0;
+  const char* at = begin;
+  for (; end - at >= kBlock; at += kBlock) {
+    std::uint8_t counts[kLanes] = {};
+    for (std::ptrdiff_t i = 0; i < kBlock; i += kLanes)
+      for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane)
+        counts[lane] = static_cast<std::uint8_t>(counts[lane] + (at[i + lane] == '\n' ? 1 : 0));
+    for (const std::uint8_t n : counts) count += n;
+  }
+  return count + static_cast<std::uint64_t>(std::count(at, end, '\n'));
+}
+
 void TextLines::reserve(std::size_t count) {
   if (count <= capacity_) return;
   auto larger = std::make_unique_for_overwrite<char[]>(count);
@@ -57,22 +73,6 @@ void TextLines::read(const ByteSource& bytes, std::uint64_t first, std::uint64_t
     end_ = std::min(static_cast<std::size_t>(newline - buffer_.get()) + 1, count);
   }
   std::memset(buffer_.get() + end_, '\n', kTextPadding);
-}
-
-std::uint64_t TextLines::count() const {
-  // Counts in bytes, which compilers vectorize.
-  constexpr std::ptrdiff_t kLanes = 32;
-  constexpr std::ptrdiff_t kBlock = kLanes * 255;
-  std::uint64_t count = 0;
-  const char* at = begin();
-  for (; end() - at >= kBlock; at += kBlock) {
-    std::uint8_t counts[kLanes] = {};
-    for (std::ptrdiff_t i = 0; i < kBlock; i += kLanes)
-      for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane)
-        counts[lane] = static_cast<std::uint8_t>(counts[lane] + (at[i + lane] == '\n' ? 1 : 0));
-    for (const std::uint8_t n : counts) count += n;
-  }
-  return count + static_cast<std::uint64_t>(std::count(at, end(), '\n'));
 }
 
 std::uint64_t TextLines::filled_count() const {

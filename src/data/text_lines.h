@@ -14,6 +14,12 @@ namespace orrery::data {
 /// The longest line of a table that is read, bytes; longer ones are no text.
 inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
+/// Number of newlines in [begin, end).
+std::uint64_t newline_count(const char* begin, const char* end);
+
+/// The newline that ends a line of TextLines.
+const char* line_end(const char* at);
+
 /// The lines that begin in one range of a file. The last one ends in a newline, too, if necessary an added one;
 /// kTextPadding newlines follow.
 class TextLines {
@@ -30,7 +36,7 @@ class TextLines {
   std::uint64_t offset_of(const char* at) const { return offset_ + static_cast<std::uint64_t>(at - buffer_.get()); }
 
   /// Number of lines.
-  std::uint64_t count() const;
+  std::uint64_t count() const { return newline_count(begin(), end()); }
   /// Number of lines that contain more than white space.
   std::uint64_t filled_count() const;
 
@@ -43,9 +49,6 @@ class TextLines {
   std::size_t end_ = 0;
   std::uint64_t offset_ = 0;  ///< of the buffer
 };
-
-/// The newline that ends a line of TextLines.
-const char* line_end(const char* at);
 
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
