@@ -28,6 +28,8 @@ struct TextLayout {
   char separator = ' ';             ///< ' ': any number of blanks and tabs; else one character, values may be quoted
   bool allows_more = false;         ///< rows may have values beyond the last column
   bool allows_missing = false;      ///< an empty value is NaN (only with a separator other than ' ')
+  /// Bytes that a thread parses at a time; the result does not depend on it.
+  std::uint64_t chunk_bytes = std::uint64_t{1} << 20;
   std::vector<TextColumn> columns;
 };
 
@@ -42,7 +44,8 @@ struct TextTable {
 ///
 /// Errors     base::Error(kBadData) by `faults`: too few or too many values, malformed numbers, a file that ends before
 ///            the last row, each with its line
-/// Cost       one pass over the bytes; memory of the wanted columns, 4 MiB per thread
+/// Cost       one pass over the bytes, two if the number of rows is not known; memory of the wanted columns, a few MiB
+/// per thread
 TextTable read_text_rows(const ByteSource& bytes, const TextLayout& layout, Faults& faults);
 
 /// Parses a number as in read_text_rows().

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/byte_source.h"
+
+namespace orrery::data {
+
+/// Reads a text line by line, and skips lines fast.
+class TextCursor {
+ public:
+  explicit TextCursor(const ByteSource& bytes, std::uint64_t offset = 0, std::uint64_t line = 1)
+      : bytes_(&bytes), offset_(offset), line_(line) {}
+
+  /// Offset of the next line.
+  std::uint64_t offset() const { return offset_; }
+  /// Number of the next line, from 1.
+  std::uint64_t line() const { return line_; }
+  bool at_end() const { return offset_ >= bytes_->size(); }
+
+  /// Reads a line, without its end.
+  ///
+  /// Result     false at the end of the file
+  /// Errors     base::Error: kIo; kBadData for a line that is too long
+  bool next(std::string& text);
+
+  /// Skips lines.
+  ///
+  /// Result     how many there were, up to `count`
+  std::uint64_t skip(std::uint64_t count);
+
+ private:
+  bool fill(std::size_t count);
+
+  const ByteSource* bytes_;
+  std::uint64_t offset_;
+  std::uint64_t line_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0;  ///< of the unread bytes in the buffer
+};
+
+/// The words of a text, which are separated by blanks and tabs.
+std::vector<std::string_view> words_of(std::string_view text);
+
+/// Reads an integer that is the whole word.
+///
+/// Result     false unless it is one
+bool parse_integer(std::string_view word, std::int64_t& value);
+
+}  // namespace orrery::data

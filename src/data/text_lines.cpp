@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/text_lines.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace orrery::data {
+namespace {
+
+const char* find_newline(const char* begin, const char* end) {
+  const void* const found = begin == end ? nullptr : std::memchr(begin, '\n', static_cast<std::size_t>(end - begin));
+  return found == nullptr ? end : static_cast<const char*>(found);
+}
+
+}  // namespace
+
+const char* line_end(const char* at) {
+  return static_cast<const char*>(std::memchr(at, '\n', std::numeric_limits<std::size_t>::max() / 2));
+}
+
+std::uint64_t newline_count(const char* begin, const char* end) {
+  // Counts in bytes, which compilers vectorize.
+  constexpr std::ptrdiff_t kLanes = 32;
+  constexpr std::ptrdiff_t kBlock = kLanes * 255;
+  std::uint64_t count = 0;
+  const char* at = begin;
+  for (; end - at >= kBlock; at += kBlock) {
+    std::uint8_t counts[kLanes] = {};
+    for (std::ptrdiff_t i = 0; i < kBlock; i += kLanes)
+      for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane)
+        counts[lane] = static_cast<std::uint8_t>(counts[lane] + (at[i + lane] == '\n' ? 1 : 0));
+    for (const std::uint8_t n : counts) count += n;
+  }
+  return count + static_cast<std::uint64_t>(std::count(at, end, '\n'));
+}
+
+void TextLines::reserve(std::size_t count) {
+  if (count <= capacity_) return;
+  auto larger = std::make_unique_for_overwrite<char[]>(count);
+  if (buffer_) std::memcpy(larger.get(), buffer_.get(), capacity_);
+  buffer_ = std::move(larger);
+  capacity_ = count;
+}
+
+void TextLines::read(const ByteSource& bytes, std::uint64_t first, std::uint64_t last, bool is_line_start) {
+  last = std::min(last, bytes.size());
+  first = std::min(first, last);
+  // The byte in front of the range tells whether a line begins with the range.
+  offset_ = is_line_start || first == 0 ? first : first - 1;
+  auto count = static_cast<std::size_t>(last - offset_);
+  constexpr std::size_t kStep = std::size_t{4} << 10;  // the rest of a line is read in steps
+  reserve(count + kStep + kTextPadding);
+  bytes.read(offset_, count, buffer_.get());
+  begin_ = 0;
+  if (offset_ != first) {
+    const char* const newline = find_newline(buffer_.get(), buffer_.get() + count);
+    begin_ = std::min(static_cast<std::size_t>(newline - buffer_.get()) + 1, count);
+  }
+  end_ = count;
+  while (end_ > begin_ && buffer_[end_ - 1] != '\n') {
+    const auto more = static_cast<std::size_t>(std::min<std::uint64_t>(kStep, bytes.size() - offset_ - count));
+    if (more == 0) {
+      buffer_[end_++] = '\n';
+      break;
+    }
+    if (count - static_cast<std::size_t>(last - offset_) > kMaxLineBytes)
+      Faults(bytes.file()).fail(0, "a line is longer than 1 MiB", "the file is damaged, or no text file");
+    reserve(count + more + kStep + kTextPadding);
+    bytes.read(offset_ + count, more, buffer_.get() + count);
+    const char* const newline = find_newline(buffer_.get() + count, buffer_.get() + count + more);
+    count += more;
+    end_ = std::min(static_cast<std::size_t>(newline - buffer_.get()) + 1, count);
+  }
+  std::memset(buffer_.get() + end_, '\n', kTextPadding);
+}
+
+std::uint64_t TextLines::filled_count() const {
+  std::uint64_t count = 0;
+  for (const char* at = begin(); at < end(); at = line_end(at) + 1)
+    if (*skip_blanks(at) != '\n') ++count;
+  return count;
+}
+
+}  // namespace orrery::data

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "data/byte_source.h"
+#include "data/faults.h"
+#include "data/text_number.h"
+
+namespace orrery::data {
+
+/// The longest line of a table that is read, bytes; longer ones are no text.
+inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
+
+/// Number of newlines in [begin, end).
+std::uint64_t newline_count(const char* begin, const char* end);
+
+/// The newline that ends a line of TextLines.
+const char* line_end(const char* at);
+
+/// The lines that begin in one range of a file. The last one ends in a newline, too, if necessary an added one;
+/// kTextPadding newlines follow.
+class TextLines {
+ public:
+  /// Reads the lines whose first byte is at `first` <= offset < `last`. The memory is used again by the next call.
+  ///
+  /// `is_line_start`  a line begins at `first`, even if no newline precedes it
+  /// Errors           base::Error: kIo; kBadData for a line that is too long
+  void read(const ByteSource& bytes, std::uint64_t first, std::uint64_t last, bool is_line_start);
+
+  const char* begin() const { return buffer_.get() + begin_; }
+  const char* end() const { return buffer_.get() + end_; }
+  /// Offset of a byte of these lines in the file.
+  std::uint64_t offset_of(const char* at) const { return offset_ + static_cast<std::uint64_t>(at - buffer_.get()); }
+
+  /// Number of lines.
+  std::uint64_t count() const { return newline_count(begin(), end()); }
+  /// Number of lines that contain more than white space.
+  std::uint64_t filled_count() const;
+
+ private:
+  void reserve(std::size_t count);
+
+  std::unique_ptr<char[]> buffer_;
+  std::size_t capacity_ = 0;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  std::uint64_t offset_ = 0;  ///< of the buffer
+};
+
+constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+inline const char* skip_blanks(const char* at) {
+  while (is_blank(*at)) ++at;
+  return at;
+}
+
+}  // namespace orrery::data

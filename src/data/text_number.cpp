@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/text_number.h"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "data/text_rows.h"
+
+namespace orrery::data {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool may_be_in_number(char c) {
+  return is_digit(c) || c == '+' || c == '-' || c == '.' || c == '(' || c == ')' || c == '_' ||
+         (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/// The magnitude of a number that is too large or too small for a double. Its exponent may be too large for an integer.
+double out_of_range(std::string_view word) {
+  const std::size_t letter = std::min(word.find('e'), word.size());
+  const std::string_view mantissa = word.substr(0, letter);
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  const auto digit = static_cast<std::int64_t>(mantissa.find_first_of("123456789"));
+  // Power of ten of the first digit that counts.
+  std::int64_t power = static_cast<std::int64_t>(point) - digit;
+  if (letter < word.size()) {
+    const std::string_view exponent = word.substr(letter + 1 + (word[letter + 1] == '+' ? 1 : 0));
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(exponent.data(), exponent.data() + exponent.size(), value);
+    constexpr std::int64_t kFar = std::int64_t{1} << 62;  // no mantissa has so many digits
+    if (error != std::errc{}) value = exponent.front() == '-' ? -kFar : kFar;
+    power += std::clamp(value, -kFar, kFar);
+  }
+  return power > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+}
+
+/// Reads a number that is the whole word, without its sign.
+bool parse_magnitude(std::string word, double& value) {
+  // from_chars() reads a sign, too, and no exponent of Fortran's.
+  if (word.empty() || !(is_digit(word[0]) || word[0] == '.' || std::isalpha(static_cast<unsigned char>(word[0])) != 0))
+    return false;
+  if (is_digit(word[0]) || word[0] == '.')
+    for (char& c : word)
+      if (c == 'E' || c == 'd' || c == 'D') c = 'e';
+  const char* const end = word.data() + word.size();
+  const auto result = std::from_chars(word.data(), end, value);
+  if (result.ptr != end) return false;
+  if (result.ec == std::errc::result_out_of_range) value = out_of_range(word);
+  return result.ec == std::errc{} || result.ec == std::errc::result_out_of_range;
+}
+
+}  // namespace
+
+const char* scan_number_slowly(const char* at, double& value) {
+  const char* end = at;
+  while (may_be_in_number(*end)) ++end;
+  const bool is_negative = *at == '-';
+  const char* const first = at + (is_negative || *at == '+' ? 1 : 0);
+  if (first > end || !parse_magnitude({first, end}, value)) return nullptr;
+  if (is_negative) value = -value;
+  return end;
+}
+
+bool parse_number(std::string_view word, double& value) {
+  std::string padded(word);
+  padded.append(kTextPadding, '\n');
+  return scan_number(padded.data(), value) == padded.data() + word.size();
+}
+
+}  // namespace orrery::data

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/text_row_parser.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace orrery::data {
+namespace {
+
+constexpr bool ends_word(char c) { return is_blank(c) || c == '\n'; }
+
+const char* word_end(const char* at) {
+  while (!ends_word(*at)) ++at;
+  return at;
+}
+
+template <typename T>
+T& element(void* column, std::uint64_t row) {
+  return static_cast<T*>(column)[row];
+}
+
+}  // namespace
+
+std::uint32_t WordList::index_of(std::string_view word) {
+  if (last_ < words_.size() && words_[last_] == word) return last_;
+  const auto [at, is_new] = indices_.try_emplace(word, static_cast<std::uint32_t>(words_.size()));
+  if (is_new) words_.push_back(word);
+  return last_ = at->second;
+}
+
+void WordList::clear() {
+  words_.clear();
+  indices_.clear();
+}
+
+const char* RowParser::parse(const TextLines& lines, std::uint64_t line, std::uint64_t first_row, std::uint64_t rows,
+                             const ColumnAddresses& columns) {
+  columns_ = &columns;
+  for (WordList& words : words_) words.clear();
+  unescaped_.clear();
+  faults_.clear();
+  fault_count_ = 0;
+  row_ = first_row;
+  line_ = line;
+  const bool skips_empty = layout_->rows == kRowsToEnd;
+  const char* at = lines.begin();
+  for (const std::uint64_t end = first_row + rows; row_ < end && at < lines.end(); ++line_) {
+    const char* const start = at;
+    if (skips_empty && *skip_blanks(at) == '\n') {
+      at = line_end(at) + 1;
+      continue;
+    }
+    at = layout_->separator == ' ' ? parse_blank_separated(start) : parse_separated(start);
+    if (at == nullptr) at = line_end(start);
+    ++at;
+    ++row_;
+  }
+  return at;
+}
+
+const char* RowParser::parse_blank_separated(const char* at) {
+  const std::size_t count = layout_->columns.size();
+  for (std::size_t c = 0; c < count; ++c) {
+    at = skip_blanks(at);
+    const char* const begin = at;
+    if (*at == '\n') {
+      fail("has " + std::to_string(c) + " values, not " + std::to_string(count));
+      return nullptr;
+    }
+    void* const column = (*columns_)[c];
+    if (column == nullptr) {
+      at = word_end(at);
+      continue;
+    }
+    switch (layout_->columns[c].type) {
+      case ColumnType::kFloat64: at = scan_number(at, element<double>(column, row_)); break;
+      case ColumnType::kInt64: at = scan_integer(at, element<std::int64_t>(column, row_)); break;
+      default: at = word_end(at); element<std::uint32_t>(column, row_) = words_[c].index_of({begin, at});
+    }
+    if (at == nullptr || !ends_word(*at)) {
+      fail_value(c, begin, word_end(begin));
+      return nullptr;
+    }
+  }
+  if (layout_->allows_more) return line_end(at);
+  at = skip_blanks(at);
+  if (*at == '\n') return at;
+  fail("has more than " + std::to_string(count) + " values");
+  return nullptr;
+}
+
+const char* RowParser::parse_separated(const char* at) {
+  const char separator = layout_->separator;
+  const auto skip = [separator](const char* p) {
+    while (is_blank(*p) && *p != separator) ++p;
+    return p;
+  };
+  const std::size_t count = layout_->columns.size();
+  for (std::size_t c = 0; c < count; ++c) {
+    if (c > 0) {
+      if (*at != separator) {
+        fail("has " + std::to_string(c) + " values, not " + std::to_string(count));
+        return nullptr;
+      }
+      ++at;
+    }
+    at = skip(at);
+    std::string_view value;
+    const char* const begin = at;
+    if (*at == '"') {
+      at = quoted_value(at, value);
+      if (at == nullptr) {
+        fail("column " + std::to_string(c + 1) + ": a quoted value does not end in this line");
+        return nullptr;
+      }
+      at = skip(at);
+    } else {
+      while (*at != separator && *at != '\n') ++at;
+      const char* end = at;
+      while (end > begin && is_blank(end[-1])) --end;
+      value = {begin, end};
+    }
+    if ((*at != separator && *at != '\n') || !store(c, value)) {
+      fail_value(c, begin, std::find_if(at, line_end(at), [&](char x) { return x == separator; }));
+      return nullptr;
+    }
+  }
+  if (*at == '\n' || layout_->allows_more) return line_end(at);
+  fail("has more than " + std::to_string(count) + " values");
+  return nullptr;
+}
+
+/// Result     behind the closing quote; null if there is none
+const char* RowParser::quoted_value(const char* at, std::string_view& value) {
+  const char* const begin = ++at;
+  bool has_quotes = false;
+  for (; *at != '\n'; ++at) {
+    if (*at != '"') continue;
+    if (at[1] != '"') break;
+    has_quotes = true;
+    ++at;
+  }
+  if (*at == '\n') return nullptr;
+  value = {begin, at};
+  if (!has_quotes) return at + 1;
+  std::string text;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    text += value[i];
+    if (value[i] == '"') ++i;
+  }
+  value = unescaped_.emplace_back(std::move(text));
+  return at + 1;
+}
+
+/// Result     false if the value is not of the column's type
+bool RowParser::store(std::size_t c, std::string_view value) {
+  void* const column = (*columns_)[c];
+  if (column == nullptr) return true;
+  const char* const end = value.data() + value.size();
+  switch (layout_->columns[c].type) {
+    case ColumnType::kFloat64: {
+      auto& number = element<double>(column, row_);
+      if (!value.empty()) return scan_number(value.data(), number) == end;
+      number = std::numeric_limits<double>::quiet_NaN();
+      return layout_->allows_missing;
+    }
+    case ColumnType::kInt64:
+      return !value.empty() && scan_integer(value.data(), element<std::int64_t>(column, row_)) == end;
+    default: element<std::uint32_t>(column, row_) = words_[c].index_of(value); return true;
+  }
+}
+
+void RowParser::fail(std::string text) {
+  constexpr std::size_t kMaxKept = 10;  // as many as Faults lists
+  if (++fault_count_ <= kMaxKept) faults_.push_back({line_, std::move(text)});
+}
+
+void RowParser::fail_value(std::size_t c, const char* begin, const char* end) {
+  constexpr std::ptrdiff_t kMaxShown = 40;
+  const bool is_long = end - begin > kMaxShown;
+  const std::string word(begin, is_long ? begin + kMaxShown : end);
+  fail("column " + std::to_string(c + 1) + ": '" + word + (is_long ? "...' is not " : "' is not ") +
+       (layout_->columns[c].type == ColumnType::kInt64 ? "an integer" : "a number"));
+}
+
+}  // namespace orrery::data

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "data/text_lines.h"
+#include "data/text_rows.h"
+
+namespace orrery::data {
+
+/// Distinct words of a column, in order of first appearance. The text of the words belongs to someone else.
+class WordList {
+ public:
+  std::uint32_t index_of(std::string_view word);
+  const std::vector<std::string_view>& words() const { return words_; }
+  void clear();
+
+ private:
+  std::vector<std::string_view> words_;
+  std::unordered_map<std::string_view, std::uint32_t> indices_;
+  std::uint32_t last_ = 0;
+};
+
+/// Where the parsed values of a table go; one address per column, null where a column is not wanted.
+using ColumnAddresses = std::vector<void*>;
+
+/// Parses some lines of a table. Used by one thread at a time.
+class RowParser {
+ public:
+  struct Fault {
+    std::uint64_t line;
+    std::string text;
+  };
+
+  explicit RowParser(const TextLayout& layout) : layout_(&layout), words_(layout.columns.size()) {}
+
+  /// Parses lines into `rows` rows from `first_row` of the columns. Text columns receive indices into words().
+  ///
+  /// `line`     number of the first line
+  /// Result     the end of the last row
+  const char* parse(const TextLines& lines, std::uint64_t line, std::uint64_t first_row, std::uint64_t rows,
+                    const ColumnAddresses& columns);
+
+  /// Distinct words of a text column, valid as long as the lines.
+  const std::vector<std::string_view>& words(std::size_t column) const { return words_[column].words(); }
+  /// The first faulty lines, by line.
+  const std::vector<Fault>& faults() const { return faults_; }
+  std::uint64_t fault_count() const { return fault_count_; }
+
+ private:
+  const char* parse_blank_separated(const char* at);
+  const char* parse_separated(const char* at);
+  const char* quoted_value(const char* at, std::string_view& value);
+  bool store(std::size_t column, std::string_view value);
+  void fail(std::string text);
+  void fail_value(std::size_t column, const char* begin, const char* end);
+
+  const TextLayout* layout_;
+  const ColumnAddresses* columns_ = nullptr;
+  std::uint64_t row_ = 0;
+  std::uint64_t line_ = 0;
+  std::vector<WordList> words_;
+  std::deque<std::string> unescaped_;  ///< words that contain quotes
+  std::vector<Fault> faults_;
+  std::uint64_t fault_count_ = 0;
+};
+
+}  // namespace orrery::data
