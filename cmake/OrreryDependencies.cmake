@@ -27,18 +27,23 @@ find_dependency(OpenImageIO CONFIG)
 find_dependency(JPEG)
 find_dependency(LibArchive)
 find_dependency(pugixml CONFIG)
-find_dependency(HDF5 COMPONENTS C)
 
-# Debian 12 has gemmi as headers alone, Debian 13 with a library; neither has a CMake config.
-if(NOT TARGET orrery::gemmi)
-  find_path(ORRERY_GEMMI_INCLUDE gemmi/pdb.hpp REQUIRED)
-  find_library(ORRERY_GEMMI_LIBRARY gemmi_cpp)
-  add_library(orrery::gemmi INTERFACE IMPORTED)
-  target_include_directories(orrery::gemmi SYSTEM INTERFACE ${ORRERY_GEMMI_INCLUDE})
-  if(ORRERY_GEMMI_LIBRARY)
-    target_link_libraries(orrery::gemmi INTERFACE ${ORRERY_GEMMI_LIBRARY})
+# Libraries without a CMake config. CMake's own module for HDF5 requires the language C. Debian 12 has gemmi as headers
+# alone, Debian 13 with a library.
+find_path(ORRERY_HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
+find_library(ORRERY_HDF5_LIBRARY NAMES hdf5_serial hdf5 REQUIRED)
+find_path(ORRERY_GEMMI_INCLUDE gemmi/pdb.hpp REQUIRED)
+find_library(ORRERY_GEMMI_LIBRARY gemmi_cpp)
+foreach(name IN ITEMS HDF5 GEMMI)
+  string(TOLOWER orrery::${name} target)
+  if(NOT TARGET ${target})
+    add_library(${target} INTERFACE IMPORTED)
+    target_include_directories(${target} SYSTEM INTERFACE ${ORRERY_${name}_INCLUDE})
+    if(ORRERY_${name}_LIBRARY)
+      target_link_libraries(${target} INTERFACE ${ORRERY_${name}_LIBRARY})
+    endif()
   endif()
-endif()
+endforeach()
 
 # Debian's configs of these two list include directories that do not exist, which CMake rejects when it generates.
 foreach(target IN ITEMS OpenImageIO::OpenImageIO OpenColorIO::OpenColorIO)

@@ -27,10 +27,11 @@ if(NOT program OR NOT rooms)
 endif()
 run(fields dpkg-deb --field ${program})
 must_match("the program's package" "${fields}" "Package: orrery\n" "Depends: [^\n]*libembree" "Depends: [^\n]*libopenimageio"
-           "Depends: [^\n]*libopencolorio")
+           "Depends: [^\n]*libopencolorio" "Depends: [^\n]*libarchive")
 run(files dpkg-deb --contents ${program})
 must_match("the program's package" "${files}" "/usr/bin/orrery\n"
-           "/usr/libexec/orrery/orrery-program\n" "/usr/share/doc/orrery/copyright\n")
+           "/usr/libexec/orrery/orrery-program\n" "/usr/libexec/orrery/orrery-image\\.so\n"
+           "/usr/libexec/orrery/orrery-data\\.so\n" "/usr/share/doc/orrery/copyright\n")
 if(files MATCHES "\\.(a|h|cmake)\n")
   message(FATAL_ERROR "the program's package contains development files:\n${files}")
 endif()

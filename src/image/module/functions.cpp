@@ -4,7 +4,7 @@
 
 namespace orrery::image {
 
-extern "C" const Functions* orrery_image_functions() {
+extern "C" const void* orrery_image_functions() {
   static constexpr Functions functions{
       set_threads, oiio_version,  read,          read_map_header, read_map,     write_exr,      write_deep,
       write_hdr,   write_encoded, write_partial, read_provenance, read_partial, verified_stamp,

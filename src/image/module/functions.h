@@ -28,8 +28,4 @@ struct Functions {
   decltype(&image::verified_stamp) verified_stamp;
 };
 
-/// The only symbol that the program looks up in the module.
-inline constexpr const char* kFunctionsName = "orrery_image_functions";
-using GetFunctions = const Functions* (*)();
-
 }  // namespace orrery::image

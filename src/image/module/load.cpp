@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program's side of the module: forwards the room's functions to the module and loads it at the first call. Loading
 // OpenImageIO's 260 libraries takes longer than most commands, so commands without image I/O do not load them.
-#include <dlfcn.h>
-
 #include <atomic>
 #include <chrono>
 #include <future>
 
-#include "base/error.h"
+#include "base/module.h"
 #include "image/module/functions.h"
 
 namespace orrery::image {
@@ -15,14 +13,8 @@ namespace {
 
 std::atomic<int> threads{0};  ///< 0: set_threads() was not called
 
-/// Loads the module from the folder of the executable, in the build tree and in the installation.
 const Functions& load() {
-  const std::filesystem::path file =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / ORRERY_IMAGE_MODULE;
-  void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* const get = module != nullptr ? dlsym(module, kFunctionsName) : nullptr;
-  if (get == nullptr) throw base::Error(base::ErrorKind::kInternal, std::string("cannot load ") + dlerror());
-  const Functions& functions = *reinterpret_cast<GetFunctions>(get)();
+  const Functions& functions = *static_cast<const Functions*>(base::load_module("image"));
   if (threads > 0) functions.set_threads(threads);
   return functions;
 }

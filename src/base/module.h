@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace orrery::base {
+
+/// Loads the module of a room, `orrery-ROOM.so` in the folder of the executable, and returns the result of its function
+/// `orrery_ROOM_functions`: the table of the room's functions. A module stays loaded until the process ends.
+///
+/// Errors     base::Error(kInternal): the module is missing or damaged
+const void* load_module(const std::string& room);
+
+}  // namespace orrery::base

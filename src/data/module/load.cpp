@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program's side of the module: forwards the room's functions to the module and loads it at the first call, so that
+// only commands that read data files load libarchive, HDF5, gemmi and pugixml.
+#include "base/module.h"
+#include "data/module/functions.h"
+
+namespace orrery::data {
+namespace {
+
+const Functions& module() {
+  static const Functions& functions = *static_cast<const Functions*>(base::load_module("data"));
+  return functions;
+}
+
+}  // namespace
+
+std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
+  return module().open(file, options);
+}
+
+}  // namespace orrery::data
