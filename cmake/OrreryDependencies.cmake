@@ -26,6 +26,7 @@ find_dependency(OpenColorIO CONFIG PATHS /usr/share/cmake)
 find_dependency(OpenImageIO CONFIG)
 find_dependency(JPEG)
 find_dependency(LibArchive)
+find_dependency(ZLIB)
 find_dependency(pugixml CONFIG)
 find_dependency(HDF5 COMPONENTS C)
 

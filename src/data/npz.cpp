@@ -5,6 +5,6 @@ namespace orrery::data {
 
 bool is_npz(const Signature&) { return false; }
 
-std::unique_ptr<DataFile> open_npz(const Bytes&) { return nullptr; }
+std::unique_ptr<DataFile> open_npz(const Bytes&, const OpenOptions&) { return nullptr; }
 
 }  // namespace orrery::data
