@@ -26,6 +26,7 @@ find_dependency(OpenColorIO CONFIG PATHS /usr/share/cmake)
 find_dependency(OpenImageIO CONFIG)
 find_dependency(JPEG)
 find_dependency(LibArchive)
+find_dependency(ZLIB)
 find_dependency(pugixml CONFIG)
 
 # Libraries without a CMake config. CMake's own module for HDF5 requires the language C. Debian 12 has gemmi as headers

@@ -46,7 +46,6 @@ class PlainFile final : public ByteSource {
   int descriptor_;
 };
 
-/// The decompressed bytes of a file.
 class BytesInMemory final : public ByteSource {
  public:
   BytesInMemory(const std::filesystem::path& file, std::vector<char> bytes)
@@ -115,7 +114,11 @@ std::shared_ptr<const ByteSource> ByteSource::open(const std::filesystem::path& 
   auto plain = std::make_shared<const PlainFile>(file, descriptor, static_cast<std::uint64_t>(status.st_size));
   constexpr std::size_t kLongestSignature = 6;
   if (!has_compression_signature(plain->text(0, kLongestSignature))) return plain;
-  return std::make_shared<const BytesInMemory>(file, decompressed(file, limit));
+  return of_memory(file, decompressed(file, limit));
+}
+
+std::shared_ptr<const ByteSource> ByteSource::of_memory(const std::filesystem::path& file, std::vector<char> bytes) {
+  return std::make_shared<const BytesInMemory>(file, std::move(bytes));
 }
 
 std::string ByteSource::text(std::uint64_t offset, std::size_t count) const {

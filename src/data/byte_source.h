@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace orrery::data {
 
@@ -16,6 +17,9 @@ class ByteSource {
   /// `limit`    maximum size after decompression, bytes: a small file may decompress to terabytes
   /// Errors     base::Error: kMissingInput, kIo; kBadData for damaged compressed data, and beyond the limit
   static std::shared_ptr<const ByteSource> open(const std::filesystem::path& file, std::uint64_t limit);
+
+  /// Bytes that are in memory, from `file`.
+  static std::shared_ptr<const ByteSource> of_memory(const std::filesystem::path& file, std::vector<char> bytes);
 
   virtual ~ByteSource() = default;
 

@@ -48,8 +48,8 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
   if (is_gsd(signature)) return open_gsd(bytes);
   if (is_las(signature)) return open_las(bytes);
   if (is_npy(signature)) return open_npy(bytes);
-  if (is_npz(signature)) return open_npz(bytes);
-  if (is_vtk(signature)) return open_vtk(bytes);
+  if (is_npz(signature)) return open_npz(bytes, options);
+  if (is_vtk(signature)) return open_vtk(bytes, options);
   if (is_lammps_dump(signature)) return open_lammps_dump(bytes);
   if (is_mmcif(signature)) return open_mmcif(bytes);
   if (is_pdb(signature)) return open_pdb(bytes);

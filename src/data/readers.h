@@ -37,7 +37,7 @@ bool is_npy(const Signature& signature);
 std::unique_ptr<DataFile> open_npy(const Bytes& bytes);
 
 bool is_npz(const Signature& signature);
-std::unique_ptr<DataFile> open_npz(const Bytes& bytes);
+std::unique_ptr<DataFile> open_npz(const Bytes& bytes, const OpenOptions& options);
 
 bool is_las(const Signature& signature);
 std::unique_ptr<DataFile> open_las(const Bytes& bytes);
@@ -49,6 +49,6 @@ bool is_hdf5(const Signature& signature);
 std::unique_ptr<DataFile> open_hdf5(const Bytes& bytes, const OpenOptions& options);
 
 bool is_vtk(const Signature& signature);
-std::unique_ptr<DataFile> open_vtk(const Bytes& bytes);
+std::unique_ptr<DataFile> open_vtk(const Bytes& bytes, const OpenOptions& options);
 
 }  // namespace orrery::data

@@ -5,6 +5,6 @@ namespace orrery::data {
 
 bool is_vtk(const Signature&) { return false; }
 
-std::unique_ptr<DataFile> open_vtk(const Bytes&) { return nullptr; }
+std::unique_ptr<DataFile> open_vtk(const Bytes&, const OpenOptions&) { return nullptr; }
 
 }  // namespace orrery::data

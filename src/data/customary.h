@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/faults.h"
+#include "data/table.h"
+
+namespace orrery::data {
+
+/// Returns the roles of columns by their customary names, regardless of case. For formats that define no names.
+///
+/// - position: x, y, z; also pos_x, position_x, points:0, points_0
+/// - radius: radius, scalar_radius, r unless there are g and b, diameter with scale 0.5
+/// - element: element, species, symbol, if it is text
+/// - type: type, class, classification
+/// - id: id
+/// - rgb: red green blue, r g b, diffuse_red ..; rgb, rgba, color, colors, colour, colours with three or four
+///   components. Full intensity is 255 for uint8 and signed integers, 65535 for uint16, 1 for floating point.
+///
+/// Result     a role that no column has is empty, also the position
+Roles customary_roles(const std::vector<ColumnInfo>& columns);
+
+/// customary_roles(), with a position.
+///
+/// Errors     base::Error(kBadData) by `faults`, which lists the columns
+Roles required_roles(const std::vector<ColumnInfo>& columns, Faults& faults);
+
+/// Returns whether an array of three components with this name contains positions: pos, position, positions, coords,
+/// coordinates, points, xyz; regardless of case.
+bool is_position_name(std::string_view name);
+
+/// Returns the names of the components of an array: its name if there is one, `x`, `y`, `z` for the first array of
+/// positions, otherwise `name[1]`, `name[2]` ...
+///
+/// `columns`  columns so far
+std::vector<std::string> component_names(const std::string& name, std::size_t components,
+                                         const std::vector<ColumnInfo>& columns);
+
+/// Returns whether a column exists.
+bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name);
+
+/// Returns the names of columns for messages, shortened if there are many: "a, b, c, ... (200 in all)".
+std::string listed(const std::vector<ColumnInfo>& columns);
+
+}  // namespace orrery::data

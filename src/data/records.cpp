@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/records.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <variant>
+
+namespace orrery::data {
+namespace {
+
+/// Bytes read at a time: large enough for the system call, small enough for the second-level cache.
+constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 20;
+
+/// The element type of the column that stores numbers of type T; column_type() as a type.
+template <class T>
+using Stored = std::conditional_t<
+    std::is_same_v<T, std::int8_t> || std::is_same_v<T, std::int16_t>, std::int32_t,
+    std::conditional_t<std::is_same_v<T, std::uint32_t> || std::is_same_v<T, std::uint64_t>, std::int64_t, T>>;
+
+template <class T, bool big_endian>
+void decode(const char* from, std::size_t stride, std::size_t rows, Stored<T>* out) {
+  for (std::size_t i = 0; i < rows; ++i) out[i] = static_cast<Stored<T>>(load<T>(from + i * stride, big_endian));
+}
+
+void decode_field(const RecordField& field, const char* records, std::size_t stride, std::size_t rows, Values& out,
+                  std::size_t first) {
+  with_type(field.type, [&](auto number) {
+    using T = decltype(number);
+    Stored<T>* const to = std::get<std::vector<Stored<T>>>(out).data() + first;
+    if (field.is_big_endian) {
+      decode<T, true>(records + field.offset, stride, rows, to);
+    } else {
+      decode<T, false>(records + field.offset, stride, rows, to);
+    }
+  });
+}
+
+/// An unsigned integer beyond the largest int64 has become negative.
+void check_unsigned(const RecordField& field, const Values& values, Faults& faults) {
+  if (field.type != NumberType::kUint64) return;
+  const auto& column = std::get<std::vector<std::int64_t>>(values);
+  for (std::size_t row = 0; row < column.size(); ++row)
+    if (column[row] < 0)
+      faults.add_of_many(0, "row " + std::to_string(row) + ": `" + field.name + "` is " +
+                                std::to_string(static_cast<std::uint64_t>(column[row])) +
+                                ", larger than the largest int64");
+}
+
+}  // namespace
+
+bool contains(std::uint64_t size, const RecordLayout& layout) {
+  return layout.begin <= size && (layout.stride == 0 || layout.rows <= (size - layout.begin) / layout.stride);
+}
+
+std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& layout,
+                                 const std::vector<RecordField>& fields, Faults& faults) {
+  const auto rows = static_cast<std::size_t>(layout.rows);
+  const auto stride = static_cast<std::size_t>(layout.stride);
+  std::vector<Values> out;
+  for (const RecordField& field : fields) {
+    out.push_back(empty_values(column_type(field.type)));
+    std::visit(
+        [rows](auto& values) {
+          if constexpr (requires { values.resize(rows); }) values.resize(rows);
+        },
+        out.back());
+  }
+  if (rows == 0 || fields.empty()) return out;
+  const std::size_t block_rows = std::max<std::size_t>(1, kBlockBytes / stride);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (rows - 1) / block_rows + 1),
+                    [&](const tbb::blocked_range<std::size_t>& blocks) {
+                      std::vector<char> block;
+                      for (std::size_t b = blocks.begin(); b < blocks.end(); ++b) {
+                        const std::size_t first = b * block_rows, count = std::min(block_rows, rows - first);
+                        block.resize(count * stride);
+                        bytes.read(layout.begin + first * layout.stride, block.size(), block.data());
+                        for (std::size_t f = 0; f < fields.size(); ++f)
+                          decode_field(fields[f], block.data(), stride, count, out[f], first);
+                      }
+                    });
+  for (std::size_t f = 0; f < fields.size(); ++f) check_unsigned(fields[f], out[f], faults);
+  return out;
+}
+
+}  // namespace orrery::data

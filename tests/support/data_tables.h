@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/error.h"
+#include "data/data_file.h"
+#include "support/temp_dir.h"
+
+namespace orrery::support {
+
+/// Bytes of a number in a file.
+template <class T>
+std::string number_bytes(T value, bool is_big_endian = false) {
+  std::string out(sizeof(T), '\0');
+  std::memcpy(out.data(), &value, sizeof(T));
+  if (is_big_endian) std::reverse(out.begin(), out.end());  // tests run on little-endian machines
+  return out;
+}
+
+/// All columns of a frame.
+inline data::Table read_table(data::DataFile& file, int frame = 0) {
+  std::vector<std::string> names;
+  for (const data::ColumnInfo& column : file.describe(frame).columns) names.push_back(column.name);
+  return file.read(frame, names);
+}
+inline data::Table read_table(const std::filesystem::path& file) { return read_table(*data::open(file)); }
+
+/// The numbers of a column; fails if there is none.
+inline std::vector<double> numbers(const data::Table& table, std::string_view name) {
+  const data::Column* const column = table.find(name);
+  EXPECT_NE(column, nullptr) << "no column " << name;
+  std::vector<double> out;
+  for (std::size_t row = 0; column != nullptr && row < column->size(); ++row) out.push_back(column->number(row));
+  return out;
+}
+
+/// The texts of a column; fails if there are none.
+inline std::vector<std::string> texts(const data::Table& table, std::string_view name) {
+  const data::Column* const column = table.find(name);
+  if (column == nullptr || column->type() != data::ColumnType::kText) {
+    ADD_FAILURE() << "no text column " << name;
+    return {};
+  }
+  const auto& words = std::get<data::Words>(column->values);
+  std::vector<std::string> out;
+  for (const std::uint32_t index : words.index) out.push_back(words.words.at(index));
+  return out;
+}
+
+/// "x:float64 id:int32"
+inline std::string columns_text(const data::FrameInfo& info) {
+  std::string out;
+  for (const data::ColumnInfo& column : info.columns)
+    out += (out.empty() ? "" : " ") + column.name + ":" + data::type_name(column.type);
+  return out;
+}
+
+/// Diagnostics of reading all columns of the first frame, "line: text; remedy\n"; empty if there is no error.
+inline std::string read_faults(const std::filesystem::path& file, const data::OpenOptions& options = {}) {
+  std::string out;
+  try {
+    read_table(*data::open(file, options));
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
+    for (const base::Diagnostic& d : error.diagnostics())
+      out +=
+          (d.line > 0 ? std::to_string(d.line) + ": " : "") + d.text + (d.remedy.empty() ? "" : "; " + d.remedy) + "\n";
+  }
+  return out;
+}
+
+}  // namespace orrery::support
