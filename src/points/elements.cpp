@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/elements.h"
+
+#include <charconv>
+#include <cstddef>
+#include <iterator>
+
+namespace orrery::points {
+namespace {
+
+/// Colours are 0xRRGGBB.
+struct Row {
+  std::string_view symbol;
+  double van_der_waals, covalent;
+  std::uint32_t jmol, cpk;
+};
+
+// clang-format off
+constexpr Row kRows[] = {
+    {"H", 1.20, 0.31, 0xFFFFFF, 0xFFFFFF},
+    {"He", 1.40, 0.28, 0xD9FFFF, 0xFFC0CB},
+    {"Li", 1.82, 1.28, 0xCC80FF, 0xB22222},
+    {"Be", 1.53, 0.96, 0xC2FF00, 0xFF1493},
+    {"B", 1.92, 0.84, 0xFFB5B5, 0x00FF00},
+    {"C", 1.70, 0.76, 0x909090, 0xC8C8C8},
+    {"N", 1.55, 0.71, 0x3050F8, 0x8F8FFF},
+    {"O", 1.52, 0.66, 0xFF0D0D, 0xF00000},
+    {"F", 1.47, 0.57, 0x90E050, 0xDAA520},
+    {"Ne", 1.54, 0.58, 0xB3E3F5, 0xFF1493},
+    {"Na", 2.27, 1.66, 0xAB5CF2, 0x0000FF},
+    {"Mg", 1.73, 1.41, 0x8AFF00, 0x228B22},
+    {"Al", 1.84, 1.21, 0xBFA6A6, 0x808090},
+    {"Si", 2.10, 1.11, 0xF0C8A0, 0xDAA520},
+    {"P", 1.80, 1.07, 0xFF8000, 0xFFA500},
+    {"S", 1.80, 1.05, 0xFFFF30, 0xFFC832},
+    {"Cl", 1.75, 1.02, 0x1FF01F, 0x00FF00},
+    {"Ar", 1.88, 1.06, 0x80D1E3, 0xFF1493},
+    {"K", 2.75, 2.03, 0x8F40D4, 0xFF1493},
+    {"Ca", 2.31, 1.76, 0x3DFF00, 0x808090},
+    {"Sc", 2.58, 1.70, 0xE6E6E6, 0xFF1493},
+    {"Ti", 2.46, 1.60, 0xBFC2C7, 0x808090},
+    {"V", 2.42, 1.53, 0xA6A6AB, 0xFF1493},
+    {"Cr", 2.45, 1.39, 0x8A99C7, 0x808090},
+    {"Mn", 2.45, 1.39, 0x9C7AC7, 0x808090},
+    {"Fe", 2.44, 1.32, 0xE06633, 0xFFA500},
+    {"Co", 2.40, 1.26, 0xF090A0, 0xFF1493},
+    {"Ni", 2.40, 1.24, 0x50D050, 0xA52A2A},
+    {"Cu", 2.38, 1.32, 0xC88033, 0xA52A2A},
+    {"Zn", 2.39, 1.22, 0x7D80B0, 0xA52A2A},
+    {"Ga", 1.87, 1.22, 0xC28F8F, 0xFF1493},
+    {"Ge", 2.11, 1.20, 0x668F8F, 0xFF1493},
+    {"As", 1.85, 1.19, 0xBD80E3, 0xFF1493},
+    {"Se", 1.90, 1.20, 0xFFA100, 0xFF1493},
+    {"Br", 1.85, 1.20, 0xA62929, 0xA52A2A},
+    {"Kr", 2.02, 1.16, 0x5CB8D1, 0xFF1493},
+    {"Rb", 3.03, 2.20, 0x702EB0, 0xFF1493},
+    {"Sr", 2.49, 1.95, 0x00FF00, 0xFF1493},
+    {"Y", 2.75, 1.90, 0x94FFFF, 0xFF1493},
+    {"Zr", 2.52, 1.75, 0x94E0E0, 0xFF1493},
+    {"Nb", 2.56, 1.64, 0x73C2C9, 0xFF1493},
+    {"Mo", 2.45, 1.54, 0x54B5B5, 0xFF1493},
+    {"Tc", 2.44, 1.47, 0x3B9E9E, 0xFF1493},
+    {"Ru", 2.46, 1.46, 0x248F8F, 0xFF1493},
+    {"Rh", 2.44, 1.42, 0x0A7D8C, 0xFF1493},
+    {"Pd", 2.15, 1.39, 0x006985, 0xFF1493},
+    {"Ag", 2.53, 1.45, 0xC0C0C0, 0x808090},
+    {"Cd", 2.49, 1.44, 0xFFD98F, 0xFF1493},
+    {"In", 1.93, 1.42, 0xA67573, 0xFF1493},
+    {"Sn", 2.17, 1.39, 0x668080, 0xFF1493},
+    {"Sb", 2.06, 1.39, 0x9E63B5, 0xFF1493},
+    {"Te", 2.06, 1.38, 0xD47A00, 0xFF1493},
+    {"I", 1.98, 1.39, 0x940094, 0xA020F0},
+    {"Xe", 2.16, 1.40, 0x429EB0, 0xFF1493},
+    {"Cs", 3.43, 2.44, 0x57178F, 0xFF1493},
+    {"Ba", 2.68, 2.15, 0x00C900, 0xFFA500},
+    {"La", 2.98, 2.07, 0x70D4FF, 0xFF1493},
+    {"Ce", 2.88, 2.04, 0xFFFFC7, 0xFF1493},
+    {"Pr", 2.92, 2.03, 0xD9FFC7, 0xFF1493},
+    {"Nd", 2.95, 2.01, 0xC7FFC7, 0xFF1493},
+    {"Pm", 2.00, 1.99, 0xA3FFC7, 0xFF1493},
+    {"Sm", 2.90, 1.98, 0x8FFFC7, 0xFF1493},
+    {"Eu", 2.87, 1.98, 0x61FFC7, 0xFF1493},
+    {"Gd", 2.83, 1.96, 0x45FFC7, 0xFF1493},
+    {"Tb", 2.79, 1.94, 0x30FFC7, 0xFF1493},
+    {"Dy", 2.87, 1.92, 0x1FFFC7, 0xFF1493},
+    {"Ho", 2.81, 1.92, 0x00FF9C, 0xFF1493},
+    {"Er", 2.83, 1.89, 0x00E675, 0xFF1493},
+    {"Tm", 2.79, 1.90, 0x00D452, 0xFF1493},
+    {"Yb", 2.80, 1.87, 0x00BF38, 0xFF1493},
+    {"Lu", 2.74, 1.87, 0x00AB24, 0xFF1493},
+    {"Hf", 2.63, 1.75, 0x4DC2FF, 0xFF1493},
+    {"Ta", 2.53, 1.70, 0x4DA6FF, 0xFF1493},
+    {"W", 2.57, 1.62, 0x2194D6, 0xFF1493},
+    {"Re", 2.49, 1.51, 0x267DAB, 0xFF1493},
+    {"Os", 2.48, 1.44, 0x266696, 0xFF1493},
+    {"Ir", 2.41, 1.41, 0x175487, 0xFF1493},
+    {"Pt", 2.29, 1.36, 0xD0D0E0, 0xFF1493},
+    {"Au", 2.32, 1.36, 0xFFD123, 0xDAA520},
+    {"Hg", 2.45, 1.32, 0xB8B8D0, 0xFF1493},
+    {"Tl", 1.96, 1.45, 0xA6544D, 0xFF1493},
+    {"Pb", 2.02, 1.46, 0x575961, 0xFF1493},
+    {"Bi", 2.07, 1.48, 0x9E4FB5, 0xFF1493},
+    {"Po", 1.97, 1.40, 0xAB5C00, 0xFF1493},
+    {"At", 2.02, 1.50, 0x754F45, 0xFF1493},
+    {"Rn", 2.20, 1.50, 0x428296, 0xFF1493},
+    {"Fr", 3.48, 2.60, 0x420066, 0xFF1493},
+    {"Ra", 2.83, 2.21, 0x007D00, 0xFF1493},
+    {"Ac", 2.80, 2.15, 0x70ABFA, 0xFF1493},
+    {"Th", 2.93, 2.06, 0x00BAFF, 0xFF1493},
+    {"Pa", 2.88, 2.00, 0x00A1FF, 0xFF1493},
+    {"U", 2.71, 1.96, 0x008FFF, 0xFF1493},
+    {"Np", 2.82, 1.90, 0x0080FF, 0xFF1493},
+    {"Pu", 2.81, 1.87, 0x006BFF, 0xFF1493},
+    {"Am", 2.83, 1.80, 0x545CF2, 0xFF1493},
+    {"Cm", 3.05, 1.69, 0x785CE3, 0xFF1493},
+    {"Bk", 3.40, 1.68, 0x8A4FE3, 0xFF1493},
+    {"Cf", 3.05, 1.68, 0xA136D4, 0xFF1493},
+    {"Es", 2.70, 1.65, 0xB31FD4, 0xFF1493},
+    {"Fm", 2.00, 1.67, 0xB31FBA, 0xFF1493},
+    {"Md", 2.00, 1.73, 0xB30DA6, 0xFF1493},
+    {"No", 2.00, 1.76, 0xBD0D87, 0xFF1493},
+    {"Lr", 2.00, 1.61, 0xC70066, 0xFF1493},
+    {"Rf", 2.00, 1.57, 0xCC0059, 0xFF1493},
+    {"Db", 2.00, 1.49, 0xD1004F, 0xFF1493},
+    {"Sg", 2.00, 1.43, 0xD90045, 0xFF1493},
+    {"Bh", 2.00, 1.41, 0xE00038, 0xFF1493},
+    {"Hs", 2.00, 1.34, 0xE6002E, 0xFF1493},
+    {"Mt", 2.00, 1.29, 0xEB0026, 0xFF1493},
+    {"Ds", 2.00, 1.28, 0xEB0026, 0xFF1493},
+    {"Rg", 2.00, 1.21, 0xEB0026, 0xFF1493},
+    {"Cn", 2.00, 1.22, 0xEB0026, 0xFF1493},
+    {"Nh", 2.00, 1.36, 0xEB0026, 0xFF1493},
+    {"Fl", 2.00, 1.43, 0xEB0026, 0xFF1493},
+    {"Mc", 2.00, 1.62, 0xEB0026, 0xFF1493},
+    {"Lv", 2.00, 1.75, 0xEB0026, 0xFF1493},
+    {"Ts", 2.00, 1.65, 0xEB0026, 0xFF1493},
+    {"Og", 2.00, 1.57, 0xEB0026, 0xFF1493},
+};
+// clang-format on
+
+constexpr std::size_t kCount = 118;
+static_assert(std::size(kRows) == kCount);
+
+constexpr Srgb8 srgb8(std::uint32_t code) {
+  return {static_cast<std::uint8_t>(code >> 16), static_cast<std::uint8_t>(code >> 8), static_cast<std::uint8_t>(code)};
+}
+
+constexpr std::array<Element, kCount> make_elements() {
+  std::array<Element, kCount> out{};
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Row& row = kRows[i];
+    out[i] = {row.symbol, row.van_der_waals, row.covalent, srgb8(row.jmol), srgb8(row.cpk)};
+  }
+  return out;
+}
+
+constexpr std::array<Element, kCount> kElements = make_elements();
+
+constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+bool equals_ignoring_case(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (lower(a[i]) != lower(b[i])) return false;
+  return true;
+}
+
+}  // namespace
+
+double Element::radius(ElementRadius kind) const {
+  switch (kind) {
+    case ElementRadius::kVanDerWaals: return van_der_waals;
+    case ElementRadius::kCovalent: return covalent;
+    case ElementRadius::kBall: return kBallScale * van_der_waals;
+  }
+  return van_der_waals;
+}
+
+const Element* find_element(int number) {
+  return number >= 1 && number <= static_cast<int>(kCount) ? &kElements[static_cast<std::size_t>(number) - 1] : nullptr;
+}
+
+const Element* find_element(std::string_view symbol) {
+  const std::size_t begin = symbol.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return nullptr;
+  symbol = symbol.substr(begin, symbol.find_last_not_of(" \t") + 1 - begin);
+  if (equals_ignoring_case(symbol, "D")) return &kElements[0];
+  for (const Element& element : kElements)
+    if (equals_ignoring_case(symbol, element.symbol)) return &element;
+  int number = 0;
+  const auto [end, status] = std::from_chars(symbol.data(), symbol.data() + symbol.size(), number);
+  return status == std::errc() && end == symbol.data() + symbol.size() ? find_element(number) : nullptr;
+}
+
+}  // namespace orrery::points

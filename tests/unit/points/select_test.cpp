@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/select.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+
+namespace orrery::points {
+namespace {
+
+using data::Column;
+using data::Table;
+using data::Words;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Six atoms with all types of columns.
+Table atoms() {
+  Table table;
+  table.rows = 6;
+  table.columns = {
+      Column{"x", std::vector<double>{0, 1, 2, 3, kNan, -5}},
+      Column{"z", std::vector<float>{1, -1, 0.5f, 2, 7, 8}},
+      Column{"type", std::vector<std::int32_t>{1, 2, 2, 1, 2, 3}},
+      Column{"id", std::vector<std::int64_t>{10, 20, 30, 40, 50, 60}},
+      Column{"class", std::vector<std::uint8_t>{2, 2, 255, 2, 2, 0}},
+      Column{"intensity", std::vector<std::uint16_t>{0, 65535, 3, 4, 5, 6}},
+      Column{"element", Words{{"C", "N", "CA"}, {0, 1, 0, 2, 1, 0}}},
+      Column{"label", Words{{"N", "C", "O"}, {1, 0, 2, 2, 2, 1}}},
+      Column{"c_stress[1]", std::vector<double>{1, 2, 3, 4, 5, 6}},
+      Column{"v.x", std::vector<double>{6, 5, 4, 3, 2, 1}},
+      Column{"Potential Energy", std::vector<double>{-1, -2, -3, -4, -5, -6}},
+  };
+  return table;
+}
+
+/// The selected rows as digits: "024".
+std::string rows(const std::string& text, const Table& table = atoms()) {
+  const auto mask = parse_selection(text).evaluate(table);
+  EXPECT_EQ(mask.size(), table.rows) << text;
+  std::string out;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    EXPECT_LE(mask[i], 1) << text;
+    if (mask[i] != 0) out += std::to_string(i);
+  }
+  return out;
+}
+
+/// The diagnostic of a selection that fails, when it is parsed or when it is evaluated.
+base::Diagnostic fault(const std::string& text) {
+  try {
+    parse_selection(text).check([] {
+      std::vector<data::ColumnInfo> columns;
+      for (const Column& column : atoms().columns) columns.push_back({column.name, column.type()});
+      return columns;
+    }());
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << text;
+    EXPECT_EQ(error.diagnostics().size(), 1u) << text;
+    if (!error.diagnostics().empty()) return error.diagnostics()[0];
+  }
+  ADD_FAILURE() << "no error in: " << text;
+  return {};
+}
+
+std::string message(const std::string& text) {
+  const base::Diagnostic d = fault(text);
+  return std::to_string(d.column) + "+" + std::to_string(d.width) + " " + d.text + "; " + d.remedy;
+}
+
+TEST(PointsSelect, ComparesNumbersOfAllTypes) {
+  EXPECT_EQ(rows("type == 2"), "124");
+  EXPECT_EQ(rows("type != 2"), "035");
+  EXPECT_EQ(rows("z < 1"), "12");
+  EXPECT_EQ(rows("z <= 1"), "012");
+  EXPECT_EQ(rows("z > 2"), "45");
+  EXPECT_EQ(rows("z >= 2"), "345");
+  EXPECT_EQ(rows("id == 30 || class == 255 || intensity == 65535"), "12");
+  EXPECT_EQ(rows("2 == type"), "124");
+}
+
+TEST(PointsSelect, ComparesTexts) {
+  EXPECT_EQ(rows("element == \"C\""), "025");
+  EXPECT_EQ(rows("element != 'C'"), "134");
+  EXPECT_EQ(rows("'CA' == element"), "3");
+  EXPECT_EQ(rows("element == \"Zr\""), "");
+  EXPECT_EQ(rows("element == label"), "015") << "indices of different dictionaries";
+  EXPECT_EQ(rows("element != label"), "234");
+}
+
+TEST(PointsSelect, FindsInLists) {
+  EXPECT_EQ(rows("type in [3, 1]"), "035");
+  EXPECT_EQ(rows("x in [-5, 2]"), "25");
+  EXPECT_EQ(rows("element in [\"N\", 'CA']"), "134");
+  EXPECT_EQ(rows("!(element in[\"N\"])"), "0235");
+  EXPECT_EQ(rows("id / 10 in [2]"), "1");
+}
+
+TEST(PointsSelect, PrecedenceIsThatOfC) {
+  EXPECT_EQ(rows("type == 1 || type == 2 && z > 0"), "0234");
+  EXPECT_EQ(rows("(type == 1 || type == 2) && z > 1"), "34");
+  EXPECT_EQ(rows("1 + 2 * 3 == 7"), "012345");
+  EXPECT_EQ(rows("8 - 4 - 2 == 2 && 8 / 4 / 2 == 1"), "012345") << "from the left";
+  EXPECT_EQ(rows("-x * -1 > 1 - -1"), "3");
+  EXPECT_EQ(rows("!(type == 2) && !(z > 2)"), "03");
+  EXPECT_EQ(rows("!!(type == 2)"), "124");
+}
+
+TEST(PointsSelect, Functions) {
+  EXPECT_EQ(rows("abs(x) == 5"), "5");
+  EXPECT_EQ(rows("sqrt(id * 10) == 10"), "0");
+  EXPECT_EQ(rows("min(z, 1, v.x) == 1"), "0345");
+  EXPECT_EQ(rows("max(x, z) == 1"), "01");
+  EXPECT_EQ(rows("sqrt(x * x + z * z) < 2"), "01");
+}
+
+TEST(PointsSelect, NamesWithIndicesDotsAndBackquotes) {
+  EXPECT_EQ(rows("c_stress[1] > 4"), "45");
+  EXPECT_EQ(rows("v.x>4"), "01");
+  EXPECT_EQ(rows("`Potential Energy` < -5"), "5");
+  EXPECT_EQ(rows("`c_stress[1]`==1"), "0");
+  EXPECT_EQ(parse_selection("z > 1 && type in [1] && `a b` < z").columns(),
+            (std::vector<std::string>{"z", "type", "a b"}));
+}
+
+TEST(PointsSelect, ComparisonsWithNanAreFalse) {
+  for (const char* op : {"==", "!=", "<", "<=", ">", ">="}) {
+    EXPECT_EQ(rows(std::string("x ") + op + " 0").find('4'), std::string::npos) << op;
+    EXPECT_EQ(rows(std::string("0 ") + op + " x").find('4'), std::string::npos) << op;
+  }
+  EXPECT_EQ(rows("x in [0, 1, 2]"), "012");
+  EXPECT_EQ(rows("min(x, 0) <= 0 || min(0, x) <= 0 || max(x, 0) >= 0 || max(0, x) >= 0"), "01235");
+  EXPECT_EQ(rows("sqrt(x) >= 0"), "0123") << "the root of a negative number is NaN";
+}
+
+TEST(PointsSelect, EmptySelectsAll) {
+  EXPECT_EQ(rows(""), "012345");
+  EXPECT_EQ(rows(" \t\n"), "012345");
+  EXPECT_TRUE(parse_selection("").columns().empty());
+  EXPECT_EQ(Selection().evaluate(atoms()).size(), 6u);
+}
+
+TEST(PointsSelect, EvaluatesEveryBlock) {
+  // More than two blocks, the last of them incomplete.
+  constexpr std::size_t kRows = 2500;
+  Table table;
+  table.rows = kRows;
+  std::vector<double> x(kRows);
+  Words word{{"even", "odd"}, std::vector<std::uint32_t>(kRows)};
+  for (std::size_t i = 0; i < kRows; ++i) {
+    x[i] = static_cast<double>(i);
+    word.index[i] = i % 2;
+  }
+  table.columns = {Column{"x", x}, Column{"word", word}};
+  const auto mask = parse_selection("word == 'odd' && (x < 3 || x * 2 - 1 >= 4995)").evaluate(table);
+  for (std::size_t i = 0; i < kRows; ++i) EXPECT_EQ(mask[i], i % 2 == 1 && (i < 3 || i >= 2498) ? 1 : 0) << i;
+  EXPECT_TRUE(parse_selection("x > 0").evaluate(Table{0, {Column{"x", std::vector<double>{}}}}).empty());
+}
+
+TEST(PointsSelect, UnknownColumnsAreReportedWithThoseThatExist) {
+  EXPECT_EQ(message("z > 0 && typ == 2"), "10+3 selection: unknown column typ; did you mean `type`?");
+  EXPECT_NE(message("charge > 0").find("columns are x, z, type, id"), std::string::npos);
+  EXPECT_NE(message("element == Xe").find("a text is quoted: \"Xe\""), std::string::npos);
+}
+
+TEST(PointsSelect, TypesAreChecked) {
+  EXPECT_EQ(message("z > 0 && element == 2"),
+            "10+7 selection: text column element compared with a number; "
+            "quote the other side, as in: element == \"C\"");
+  EXPECT_EQ(message("type == \"2\""), "9+3 selection: text compared with a number; numbers are written without quotes");
+  EXPECT_EQ(message("element < 'C'"),
+            "11+3 selection: < expects a number, not a text; "
+            "texts are compared by ==, != and in");
+  EXPECT_EQ(message("element in [1]"), "1+7 selection: in expects a number, not a text; the list has numbers");
+  EXPECT_EQ(message("type in ['1']"), "1+4 selection: in expects a text, not a number; the list has texts");
+  EXPECT_EQ(message("type && z > 0").substr(0, 54), "1+4 selection: && expects a condition, not a number; c");
+  EXPECT_EQ(message("(z > 0) == (x > 0)").substr(0, 48), "9+2 selection: a condition cannot be compared; c");
+  EXPECT_EQ(message("!type == 1").substr(0, 52), "2+4 selection: ! expects a condition, not a number; ");
+  EXPECT_EQ(message("z"), "1+1 selection: expected a condition, not a number; compare it, as in: x != 0");
+  EXPECT_EQ(message("element"), "1+7 selection: expected a condition, not a text; compare it, as in: x != 0");
+  EXPECT_EQ(message("'C' == 'C'").substr(0, 34), "5+2 selection: two texts are compa");
+  EXPECT_EQ(message("abs(z > 0) == 1").substr(0, 20), "7+1 selection: expec");
+}
+
+TEST(PointsSelect, SyntaxErrorsHavePositionAndRemedy) {
+  EXPECT_EQ(message("type = 2"), "6+1 selection: unknown operator =; equality is ==");
+  EXPECT_EQ(message("type == 2 and z > 0"), "11+3 selection: expected an operator; write &&");
+  EXPECT_EQ(message("not (z > 0)"), "1+3 selection: unknown word not; write !");
+  EXPECT_EQ(message("type == 2 & z > 0"), "11+1 selection: unknown operator &; write &&");
+  EXPECT_EQ(message("(z > 0"), "1+1 selection: parenthesis is not closed; add )");
+  EXPECT_EQ(message("z > 0)"), "6+1 selection: expected an operator; no parenthesis is open");
+  EXPECT_EQ(message("0 < z < 2"), "7+1 selection: comparisons cannot be chained; write 1 < x && x < 2");
+  EXPECT_EQ(message("z >"), "4+1 selection: selection ends too early; such as: type == 2 && z > 0");
+  EXPECT_EQ(message("element == \"C"), "12+2 selection: quote is not closed; add \"");
+  EXPECT_EQ(message("type in []").substr(0, 40), "10+1 selection: expected a number or a t");
+  EXPECT_EQ(message("type in 1").substr(0, 40), "9+1 selection: expected a list after `in");
+  EXPECT_EQ(message("type in [1, 'a']").substr(0, 40), "13+3 selection: list of both numbers and");
+  EXPECT_EQ(message("floor(z) > 1"), "1+5 selection: unknown function floor; functions are abs, sqrt, min, max");
+  EXPECT_EQ(message("abs(z, x) > 1").substr(0, 34), "1+3 selection: abs with 2 operands");
+  EXPECT_EQ(message("min(z) > 1").substr(0, 34), "1+3 selection: min with 1 operands");
+  EXPECT_EQ(message("z > 1e999"), "5+5 selection: number is out of range; at most 1.8e308");
+  EXPECT_EQ(message("2x > 1").substr(0, 34), "1+2 selection: malformed number 2x");
+  EXPECT_EQ(message("z > 0 # comment").substr(0, 37), "7+1 selection: unexpected character; ");
+  EXPECT_EQ(fault("z >").source_line, "z >");
+}
+
+TEST(PointsSelect, HostileTextsAreRefusedOrEvaluated) {
+  const std::size_t many = 100'000;
+  EXPECT_NE(message(std::string(many, '(')).find("more than 100 nested"), std::string::npos);
+  EXPECT_NE(message(std::string(many, '!')).find("more than 100 nested"), std::string::npos);
+  EXPECT_NE(message(std::string(many, '-')).find("more than 100 nested"), std::string::npos);
+  EXPECT_NE(message(std::string(2'000'000, ' ')).find("longer than"), std::string::npos);
+  // Chains are as long as the text: no recursion.
+  std::string chain = "type == 1";
+  for (std::size_t i = 0; i < 50'000; ++i) chain += "||x>9";
+  EXPECT_EQ(rows(chain), "03");
+  std::string nested = "z > 2";
+  for (int i = 0; i < 49; ++i) nested = "(x == 0 || (" + nested + "))";
+  EXPECT_EQ(rows(nested), "045");
+}
+
+}  // namespace
+}  // namespace orrery::points
