@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/copies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/text.h"
+
+namespace orrery::points {
+namespace {
+
+using data::Transform;
+using data::Vec3d;
+
+Vec3d applied(const Transform& t, Vec3d p) {
+  return {math::dot(t.rows[0], p) + t.translation.x, math::dot(t.rows[1], p) + t.translation.y,
+          math::dot(t.rows[2], p) + t.translation.z};
+}
+
+bool is_identity(const Transform& t) {
+  const Transform identity;
+  return t.rows == identity.rows && t.translation == identity.translation;
+}
+
+/// The transform of a points table: scale, then turns about x, y and z, then translation.
+///
+/// Precision  sines and cosines are rounded from long double, so that they do not depend on the math library
+Transform transform_of(const scene::PointsTransform& t) {
+  const auto turn = [](double degrees) {
+    const long double angle = static_cast<long double>(degrees) / 180 * std::numbers::pi_v<long double>;
+    return std::pair{static_cast<double>(std::cos(angle)), static_cast<double>(std::sin(angle))};
+  };
+  const auto [cx, sx] = turn(t.rotate.x);
+  const auto [cy, sy] = turn(t.rotate.y);
+  const auto [cz, sz] = turn(t.rotate.z);
+  Transform out;
+  out.rows[0] = Vec3d{cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx} * t.scale;
+  out.rows[1] = Vec3d{sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx} * t.scale;
+  out.rows[2] = Vec3d{-sy, cy * sx, cy * cx} * t.scale;
+  out.translation = t.translate;
+  return out;
+}
+
+const data::Assembly* find_assembly(const data::FrameInfo& info, const std::string& name, KeyFaults& faults) {
+  std::vector<std::string> names;
+  for (const data::Assembly& a : info.assemblies) {
+    if (a.name == name) return &a;
+    names.push_back(a.name);
+  }
+  faults.error(".assembly", "the file has no assembly " + name + "; it has " +
+                                (names.empty() ? std::string("none") : base::joined(names)));
+  return nullptr;
+}
+
+template <class T>
+void repeat(std::vector<T>& values, const std::vector<std::vector<std::uint32_t>>& subsets,
+            const std::vector<std::size_t>& subset_of_copy, std::size_t total) {
+  if (values.empty()) return;
+  std::vector<T> out;
+  out.reserve(total);
+  for (const std::size_t s : subset_of_copy) {
+    if (s == subsets.size()) {
+      out.insert(out.end(), values.begin(), values.end());
+    } else {
+      for (const std::uint32_t i : subsets[s]) out.push_back(values[i]);
+    }
+  }
+  values = std::move(out);
+}
+
+}  // namespace
+
+void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, std::vector<Vec3d>& centers) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for_each_number(*table.find(info.roles.image[axis]), rows,
+                    [&](std::size_t i, double n) { centers[i] = centers[i] + info.box->edges[axis] * n; });
+}
+
+std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults) {
+  std::vector<Copy> out;
+  if (!points.assembly.empty()) {
+    if (const data::Assembly* assembly = find_assembly(info, points.assembly, faults))
+      for (const data::AssemblyPart& part : assembly->parts)
+        for (const Transform& t : part.transforms) out.push_back({t, part.chains.empty() ? nullptr : &part.chains});
+  } else {
+    out.push_back({});
+  }
+  const Vec3d n = points.replicate;
+  if (n == Vec3d{1, 1, 1}) return out;
+  if (n.x != std::floor(n.x) || n.y != std::floor(n.y) || n.z != std::floor(n.z)) {
+    faults.error(".replicate", "the numbers of copies must be integers");
+    return out;
+  }
+  if (!info.box) {
+    faults.error(".replicate", "the file has no periodic box");
+    return out;
+  }
+  std::vector<Copy> all;
+  for (double k = 0; k < n.z; ++k)
+    for (double j = 0; j < n.y; ++j)
+      for (double i = 0; i < n.x; ++i)
+        for (const Copy& copy : out) {
+          all.push_back(copy);
+          all.back().transform.translation = copy.transform.translation + info.box->edges[0] * i +
+                                             info.box->edges[1] * j + info.box->edges[2] * k;
+        }
+  return all;
+}
+
+void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points) {
+  const Transform placement = transform_of(points.transform);
+  const bool is_placed = !is_identity(placement);
+  if (copies.size() == 1 && is_identity(copies[0].transform) && copies[0].chains == nullptr) {
+    if (!is_placed) return;
+    for (Vec3d& c : points.centers) c = applied(placement, c);
+    for (double& r : points.radii) r *= points.transform.scale;
+    return;
+  }
+  // The spheres of each set of chains; copies without chains have all spheres.
+  std::vector<const std::vector<std::string>*> sets;
+  std::vector<std::vector<std::uint32_t>> subsets;
+  for (const Copy& copy : copies) {
+    if (copy.chains == nullptr || std::find(sets.begin(), sets.end(), copy.chains) != sets.end()) continue;
+    sets.push_back(copy.chains);
+    std::vector<std::uint8_t> is_in(chains.names.size());
+    for (std::size_t l = 0; l < is_in.size(); ++l)
+      is_in[l] = std::find(copy.chains->begin(), copy.chains->end(), chains.names[l]) != copy.chains->end() ? 1 : 0;
+    subsets.emplace_back();
+    for (std::uint32_t i = 0; i < chains.of_rows.size(); ++i)
+      if (is_in[chains.of_rows[i]] != 0) subsets.back().push_back(i);
+  }
+  std::vector<std::size_t> subset_of_copy, size_of_copy;
+  std::size_t total = 0;
+  for (const Copy& copy : copies) {
+    const auto set = static_cast<std::size_t>(std::find(sets.begin(), sets.end(), copy.chains) - sets.begin());
+    subset_of_copy.push_back(copy.chains == nullptr ? subsets.size() : set);
+    size_of_copy.push_back(copy.chains == nullptr ? points.centers.size() : subsets[set].size());
+    total += size_of_copy.back();
+  }
+  repeat(points.centers, subsets, subset_of_copy, total);
+  repeat(points.radii, subsets, subset_of_copy, total);
+  repeat(points.materials, subsets, subset_of_copy, total);
+  repeat(points.colors, subsets, subset_of_copy, total);
+  auto center = points.centers.begin();
+  for (std::size_t c = 0; c < copies.size(); ++c) {
+    for (const auto end = center + static_cast<std::ptrdiff_t>(size_of_copy[c]); center != end; ++center) {
+      *center = applied(copies[c].transform, *center);
+      if (is_placed) *center = applied(placement, *center);
+    }
+  }
+  if (is_placed)
+    for (double& r : points.radii) r *= points.transform.scale;
+}
+
+}  // namespace orrery::points

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "data/table.h"
+#include "points/rows.h"
+#include "scene/scene.h"
+
+namespace orrery::points {
+
+/// Moves particles out of the periodic box: p + i a + j b + k c, with the image counts i, j, k of the file.
+///
+/// Domain     `centers` are those of the rows
+void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, std::vector<data::Vec3d>& centers);
+
+/// One copy of all spheres, or of those in some chains.
+struct Copy {
+  data::Transform transform;
+  const std::vector<std::string>* chains = nullptr;  ///< null: all
+};
+
+/// The copies that an assembly and the replication of the box demand: the identity if neither is asked for. Reports an
+/// assembly that the file does not have, and a missing box.
+std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults);
+
+/// Replaces the spheres by their copies, one copy after the other, and applies the transform of the points.
+///
+/// `chains`   chain of each sphere, if a copy is limited to some; else ignored
+void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points);
+
+}  // namespace orrery::points

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/load_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "data/data_file.h"
+#include "points/copies.h"
+#include "points/point_colors.h"
+#include "points/point_radii.h"
+#include "points/rows.h"
+#include "points/select.h"
+#include "scene/value_text.h"
+
+namespace orrery::points {
+namespace {
+
+using data::Vec3d;
+
+/// Rows are numbered by 32 bits.
+constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
+
+/// Bytes per sphere while it is read: its numbers in the table, then as a sphere.
+constexpr std::uint64_t kBytesPerColumn = 8;
+constexpr std::uint64_t kBytesPerSphere = sizeof(Vec3d) + sizeof(double) + sizeof(std::uint16_t);
+
+/// Loads the spheres of one points table.
+class Loader {
+ public:
+  Loader(const LoadRequest& request, scene::Points& points)
+      : request_(request), points_(points), faults_(request.key) {}
+
+  std::vector<scene::SceneDiagnostic> run() {
+    data::OpenOptions options;
+    options.component = points_.component;
+    file_ = data::open(request_.file, options);
+    if (const std::optional<int> frame = choose_frame()) {
+      info_ = file_->describe(*frame);
+      plan();
+      if (!faults_.has_errors()) load(*frame);
+    }
+    if (faults_.has_errors()) {
+      points_.centers.clear();
+      points_.radii.clear();
+      points_.materials.clear();
+      points_.colors.clear();
+      points_.palette.clear();
+    }
+    return faults_.take();
+  }
+
+ private:
+  /// Returns the frame of the file, from 0. A file of a single frame is the same in all rendered frames.
+  std::optional<int> choose_frame() {
+    const int frame = points_.frame ? *points_.frame : request_.is_sequence ? 1 : request_.frame;
+    if (frame == 1) return 0;  // without counting: that may read the whole file
+    const int count = file_->frame_count();
+    if (frame >= 1 && frame <= count) return frame - 1;
+    if (!points_.frame && count == 1) return 0;
+    faults_.error(points_.frame ? ".frame" : ".file",
+                  "there is no frame " + std::to_string(frame) + "; " + points_.file.string() + " has " +
+                      std::to_string(count) + (count == 1 ? " frame" : " frames"));
+    return {};
+  }
+
+  void need(const std::string& column) {
+    if (!column.empty() && std::find(columns_.begin(), columns_.end(), column) == columns_.end())
+      columns_.push_back(column);
+  }
+
+  /// Determines where everything comes from, and the columns to read.
+  void plan() {
+    for (const std::string& column : info_.roles.position) need(column);
+    radius_ = radius_source(info_, points_.radius, faults_);
+    need(radius_.column);
+    color_ = color_source(info_, points_.color, request_.folder, faults_);
+    for (const std::string& column : color_.columns) need(column);
+    need(info_.roles.id);
+    plan_selection();
+    copies_ = copies_of(info_, points_, faults_);
+    if (std::any_of(copies_.begin(), copies_.end(), [](const Copy& c) { return c.chains != nullptr; }))
+      need(info_.roles.chain);
+    if (points_.unwrap) plan_unwrap();
+    if (file_->format() == data::Format::kPly)
+      for (const data::ColumnInfo& column : info_.columns)
+        if (column.name == "material") need(material_ = column.name);
+    for (const data::ColumnInfo& column : info_.columns)
+      if (std::find(columns_.begin(), columns_.end(), column.name) == columns_.end())
+        points_.unused.push_back(column.name);
+    if (info_.rows > kMaxRows)
+      faults_.error(".file", "has " + std::to_string(info_.rows) + " rows; the maximum is " + std::to_string(kMaxRows));
+  }
+
+  void plan_selection() {
+    try {
+      selection_ = parse_selection(points_.select);
+      selection_.check(info_.columns);
+    } catch (const base::Error& error) {
+      for (const base::Diagnostic& d : error.diagnostics())
+        faults_.error(".select", "at character " + std::to_string(d.column) + ": " + d.text +
+                                     (d.remedy.empty() ? "" : "; " + d.remedy));
+      return;
+    }
+    for (const std::string& column : selection_.columns()) need(column);
+  }
+
+  void plan_unwrap() {
+    if (info_.roles.image[0].empty() || !info_.box) {
+      faults_.error(".unwrap", "the file has no counts of periodic images, such as ix, iy and iz");
+      return;
+    }
+    for (const std::string& column : info_.roles.image) need(column);
+  }
+
+  void require_memory() const {
+    const std::uint64_t spheres = info_.rows * copies_.size();
+    const std::uint64_t bytes = info_.rows * kBytesPerColumn * columns_.size() + spheres * kBytesPerSphere;
+    if (request_.memory_limit == 0 || bytes <= request_.memory_limit) return;
+    throw base::Error(base::ErrorKind::kNoMemory,
+                      request_.file.string() + ": " + std::to_string(spheres) + " spheres need " +
+                          base::bytes_text(bytes) + " while they are read; " + base::bytes_text(request_.memory_limit) +
+                          " are available; select fewer rows, or render on a machine with more memory");
+  }
+
+  void load(int frame) {
+    require_memory();
+    const data::Table table = file_->read(frame, columns_);
+    Rows rows = chosen_rows(table);
+    std::vector<double> radii = radii_of(table, rows, radius_, points_.radius, faults_);
+    std::vector<Vec3d> centers = centers_of(table, rows);
+    if (points_.unwrap) unwrap(table, rows, info_, centers);
+    if (faults_.has_errors()) return;
+    if (const std::vector<std::uint32_t> good = good_rows(rows, centers, radii); good.size() < rows.size()) {
+      if (faults_.has_errors()) return;
+      rows = kept(rows, good, centers, radii);
+    }
+    if (rows.size() == 0)
+      faults_.warning(table.rows == 0 ? ".file" : ".select",
+                      table.rows == 0 ? "the frame has no particles" : "selects none of the " +
+                                            std::to_string(table.rows) + " particles");
+    PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
+    points_.centers = std::move(centers);
+    points_.radii = std::move(radii);
+    points_.colors = std::move(colors.indices);
+    points_.palette = std::move(colors.palette);
+    points_.palette_rec709 = colors.rec709;
+    if (!material_.empty()) set_materials(table, rows);
+    Labels chains;
+    if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)
+      chains = labels_of(*column, rows, table.rows);
+    make_copies(copies_, chains, points_);
+  }
+
+  /// Returns the selected rows, ascending by particle id if there are ids: files list particles in any order.
+  Rows chosen_rows(const data::Table& table) {
+    std::vector<std::uint32_t> list;
+    if (!selection_.columns().empty()) {
+      const std::vector<std::uint8_t> mask = selection_.evaluate(table);
+      for (std::uint32_t i = 0; i < mask.size(); ++i)
+        if (mask[i] != 0) list.push_back(i);
+      if (list.size() == mask.size()) list.clear();
+      else if (list.empty()) return Rows(list);
+    }
+    const data::Column* const ids = table.find(info_.roles.id);
+    if (ids == nullptr) return list.empty() ? Rows(table.rows) : Rows(std::move(list));
+    std::vector<double> id(table.rows);
+    for_each_number(*ids, Rows(table.rows), [&](std::size_t i, double v) { id[i] = v; });
+    if (std::is_sorted(id.begin(), id.end())) return list.empty() ? Rows(table.rows) : Rows(std::move(list));
+    if (list.empty()) {
+      list.resize(table.rows);
+      std::iota(list.begin(), list.end(), 0U);
+    }
+    sort_by_id(id, list);
+    return Rows(std::move(list));
+  }
+
+  /// Sorts rows by id. Ids are usually 1 to N in another order, which takes one pass.
+  static void sort_by_id(const std::vector<double>& id, std::vector<std::uint32_t>& list) {
+    constexpr std::uint32_t kFree = 0xffffffff;
+    std::vector<std::uint32_t> at(id.size() + 1, kFree);
+    bool is_permutation = true;
+    for (const std::uint32_t row : list) {
+      const double n = id[row];
+      is_permutation = n >= 0 && n <= static_cast<double>(id.size()) && n == std::floor(n) &&
+                       at[static_cast<std::size_t>(n)] == kFree;
+      if (!is_permutation) break;
+      at[static_cast<std::size_t>(n)] = row;
+    }
+    if (!is_permutation) {
+      std::stable_sort(list.begin(), list.end(), [&](auto a, auto b) { return id[a] < id[b]; });
+      return;
+    }
+    list.clear();
+    for (const std::uint32_t row : at)
+      if (row != kFree) list.push_back(row);
+  }
+
+  std::vector<Vec3d> centers_of(const data::Table& table, const Rows& rows) const {
+    std::vector<Vec3d> out(rows.size());
+    const auto set = [&](std::size_t axis, double Vec3d::*component) {
+      for_each_number(*table.find(info_.roles.position[axis]), rows, [&](std::size_t i, double v) { out[i].*component = v; });
+    };
+    set(0, &Vec3d::x);
+    set(1, &Vec3d::y);
+    set(2, &Vec3d::z);
+    return out;
+  }
+
+  /// Returns the indices of rows with finite coordinates and radii. Reports the others, as errors unless they are to be
+  /// skipped.
+  std::vector<std::uint32_t> good_rows(const Rows& rows, const std::vector<Vec3d>& centers,
+                                       const std::vector<double>& radii) {
+    std::vector<std::uint32_t> good;
+    good.reserve(rows.size());
+    std::size_t bad = 0;
+    for (std::uint32_t i = 0; i < rows.size(); ++i) {
+      if (math::is_finite(centers[i]) && std::isfinite(radii[i]) && radii[i] != 0) {
+        good.push_back(i);
+      } else if (!points_.skip_bad && ++bad <= scene::kMaxReported) {
+        faults_.error("", "row " + std::to_string(rows[i] + 1) + " has center " + scene::vector_text(centers[i]) +
+                              " and radius " + scene::number_text(radii[i]));
+      }
+    }
+    const std::size_t count = rows.size() - good.size();
+    if (bad > 0)
+      faults_.error("", std::to_string(count) + " of " + std::to_string(rows.size()) +
+                            " rows have coordinates that are not finite or no radius; `skip_bad = true` leaves them out");
+    else if (count > 0)
+      faults_.warning(".skip_bad", std::to_string(count) + " of " + std::to_string(rows.size()) +
+                                       " rows were left out: their coordinates are not finite, or they have no radius");
+    return good;
+  }
+
+  /// Keeps the listed rows with their centres and radii.
+  static Rows kept(const Rows& rows, const std::vector<std::uint32_t>& good, std::vector<Vec3d>& centers,
+                   std::vector<double>& radii) {
+    std::vector<std::uint32_t> list;
+    for (std::size_t i = 0; i < good.size(); ++i) {
+      list.push_back(static_cast<std::uint32_t>(rows[good[i]]));
+      centers[i] = centers[good[i]];
+      radii[i] = radii[good[i]];
+    }
+    centers.resize(good.size());
+    radii.resize(good.size());
+    return Rows(std::move(list));
+  }
+
+  /// Sets the material of each sphere by the file's column of indices into the scene's materials.
+  void set_materials(const data::Table& table, const Rows& rows) {
+    std::size_t bad = 0;
+    points_.materials.resize(rows.size());
+    for_each_number(*table.find(material_), rows, [&](std::size_t i, double v) {
+      const bool exists = v >= 0 && v < static_cast<double>(request_.materials) && v == std::floor(v);
+      points_.materials[i] = exists ? static_cast<std::uint32_t>(v) : 0;
+      if (!exists && ++bad <= scene::kMaxReported)
+        faults_.error("", "row " + std::to_string(rows[i] + 1) + " has material " + scene::number_text(v) +
+                              "; the scene has " + std::to_string(request_.materials) + ", counted from 0");
+    });
+    if (bad > scene::kMaxReported)
+      faults_.error("", "and " + std::to_string(bad - scene::kMaxReported) + " more (" + std::to_string(bad) + " in all)");
+  }
+
+  const LoadRequest& request_;
+  scene::Points& points_;
+  KeyFaults faults_;
+  std::unique_ptr<data::DataFile> file_;
+  data::FrameInfo info_;
+  std::vector<std::string> columns_;
+  RadiusSource radius_;
+  ColorSource color_;
+  Selection selection_;
+  std::vector<Copy> copies_;
+  std::string material_;  ///< column of material indices; empty: none
+};
+
+}  // namespace
+
+std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points) {
+  return Loader(request, points).run();
+}
+
+}  // namespace orrery::points

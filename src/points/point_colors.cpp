@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/point_colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/text.h"
+#include "points/elements.h"
+
+namespace orrery::points {
+namespace {
+
+/// Colours per map: as many as a display distinguishes.
+constexpr std::size_t kMapColors = 256;
+/// Distinct values of a column of types or elements.
+constexpr std::size_t kMaxLabels = 4096;
+constexpr std::size_t kMaxPalette = 65536;
+
+Vec3d linear_from_bytes(const std::array<std::uint8_t, 3>& c) {
+  constexpr double kFull = 255;
+  return linear_from_srgb({c[0] / kFull, c[1] / kFull, c[2] / kFull});
+}
+
+/// Labels of a column, or an error if it has too many distinct values.
+std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows, const std::string& column,
+                                      const char* part, KeyFaults& faults) {
+  Labels labels = labels_of(*table.find(column), rows, kMaxLabels);
+  if (labels.of_rows.size() == rows.size()) return labels;
+  faults.error(part, "column `" + column + "` has more than " + std::to_string(kMaxLabels) + " distinct values");
+  return {};
+}
+
+/// Gives each label the colour with its index.
+std::vector<std::uint16_t> indices_of(const Labels& labels) {
+  return {labels.of_rows.begin(), labels.of_rows.end()};
+}
+
+/// Distinct values spread evenly over a continuous map, or the colours of a categorical one in turn.
+PointColors colors_by_label(const Labels& labels, const ColorMap& map) {
+  PointColors out;
+  const std::size_t n = labels.names.size();
+  if (map.is_categorical) {
+    for (std::size_t i = 0; i < n; ++i) out.palette.push_back(linear_from_srgb(map.knots[i % map.knots.size()].srgb));
+  } else {
+    out.palette = palette(map, std::max<std::size_t>(n, 1));
+  }
+  out.rec709 = out.palette.size();
+  out.indices = indices_of(labels);
+  return out;
+}
+
+/// The range of the finite values of a column; 0..1 if there is none.
+scene::Interval range_of(const data::Column& column, const Rows& rows) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  scene::Interval range{kInfinity, -kInfinity};
+  for_each_number(column, rows, [&](std::size_t, double v) {
+    if (!std::isfinite(v)) return;
+    range.low = std::min(range.low, v);
+    range.high = std::max(range.high, v);
+  });
+  return range.low <= range.high ? range : scene::Interval{};
+}
+
+PointColors colors_by_number(const data::Column& column, const Rows& rows, const ColorMap& map,
+                             const scene::PointsColor& color) {
+  PointColors out;
+  out.palette = palette(map, kMapColors);
+  out.rec709 = kMapColors;
+  out.palette.push_back(color.nan_color);
+  out.range = color.range ? *color.range : range_of(column, rows);
+  const double low = out.range.low, span = out.range.high - low;
+  // A constant column has the colour in the middle.
+  const double scale = span > 0 ? (kMapColors - 1) / span : 0, offset = span > 0 ? 0.5 : kMapColors / 2.0;
+  out.indices.resize(rows.size());
+  for_each_number(column, rows, [&](std::size_t i, double v) {
+    const double at = std::clamp((std::clamp(v, low, out.range.high) - low) * scale + offset, 0.0, kMapColors - 0.5);
+    out.indices[i] = std::isnan(v) ? kMapColors : static_cast<std::uint16_t>(at);
+  });
+  return out;
+}
+
+PointColors colors_by_map(const data::Table& table, const Rows& rows, const ColorSource& source,
+                          const scene::PointsColor& color, KeyFaults& faults) {
+  const data::Column& column = *table.find(source.columns[0]);
+  if (!source.map->is_categorical && column.type() != data::ColumnType::kText)
+    return colors_by_number(column, rows, *source.map, color);
+  const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.column", faults);
+  return labels ? colors_by_label(*labels, *source.map) : PointColors();
+}
+
+PointColors colors_by_element(const data::Table& table, const Rows& rows, const ColorSource& source,
+                              KeyFaults& faults) {
+  PointColors out;
+  const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.element", faults);
+  if (!labels) return out;
+  // Unknown elements have Jmol's colour of unknown elements.
+  constexpr std::array<std::uint8_t, 3> kUnknown = {255, 20, 147};
+  for (const std::string& name : labels->names) {
+    const Element* const element = find_element(name);
+    out.palette.push_back(linear_from_bytes(element != nullptr ? element->color(ElementColors::kJmol) : kUnknown));
+  }
+  out.rec709 = out.palette.size();
+  out.indices = indices_of(*labels);
+  return out;
+}
+
+PointColors colors_by_type(const data::Table& table, const Rows& rows, const ColorSource& source,
+                           const scene::PointsColor& color, KeyFaults& faults) {
+  PointColors out;
+  const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.type", faults);
+  if (!labels) return out;
+  std::vector<std::string> missing;
+  for (const std::string& name : labels->names) {
+    const auto found = std::find_if(color.types.begin(), color.types.end(), [&](const auto& t) { return t.first == name; });
+    if (found == color.types.end()) missing.push_back("`" + name + "`");
+    out.palette.push_back(found == color.types.end() ? Vec3d{} : found->second);
+  }
+  constexpr std::size_t kMaxNamed = 10;
+  if (!missing.empty()) {
+    missing.resize(std::min(missing.size(), kMaxNamed));
+    faults.error(".color.type", "type " + base::joined(missing) + " has no colour; add it");
+  }
+  out.indices = indices_of(*labels);
+  return out;
+}
+
+/// The file's colours as 24 bits per sphere.
+std::vector<std::uint32_t> bytes_of(const data::Table& table, const Rows& rows, const ColorSource& source) {
+  std::vector<std::uint32_t> out(rows.size());
+  for (const std::string& name : source.columns) {
+    for_each_number(*table.find(name), rows, [&](std::size_t i, double v) {
+      const double byte = std::isnan(v) ? 0 : std::clamp(v / source.rgb_maximum, 0.0, 1.0) * 255;
+      out[i] = out[i] << 8 | static_cast<std::uint32_t>(byte + 0.5);
+    });
+  }
+  return out;
+}
+
+PointColors colors_by_rgb(const data::Table& table, const Rows& rows, const ColorSource& source) {
+  std::vector<std::uint32_t> bytes = bytes_of(table, rows, source);
+  constexpr std::uint32_t kColors = std::uint32_t{1} << 24;
+  std::vector<std::uint32_t> index(kColors);
+  std::vector<std::uint32_t> distinct;
+  for (int dropped = 0;; ++dropped) {
+    // Keeps the high bits of each channel and the middle of the dropped ones.
+    const std::uint32_t low = (1U << dropped) - 1, middle = dropped > 0 ? 1U << (dropped - 1) : 0;
+    const std::uint32_t keep = ~(low << 16 | low << 8 | low), set = middle << 16 | middle << 8 | middle;
+    distinct.clear();
+    std::fill(index.begin(), index.end(), 0);
+    for (std::uint32_t& b : bytes) {
+      b = (b & keep) | set;
+      index[b] = 1;
+    }
+    for (std::uint32_t b = 0; b < kColors; ++b) {
+      if (index[b] == 0) continue;
+      index[b] = static_cast<std::uint32_t>(distinct.size());
+      distinct.push_back(b);
+    }
+    if (distinct.size() <= kMaxPalette) break;
+  }
+  PointColors out;
+  for (const std::uint32_t b : distinct)
+    out.palette.push_back(linear_from_bytes({static_cast<std::uint8_t>(b >> 16), static_cast<std::uint8_t>(b >> 8),
+                                             static_cast<std::uint8_t>(b)}));
+  out.rec709 = out.palette.size();
+  out.indices.resize(bytes.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) out.indices[i] = static_cast<std::uint16_t>(index[bytes[i]]);
+  return out;
+}
+
+void set_map(const scene::PointsColor& color, const std::filesystem::path& folder, ColorSource& out,
+             KeyFaults& faults) {
+  if (const ColorMap* map = find_color_map(color.map)) {
+    out.map = *map;
+  } else if (color.map.find_first_of("./\\") != std::string::npos) {
+    out.map = read_color_map(folder / color.map);
+  } else {
+    const std::string suggestion = base::did_you_mean(color.map, color_map_names());
+    faults.error(".color.map", "there is no colour map \"" + color.map + "\"; " +
+                                   (suggestion.empty() ? "" : suggestion + " ") + "maps are " +
+                                   base::joined(color_map_names()) + ", and files with an extension, e.g. map.txt");
+  }
+}
+
+}  // namespace
+
+ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& color,
+                         const std::filesystem::path& folder, KeyFaults& faults) {
+  ColorSource out;
+  const int set = (color.column.empty() ? 0 : 1) + (color.element.empty() ? 0 : 1) + (color.types.empty() ? 0 : 1) +
+                  (color.rgb ? 1 : 0);
+  if (set > 1) {
+    faults.error(".color", "only one of `column`, `element`, `type` and `rgb` can be set");
+  } else if (!color.column.empty()) {
+    out.kind = ColorSource::Kind::kMap;
+    out.columns = {color.column};
+    set_map(color, folder, out, faults);
+    require_column(info, color.column, false, ".color.column", faults);
+  } else if (!color.element.empty()) {
+    out.kind = ColorSource::Kind::kElement;
+    out.columns = {info.roles.element};
+    if (info.roles.element.empty())
+      faults.error(".color.element", "the file has no column of chemical elements; its columns are " + column_names(info));
+  } else if (!color.types.empty()) {
+    out.kind = ColorSource::Kind::kType;
+    out.columns = {info.roles.type};
+    if (info.roles.type.empty())
+      faults.error(".color.type", "the file has no column of particle types; its columns are " + column_names(info));
+  } else if (color.rgb) {
+    out.kind = ColorSource::Kind::kRgb;
+    out.columns = {info.roles.rgb.begin(), info.roles.rgb.end()};
+    out.rgb_maximum = info.roles.rgb_maximum;
+    if (info.roles.rgb[0].empty())
+      faults.error(".color.rgb", "the file has no colours; its columns are " + column_names(info));
+  }
+  return out;
+}
+
+PointColors colors_of(const data::Table& table, const Rows& rows, const ColorSource& source,
+                      const scene::PointsColor& color, KeyFaults& faults) {
+  switch (source.kind) {
+    case ColorSource::Kind::kNone: return {};
+    case ColorSource::Kind::kMap: return colors_by_map(table, rows, source, color, faults);
+    case ColorSource::Kind::kElement: return colors_by_element(table, rows, source, faults);
+    case ColorSource::Kind::kType: return colors_by_type(table, rows, source, color, faults);
+    case ColorSource::Kind::kRgb: return colors_by_rgb(table, rows, source);
+  }
+  return {};
+}
+
+}  // namespace orrery::points

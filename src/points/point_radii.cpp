@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/point_radii.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "points/elements.h"
+
+namespace orrery::points {
+namespace {
+
+/// Distinct types and elements; a column with more is not one of types.
+constexpr std::size_t kMaxLabels = 65536;
+
+ElementRadius kind_of(const std::string& name) {
+  if (name == "covalent") return ElementRadius::kCovalent;
+  return name == "ball" ? ElementRadius::kBall : ElementRadius::kVanDerWaals;
+}
+
+/// Returns the radius of each label; reports labels without a radius, all in one message.
+std::vector<double> radii_of_labels(const Labels& labels, const RadiusSource& source,
+                                    const scene::PointsRadius& radius, KeyFaults& faults) {
+  std::vector<double> out;
+  std::vector<std::string> missing;
+  for (const std::string& name : labels.names) {
+    double r = 0;
+    if (source.kind == RadiusSource::Kind::kElement) {
+      if (const Element* element = find_element(name)) r = element->radius(kind_of(radius.element)) * source.scale;
+    } else {
+      for (const auto& [type, value] : radius.types)
+        if (type == name) r = value;
+    }
+    if (!(r > 0)) missing.push_back("`" + name + "`");
+    out.push_back(r);
+  }
+  if (missing.empty()) return out;
+  constexpr std::size_t kMaxNamed = 10;
+  const std::size_t count = missing.size();
+  missing.resize(std::min(count, kMaxNamed));
+  const std::string names = base::joined(missing) + (count > kMaxNamed ? " ..." : "");
+  if (source.kind == RadiusSource::Kind::kElement)
+    faults.error(".radius.element", "no radius is known for " + names + " in column `" + source.column +
+                                        "`; leave these rows out with `select`, or set another radius");
+  else
+    faults.error(".radius.type",
+                 "type " + names + " has no radius; add it, e.g. `type = { " + labels.names.back() + " = 0.5 }`");
+  return out;
+}
+
+}  // namespace
+
+RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadius& radius, KeyFaults& faults) {
+  RadiusSource out;
+  out.scale = radius.scale;
+  const int set = (radius.value ? 1 : 0) + (radius.column.empty() ? 0 : 1) + (radius.element.empty() ? 0 : 1) +
+                  (radius.types.empty() ? 0 : 1);
+  if (set > 1) {
+    faults.error(".radius", "only one of `column`, `element` and `type` can be set");
+  } else if (radius.value) {
+    out.kind = RadiusSource::Kind::kValue;
+  } else if (!radius.column.empty()) {
+    out.kind = RadiusSource::Kind::kColumn;
+    out.column = radius.column;
+    require_column(info, radius.column, true, ".radius.column", faults);
+  } else if (!radius.element.empty()) {
+    out.kind = RadiusSource::Kind::kElement;
+    out.column = info.roles.element;
+    if (out.column.empty())
+      faults.error(".radius.element", "the file has no column of chemical elements; its columns are " + column_names(info));
+  } else if (!radius.types.empty()) {
+    out.kind = RadiusSource::Kind::kType;
+    out.column = info.roles.type;
+    if (out.column.empty())
+      faults.error(".radius.type", "the file has no column of particle types; its columns are " + column_names(info));
+  } else if (!info.roles.radius.empty()) {
+    out.kind = RadiusSource::Kind::kColumn;
+    out.column = info.roles.radius;
+    out.scale = radius.scale * info.roles.radius_scale;
+  } else {
+    faults.error(".radius",
+                 "the file has no radius; set `radius` to a number, or to a column, an element table or types, e.g. `radius "
+                 "= { column = \"size\", scale = 0.5 }`; its columns are " + column_names(info));
+  }
+  return out;
+}
+
+std::vector<double> radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
+                             const scene::PointsRadius& radius, KeyFaults& faults) {
+  if (source.kind == RadiusSource::Kind::kValue) return std::vector<double>(rows.size(), radius.value.value_or(1));
+  std::vector<double> out(rows.size());
+  const data::Column& column = *table.find(source.column);
+  if (source.kind == RadiusSource::Kind::kColumn) {
+    for_each_number(column, rows, [&](std::size_t i, double v) { out[i] = v * source.scale; });
+    return out;
+  }
+  const Labels labels = labels_of(column, rows, kMaxLabels);
+  if (labels.of_rows.size() != rows.size()) {
+    faults.error(".radius", "column `" + source.column + "` has more than " + std::to_string(kMaxLabels) + " distinct values");
+    return out;
+  }
+  const std::vector<double> of_labels = radii_of_labels(labels, source, radius, faults);
+  for (std::size_t i = 0; i < rows.size(); ++i) out[i] = of_labels[labels.of_rows[i]];
+  return out;
+}
+
+}  // namespace orrery::points

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "points/rows.h"
+#include "scene/scene.h"
+
+namespace orrery::points {
+
+/// How the radii of a file's spheres are determined: one of the alternatives of scene::PointsRadius, or the file's own.
+struct RadiusSource {
+  enum class Kind { kValue, kColumn, kElement, kType };
+  Kind kind = Kind::kValue;
+  std::string column;  ///< to read; empty: none
+  double scale = 1;    ///< multiplies column and element radii
+};
+
+/// Determines the source of the radii. Reports a missing radius, unknown columns, and alternatives that exclude each
+/// other.
+RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadius& radius, KeyFaults& faults);
+
+/// Returns the radii of the rows. Reports elements and types without a radius.
+///
+/// Domain     a table with the source's column
+std::vector<double> radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
+                             const scene::PointsRadius& radius, KeyFaults& faults);
+
+}  // namespace orrery::points
