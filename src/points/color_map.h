@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "math/vec3.h"
+
+namespace orrery::points {
+
+using math::Vec3d;
+
+/// A colour map: from [0, 1] to display-referred sRGB, linear between knots; or a set of colours for categories.
+struct ColorMap {
+  struct Knot {
+    double t = 0;  ///< 0 at the first knot, 1 at the last, ascending
+    Vec3d srgb;    ///< display-referred sRGB
+  };
+
+  std::string name;
+  bool is_categorical = false;
+  std::vector<Knot> knots;  ///< at least 2; of a categorical map its colours, at any t
+};
+
+/// Returns the built-in colour map with a name; null if there is none.
+///
+/// Precision  within 1/255 of the published tables; tools/color_maps.py measures it
+/// Reference  docs/references.md, colour maps
+const ColorMap* find_color_map(std::string_view name);
+
+/// Returns the names of the built-in colour maps, the categorical ones last.
+const std::vector<std::string>& color_map_names();
+
+/// Returns the colour at t in display-referred sRGB. Outside [0, 1] the first or last colour; of n categorical colours,
+/// the one at [t n].
+///
+/// Domain     t is not NaN
+Vec3d srgb_at(const ColorMap& map, double t);
+
+/// Returns the colours at i / (count - 1) as light. A categorical map repeats its colours.
+///
+/// Units      scene-linear Rec.709
+/// Domain     count >= 1
+std::vector<Vec3d> palette(const ColorMap& map, std::size_t count);
+
+/// Decodes display-referred sRGB to scene-linear Rec.709.
+Vec3d linear_from_srgb(Vec3d srgb);
+
+/// Reads a colour map from a text file. Each line is a colour: `r g b`, or `t r g b` with ascending t, or `#rrggbb`.
+/// Numbers are separated by blanks or commas. If one of r, g, b is greater than 1, all are 0 to 255. Blank lines and
+/// lines that begin with `#`, except colours, are skipped.
+///
+/// Result     a continuous map, named after the file
+/// Errors     base::Error: kMissingInput, kIo; kBadData with the lines
+ColorMap read_color_map(const std::filesystem::path& file);
+
+}  // namespace orrery::points

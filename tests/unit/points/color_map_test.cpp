@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/color_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "base/error.h"
+#include "support/temp_dir.h"
+
+namespace orrery::points {
+namespace {
+
+/// Largest difference of two colours, in units of 1/255.
+double difference(Vec3d a, Vec3d b) {
+  return 255 * std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+TEST(PointsColorMap, NamesAreFound) {
+  EXPECT_EQ(color_map_names(), (std::vector<std::string>{"fast", "coolwarm", "viridis", "magma", "inferno", "plasma",
+                                                         "cividis", "batlow", "turbo", "tab10", "okabe-ito", "set2"}));
+  for (const std::string& name : color_map_names()) {
+    const ColorMap* map = find_color_map(name);
+    ASSERT_NE(map, nullptr) << name;
+    EXPECT_EQ(map->name, name);
+    EXPECT_LE(map->knots.size(), 48u) << name;
+  }
+  EXPECT_EQ(find_color_map("jet"), nullptr);
+  EXPECT_EQ(find_color_map("Viridis"), nullptr);
+}
+
+TEST(PointsColorMap, ColorsAreThoseOfThePublishedTables) {
+  // tools/color_maps.py compares all entries; these rows show that the committed knots are its output. Rows of tables
+  // in 8 bits are 0 to 255.
+  struct Row {
+    const char* map;
+    int index;
+    Vec3d srgb;
+  };
+  const Row rows[] = {
+      {"viridis", 0, {0.267004, 0.004874, 0.329415}},   {"viridis", 128, {0.127568, 0.566949, 0.550556}},
+      {"viridis", 255, {0.993248, 0.906157, 0.143936}}, {"inferno", 63, {0.335217, 0.06006, 0.428524}},
+      {"inferno", 129, {0.741423, 0.219112, 0.326576}}, {"inferno", 189, {0.974176, 0.53678, 0.048392}},
+      {"magma", 0, {0.001462, 0.000466, 0.013866}},     {"magma", 255, {0.987053, 0.991438, 0.749504}},
+      {"plasma", 0, {0.050383, 0.029803, 0.527975}},    {"plasma", 255, {0.940015, 0.975158, 0.131326}},
+      {"cividis", 0, {0, 0.135112, 0.304751}},          {"cividis", 255, {0.995737, 0.909344, 0.217772}},
+      {"turbo", 0, {0.18995, 0.07176, 0.23217}},        {"turbo", 128, {0.64362, 0.98999, 0.23356}},
+      {"turbo", 255, {0.4796, 0.01583, 0.01055}},       {"batlow", 0, {0.0051932, 0.098238, 0.34984}},
+      {"batlow", 64, {0.1333, 0.37528, 0.3794}},        {"batlow", 128, {0.51125, 0.5109, 0.1933}},
+      {"batlow", 192, {0.9507, 0.61665, 0.42862}},      {"batlow", 255, {0.98135, 0.80041, 0.98127}},
+      {"fast", 22, Vec3d{44, 67, 163} / 255},           {"fast", 66, Vec3d{84, 167, 232} / 255},
+      {"fast", 128, Vec3d{230, 240, 195} / 255},        {"fast", 200, Vec3d{219, 121, 58} / 255},
+      {"fast", 255, Vec3d{150, 20, 30} / 255},          {"coolwarm", 0, Vec3d{59, 76, 192} / 255},
+      {"coolwarm", 64, Vec3d{141, 176, 254} / 255},     {"coolwarm", 230, Vec3d{214, 82, 68} / 255},
+      {"coolwarm", 255, Vec3d{180, 4, 38} / 255},
+  };
+  for (const Row& row : rows)
+    EXPECT_LT(difference(srgb_at(*find_color_map(row.map), row.index / 255.0), row.srgb), 1) << row.map << row.index;
+}
+
+TEST(PointsColorMap, ColorsAreContinuousAndClamped) {
+  for (const std::string& name : color_map_names()) {
+    const ColorMap& map = *find_color_map(name);
+    EXPECT_EQ(srgb_at(map, -1), map.knots.front().srgb) << name;
+    EXPECT_EQ(srgb_at(map, 0), map.knots.front().srgb) << name;
+    EXPECT_EQ(srgb_at(map, 1), map.knots.back().srgb) << name;
+    EXPECT_EQ(srgb_at(map, 2), map.knots.back().srgb) << name;
+    EXPECT_EQ(srgb_at(map, std::numeric_limits<double>::infinity()), map.knots.back().srgb) << name;
+    EXPECT_EQ(srgb_at(map, -std::numeric_limits<double>::infinity()), map.knots.front().srgb) << name;
+    if (map.is_categorical) continue;
+    for (int i = 0; i < 4096; ++i)
+      EXPECT_LT(difference(srgb_at(map, i / 4096.0), srgb_at(map, (i + 1) / 4096.0)), 1) << name << ' ' << i;
+  }
+}
+
+TEST(PointsColorMap, SrgbIsDecodedExactly) {
+  EXPECT_EQ(linear_from_srgb({0, 1, 0.04045}), (Vec3d{0, 1, 0.04045 / 12.92}));
+  EXPECT_NEAR(linear_from_srgb({0.5, 0.5, 0.5}).x, 0.21404114048223255, 1e-15);
+  EXPECT_NEAR(linear_from_srgb({0.2, 0.2, 0.2}).y, 0.033104766570885055, 1e-15);
+}
+
+TEST(PointsColorMap, PaletteIsLight) {
+  // Codes that are passed on as if they were light render as pastels: the first colour of viridis, a dark violet, would
+  // have a luminance of 0.08, five times too much.
+  const std::vector<Vec3d> viridis = palette(*find_color_map("viridis"), 256);
+  ASSERT_EQ(viridis.size(), 256u);
+  EXPECT_NEAR(viridis[0].x, 0.05780, 0.0005);
+  EXPECT_NEAR(viridis[0].y, 0.00038, 0.0001);
+  EXPECT_NEAR(viridis[0].z, 0.08881, 0.0005);
+  EXPECT_NEAR(viridis[128].y, 0.28121, 0.003);
+  EXPECT_NEAR(viridis[255].z, 0.01837, 0.0005);
+  const auto luminance = [](Vec3d c) { return dot(c, {0.2126, 0.7152, 0.0722}); };
+  EXPECT_LT(luminance(viridis[0]), 0.02);
+}
+
+TEST(PointsColorMap, PaletteEndsAreTheEndsOfTheMap) {
+  const ColorMap& fast = *find_color_map("fast");
+  const std::vector<Vec3d> colors = palette(fast, 5);
+  EXPECT_EQ(colors[0], linear_from_srgb(fast.knots.front().srgb));
+  EXPECT_EQ(colors[2], linear_from_srgb(srgb_at(fast, 0.5)));
+  EXPECT_EQ(colors[4], linear_from_srgb(fast.knots.back().srgb));
+  EXPECT_EQ(palette(fast, 1), std::vector<Vec3d>{linear_from_srgb(fast.knots.front().srgb)});
+}
+
+TEST(PointsColorMap, CategoricalColors) {
+  const ColorMap& tab10 = *find_color_map("tab10");
+  ASSERT_EQ(tab10.knots.size(), 10u);
+  EXPECT_EQ(find_color_map("okabe-ito")->knots.size(), 8u);
+  EXPECT_EQ(find_color_map("set2")->knots.size(), 8u);
+  EXPECT_LT(difference(tab10.knots[0].srgb, Vec3d{31, 119, 180} / 255), 1e-9);
+  EXPECT_LT(difference(tab10.knots[9].srgb, Vec3d{23, 190, 207} / 255), 1e-9);
+  EXPECT_EQ(srgb_at(tab10, 0.05), tab10.knots[0].srgb);
+  EXPECT_EQ(srgb_at(tab10, 0.15), tab10.knots[1].srgb);
+  const std::vector<Vec3d> colors = palette(tab10, 12);
+  EXPECT_EQ(colors[3], linear_from_srgb(tab10.knots[3].srgb)) << "no interpolation";
+  EXPECT_EQ(colors[11], colors[1]);
+}
+
+class PointsColorMapFile : public testing::Test {
+ protected:
+  ColorMap read(const std::string& text) {
+    std::ofstream(dir_ / "map.txt", std::ios::binary) << text;
+    return read_color_map(dir_ / "map.txt");
+  }
+  /// "LINE text" of each diagnostic.
+  std::string fault(const std::string& text) {
+    try {
+      read(text);
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
+      std::string out;
+      for (const base::Diagnostic& d : error.diagnostics()) out += std::to_string(d.line) + ' ' + d.text + '\n';
+      return out;
+    }
+    return "no error";
+  }
+  support::TempDir dir_;
+};
+
+TEST_F(PointsColorMapFile, ReadsAllForms) {
+  const ColorMap unit = read("# a comment\n0 0 0\n\n0.5 0.25 1\n1 1 1\n");
+  EXPECT_EQ(unit.name, "map.txt");
+  EXPECT_FALSE(unit.is_categorical);
+  ASSERT_EQ(unit.knots.size(), 3u);
+  EXPECT_EQ(unit.knots[1].t, 0.5);
+  EXPECT_EQ(unit.knots[1].srgb, (Vec3d{0.5, 0.25, 1}));
+
+  const ColorMap bytes = read(
+      "\xEF\xBB\xBF"
+      "0,0,0\r\n51,\t255,0\r\n0,0,255");
+  ASSERT_EQ(bytes.knots.size(), 3u);
+  EXPECT_EQ(bytes.knots[1].srgb, (Vec3d{0.2, 1, 0}));
+
+  const ColorMap hex = read("#000000\n#ff8000\n# ffffff is white\n#FFFFFF\n");
+  ASSERT_EQ(hex.knots.size(), 3u);
+  EXPECT_EQ(hex.knots[1].srgb, (Vec3d{1, 128 / 255.0, 0}));
+  EXPECT_EQ(read("#000000\n#010101\n").knots[1].srgb, (Vec3d{1, 1, 1} / 255)) << "always 0 to 255";
+
+  const ColorMap placed = read("-10 0 0 0\n-5 1 0 0\n 30 1 1 1\n");
+  ASSERT_EQ(placed.knots.size(), 3u);
+  EXPECT_EQ(placed.knots[0].t, 0);
+  EXPECT_EQ(placed.knots[1].t, 0.125);
+  EXPECT_EQ(placed.knots[2].t, 1);
+}
+
+TEST_F(PointsColorMapFile, ErrorsHaveLines) {
+  const std::string forms = "a line is `r g b`, `t r g b` or `#rrggbb`\n";
+  EXPECT_EQ(fault("0 0 0\n1 1\n1 1 1"), "2 2 numbers; " + forms);
+  EXPECT_EQ(fault("0 0 0\n1 1 x\n1 1 1"), "2 not a colour: " + forms);
+  EXPECT_EQ(fault("0 0 0\n1 nan 1\n1 1 1"), "2 not a colour: " + forms);
+  EXPECT_EQ(fault("r,g,b\n0 0 0\n1 1 1"), "1 not a colour: " + forms);
+  EXPECT_EQ(fault("0 0 0\n1 -0.1 1\n1 1 256"),
+            "2 colour is out of range: 0 to 1, or 0 to 255\n"
+            "3 colour is out of range: 0 to 1, or 0 to 255\n");
+  EXPECT_EQ(fault("0 0 0\n1 1 1 1\n"), "2 not in the form of the first row\n");
+  EXPECT_EQ(fault("0 0 0\n#ffffff\n"), "2 not in the form of the first row\n");
+  EXPECT_EQ(fault("0 0 0 0\n1 0 0 0\n1 1 1 1\n"), "3 t does not ascend\n");
+  EXPECT_EQ(fault(""), "0 fewer than 2 colours\n");
+  EXPECT_EQ(fault("1 1 1\n"), "0 fewer than 2 colours\n");
+  EXPECT_EQ(fault("-1e308 0 0 0\n1e308 1 1 1\n"), "0 range of t is too large\n");
+  std::string many;
+  for (int i = 0; i < 65'537; ++i) many += "0 0 0\n";
+  EXPECT_EQ(fault(many), "65537 more than 65536 colours\n");
+  EXPECT_EQ(fault(std::string(9 << 20, ' ')), "0 file is larger than 8.0 MiB\n");
+  try {
+    read_color_map(dir_ / "missing");
+    ADD_FAILURE();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kMissingInput);
+  }
+}
+
+TEST_F(PointsColorMapFile, KnotsStayDistinctAfterScaling) {
+  const ColorMap map = read("0 0 0 0\n1e-320 1 0 0\n1 0 1 0\n1e300 1 1 1\n");
+  for (std::size_t i = 1; i < map.knots.size(); ++i) EXPECT_GT(map.knots[i].t, map.knots[i - 1].t);
+  EXPECT_EQ(map.knots.back().t, 1);
+  EXPECT_TRUE(math::is_finite(srgb_at(map, 0)));
+}
+
+}  // namespace
+}  // namespace orrery::points
