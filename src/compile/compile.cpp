@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <type_traits>
+#include <unordered_map>
 
 #include "compile/camera_basis.h"
 #include "compile/daylight.h"
@@ -108,6 +109,25 @@ class MaterialTable {
   MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
       : scene_(scene), out_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}
 
+  /// Returns the index of a material whose colour is replaced by one of a palette.
+  std::uint32_t colored_index(std::uint32_t authored, bool inside_out, std::size_t points, std::uint16_t color,
+                              Vec3d rgb) {
+    const std::uint32_t plain = index(authored, inside_out);
+    const std::uint64_t key = (std::uint64_t{plain} << 32 | points << 16) | color;
+    const auto [at, is_new] = colored_.try_emplace(key, static_cast<std::uint32_t>(out_.materials.size()));
+    if (!is_new) return at->second;
+    kernel::Material m = out_.materials[plain];
+    kernel::Emission e = out_.emission[plain];
+    if (m.kind == kernel::MaterialKind::kEmitter) {
+      for (int k = 0; k < 3; ++k) e.radiance[k] *= k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z;
+    } else if (m.kind != kernel::MaterialKind::kDielectric) {
+      set(m.albedo, rgb);
+    }
+    out_.materials.push_back(m);
+    out_.emission.push_back(e);
+    return at->second;
+  }
+
   std::uint32_t index(std::uint32_t authored, bool inside_out) {
     std::uint32_t& at = compiled_[authored][inside_out ? 1 : 0];
     if (at != kNone) return at;
@@ -129,11 +149,12 @@ class MaterialTable {
   const scene::Scene& scene_;
   CompiledScene& out_;
   std::vector<std::array<std::uint32_t, 2>> compiled_;
+  std::unordered_map<std::uint64_t, std::uint32_t> colored_;  ///< by plain material, points table and colour
 };
 
-void add_sphere(CompiledScene& compiled, MaterialTable& table, Vec3d center, double radius, std::uint32_t material) {
+void add_sphere(CompiledScene& compiled, Vec3d center, double radius, std::uint32_t material) {
   compiled.spheres.push_back({center.x, center.y, center.z, std::abs(radius)});
-  compiled.sphere_materials.push_back(table.index(material, radius < 0));
+  compiled.sphere_materials.push_back(material);
 }
 
 void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
@@ -141,11 +162,17 @@ void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
   compiled.spheres.reserve(count);
   compiled.sphere_materials.reserve(count);
   MaterialTable table(scene, compiled);
-  for (const scene::Sphere& s : scene.spheres) add_sphere(compiled, table, s.center, s.radius, s.material);
-  for (const scene::Points& points : scene.points) {
+  for (const scene::Sphere& s : scene.spheres)
+    add_sphere(compiled, s.center, s.radius, table.index(s.material, s.radius < 0));
+  for (std::size_t p = 0; p < scene.points.size(); ++p) {
+    const scene::Points& points = scene.points[p];
     for (std::size_t i = 0; i < points.centers.size(); ++i) {
       const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
-      add_sphere(compiled, table, points.centers[i], points.radii[i], material);
+      const bool inside_out = points.radii[i] < 0;
+      add_sphere(compiled, points.centers[i], points.radii[i],
+                 points.colors.empty()
+                     ? table.index(material, inside_out)
+                     : table.colored_index(material, inside_out, p, points.colors[i], points.palette[points.colors[i]]));
     }
   }
 }

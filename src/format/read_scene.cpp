@@ -12,8 +12,8 @@
 #include "format/overrides.h"
 #include "format/read_keys.h"
 #include "format/read_materials.h"
-#include "format/read_ply.h"
 #include "format/read_tracks.h"
+#include "points/load_points.h"
 #include "scene/animation.h"
 #include "scene/validate.h"
 
@@ -89,39 +89,6 @@ void read_spheres(Reading& reading, const toml::table& root, const MaterialIndex
   }
 }
 
-/// Reads a points file. Errors are reported at the location in the scene that names the file, and at those in the file.
-void read_points_file(Reading& reading, const Place& place, const std::string& full_name,
-                      const std::filesystem::path& file, std::size_t materials, scene::Points& points) {
-  try {
-    read_ply(file, materials, points);
-  } catch (const base::Error& error) {
-    if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
-    reading.error(place, full_name + ".file: " + error.what(), {}, error.kind());
-    for (const base::Diagnostic& diagnostic : error.diagnostics())
-      reading.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
-                              [&] { return diagnostic; });
-  }
-}
-
-void read_points(Reading& reading, const toml::table& root, const std::filesystem::path& folder, int frame,
-                 const MaterialIndex& index, scene::Scene& scene) {
-  const toml::array* list = tables_under(reading, root, "points");
-  if (list == nullptr) return;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = "points[" + std::to_string(i) + "]";
-    scene::Points points;
-    read_keys(reading, table, full_name, scene::points_keys(), {"material"}, points);
-    points.material = read_material_name(reading, table, full_name, scene, index);
-    if (reading.unread.count(full_name + ".file") == 0) {
-      points.file = base::with_frame(points.file.string(), frame);
-      read_points_file(reading, place_of(*table.get("file")), full_name, folder / points.file, scene.materials.size(),
-                       points);
-    }
-    scene.points.push_back(std::move(points));
-  }
-}
-
 /// Returns the node that a diagnostic's key names, or the closest enclosing table; null if there is none.
 const toml::node* node_of(const toml::table& root, const std::string& key) {
   const toml::node* at = &root;
@@ -148,6 +115,71 @@ void add_problem(Reading& reading, const toml::table& root, const std::string& f
                  const scene::SceneDiagnostic& diagnostic, const std::string& text) {
   const toml::node* node = node_of(root, diagnostic.key);
   reading.add(diagnostic.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, diagnostic.kind);
+}
+
+/// Reads the data file of a points table. Errors in the file are reported at the location in the scene that names it, and
+/// at those in the file.
+void read_points_file(Reading& reading, const toml::table& root, const std::string& scene_file, const Place& place,
+                      const points::LoadRequest& request, scene::Points& points) {
+  const std::string& full_name = request.key;
+  try {
+    for (const scene::SceneDiagnostic& diagnostic : points::load_points(request, points))
+      add_problem(reading, root, scene_file, diagnostic, diagnostic.key + ": " + diagnostic.text);
+  } catch (const base::Error& error) {
+    if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
+    reading.error(place, full_name + ".file: " + error.what(), {}, error.kind());
+    for (const base::Diagnostic& diagnostic : error.diagnostics())
+      reading.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
+                              [&] { return diagnostic; });
+  }
+}
+
+/// Reads a table from particle types to numbers or colours: `radius = { type = { 1 = 0.5, 2 = 0.7 } }`.
+template <class T>
+void read_types(Reading& reading, const toml::table& table, const std::string& table_name, const std::string& name,
+                scene::ValueType type, scene::Range range, std::vector<std::pair<std::string, T>>& types) {
+  const toml::node* const node = node_at(table, name);
+  if (node == nullptr) return;
+  const std::string full_name = table_name + "." + name;
+  const toml::table* const entries = node->as_table();
+  if (entries == nullptr) {
+    reading.error(place_of(*node), full_name + " must be a table", "write e.g. type = { 1 = 0.5, 2 = 0.7 }");
+    return;
+  }
+  for (const auto& [key, value] : *entries) {
+    const auto read = read_value(reading, value, full_name + "." + std::string(key.str()), type, range, {});
+    if (read) types.emplace_back(std::string(key.str()), std::get<T>(*read));
+  }
+}
+
+void read_points(Reading& reading, const toml::table& root, const std::filesystem::path& scene_file,
+                 const ReadOptions& options, const MaterialIndex& index, scene::Scene& scene) {
+  const toml::array* list = tables_under(reading, root, "points");
+  if (list == nullptr) return;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const toml::table& table = *list->get(i)->as_table();
+    const std::string full_name = "points[" + std::to_string(i) + "]";
+    scene::Points points;
+    read_keys(reading, table, full_name, scene::points_keys(), {"material", "radius.type", "color.type"}, points);
+    read_types(reading, table, full_name, "radius.type", scene::ValueType::kNumber,
+               {scene::kSmallestRadius, scene::kLargestLength}, points.radius.types);
+    read_types(reading, table, full_name, "color.type", scene::ValueType::kVector, {0, 1}, points.color.types);
+    points.material = read_material_name(reading, table, full_name, scene, index);
+    if (reading.unread.count(full_name + ".file") == 0) {
+      const std::string pattern = points.file.string();
+      points.file = base::with_frame(pattern, options.frame);
+      points::LoadRequest request;
+      request.folder = scene_file.parent_path();
+      request.file = request.folder / points.file;
+      request.key = full_name;
+      request.frame = options.frame;
+      request.is_sequence = points.file.string() != pattern;
+      request.materials = scene.materials.size();
+      request.memory_limit = options.memory_limit;
+      read_points_file(reading, root, scene_file.string(), place_of(*table.get("file")), request, points);
+    }
+    scene.points.push_back(std::move(points));
+  }
 }
 
 /// Adds the diagnostics of the whole scene. Those that may follow from the default of a key that could not be read are
@@ -218,8 +250,9 @@ std::vector<Setting> settings_of(const SourceText& source, const toml::table& ro
 
 }  // namespace
 
-ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides, int frame,
-                      const SceneCheck& also) {
+ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides,
+                      const ReadOptions& options) {
+  const int frame = options.frame;
   const std::string text = read_file(file, kLargestSceneFile), name = file.string();
   Reading reading;
   const toml::table root = parse_tree(name, text, overrides, reading.source, reading.diagnostics);
@@ -236,11 +269,11 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<Overr
   read_spheres(reading, root, index, result.scene);
   if (const toml::array* keys = tables_under(reading, root, "key")) read_tracks(reading, *keys, result.scene);
   if (!reading.diagnostics.has_errors()) pose(reading, root, name, frame, result);
-  read_points(reading, root, file.parent_path(), frame, index, result.scene);
+  read_points(reading, root, file, options, index, result.scene);
   add_problems(reading, root, scene::validate(result.scene, result.closing ? &*result.closing : nullptr), name);
   const auto is_of_color = [](const std::string& key) { return key.rfind("color.", 0) == 0; };
-  if (also && std::none_of(reading.unread.begin(), reading.unread.end(), is_of_color))
-    add_problems(reading, root, also(result.scene), name);
+  if (options.also && std::none_of(reading.unread.begin(), reading.unread.end(), is_of_color))
+    add_problems(reading, root, options.also(result.scene), name);
   reading.diagnostics.raise_errors(name);
   result.warnings = reading.diagnostics.take_warnings();
   result.settings = settings_of(reading.source, root, result.scene);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -35,18 +36,23 @@ struct ReadResult {
 /// A further check of a scene, such as for names that are not in the OCIO config.
 using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene::Scene&)>;
 
-/// Reads and checks a scene file, and the points files that it names.
+struct ReadOptions {
+  int frame = kFirstFrame;  ///< selects the values of animated keys, and the files and frames of data
+  SceneCheck also = {};     ///< called if [color] has no errors
+  std::uint64_t memory_limit = 0;  ///< bytes that the spheres of a data file may take while they are read; 0: no limit
+};
+
+/// Reads and checks a scene file, and the data files that it names.
 ///
 /// `overrides` are "key=value", with the value as in the file; words need no quotes. Keys are dotted, spheres are
-/// counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5". `frame` selects the values of
-/// animated keys and the files of sequences. `also` is called if [color] has no errors.
+/// counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5".
 ///
-/// Errors     base::Error: kMissingInput if the scene cannot be opened, or if the only errors are points files that
+/// Errors     base::Error: kMissingInput if the scene cannot be opened, or if the only errors are data files that
 ///            cannot be opened; kIo; kBadData with the diagnostics of the file, the overrides and the points files,
 ///            each with its location, the first kMaxErrors of them
 /// Reference  docs/scene-format.md
 ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {},
-                      int frame = kFirstFrame, const SceneCheck& also = {});
+                      const ReadOptions& options = {});
 
 /// Returns the version of toml++.
 std::string toml_version();

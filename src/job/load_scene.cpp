@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "display/look_up.h"
+#include "job/memory.h"
 #include "job/working_space.h"
 
 namespace orrery::job {
@@ -116,7 +117,11 @@ LoadedScene load_scene(const SceneRequest& request) {
     out.background = load_background(background, scene);
     return out.background->diagnostics;
   };
-  out.read = format::read_scene(request.source.file, request.source.overrides, request.source.frame, check_and_load);
+  format::ReadOptions options;
+  options.frame = request.source.frame;
+  options.also = check_and_load;
+  options.memory_limit = request.memory_limit > 0 ? request.memory_limit : available_memory().value_or(0);
+  out.read = format::read_scene(request.source.file, request.source.overrides, options);
   out.choice = check.take();
   scene::Scene& scene = out.read.scene;
   if (out.background) scene.background.image = out.background->image;

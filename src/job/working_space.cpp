@@ -34,20 +34,13 @@ std::vector<BoundedColor> colors_of(scene::Scene& scene) {
   return out;
 }
 
-}  // namespace
-
-std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color) {
-  // OpenColorIO's built-in configs, "ocio://...", are not files.
-  const bool is_file = !color.config.empty() && color.config.string().rfind("ocio://", 0) != 0;
-  return is_file ? (scene_file.parent_path() / color.config).string() : color.config.string();
-}
-
-int to_working_space(const std::string& ocio, scene::Scene& scene) {
-  if (scene.color.working_space() == scene.color.space) return 0;
-  const std::vector<BoundedColor> colors = colors_of(scene);
+/// Converts colours in place. Returns the number of colours that were clamped.
+int convert(const std::string& ocio, const std::string& from, const std::string& to,
+            const std::vector<BoundedColor>& colors) {
+  if (from == to || colors.empty()) return 0;
   std::vector<std::array<double, 3>> values;
   for (const BoundedColor& c : colors) values.push_back({c.color->x, c.color->y, c.color->z});
-  display::convert_colors(ocio, scene.color.space, scene.color.working, values);
+  display::convert_colors(ocio, from, to, values);
   int clamped = 0;
   for (std::size_t i = 0; i < colors.size(); ++i) {
     bool out_of_range = false;
@@ -60,6 +53,24 @@ int to_working_space(const std::string& ocio, scene::Scene& scene) {
     clamped += out_of_range ? 1 : 0;
   }
   return clamped;
+}
+
+}  // namespace
+
+std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color) {
+  // OpenColorIO's built-in configs, "ocio://...", are not files.
+  const bool is_file = !color.config.empty() && color.config.string().rfind("ocio://", 0) != 0;
+  return is_file ? (scene_file.parent_path() / color.config).string() : color.config.string();
+}
+
+int to_working_space(const std::string& ocio, scene::Scene& scene) {
+  std::vector<BoundedColor> authored = colors_of(scene), rec709;
+  for (scene::Points& points : scene.points) {
+    for (std::size_t i = 0; i < points.palette.size(); ++i)
+      (i < points.palette_rec709 ? rec709 : authored).push_back({&points.palette[i], 1});
+  }
+  const std::string& working = scene.color.working_space();
+  return convert(ocio, scene.color.space, working, authored) + convert(ocio, "lin_rec709", working, rec709);
 }
 
 }  // namespace orrery::job

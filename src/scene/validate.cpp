@@ -169,10 +169,12 @@ void check_spheres(const Scene& scene, Problems& diagnostics) {
 
 void check_points(const Points& points, const std::string& key, const Scene& scene, Problems& diagnostics) {
   if (points.radii.size() != points.centers.size() ||
-      (!points.materials.empty() && points.materials.size() != points.centers.size())) {
+      (!points.materials.empty() && points.materials.size() != points.centers.size()) ||
+      (!points.colors.empty() && points.colors.size() != points.centers.size())) {
     diagnostics.error(key, "has " + std::to_string(points.centers.size()) + " centres, " +
                                std::to_string(points.radii.size()) + " radii and " +
-                               std::to_string(points.materials.size()) + " materials");
+                               std::to_string(points.materials.size()) + " materials and " +
+                               std::to_string(points.colors.size()) + " colours");
     return;
   }
   if (points.materials.empty())
