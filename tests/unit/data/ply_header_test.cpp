@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/ply_header.h"
+#include "data/ply_header.h"
 
 #include <gtest/gtest.h>
 
-namespace orrery::format {
+namespace orrery::data {
 namespace {
 
 /// "line: fault" of a header; empty if it is valid.
@@ -14,7 +14,7 @@ std::string fault_of(const std::string& text) {
   return fault.empty() ? "" : std::to_string(line) + ": " + fault;
 }
 
-TEST(FormatPlyHeader, ParsesElementsPropertiesAndTheStartOfTheData) {
+TEST(DataPlyHeader, ParsesElementsPropertiesAndTheStartOfTheData) {
   const std::string text =
       "ply\r\ncomment made by hand\nformat binary_big_endian 1.0\nobj_info x\nelement vertex 12\nproperty float x\n"
       "property  double\ty\nproperty list uchar int neighbours\nelement face 0\nend_header\n";
@@ -28,17 +28,17 @@ TEST(FormatPlyHeader, ParsesElementsPropertiesAndTheStartOfTheData) {
   EXPECT_EQ(header.elements[0].name, "vertex");
   EXPECT_EQ(header.elements[0].count, 12u);
   ASSERT_EQ(header.elements[0].properties.size(), 3u);
-  EXPECT_EQ(header.elements[0].properties[0].type, PlyType::kFloat32);
-  EXPECT_EQ(header.elements[0].properties[1].type, PlyType::kFloat64);
+  EXPECT_EQ(header.elements[0].properties[0].type, NumberType::kFloat32);
+  EXPECT_EQ(header.elements[0].properties[1].type, NumberType::kFloat64);
   EXPECT_EQ(header.elements[0].properties[1].name, "y");
   EXPECT_TRUE(header.elements[0].properties[2].is_list);
-  EXPECT_EQ(header.elements[0].properties[2].count_type, PlyType::kUint8);
-  EXPECT_EQ(header.elements[0].properties[2].type, PlyType::kInt32);
+  EXPECT_EQ(header.elements[0].properties[2].count_type, NumberType::kUint8);
+  EXPECT_EQ(header.elements[0].properties[2].type, NumberType::kInt32);
   EXPECT_TRUE(header.elements[0].has_list());
   EXPECT_FALSE(header.elements[1].has_list());
 }
 
-TEST(FormatPlyHeader, TypesHaveTheirSizes) {
+TEST(DataPlyHeader, TypesHaveTheirSizes) {
   const std::pair<const char*, std::size_t> types[] = {{"char", 1},  {"int8", 1},    {"uchar", 1},  {"uint8", 1},
                                                        {"short", 2}, {"int16", 2},   {"ushort", 2}, {"uint16", 2},
                                                        {"int", 4},   {"int32", 4},   {"uint", 4},   {"uint32", 4},
@@ -49,11 +49,11 @@ TEST(FormatPlyHeader, TypesHaveTheirSizes) {
     ASSERT_EQ(parse_ply_header(std::string("ply\nformat ascii 1.0\nelement e 1\nproperty ") + name + " p\nend_header\n",
                                header, line),
               "");
-    EXPECT_EQ(ply_size(header.elements[0].properties[0].type), size) << name;
+    EXPECT_EQ(size_of(header.elements[0].properties[0].type), size) << name;
   }
 }
 
-TEST(FormatPlyHeader, FaultsHaveTheirLine) {
+TEST(DataPlyHeader, FaultsHaveTheirLine) {
   const std::string begin = "ply\nformat ascii 1.0\n";
   EXPECT_EQ(fault_of(""), "1: not a PLY file: the first line is not `ply`");
   EXPECT_EQ(fault_of("polygon\n"), "1: not a PLY file: the first line is not `ply`");
@@ -79,7 +79,7 @@ TEST(FormatPlyHeader, FaultsHaveTheirLine) {
   EXPECT_EQ(fault_of(begin + "element a 1\n"), "4: the header has no end_header");
 }
 
-TEST(FormatPlyHeader, TheLengthIsLimited) {
+TEST(DataPlyHeader, TheLengthIsLimited) {
   std::string text = "ply\nformat ascii 1.0\n";
   const std::string end = "end_header\n";
   text += "comment " + std::string(kLongestHeader - text.size() - end.size() - 9, 'x') + "\n";
@@ -88,4 +88,4 @@ TEST(FormatPlyHeader, TheLengthIsLimited) {
 }
 
 }  // namespace
-}  // namespace orrery::format
+}  // namespace orrery::data

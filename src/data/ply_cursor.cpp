@@ -1,40 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/ply_cursor.h"
+#include "data/ply_cursor.h"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <utility>
 
-namespace orrery::format {
+namespace orrery::data {
 namespace {
 
-template <class T>
-double as_double(const char* bytes, bool swap) {
-  char copy[sizeof(T)];
-  std::memcpy(copy, bytes, sizeof(T));
-  if (swap)
-    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(copy[i], copy[sizeof(T) - 1 - i]);
-  T value;
-  std::memcpy(&value, copy, sizeof(T));
-  return static_cast<double>(value);
-}
-
-double binary_value(const char* at, PlyType type, bool swap) {
-  switch (type) {
-    case PlyType::kInt8: return as_double<std::int8_t>(at, swap);
-    case PlyType::kUint8: return as_double<std::uint8_t>(at, swap);
-    case PlyType::kInt16: return as_double<std::int16_t>(at, swap);
-    case PlyType::kUint16: return as_double<std::uint16_t>(at, swap);
-    case PlyType::kInt32: return as_double<std::int32_t>(at, swap);
-    case PlyType::kUint32: return as_double<std::uint32_t>(at, swap);
-    case PlyType::kFloat32: return as_double<float>(at, swap);
-    case PlyType::kFloat64: return as_double<double>(at, swap);
-  }
-  return 0;
+double binary_value(const char* at, NumberType type, bool is_big_endian) {
+  return with_type(type, [=](auto number) { return static_cast<double>(load<decltype(number)>(at, is_big_endian)); });
 }
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -47,7 +24,7 @@ PlyCursor::PlyCursor(std::string_view data, PlyEncoding encoding, int line)
       row_end_(encoding == PlyEncoding::kAscii ? at_ : end_),
       line_(line),
       ascii_(encoding == PlyEncoding::kAscii),
-      swap_((encoding == PlyEncoding::kBigEndian) != (std::endian::native == std::endian::big)) {}
+      is_big_endian_(encoding == PlyEncoding::kBigEndian) {}
 
 void PlyCursor::begin_row() {
   if (!ascii_) return;
@@ -71,11 +48,11 @@ bool PlyCursor::end_row() {
   return true;
 }
 
-bool PlyCursor::take(PlyType type, double& value) {
+bool PlyCursor::take(NumberType type, double& value) {
   if (ascii_) return take_word(value);
-  const std::size_t size = ply_size(type);
+  const std::size_t size = size_of(type);
   if (bytes_left() < size) return false;
-  value = binary_value(at_, type, swap_);
+  value = binary_value(at_, type, is_big_endian_);
   at_ += size;
   return true;
 }
@@ -126,4 +103,4 @@ bool PlyCursor::take_word(double& value) {
   return true;
 }
 
-}  // namespace orrery::format
+}  // namespace orrery::data

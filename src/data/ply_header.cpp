@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "format/ply_header.h"
+#include "data/ply_header.h"
 
 #include <algorithm>
 #include <charconv>
 
-namespace orrery::format {
+namespace orrery::data {
 namespace {
 
 std::vector<std::string_view> words_of(std::string_view line) {
@@ -20,18 +20,18 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-bool parse_type(std::string_view word, PlyType& type) {
+bool parse_type(std::string_view word, NumberType& type) {
   struct Name {
     std::string_view name;
-    PlyType type;
+    NumberType type;
   };
   static constexpr Name kNames[] = {
-      {"char", PlyType::kInt8},      {"int8", PlyType::kInt8},       {"uchar", PlyType::kUint8},
-      {"uint8", PlyType::kUint8},    {"short", PlyType::kInt16},     {"int16", PlyType::kInt16},
-      {"ushort", PlyType::kUint16},  {"uint16", PlyType::kUint16},   {"int", PlyType::kInt32},
-      {"int32", PlyType::kInt32},    {"uint", PlyType::kUint32},     {"uint32", PlyType::kUint32},
-      {"float", PlyType::kFloat32},  {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
-      {"float64", PlyType::kFloat64}};
+      {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},       {"uchar", NumberType::kUint8},
+      {"uint8", NumberType::kUint8},    {"short", NumberType::kInt16},     {"int16", NumberType::kInt16},
+      {"ushort", NumberType::kUint16},  {"uint16", NumberType::kUint16},   {"int", NumberType::kInt32},
+      {"int32", NumberType::kInt32},    {"uint", NumberType::kUint32},     {"uint32", NumberType::kUint32},
+      {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64},
+      {"float64", NumberType::kFloat64}};
   for (const Name& known : kNames) {
     if (known.name != word) continue;
     type = known.type;
@@ -125,4 +125,4 @@ std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line
   }
 }
 
-}  // namespace orrery::format
+}  // namespace orrery::data

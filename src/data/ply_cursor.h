@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "format/ply_header.h"
+#include "data/ply_header.h"
 
-namespace orrery::format {
+namespace orrery::data {
 
 /// Reads values in sequence from the data after the header. In an ascii file, each row is one line.
 class PlyCursor {
@@ -24,7 +24,7 @@ class PlyCursor {
   int line() const { return row_line_; }
 
   /// Reads a value; false at the end of the row or of the data, or if an ascii value is not a number.
-  bool take(PlyType type, double& value);
+  bool take(NumberType type, double& value);
   /// Skips a value or a list; false as for take(), and if the length of the list is invalid.
   bool skip(const PlyProperty& property);
   /// Skips bytes of a binary file.
@@ -47,7 +47,7 @@ class PlyCursor {
   const char* end_;
   const char* row_end_;
   int line_, row_line_ = 0;
-  bool ascii_, swap_, is_bad_length_ = false;
+  bool ascii_, is_big_endian_, is_bad_length_ = false;
 };
 
-}  // namespace orrery::format
+}  // namespace orrery::data

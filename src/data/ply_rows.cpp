@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/ply_rows.h"
+
+#include <algorithm>
+#include <string>
+
+namespace orrery::data {
+
+std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding) {
+  std::uint64_t bytes = 0;
+  for (const PlyProperty& p : element.properties)
+    bytes += encoding == PlyEncoding::kAscii ? 2 : p.is_list ? size_of(p.count_type) : size_of(p.type);
+  return bytes;
+}
+
+void check_count(Faults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left) {
+  const std::uint64_t each = std::max<std::uint64_t>(1, fewest_bytes(element, header.encoding));
+  // The last ascii word needs no space after it.
+  const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
+  if (element.count > bytes / each)
+    faults.fail(0, "the header declares " + std::to_string(element.count) + " rows of `" + element.name +
+                       "`, but only " + std::to_string(bytes_left) +
+                       " bytes follow; the file is truncated, or the count is wrong");
+}
+
+void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor) {
+  if (element.properties.empty()) return;
+  if (header.encoding != PlyEncoding::kAscii && !element.has_list())
+    return cursor.skip_bytes(element.count * fewest_bytes(element, header.encoding));
+  for (std::uint64_t i = 0; i < element.count; ++i)
+    read_row(
+        faults, element, cursor, [&] { return "row " + std::to_string(i) + " of `" + element.name + "`"; },
+        [&](const PlyProperty& property, std::size_t) { return cursor.skip(property); });
+}
+
+void check_end(Faults& faults, PlyCursor& cursor) {
+  cursor.begin_row();
+  if (cursor.bytes_left() == 0) return;
+  faults.fail(static_cast<std::uint64_t>(cursor.line()),
+              std::to_string(cursor.bytes_left()) +
+                  " bytes follow the last row that the header declares; the counts are wrong, or the "
+                  "file is damaged");
+}
+
+}  // namespace orrery::data

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "data/faults.h"
+#include "data/ply_cursor.h"
+#include "data/ply_header.h"
+
+namespace orrery::data {
+
+/// Returns the minimum size of a row of an element, bytes, to check counts before memory is allocated; the size of each
+/// row in a binary file, if the element has no list.
+std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding);
+
+/// Raises an error if fewer bytes follow than the rows of an element need.
+void check_count(Faults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left);
+
+/// Reads one row: calls `take(property, index)` for each property, which returns false if the value is invalid.
+///
+/// `name()`   name of the row, for messages
+template <class Name, class Take>
+void read_row(Faults& faults, const PlyElement& element, PlyCursor& cursor, Name name, Take take) {
+  const auto line = [&] { return static_cast<std::uint64_t>(cursor.line()); };
+  cursor.begin_row();
+  for (std::size_t k = 0; k < element.properties.size(); ++k)
+    if (!take(element.properties[k], k))
+      faults.fail(line(), name() + ", `" + element.properties[k].name + "`: " + cursor.fault());
+  if (!cursor.end_row())
+    faults.fail(line(), name() + ": unexpected `" + cursor.word() + "` after the last value that the header declares");
+}
+
+/// Skips an element other than `vertex`.
+void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor);
+
+/// Raises an error if data follow the last row that the header declares.
+void check_end(Faults& faults, PlyCursor& cursor);
+
+}  // namespace orrery::data
