@@ -15,6 +15,7 @@
 #include "format/read_tracks.h"
 #include "points/load_points.h"
 #include "scene/animation.h"
+#include "scene/limits.h"
 #include "scene/validate.h"
 
 namespace orrery::format {

@@ -2,6 +2,7 @@
 // Helpers for the definition of keys; used only by schema.cpp and points_keys.cpp.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -19,6 +20,15 @@ struct KeyDoc {
   const char* cost = "";
 };
 
+template <class T>
+struct WithoutOptional {
+  using Type = T;
+};
+template <class T>
+struct WithoutOptional<std::optional<T>> {
+  using Type = T;
+};
+
 /// Builds a key for the member that `at` returns a reference to; `at` does not modify its target.
 template <class Target, class At, class Text>
 Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& about, At at, Text text) {
@@ -31,7 +41,7 @@ Key<Target> key_of(const char* name, ValueType type, Range range, const KeyDoc& 
           about.cost,
           false,
           [at](Target& t, const Value& v) {
-            using Member = std::remove_reference_t<decltype(at(t))>;
+            using Member = typename WithoutOptional<std::remove_reference_t<decltype(at(t))>>::Type;
             if constexpr (std::is_integral_v<Member>) {
               at(t) = static_cast<Member>(std::get<std::int64_t>(v));
             } else if constexpr (std::is_constructible_v<Member, std::string>) {
@@ -74,19 +84,8 @@ Key<Target> boolean(const char* name, const KeyDoc& about, At at) {
 /// Builds a key for an optional number; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_number(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
-  return {name,
-          ValueType::kNumber,
-          range,
-          {},
-          about.unit,
-          about.doc,
-          about.cost,
-          false,
-          [at](Target& t, const Value& v) { at(t) = std::get<double>(v); },
-          [at, otherwise](const Target& t) -> std::string {
-            const std::optional<double>& x = at(const_cast<Target&>(t));
-            return x ? number_text(*x) : otherwise;
-          }};
+  return key_of<Target>(name, ValueType::kNumber, range, about, at,
+                        [otherwise](const auto& x) { return x ? number_text(*x) : std::string(otherwise); });
 }
 /// Builds a key for an enumeration; `choices` are in enumerator order.
 template <class Target, class At>
@@ -136,19 +135,15 @@ Key<Target> optional_window(const char* name, const KeyDoc& about, const char* o
 /// Builds a key for an optional integer; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_integer(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
-  Key<Target> key = key_of<Target>(name, ValueType::kInteger, range, about, at, [otherwise](const auto& x) {
+  return key_of<Target>(name, ValueType::kInteger, range, about, at, [otherwise](const auto& x) {
     return x ? std::to_string(*x) : std::string(otherwise);
   });
-  key.set = [at](Target& t, const Value& v) { at(t) = static_cast<int>(std::get<std::int64_t>(v)); };
-  return key;
 }
 /// Builds a key for an optional interval; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_interval(const char* name, const KeyDoc& about, const char* otherwise, At at) {
-  Key<Target> key = key_of<Target>(name, ValueType::kInterval, {-kLargestLength, kLargestLength}, about, at,
-                                   [otherwise](const auto& x) { return x ? interval_text(*x) : std::string(otherwise); });
-  key.set = [at](Target& t, const Value& v) { at(t) = std::get<Interval>(v); };
-  return key;
+  return key_of<Target>(name, ValueType::kInterval, {-kLargestLength, kLargestLength}, about, at,
+                        [otherwise](const auto& x) { return x ? interval_text(*x) : std::string(otherwise); });
 }
 /// Builds a key for a string or an integer.
 template <class Target, class At>

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "format/read_ply.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
+#include "points/load_points.h"
 #include "scene/validate.h"
 
 namespace orrery::fuzz {
@@ -101,9 +101,17 @@ std::string fault_with_ply(const std::filesystem::path& folder, const std::strin
   constexpr std::size_t kMaterials = 3;
   write(folder / "points.ply", bytes);
   scene::Points points;
-  if (bytes.size() % 2 == 1) points.radius = 0.5;  // covers both ways to set the radius
+  points.file = "points.ply";
+  if (bytes.size() % 2 == 1) points.radius.value = 0.5;  // covers both ways to set the radius
+  points::LoadRequest request;
+  request.file = folder / points.file;
+  request.key = "points[0]";
+  request.materials = kMaterials;
   try {
-    format::read_ply(folder / "points.ply", kMaterials, points);
+    const auto diagnostics = points::load_points(request, points);
+    const auto is_error = [](const auto& d) { return d.severity == base::Severity::kError; };
+    if (std::any_of(diagnostics.begin(), diagnostics.end(), is_error))
+      return points.centers.empty() ? "" : "points remain after an error";
     return fits(points, kMaterials) ? "" : "accepted, but not renderable";
   } catch (const base::Error& error) {
     if (!points.centers.empty() || !points.radii.empty() || !points.materials.empty())

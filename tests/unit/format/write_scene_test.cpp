@@ -95,7 +95,7 @@ TEST(FormatWriteScene, WritesPointsFilesBesideTheScene) {
   s.points[0].radii = {0.1, -0.2};
   s.points[0].materials = {1, 0};
   s.points[1].file = "two.ply";
-  s.points[1].radius = 0.25;
+  s.points[1].radius.value = 0.25;
   s.points[1].centers = {{7, 8, 9}};
   s.points[1].radii = {0.25};
   write_scene(s, "", folder / "s.toml");
@@ -104,7 +104,7 @@ TEST(FormatWriteScene, WritesPointsFilesBesideTheScene) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(read.points[i].file, s.points[i].file);
     EXPECT_EQ(read.points[i].material, s.points[i].material);
-    EXPECT_EQ(read.points[i].radius, s.points[i].radius);
+    EXPECT_EQ(read.points[i].radius.value, s.points[i].radius.value);
     EXPECT_EQ(read.points[i].centers, s.points[i].centers);
     EXPECT_EQ(read.points[i].radii, s.points[i].radii);
     EXPECT_EQ(read.points[i].materials, s.points[i].materials);

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+/// A scene for a data file: what the user did not choose is chosen from the data, and every choice is reported.
+namespace orrery::plot {
+
+enum class Style { kStudio, kFlat, kNight };
+
+struct PlotOptions {
+  std::filesystem::path file;  ///< data file, may contain a frame pattern
+  std::vector<int> frames;     ///< to render; empty: one still image
+  bool all_frames = false;     ///< all frames of the file
+  scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
+  std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: chosen
+  bool has_map = false;        ///< `points.color.map` is the user's
+  std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
+  std::string up;                 ///< "x", "y" or "z"; empty: by the format
+  Style style = Style::kStudio;
+  bool ground = false;
+  int width = 1920, height = 1080;  ///< px
+  std::uint64_t memory_limit = 0;   ///< bytes; 0: no limit
+};
+
+struct PlotScene {
+  std::string text;                  ///< the scene file
+  std::vector<std::string> choices;  ///< "radius 0.53: half the median distance to the nearest neighbour"
+  std::vector<std::string> warnings;
+  std::vector<int> frames;           ///< to render; empty: one still image
+  scene::Points points;              ///< keys of the scene's points, with the range of a map; no spheres
+};
+
+/// Reads the data and writes a scene for it.
+///
+/// `folder`   of the scene file; paths in the scene are relative to it
+/// Errors     base::Error: those of points::load_points() and data::open(); kBadData with its errors; kUsage for an
+///            invalid view
+/// Cost       reads every frame once, to fit the camera and the colour map
+PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder);
+
+}  // namespace orrery::plot

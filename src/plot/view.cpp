@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plot/view.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+
+namespace orrery::plot {
+namespace {
+
+/// Part of the image's width and height that stays free on each side.
+constexpr double kMargin = 0.05;
+
+std::optional<std::pair<double, double>> parse_angles(const std::string& text) {
+  const char *const begin = text.data(), *const end = begin + text.size();
+  std::pair<double, double> out;
+  const auto [comma, error] = std::from_chars(begin, end, out.first);
+  if (error != std::errc() || comma == end || *comma != ',') return {};
+  const auto [stop, second_error] = std::from_chars(comma + 1, end, out.second);
+  if (second_error != std::errc() || stop != end || !std::isfinite(out.first) || std::abs(out.second) > 90) return {};
+  return out;
+}
+
+/// The scene's axes: up, front (towards a viewer at azimuth 0) and right.
+struct SceneAxes {
+  Vec3d right, up, front;
+};
+
+SceneAxes scene_axes(const std::string& up) {
+  if (up == "x") return {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+  if (up == "y") return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+}
+
+/// Rounds away the residue of sines and cosines of right angles.
+Vec3d clean(Vec3d v) {
+  constexpr double kResidue = 1e-15;
+  const auto rounded = [](double x) { return std::abs(x) < kResidue ? 0.0 : x; };
+  return {rounded(v.x), rounded(v.y), rounded(v.z)};
+}
+
+}  // namespace
+
+Vec3d axis_of(const std::string& name) {
+  return {name == "x" ? 1.0 : 0.0, name == "y" ? 1.0 : 0.0, name == "z" ? 1.0 : 0.0};
+}
+
+ViewAxes view_axes(const std::string& look_from, const std::string& up) {
+  const SceneAxes scene = scene_axes(up);
+  const bool is_axis = look_from.size() == 2 && (look_from[0] == '+' || look_from[0] == '-') && look_from[1] >= 'x' &&
+                       look_from[1] <= 'z';
+  if (is_axis) {
+    const Vec3d back = axis_of(look_from.substr(1)) * (look_from[0] == '+' ? 1.0 : -1.0);
+    // Seen from above or below, the scene's front is at the bottom of the image.
+    const bool is_vertical = std::abs(math::dot(back, scene.up)) > 0.5;
+    const Vec3d above = is_vertical ? scene.front * -math::dot(back, scene.up) : scene.up;
+    return {math::cross(above, back), above, back};
+  }
+  std::optional<std::pair<double, double>> angles;
+  if (look_from == "iso")
+    angles = {45, std::atan(std::sqrt(0.5)) * 180 / std::numbers::pi};
+  else
+    angles = parse_angles(look_from);
+  if (!angles)
+    throw base::Error(base::ErrorKind::kUsage,
+                      "--look-from: `" + look_from +
+                          "` is not a view; write iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION in degrees, e.g. 30,20");
+  const double azimuth = angles->first / 180 * std::numbers::pi, elevation = angles->second / 180 * std::numbers::pi;
+  const Vec3d level = scene.front * std::cos(azimuth) + scene.right * std::sin(azimuth);
+  ViewAxes out;
+  out.back = clean(level * std::cos(elevation) + scene.up * std::sin(elevation));
+  out.right = clean(scene.right * std::cos(azimuth) - scene.front * std::sin(azimuth));
+  out.up = clean(math::cross(out.back, out.right));
+  return out;
+}
+
+void ViewExtent::add(const scene::Points& points) {
+  const Vec3d axes[3] = {axes_.right, axes_.up, axes_.back};
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    const double r = std::abs(points.radii[i]);
+    for (int k = 0; k < 3; ++k) {
+      const double at = math::dot(points.centers[i], axes[k]);
+      low_[k] = is_empty_ ? at - r : std::min(low_[k], at - r);
+      high_[k] = is_empty_ ? at + r : std::max(high_[k], at + r);
+    }
+    is_empty_ = false;
+  }
+}
+
+Vec3d ViewExtent::center() const {
+  return axes_.right * ((low_[0] + high_[0]) / 2) + axes_.up * ((low_[1] + high_[1]) / 2) +
+         axes_.back * ((low_[2] + high_[2]) / 2);
+}
+
+double ViewExtent::radius() const {
+  return is_empty_ ? 1 : std::hypot(high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]) / 2;
+}
+
+scene::Camera ViewExtent::camera(double aspect) const {
+  scene::Camera camera;
+  camera.projection = scene::Projection::kOrthographic;
+  camera.up = axes_.up;
+  camera.look_at = center();
+  // Parallel rays may start anywhere in front of all spheres.
+  camera.look_from = camera.look_at + axes_.back * (2 * radius());
+  const double width = std::max(high_[0] - low_[0], (high_[1] - low_[1]) * aspect);
+  camera.width = is_empty_ ? 2 : width / (1 - 2 * kMargin);
+  return camera;
+}
+
+}  // namespace orrery::plot

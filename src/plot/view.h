@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "scene/scene.h"
+
+namespace orrery::plot {
+
+using math::Vec3d;
+
+/// Axes of an orthographic view: unit vectors to the right, up, and towards the camera.
+struct ViewAxes {
+  Vec3d right, up, back;
+};
+
+/// Returns the axes of a view.
+///
+/// `look_from`  "iso": azimuth 45 degrees to the right of the front, elevation 35.26; "+x" .. "-z"; or
+///              "azimuth,elevation" in degrees: from the front, to the right and upwards
+/// `up`         "x", "y" or "z"
+/// Errors       base::Error(kUsage)
+ViewAxes view_axes(const std::string& look_from, const std::string& up);
+
+/// Extent of spheres along the axes of a view.
+class ViewExtent {
+ public:
+  explicit ViewExtent(const ViewAxes& axes) : axes_(axes) {}
+
+  void add(const scene::Points& points);
+  bool is_empty() const { return is_empty_; }
+
+  /// Returns an orthographic camera that sees all spheres, with a margin of 5 % of the image on each side.
+  ///
+  /// `aspect`   image width divided by its height
+  scene::Camera camera(double aspect) const;
+
+  Vec3d center() const;   ///< of the box along the axes
+  double radius() const;  ///< of a sphere around center() that contains all spheres, scene units
+
+ private:
+  ViewAxes axes_;
+  double low_[3] = {0, 0, 0}, high_[3] = {0, 0, 0};  ///< along right, up, back
+  bool is_empty_ = true;
+};
+
+/// The unit vector of an axis name.
+Vec3d axis_of(const std::string& name);
+
+}  // namespace orrery::plot
