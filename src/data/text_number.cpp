@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -54,9 +55,8 @@ bool parse_magnitude(std::string word, double& value) {
   return result.ec == std::errc{} || result.ec == std::errc::result_out_of_range;
 }
 
-}  // namespace
-
-const char* scan_number_slowly(const char* at, double& value) {
+/// Reads a number for which scan_any_number() has no fast path.
+const char* scan_with_library(const char* at, double& value) {
   const char* end = at;
   while (may_be_in_number(*end)) ++end;
   const bool is_negative = *at == '-';
@@ -64,6 +64,45 @@ const char* scan_number_slowly(const char* at, double& value) {
   if (first > end || !parse_magnitude({first, end}, value)) return nullptr;
   if (is_negative) value = -value;
   return end;
+}
+
+}  // namespace
+
+const char* scan_any_number(const char* at, double& value) {
+  constexpr std::ptrdiff_t kMaxDigits = 19;  // any so many fit into 64 bits
+  constexpr std::uint64_t kMaxExact = std::uint64_t{1} << 53;
+  constexpr std::int64_t kMaxPower = std::size(kPowers) - 1;  // the largest power of ten that is a double
+  const bool is_negative = *at == '-';
+  const char* p = at + (is_negative || *at == '+' ? 1 : 0);
+  std::uint64_t mantissa = 0;
+  const char* const whole = p;
+  p = scan_digits(p, mantissa);
+  std::ptrdiff_t digits = p - whole;
+  std::int64_t exponent = 0;
+  if (*p == '.') {
+    const char* const fraction = p + 1;
+    p = scan_digits(fraction, mantissa);
+    exponent = fraction - p;
+    digits -= exponent;
+  }
+  if (digits == 0 || digits > kMaxDigits) return scan_with_library(at, value);
+  const char letter = static_cast<char>(*p | 0x20);
+  if (letter == 'e' || letter == 'd') {
+    const bool is_below = p[1] == '-';
+    const char* const first = p + (is_below || p[1] == '+' ? 2 : 1);
+    const EightCharacters characters(first);
+    const unsigned count = first_of(characters.others());
+    if (count == 0 || count == 8) return scan_with_library(at, value);
+    const auto power = static_cast<std::int64_t>(characters.value(count));
+    p = first + count;
+    exponent += is_below ? -power : power;
+  }
+  // With both numbers exact, one operation is correctly rounded.
+  if (mantissa > kMaxExact || exponent < -kMaxPower || exponent > kMaxPower) return scan_with_library(at, value);
+  const auto exact = static_cast<double>(mantissa);
+  value = exponent < 0 ? exact / kPowers[-exponent] : exact * kPowers[exponent];
+  if (is_negative) value = -value;
+  return p;
 }
 
 bool parse_number(std::string_view word, double& value) {

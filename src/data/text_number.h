@@ -9,85 +9,93 @@
 /// Numbers in text that is followed by kTextPadding bytes which belong to no number: there are no checks for the end.
 namespace orrery::data {
 
-inline constexpr std::size_t kTextPadding = 16;
+inline constexpr std::size_t kTextPadding = 24;
 
-/// Leading digits of a text, at most eight.
-struct Digits {
-  std::uint64_t value;
-  unsigned count;
+// Powers of ten. Not in the functions, which would copy them to the stack.
+inline constexpr std::uint64_t kIntegerPowers[] = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000};
+inline constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                     1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+/// Eight characters at once, because loops over digits mispredict their end.
+class EightCharacters {
+ public:
+  explicit EightCharacters(const char* at) {
+    static_assert(std::endian::native == std::endian::little);
+    std::memcpy(&word_, at, sizeof word_);
+    word_ ^= 0x3030303030303030;  // digits become their values
+  }
+
+  /// The top bit of each character that is no digit.
+  std::uint64_t others() const {
+    return (((word_ & 0x7f7f7f7f7f7f7f7f) + 0x7676767676767676) | word_) & 0x8080808080808080;
+  }
+
+  /// The number that the first `count` digits are.
+  ///
+  /// Domain     1 <= count <= 8
+  std::uint64_t value(unsigned count) const {
+    std::uint64_t word = word_ << (64 - 8 * count);  // as if preceded by zeros
+    word = word * 10 + (word >> 8);
+    word = (((word & 0x000000ff000000ff) * (100 + (std::uint64_t{1000000} << 32))) +
+            (((word >> 16) & 0x000000ff000000ff) * (1 + (std::uint64_t{10000} << 32)))) >>
+           32;
+    return word & 0xffffffff;
+  }
+
+  /// Removes a character; `next` is the one behind the eight.
+  void remove(unsigned index, char next) {
+    const std::uint64_t before = (std::uint64_t{1} << (8 * index)) - 1;
+    const auto last = static_cast<std::uint64_t>(static_cast<unsigned char>(next ^ 0x30)) << 56;
+    word_ = (word_ & before) | ((word_ >> 8) & ~before) | last;
+  }
+
+ private:
+  std::uint64_t word_ = 0;
 };
 
-/// Reads eight bytes at once, because loops over digits mispredict their end.
-inline Digits leading_digits(const char* at) {
-  static_assert(std::endian::native == std::endian::little);
-  std::uint64_t word = 0;
-  std::memcpy(&word, at, sizeof word);
-  word ^= 0x3030303030303030;
-  // The top bit of each byte above 9; carries spoil only bytes behind the first of them.
-  const std::uint64_t others = ((word + 0x7676767676767676) | word) & 0x8080808080808080;
-  const unsigned count = static_cast<unsigned>(std::countr_zero(others)) / 8;
-  if (count == 0) return {0, 0};
-  word <<= 64 - 8 * count;  // as if preceded by zeros
-  word = word * 10 + (word >> 8);
-  word = (((word & 0x000000ff000000ff) * (100 + (std::uint64_t{1000000} << 32))) +
-          (((word >> 16) & 0x000000ff000000ff) * (1 + (std::uint64_t{10000} << 32)))) >>
-         32;
-  return {word & 0xffffffff, count};
-}
+/// The first of the characters that EightCharacters::others() marks; 8 if there is none.
+inline unsigned first_of(std::uint64_t marks) { return static_cast<unsigned>(std::countr_zero(marks)) / 8; }
 
-/// Appends all digits of a text to `value`, which may wrap around.
+/// Appends all digits of a text to `value`, which wraps around beyond 64 bits.
 ///
 /// Result     the end of the digits
 inline const char* scan_digits(const char* at, std::uint64_t& value) {
-  constexpr std::uint64_t kPowers[] = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000};
   for (;;) {
-    const Digits digits = leading_digits(at);
-    value = value * kPowers[digits.count] + digits.value;
-    at += digits.count;
-    if (digits.count < 8) return at;
+    const EightCharacters characters(at);
+    const unsigned count = first_of(characters.others());
+    if (count > 0) value = value * kIntegerPowers[count] + characters.value(count);
+    at += count;
+    if (count < 8) return at;
   }
 }
 
-/// Reads a number for which scan_number() has no fast path.
-const char* scan_number_slowly(const char* at, double& value);
-
-/// Reads a number, correctly rounded.
+/// Reads any number, correctly rounded.
 ///
 /// Result     the end of the number; null if there is none
+const char* scan_any_number(const char* at, double& value);
+
+/// As scan_any_number(), fast for numbers of up to eight digits and a point.
 inline const char* scan_number(const char* at, double& value) {
-  constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-  constexpr std::int64_t kMaxPower = 22;  // 10^22 is the largest power of ten that is a double
-  const bool is_negative = *at == '-';
-  const char* p = at + (is_negative || *at == '+' ? 1 : 0);
-  std::uint64_t mantissa = 0;
-  const char* const whole = p;
-  p = scan_digits(p, mantissa);
-  auto digits = p - whole;
-  std::int64_t exponent = 0;
-  if (*p == '.') {
-    const char* const fraction = p + 1;
-    p = scan_digits(fraction, mantissa);
-    exponent = fraction - p;
-    digits += p - fraction;
-  }
-  if (digits == 0 || digits > 19) return scan_number_slowly(at, value);  // 19: any fit into 64 bits
-  const char letter = static_cast<char>(*p | 0x20);
-  if (letter == 'e' || letter == 'd') {
-    const bool is_below = p[1] == '-';
-    const char* const first = p + (is_below || p[1] == '+' ? 2 : 1);
-    const Digits power = leading_digits(first);
-    if (power.count == 0 || power.count > 4) return scan_number_slowly(at, value);
-    p = first + power.count;
-    exponent += is_below ? -static_cast<std::int64_t>(power.value) : static_cast<std::int64_t>(power.value);
-  }
-  // Both numbers are exact, hence one operation rounds correctly.
-  constexpr std::uint64_t kMaxExact = std::uint64_t{1} << 53;
-  if (mantissa > kMaxExact || exponent < -kMaxPower || exponent > kMaxPower) return scan_number_slowly(at, value);
-  const auto exact = static_cast<double>(mantissa);
-  const double magnitude = exponent < 0 ? exact / kPowers[-exponent] : exact * kPowers[exponent];
-  value = is_negative ? -magnitude : magnitude;
-  return p;
+  // The end of a number is where the next one is looked for: it should depend on as few operations as possible.
+  const unsigned sign = *at == '-' ? 1 : 0;
+  const EightCharacters characters(at);
+  const std::uint64_t others = characters.others() & ~(std::uint64_t{sign} << 7);
+  const std::uint64_t behind_point = others & (others - 1);
+  const unsigned point = first_of(others);
+  const unsigned far_end = 8 + first_of(EightCharacters(at + 8).others());
+  const unsigned end = behind_point != 0 ? first_of(behind_point) : far_end;
+  const unsigned count = end - sign - 1;
+  const char after = static_cast<char>(at[end] | 0x20);
+  if (point == 8 || at[point] != '.' || count - 1 >= 8 || after == 'e' || after == 'd')
+    return scan_any_number(at, value);
+  EightCharacters digits(at + sign);
+  digits.remove(point - sign, at[sign + 8]);
+  // Both numbers are exact, hence the quotient is correctly rounded.
+  const double magnitude =
+      static_cast<double>(static_cast<std::int64_t>(digits.value(count))) / kPowers[end - point - 1];
+  // Without a branch: signs are random.
+  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) | std::uint64_t{sign} << 63);
+  return at + end;
 }
 
 /// Reads an integer.

@@ -29,7 +29,7 @@ struct TextLayout {
   bool allows_more = false;         ///< rows may have values beyond the last column
   bool allows_missing = false;      ///< an empty value is NaN (only with a separator other than ' ')
   /// Bytes that a thread parses at a time; the result does not depend on it.
-  std::uint64_t chunk_bytes = std::uint64_t{1} << 20;
+  std::uint64_t chunk_bytes = std::uint64_t{1} << 18;
   std::vector<TextColumn> columns;
 };
 

@@ -152,6 +152,7 @@ class Loader {
     points_.colors = std::move(colors.indices);
     points_.palette = std::move(colors.palette);
     points_.palette_rec709 = colors.rec709;
+    points_.color_range = colors.range;
     if (!material_.empty()) set_materials(table, rows);
     Labels chains;
     if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)

@@ -69,12 +69,12 @@ PointColors colors_by_number(const data::Column& column, const Rows& rows, const
   out.rec709 = kMapColors;
   out.palette.push_back(color.nan_color);
   out.range = color.range ? *color.range : range_of(column, rows);
-  const double low = out.range.low, span = out.range.high - low;
+  const double low = out.range->low, high = out.range->high, span = high - low;
   // A constant column has the colour in the middle.
   const double scale = span > 0 ? (kMapColors - 1) / span : 0, offset = span > 0 ? 0.5 : kMapColors / 2.0;
   out.indices.resize(rows.size());
   for_each_number(column, rows, [&](std::size_t i, double v) {
-    const double at = std::clamp((std::clamp(v, low, out.range.high) - low) * scale + offset, 0.0, kMapColors - 0.5);
+    const double at = std::clamp((std::clamp(v, low, high) - low) * scale + offset, 0.0, kMapColors - 0.5);
     out.indices[i] = std::isnan(v) ? kMapColors : static_cast<std::uint16_t>(at);
   });
   return out;

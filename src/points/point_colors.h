@@ -28,7 +28,7 @@ struct PointColors {
   std::vector<Vec3d> palette;
   std::size_t rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in the scene's colour space
   std::vector<std::uint16_t> indices;
-  scene::Interval range;  ///< of a map
+  std::optional<scene::Interval> range;  ///< of a map of numbers
 };
 
 /// Determines the source of the colours. Reports unknown columns and maps, and alternatives that exclude each other.

@@ -196,6 +196,7 @@ struct Points {
   std::vector<std::uint16_t> colors = {};     ///< as many as centers, index into `palette`; or empty: the material's
   std::vector<Vec3d> palette = {};            ///< colours that replace those of the material
   std::size_t palette_rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in Color::space
+  std::optional<Interval> color_range = {};   ///< of the colour map, if there is one
   std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
 };
 

@@ -2,10 +2,12 @@
 #include "data/text_rows.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <random>
@@ -26,7 +28,7 @@ class DataTextRows : public testing::Test {
  protected:
   TextTable read(const std::string& text, TextLayout layout) {
     support::write_bytes(folder_ / "a.txt", text);
-    const auto bytes = ByteSource::open(folder_ / "a.txt", 1 << 20);
+    const auto bytes = ByteSource::open(folder_ / "a.txt", 1 << 24);
     Faults faults(bytes->file());
     return read_text_rows(*bytes, layout, faults);
   }
@@ -61,14 +63,247 @@ const std::vector<std::int64_t>& integers(const TextTable& table, std::size_t co
   return std::get<std::vector<std::int64_t>>(table.values[column]);
 }
 
+/// The texts of a column.
+std::vector<std::string> words(const TextTable& table, std::size_t column) {
+  const Words& all = std::get<Words>(table.values[column]);
+  std::vector<std::string> out;
+  for (const std::uint32_t index : all.index) out.push_back(all.words[index]);
+  return out;
+}
+
 TEST_F(DataTextRows, ReadsTheColumnsThatAreWanted) {
   const TextTable table =
       read("1 Na 2.5 x\n-7\tCl  1e3 y\r\n", layout({kInteger, kText, kNumber, {ColumnType::kFloat64, false}}));
   EXPECT_EQ(table.rows, 2u);
   EXPECT_EQ(integers(table, 0), (std::vector<std::int64_t>{1, -7}));
-  EXPECT_EQ(std::get<Words>(table.values[1]).words, (std::vector<std::string>{"Na", "Cl"}));
+  EXPECT_EQ(words(table, 1), (std::vector<std::string>{"Na", "Cl"}));
   EXPECT_EQ(numbers(table, 2), (std::vector<double>{2.5, 1000}));
   EXPECT_TRUE(numbers(table, 3).empty());
+}
+
+TEST_F(DataTextRows, StopsBehindTheLastRow) {
+  TextLayout rows = layout({kNumber}, 2);
+  rows.begin = 5;
+  const TextTable table = read("head\n1\n2\n3\n", rows);
+  EXPECT_EQ(numbers(table, 0), (std::vector<double>{1, 2}));
+  EXPECT_EQ(table.end, 9u);
+  rows.rows = 0;
+  EXPECT_EQ(read("head\n1\n", rows).end, 5u);
+  rows.rows = kRowsToEnd;
+  EXPECT_EQ(read("head\n1\n2", rows).end, 8u);
+}
+
+TEST_F(DataTextRows, LastLineMayLackItsEnd) {
+  EXPECT_EQ(numbers(read("1\n2", layout({kNumber}, 2)), 0), (std::vector<double>{1, 2}));
+  EXPECT_EQ(numbers(read("1\n2\r", layout({kNumber})), 0), (std::vector<double>{1, 2}));
+}
+
+TEST_F(DataTextRows, SkipsBlankLinesOnlyIfTheNumberOfRowsIsNotKnown) {
+  const std::string text = "\n1\n \t\r\n2\n\n";
+  EXPECT_EQ(numbers(read(text, layout({kNumber})), 0), (std::vector<double>{1, 2}));
+  EXPECT_EQ(errors(text, layout({kNumber}, 3)), "1: has 0 values, not 1\n3: has 0 values, not 1\n");
+}
+
+TEST_F(DataTextRows, ErrorsHaveLines) {
+  TextLayout rows = layout({kInteger, kNumber});
+  rows.first_line = 10;
+  EXPECT_EQ(errors("1 2\n1\n1 2 3\nx 2\n1 2y\n1.5 2\n9223372036854775808 0\n-9223372036854775808 0\n", rows),
+            "11: has 1 values, not 2\n12: has more than 2 values\n13: column 1: 'x' is not an integer\n"
+            "14: column 2: '2y' is not a number\n15: column 1: '1.5' is not an integer\n"
+            "16: column 1: '9223372036854775808' is not an integer\n");
+  rows.rows = 3;
+  EXPECT_EQ(errors("1 2\n1 2", rows), "12: the file ends after 2 of 3 rows\n");
+}
+
+TEST_F(DataTextRows, RowsMayHaveMoreValuesIfAllowed) {
+  TextLayout rows = layout({kNumber});
+  rows.allows_more = true;
+  EXPECT_EQ(numbers(read("1 x y\n2\n", rows), 0), (std::vector<double>{1, 2}));
+  rows.separator = ',';
+  EXPECT_EQ(numbers(read("1,x,y\n2\n", rows), 0), (std::vector<double>{1, 2}));
+}
+
+TEST_F(DataTextRows, MemoryIsNotReservedForRowsThatCannotBeThere) {
+  EXPECT_EQ(errors("1 2\n", layout({kNumber, kNumber}, kRowsToEnd - 1)),
+            "2: the file ends after 1 of 18446744073709551614 rows\n");
+}
+
+TEST_F(DataTextRows, SeparatedValuesMayBeQuotedAndMissing) {
+  TextLayout rows = layout({kText, kNumber, kText});
+  rows.separator = ',';
+  rows.allows_missing = true;
+  const TextTable table = read("\"a, \"\"b\"\"\" , 1.5 ,x y \n,\"2\",\r\nz,,\"\"\n", rows);
+  EXPECT_EQ(words(table, 0), (std::vector<std::string>{"a, \"b\"", "", "z"}));
+  EXPECT_EQ(words(table, 2), (std::vector<std::string>{"x y", "", ""}));
+  EXPECT_EQ(numbers(table, 1)[0], 1.5);
+  EXPECT_EQ(numbers(table, 1)[1], 2);
+  EXPECT_TRUE(std::isnan(numbers(table, 1)[2]));
+  rows.allows_missing = false;
+  EXPECT_EQ(errors("a,,b\na,1\n\"a,1,b\n\"a\"b,1,c\na,1,b,\n", rows),
+            "1: column 2: '' is not a number\n2: has 2 values, not 3\n"
+            "3: column 1: a quoted value does not end in this line\n4: column 1: '\"a\"b' is not a text\n"
+            "5: has more than 3 values\n");
+}
+
+TEST_F(DataTextRows, TabsSeparateIfTheyAreTheSeparator) {
+  TextLayout rows = layout({kText, kText});
+  rows.separator = '\t';
+  const TextTable table = read("a b\tc\n\td\n", rows);
+  EXPECT_EQ(words(table, 0), (std::vector<std::string>{"a b", ""}));
+  EXPECT_EQ(words(table, 1), (std::vector<std::string>{"c", "d"}));
+}
+
+TEST_F(DataTextRows, RefusesEndlessLines) {
+  EXPECT_EQ(errors(std::string(3 << 20, '1'), layout({kNumber})), "0: a line is longer than 1 MiB\n");
+}
+
+/// A table with all types, both line ends, blank lines and lines of many lengths.
+std::string mixed_table(std::mt19937& random, std::size_t rows) {
+  std::string text;
+  for (std::size_t row = 0; row < rows; ++row) {
+    text += std::to_string(random()) + std::string(random() % 4 + 1, ' ');
+    text += "w" + std::to_string(random() % 20) + " ";
+    text += std::to_string(std::ldexp(static_cast<double>(random()), -static_cast<int>(random() % 40)));
+    text += random() % 3 == 0 ? "\r\n" : "\n";
+    if (random() % 5 == 0) text += " \n";
+  }
+  return text;
+}
+
+TEST_F(DataTextRows, ResultDoesNotDependOnChunksAndThreads) {
+  std::mt19937 random(7);
+  const std::string text = mixed_table(random, 100);
+  TextLayout rows = layout({kInteger, kText, kNumber});
+  const TextTable expected = read(text, rows);
+  ASSERT_EQ(expected.rows, 100u);
+  for (const int threads : {1, 2}) {
+    tbb::task_arena arena(threads);
+    for (std::uint64_t chunk = 1; chunk < 100; ++chunk) {
+      rows.chunk_bytes = chunk;
+      const TextTable table = arena.execute([&] { return read(text, rows); });
+      ASSERT_EQ(table.rows, expected.rows);
+      ASSERT_EQ(table.end, expected.end);
+      ASSERT_EQ(integers(table, 0), integers(expected, 0));
+      ASSERT_EQ(words(table, 1), words(expected, 1));
+      ASSERT_EQ(std::get<Words>(table.values[1]).words, std::get<Words>(expected.values[1]).words);
+      ASSERT_EQ(numbers(table, 2), numbers(expected, 2));
+    }
+  }
+}
+
+TEST_F(DataTextRows, ErrorsDoNotDependOnChunksAndThreads) {
+  std::mt19937 random(8);
+  std::string text;
+  for (int row = 0; row < 200; ++row) text += random() % 4 == 0 ? "1 x\n" : "1 2\n";
+  TextLayout rows = layout({kInteger, kNumber});
+  const std::string expected = errors(text, rows);
+  EXPECT_EQ(std::count(expected.begin(), expected.end(), '\n'), 11);  // ten, and how many there are
+  for (const std::uint64_t chunk : {1, 3, 10, 50, 333}) {
+    rows.chunk_bytes = chunk;
+    EXPECT_EQ(tbb::task_arena(2).execute([&] { return errors(text, rows); }), expected) << chunk;
+  }
+}
+
+/// strtod() of glibc is correctly rounded.
+void expect_number(const std::string& word) {
+  double value = -1;
+  ASSERT_TRUE(parse_number(word, value)) << word;
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(value), std::bit_cast<std::uint64_t>(std::strtod(word.c_str(), nullptr)))
+      << word << " " << value;
+}
+
+TEST(DataTextNumbers, AreCorrectlyRounded) {
+  for (const char* const word : {"0",
+                                 "-0",
+                                 "-0.0",
+                                 "1",
+                                 "+1",
+                                 "1.",
+                                 ".5",
+                                 "-.5",
+                                 "+.5e1",
+                                 "00012.500",
+                                 "1e22",
+                                 "1e23",
+                                 "9007199254740993",
+                                 "9007199254740992.5",
+                                 "123456789012345678901234567890",
+                                 "0.1",
+                                 "2.2250738585072014e-308",
+                                 "5e-324",
+                                 "2e-324",
+                                 "1e-400",
+                                 "-1e-400",
+                                 "1e400",
+                                 "-1e400",
+                                 "1e-99999999999999999999",
+                                 "1e99999999999999999999",
+                                 "0e999999999",
+                                 "1.7976931348623157e308",
+                                 "1.7976931348623159e308",
+                                 "12345678",
+                                 "123456789",
+                                 "1234567.8",
+                                 "1234567.89",
+                                 "0.00000001",
+                                 "0.000000001",
+                                 "1E5",
+                                 "1e+5",
+                                 "1e05",
+                                 "inf",
+                                 "-inf",
+                                 "Infinity",
+                                 "107.484",
+                                 "0.0729685",
+                                 "8.5e-05",
+                                 "-12345.678e-3"})
+    expect_number(word);
+  expect_number("0." + std::string(400, '0') + "1");
+  expect_number("1" + std::string(400, '0'));
+  expect_number("1" + std::string(400, '0') + "e-400");
+  expect_number("0." + std::string(400, '0') + "1e401");
+}
+
+TEST(DataTextNumbers, AreCorrectlyRoundedAtRandom) {
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 200000; ++i) {
+    char word[64];
+    const double value = std::bit_cast<double>(random());
+    if (!std::isfinite(value)) continue;
+    std::snprintf(word, sizeof word, "%.*g", static_cast<int>(random() % 19) + 1, value);
+    expect_number(word);
+    std::snprintf(
+        word, sizeof word, "%.*g", static_cast<int>(random() % 9) + 1,
+        std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), -static_cast<int>(random() % 80)));
+    expect_number(word);
+    std::snprintf(
+        word, sizeof word, "%.*f", static_cast<int>(random() % 12),
+        std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), -40 - static_cast<int>(random() % 30)));
+    expect_number(word);
+  }
+}
+
+TEST(DataTextNumbers, ExponentsMayBeFortran) {
+  double value = 0;
+  ASSERT_TRUE(parse_number("1.5d2", value));
+  EXPECT_EQ(value, 150);
+  ASSERT_TRUE(parse_number("-1.5D-02", value));
+  EXPECT_EQ(value, -0.015);
+  ASSERT_TRUE(parse_number("0.12345678901234567890123D+01", value));
+  EXPECT_EQ(value, 1.2345678901234567890123);
+  ASSERT_TRUE(parse_number("NaN", value));
+  EXPECT_TRUE(std::isnan(value));
+  ASSERT_TRUE(parse_number("-nan", value));
+  EXPECT_TRUE(std::isnan(value));
+}
+
+TEST(DataTextNumbers, OtherWordsAreRefused) {
+  double value = 0;
+  for (const char* const word : {"",      "-",     "+",   ".",         "-.",     "e5",   "1e",   "1e+", "1.5.2", "1,5",
+                                 "0x10",  "--1",   "+-1", "-+1",       "1-",     "nano", "infx", "1 ",  " 1",    "1d",
+                                 "1d5e2", "1_000", "in",  "12345678x", "1.5e5.", "+ 1",  "1\n2", "\n",  "d5"})
+    EXPECT_FALSE(parse_number(word, value)) << word;
+  EXPECT_FALSE(parse_number(std::string_view("1\0", 2), value));
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "plot/plot.h"
+#include "plot/view.h"
+
+namespace orrery::plot {
+
+/// Everything that the scene of a plot consists of.
+struct PlotParts {
+  const PlotOptions& options;
+  const scene::Points& points;
+  const scene::Camera& camera;
+  Vec3d up;            ///< unit vector
+  Vec3d center;        ///< of the spheres
+  double lowest = 0;   ///< of the spheres along `up`
+  double radius = 1;   ///< of a sphere around `center` that contains all spheres
+};
+
+/// Returns the scene file of a plot.
+std::string scene_text(const PlotParts& parts);
+
+}  // namespace orrery::plot
