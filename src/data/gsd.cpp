@@ -31,11 +31,10 @@ constexpr float kDefaultDiameter = 1;
 
 class GsdReader final : public DataFile {
  public:
-  explicit GsdReader(const Bytes& bytes) : file_(bytes), faults_(file_.path()) {
+  explicit GsdReader(const Bytes& bytes) : file_(bytes) {
     if (file_.schema() != "hoomd")
-      faults_.fail(0, "the schema of this GSD file is `" + file_.schema() + "`",
-                   "only the schema `hoomd` is supported");
-    if (file_.frame_count() == 0) faults_.fail(0, "the file has no frames");
+      fail("the schema of this GSD file is `" + file_.schema() + "`", "only the schema `hoomd` is supported");
+    if (file_.frame_count() == 0) fail("the file has no frames");
   }
 
   Format format() const override { return Format::kGsd; }
@@ -44,6 +43,9 @@ class GsdReader final : public DataFile {
   Table read(int frame, const std::vector<std::string>& columns) override;
 
  private:
+  [[noreturn]] void fail(const std::string& text, const std::string& remedy = {}) const {
+    Faults(file_.path()).fail(0, text, remedy);
+  }
   std::uint64_t rows_of(std::uint64_t frame);
   std::vector<double> setting(std::uint64_t frame, const char* name, std::size_t size);
   const GsdChunk* chunk_of(std::uint64_t frame, const char* name, std::uint32_t components);
@@ -52,7 +54,6 @@ class GsdReader final : public DataFile {
   Words types_of(std::uint64_t frame, std::uint64_t rows);
 
   GsdFile file_;
-  Faults faults_;
 };
 
 /// Returns the values of a chunk that does not belong to particles; empty if neither the frame nor frame 0 has it.
@@ -62,8 +63,8 @@ std::vector<double> GsdReader::setting(std::uint64_t frame, const char* name, st
   if (chunk == nullptr) return {};
   const std::uint64_t values = chunk->rows * chunk->components;
   if (values != size)
-    faults_.fail(0, "frame " + std::to_string(frame) + ": `" + name + "` has " + std::to_string(values) +
-                        " values instead of " + std::to_string(size));
+    fail("frame " + std::to_string(frame) + ": `" + name + "` has " + std::to_string(values) + " values instead of " +
+         std::to_string(size));
   std::vector<double> out;
   for (std::uint32_t i = 0; i < chunk->components; ++i) {
     const Column column{name, file_.component(*chunk, i)};
@@ -77,14 +78,14 @@ std::uint64_t GsdReader::rows_of(std::uint64_t frame) {
   const std::vector<double> count = setting(frame, "particles/N", 1);
   constexpr double kMaxRows = 1e15;
   if (!count.empty() && !(count[0] >= 0 && count[0] < kMaxRows))
-    faults_.fail(0, "frame " + std::to_string(frame) + ": the number of particles is out of range");
+    fail("frame " + std::to_string(frame) + ": the number of particles is out of range");
   const auto rows = count.empty() ? 0 : static_cast<std::uint64_t>(count[0]);
   if (rows > 0) {
     const GsdChunk* position = file_.find(frame, kPosition.chunk);
     if (position == nullptr) position = file_.find(0, kPosition.chunk);
     if (position == nullptr || position->rows != rows)
-      faults_.fail(0, "frame " + std::to_string(frame) + " has " + std::to_string(rows) + " particles, but " +
-                          std::to_string(position == nullptr ? 0 : position->rows) + " positions");
+      fail("frame " + std::to_string(frame) + " has " + std::to_string(rows) + " particles, but " +
+           std::to_string(position == nullptr ? 0 : position->rows) + " positions");
   }
   return rows;
 }
@@ -95,9 +96,9 @@ const GsdChunk* GsdReader::chunk_of(std::uint64_t frame, const char* name, std::
   const GsdChunk* chunk = file_.find(frame, name);
   if (chunk == nullptr && rows_of(0) == rows) chunk = file_.find(0, name);
   if (chunk != nullptr && (chunk->rows != rows || chunk->components != components))
-    faults_.fail(0, "frame " + std::to_string(frame) + ": `" + name + "` has " + std::to_string(chunk->rows) +
-                        " rows of " + std::to_string(chunk->components) + " values instead of " + std::to_string(rows) +
-                        " rows of " + std::to_string(components));
+    fail("frame " + std::to_string(frame) + ": `" + name + "` has " + std::to_string(chunk->rows) + " rows of " +
+         std::to_string(chunk->components) + " values instead of " + std::to_string(rows) + " rows of " +
+         std::to_string(components));
   return chunk;
 }
 
@@ -106,7 +107,7 @@ std::vector<std::string> GsdReader::type_names(std::uint64_t frame) {
   const GsdChunk* chunk = file_.find(frame, "particles/types");
   if (chunk == nullptr) chunk = file_.find(0, "particles/types");
   if (chunk == nullptr) return {"A"};
-  if (chunk->bytes() != chunk->rows * chunk->components) faults_.fail(0, "`particles/types` is not text");
+  if (chunk->bytes() != chunk->rows * chunk->components) fail("`particles/types` is not text");
   const std::string text = file_.raw(*chunk);
   std::vector<std::string> names;
   for (std::size_t at = 0; at < text.size(); at += chunk->components)
@@ -118,7 +119,7 @@ std::optional<Box> GsdReader::box_of(std::uint64_t frame) {
   const std::vector<double> b = setting(frame, "configuration/box", 6);
   if (b.empty()) return std::nullopt;
   for (const double value : b)
-    if (!std::isfinite(value)) faults_.fail(0, "frame " + std::to_string(frame) + ": the box is not finite");
+    if (!std::isfinite(value)) fail("frame " + std::to_string(frame) + ": the box is not finite");
   const std::vector<double> dimensions = setting(frame, "configuration/dimensions", 1);
   const bool is_flat = !dimensions.empty() && dimensions[0] == 2;
   // Lengths x, y, z, then tilt factors xy, xz, yz. The box is centred at the origin.
@@ -142,8 +143,8 @@ Words GsdReader::types_of(std::uint64_t frame, std::uint64_t rows) {
   for (std::size_t row = 0; row < ids.size(); ++row) {
     const double id = ids.number(row);
     if (!(id >= 0 && id < static_cast<double>(names.size())))
-      faults_.fail(0, "frame " + std::to_string(frame) + ": particle " + std::to_string(row + 1) +
-                          " has a type without a name; there are " + std::to_string(names.size()) + " types");
+      fail("frame " + std::to_string(frame) + ": particle " + std::to_string(row + 1) +
+           " has a type without a name; there are " + std::to_string(names.size()) + " types");
     std::uint32_t& word = word_of[static_cast<std::size_t>(id)];
     if (word == kUnused) {
       const auto same = std::find(out.words.begin(), out.words.end(), names[static_cast<std::size_t>(id)]);
