@@ -108,6 +108,7 @@ std::vector<std::string> GsdReader::type_names(std::uint64_t frame) {
   if (chunk == nullptr) chunk = file_.find(0, "particles/types");
   if (chunk == nullptr) return {"A"};
   if (chunk->bytes() != chunk->rows * chunk->components) fail("`particles/types` is not text");
+  if (size_of(chunk->type) != 1) fail("`particles/types` is not text");
   const std::string text = file_.raw(*chunk);
   std::vector<std::string> names;
   for (std::size_t at = 0; at < text.size(); at += chunk->components)
@@ -162,8 +163,7 @@ FrameInfo GsdReader::describe(int index) {
   info.rows = rows_of(frame);
   const auto add = [&](const GsdChunk* chunk, const Source& source) {
     for (std::uint32_t i = 0; i < source.components; ++i)
-      info.columns.push_back(
-          {source.columns[i], chunk != nullptr ? GsdFile::column_type(*chunk) : ColumnType::kFloat32});
+      info.columns.push_back({source.columns[i], chunk != nullptr ? column_type(chunk->type) : ColumnType::kFloat32});
   };
   add(chunk_of(frame, kPosition.chunk, kPosition.components), kPosition);
   add(chunk_of(frame, kDiameter, 1), {kDiameter, 1, {"diameter"}});

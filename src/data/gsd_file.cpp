@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "data/records.h"
+
 namespace orrery::data {
 namespace {
 
@@ -14,8 +16,11 @@ constexpr std::size_t kEntryBytes = 32;
 constexpr std::size_t kNameBytes = 64;
 constexpr std::size_t kSchemaOffset = 112;
 
-/// Sizes of the value types, by their codes; code 0 is not used.
-constexpr std::array<std::uint64_t, 12> kTypeBytes = {0, 1, 2, 4, 8, 1, 2, 4, 8, 4, 8, 1};
+/// The value types by their codes; code 0 is not used, code 11 is text.
+constexpr std::array<NumberType, 12> kTypes = {NumberType::kUint8,   NumberType::kUint8,   NumberType::kUint16,
+                                               NumberType::kUint32,  NumberType::kUint64,  NumberType::kInt8,
+                                               NumberType::kInt16,   NumberType::kInt32,   NumberType::kInt64,
+                                               NumberType::kFloat32, NumberType::kFloat64, NumberType::kUint8};
 
 /// Reads a little-endian number.
 template <typename T>
@@ -25,27 +30,9 @@ T number(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-/// Reads one component of all rows, stored as T, as a vector of U.
-template <typename T, typename U>
-Values component_as(const ByteSource& bytes, const GsdChunk& chunk, std::uint32_t component) {
-  constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
-  const std::size_t row_bytes = chunk.components * sizeof(T);
-  const std::size_t block_rows = std::max<std::size_t>(1, kBlockBytes / row_bytes);
-  const auto rows = static_cast<std::size_t>(chunk.rows);
-  std::vector<U> values;
-  values.reserve(rows);
-  while (values.size() < rows) {
-    const std::size_t begin = values.size(), count = std::min(block_rows, rows - begin);
-    const std::string block = bytes.text(chunk.offset + begin * row_bytes, count * row_bytes);
-    for (std::size_t i = 0; i < count; ++i)
-      values.push_back(static_cast<U>(number<T>(block, i * row_bytes + component * sizeof(T))));
-  }
-  return values;
-}
-
 }  // namespace
 
-std::uint64_t GsdChunk::bytes() const { return rows * components * kTypeBytes[type]; }
+std::uint64_t GsdChunk::row_bytes() const { return components * size_of(type); }
 
 GsdFile::GsdFile(Bytes bytes) : bytes_(std::move(bytes)), faults_(bytes_->file()) {
   const std::string header = bytes_->text(0, kHeaderBytes);
@@ -84,18 +71,18 @@ void GsdFile::read_index(std::uint64_t offset, std::uint64_t count) {
     chunk.offset = number<std::uint64_t>(text, at + 16);
     chunk.components = number<std::uint32_t>(text, at + 24);
     chunk.name = number<std::uint16_t>(text, at + 28);
-    chunk.type = number<std::uint8_t>(text, at + 30);
+    const unsigned type = number<std::uint8_t>(text, at + 30);
     if (chunk.offset == 0) break;  // the rest of the index is unused
     const std::string entry = "entry " + std::to_string(at / kEntryBytes + 1) + " of the index ";
-    if (chunk.type == 0 || chunk.type >= kTypeBytes.size())
-      faults_.fail(0, entry + "has the unknown value type " + std::to_string(chunk.type));
+    if (type == 0 || type >= kTypes.size())
+      faults_.fail(0, entry + "has the unknown value type " + std::to_string(type));
+    chunk.type = kTypes[type];
     if (chunk.components == 0) faults_.fail(0, entry + "has no components");
     if (chunk.name >= ids_.size()) faults_.fail(0, entry + "has no name");
     if (!chunks_.empty() && chunk.frame < chunks_.back().frame) faults_.fail(0, entry + "is out of order");
     if (chunk.frame >= static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
       faults_.fail(0, entry + "has the frame " + std::to_string(chunk.frame) + ", which is out of range");
-    const std::uint64_t row_bytes = chunk.components * kTypeBytes[chunk.type];
-    if (chunk.offset > bytes_->size() || chunk.rows > (bytes_->size() - chunk.offset) / row_bytes)
+    if (chunk.offset > bytes_->size() || chunk.rows > (bytes_->size() - chunk.offset) / chunk.row_bytes())
       faults_.fail(0, "truncated: " + entry + "refers to data beyond the end of the file");
     chunks_.push_back(chunk);
   }
@@ -111,31 +98,16 @@ const GsdChunk* GsdFile::find(std::uint64_t frame, const std::string& name) cons
   return nullptr;
 }
 
-ColumnType GsdFile::column_type(const GsdChunk& chunk) {
-  constexpr std::array<ColumnType, 12> kTypes = {ColumnType::kUint8,   ColumnType::kUint8,   ColumnType::kUint16,
-                                                 ColumnType::kInt64,   ColumnType::kInt64,   ColumnType::kInt32,
-                                                 ColumnType::kInt32,   ColumnType::kInt32,   ColumnType::kInt64,
-                                                 ColumnType::kFloat32, ColumnType::kFloat64, ColumnType::kUint8};
-  return kTypes[chunk.type];
-}
-
 Values GsdFile::component(const GsdChunk& chunk, std::uint32_t component) const {
-  switch (chunk.type) {
-    case 2: return component_as<std::uint16_t, std::uint16_t>(*bytes_, chunk, component);
-    case 3: return component_as<std::uint32_t, std::int64_t>(*bytes_, chunk, component);
-    case 4: return component_as<std::uint64_t, std::int64_t>(*bytes_, chunk, component);
-    case 5: return component_as<std::int8_t, std::int32_t>(*bytes_, chunk, component);
-    case 6: return component_as<std::int16_t, std::int32_t>(*bytes_, chunk, component);
-    case 7: return component_as<std::int32_t, std::int32_t>(*bytes_, chunk, component);
-    case 8: return component_as<std::int64_t, std::int64_t>(*bytes_, chunk, component);
-    case 9: return component_as<float, float>(*bytes_, chunk, component);
-    case 10: return component_as<double, double>(*bytes_, chunk, component);
-    default: return component_as<std::uint8_t, std::uint8_t>(*bytes_, chunk, component);
-  }
+  Faults faults(path());
+  const RecordField field{{}, chunk.type, component * size_of(chunk.type)};
+  std::vector<Values> values = read_records(*bytes_, {chunk.offset, chunk.row_bytes(), chunk.rows}, {field}, faults);
+  faults.raise_if_any();
+  return std::move(values.front());
 }
 
 std::string GsdFile::raw(const GsdChunk& chunk) const {
-  return bytes_->text(chunk.offset, static_cast<std::size_t>(chunk.bytes()));
+  return bytes_->text(chunk.offset, static_cast<std::size_t>(chunk.rows * chunk.row_bytes()));
 }
 
 }  // namespace orrery::data

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "data/number_type.h"
 #include "data/readers.h"
 
 namespace orrery::data {
@@ -17,9 +18,9 @@ struct GsdChunk {
   std::uint64_t offset = 0;
   std::uint32_t components = 0;
   std::uint16_t name = 0;  ///< index into the file's list of names
-  std::uint8_t type = 0;   ///< code of the value type
+  NumberType type = NumberType::kUint8;
 
-  std::uint64_t bytes() const;
+  std::uint64_t row_bytes() const;
 };
 
 /// The file layer of GSD, versions 1 and 2: finds chunks by frame and name.
@@ -36,9 +37,6 @@ class GsdFile {
 
   /// Returns a chunk; null if the frame has none of this name.
   const GsdChunk* find(std::uint64_t frame, const std::string& name) const;
-
-  /// The column type that holds the values of a chunk without loss.
-  static ColumnType column_type(const GsdChunk& chunk);
 
   /// Reads one component of all rows.
   Values component(const GsdChunk& chunk, std::uint32_t component) const;

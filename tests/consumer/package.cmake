@@ -27,7 +27,7 @@ if(NOT program OR NOT rooms)
 endif()
 run(fields dpkg-deb --field ${program})
 must_match("the program's package" "${fields}" "Package: orrery\n" "Depends: [^\n]*libembree" "Depends: [^\n]*libopenimageio"
-           "Depends: [^\n]*libopencolorio" "Depends: [^\n]*libarchive")
+           "Depends: [^\n]*libopencolorio" "Depends: [^\n]*libarchive" "Depends: [^\n]*libhdf5")
 run(files dpkg-deb --contents ${program})
 must_match("the program's package" "${files}" "/usr/bin/orrery\n"
            "/usr/libexec/orrery/orrery-program\n" "/usr/libexec/orrery/orrery-image\\.so\n"
