@@ -124,6 +124,12 @@ std::vector<std::string> component_names(const std::string& name, std::size_t co
   return out;
 }
 
+std::string unique_name(const std::string& name, const std::vector<ColumnInfo>& columns) {
+  std::string out = name;
+  for (int i = 2; has_column(columns, out); ++i) out = name + "_" + std::to_string(i);
+  return out;
+}
+
 bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name) {
   return std::any_of(columns.begin(), columns.end(), [name](const ColumnInfo& c) { return c.name == name; });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "data/table.h"
 
 namespace orrery::data {
+
+/// Maximum number of columns of a file: more is a damaged header.
+inline constexpr std::uint64_t kMostColumns = 4096;
 
 /// Returns the roles of columns by their customary names, regardless of case. For formats that define no names.
 ///
@@ -39,6 +43,9 @@ bool is_position_name(std::string_view name);
 /// `columns`  columns so far
 std::vector<std::string> component_names(const std::string& name, std::size_t components,
                                          const std::vector<ColumnInfo>& columns);
+
+/// Returns the name, or with an underscore and a number if a column has this name.
+std::string unique_name(const std::string& name, const std::vector<ColumnInfo>& columns);
 
 /// Returns whether a column exists.
 bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name);

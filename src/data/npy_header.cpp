@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstddef>
 
+#include "data/customary.h"
 #include "data/python_literal.h"
 #include "data/quoted_word.h"
 
@@ -78,8 +79,8 @@ std::string parse_field(const PythonLiteral& source, NpyHeader& header) {
       return "the shape of field " + quoted_word(field.name) + " is not a tuple";
     for (const PythonLiteral& length : source.items[2].items) {
       if (!length.is(Kind::kInteger)) return "the shape of field " + quoted_word(field.name) + " is not integers";
-      if (length.integer > kMostNpyColumns || (count *= length.integer) > kMostNpyColumns)
-        return "field " + quoted_word(field.name) + " has more than " + std::to_string(kMostNpyColumns) + " components";
+      if (length.integer > kMostColumns || (count *= length.integer) > kMostColumns)
+        return "field " + quoted_word(field.name) + " has more than " + std::to_string(kMostColumns) + " components";
     }
   }
   field.offset = header.item_size;
@@ -106,7 +107,7 @@ std::string parse_description(const PythonLiteral& source, NpyHeader& header) {
     const std::size_t fields = header.fields.size();
     if (std::string fault = parse_field(field, header); !fault.empty()) return fault;
     if (header.fields.size() > fields) columns += header.fields.back().components;
-    if (columns > kMostNpyColumns) return "it has more than " + std::to_string(kMostNpyColumns) + " components";
+    if (columns > kMostColumns) return "it has more than " + std::to_string(kMostColumns) + " components";
   }
   return {};
 }

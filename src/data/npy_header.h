@@ -38,9 +38,6 @@ struct NpyHeader {
 /// Maximum length of a header, bytes. NumPy itself refuses to read more than 10,000.
 inline constexpr std::uint64_t kLongestNpyHeader = std::uint64_t{1} << 20;
 
-/// Maximum number of columns of a file: more is a damaged header.
-inline constexpr std::uint64_t kMostNpyColumns = 4096;
-
 /// Returns whether bytes begin like a file of NumPy.
 bool has_npy_signature(std::string_view head);
 

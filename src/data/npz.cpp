@@ -42,7 +42,7 @@ Member described(ZipReader& zip) {
   member.fault = parse_npy_header({head.data(), head.size()}, member.header);
   const NpyHeader& header = member.header;
   const bool is_table = header.shape.size() == 1 ||
-                        (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMostNpyColumns);
+                        (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMostColumns);
   if (member.fault.empty() && !is_table) member.fault = "the shape " + shape_text(header) + " is not that of columns";
   return member;
 }
@@ -111,8 +111,8 @@ class NpzFile final : public SingleFrame {
     Faults faults(bytes_->file());
     for (const NpyColumn& column : member.columns)
       if (has_column(before, column.name)) faults.fail(0, "duplicate column " + quoted_word(column.name));
-    if (info_.columns.size() > kMostNpyColumns)
-      faults.fail(0, "there are more than " + std::to_string(kMostNpyColumns) + " columns");
+    if (info_.columns.size() > kMostColumns)
+      faults.fail(0, "there are more than " + std::to_string(kMostColumns) + " columns");
   }
 
   std::string listed_members() const {
