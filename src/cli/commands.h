@@ -16,6 +16,7 @@ using Action = std::function<int()>;
 ///
 /// Domain     `action` outlives the parsing
 void add_render(Command& program, Action& action);
+void add_plot(Command& program, Action& action);
 void add_merge(Command& program, Action& action);
 void add_submit(Command& program, Action& action);
 void add_check(Command& program, Action& action);

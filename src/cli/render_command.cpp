@@ -16,26 +16,16 @@
 #include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
-#include "cli/picture_options.h"
 #include "cli/progress.h"
+#include "cli/render_options.h"
 #include "cli/render_report.h"
-#include "cli/scene_options.h"
 #include "cli/signals.h"
-#include "farm/batch.h"
 
 namespace orrery::cli {
 namespace {
 
 /// More shards than are worth a process each.
 constexpr int kMaxShards = 65536;
-
-struct RenderOptions {
-  farm::Batch batch;
-  SceneOptions scene;
-  PictureOptions picture;
-  std::string progress = "auto", traversal = "auto", shard, frames;
-  bool quiet = false, verbose = false, strict = false, fail_fast = false;
-};
 
 /// --quiet does not suppress progress in an explicit style, which a farm manager parses.
 ProgressStyle style_of(const RenderOptions& options) {
@@ -110,7 +100,9 @@ int print_summary(const farm::BatchReport& report, bool quiet) {
   return report.failures.empty() ? 0 : base::exit_status(report.failures.front().error.kind());
 }
 
-int render(RenderOptions& options) {
+}  // namespace
+
+int run_render(RenderOptions& options) {
   farm::Batch& batch = options.batch;
   job::Job& job = batch.job;
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
@@ -161,7 +153,59 @@ int render(RenderOptions& options) {
   return failed != 0 ? failed : status;
 }
 
-}  // namespace
+void add_render_options(Command& command, RenderOptions& options, bool allows_range) {
+  options.picture.add_to(command, options.batch.job);
+  options.scene.add_to(command, allows_range);
+  command.add_flag("--skip-existing", options.batch.job.skip_existing,
+                   "Skip images that exist, are intact, and match this scene and these settings");
+  command.add_flag("--fail-fast", options.fail_fast, "Stop at the first frame or scene that fails");
+  command.add_flag("--resume", options.batch.job.checkpoint.resume, "Resume from the checkpoint, if it exists");
+  command
+      .add_option("--checkpoint", options.batch.job.checkpoint.interval_s,
+                  "Checkpoint interval, e.g. 5m; default: only when a signal stops the render")
+      ->transform(duration())
+      ->type_name("TIME");
+  command.add_option("--noise", options.batch.job.sampling.noise, "Target noise (relative display error), e.g. 0.01")
+      ->transform(real_number(1e-6, 1))
+      ->type_name("X");
+  command
+      .add_option("--time", options.batch.job.sampling.seconds,
+                  "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
+      ->transform(duration())
+      ->type_name("TIME");
+  command.add_flag("--strict", options.strict,
+                   "Exit with status 75 if the target noise was not reached or could not be estimated");
+  command
+      .add_option("-t,--threads", options.batch.job.resources.threads,
+                  "Number of threads; default: all that this process may use")
+      ->transform(whole_number(1, kMaxThreads))
+      ->type_name("N");
+  command
+      .add_option("--traversal", options.traversal,
+                  "BVH traversal: packet, single, or auto (times both and uses the faster); default: auto")
+      ->check(one_of({"auto", "packet", "single"}))
+      ->type_name("MODE");
+  command
+      .add_option("--isa", options.batch.job.resources.isa,
+                  "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
+      ->type_name("NAME");
+  command
+      .add_option("--memory-limit", options.batch.job.resources.memory_limit,
+                  "Refuse to render if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
+      ->transform(byte_size())
+      ->type_name("SIZE");
+  command
+      .add_option("--progress", options.progress,
+                  "Progress format: auto, bar, alf, openjd, arnold, json or none; default: auto")
+      ->check(one_of(progress_style_names()))
+      ->type_name("STYLE");
+  command.add_option("--stats", options.batch.job.outputs.statistics, "Write statistics of the render as JSON")
+      ->type_name("FILE");
+  command.add_option("--log", options.batch.log, "Append all messages to a log file, with timestamps")
+      ->type_name("FILE");
+  command.add_flag("-q,--quiet", options.quiet, "Print only errors");
+  command.add_flag("-v,--verbose", options.verbose, "Also print the time of each phase");
+}
 
 void add_render(Command& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
@@ -169,8 +213,7 @@ void add_render(Command& program, Action& action) {
   command.add_option("SCENE", options->batch.scenes, "Scene file; with several, use {scene} in the names of outputs")
       ->required()
       ->type_name("FILE");
-  options->picture.add_to(command, options->batch.job);
-  options->scene.add_to(command, true);
+  add_render_options(command, *options, true);
   command
       .add_option("--shard", options->shard,
                   "Render shard I of N (I from 1), every N-th 16 x 16 tile; combine with orrery merge")
@@ -179,55 +222,6 @@ void add_render(Command& program, Action& action) {
       .add_option("--frames", options->frames,
                   "Frames to render, e.g. 1-48, 1-48x2 or 1,3,7-9; name outputs like shot.####.exr")
       ->type_name("RANGE");
-  command.add_flag("--skip-existing", options->batch.job.skip_existing,
-                   "Skip images that exist, are intact, and match this scene and these settings");
-  command.add_flag("--fail-fast", options->fail_fast, "Stop at the first frame or scene that fails");
-  command.add_flag("--resume", options->batch.job.checkpoint.resume, "Resume from the checkpoint, if it exists");
-  command
-      .add_option("--checkpoint", options->batch.job.checkpoint.interval_s,
-                  "Checkpoint interval, e.g. 5m; default: only when a signal stops the render")
-      ->transform(duration())
-      ->type_name("TIME");
-  command.add_option("--noise", options->batch.job.sampling.noise, "Target noise (relative display error), e.g. 0.01")
-      ->transform(real_number(1e-6, 1))
-      ->type_name("X");
-  command
-      .add_option("--time", options->batch.job.sampling.seconds,
-                  "Time budget for adaptive sampling, e.g. 90s, 5m or 1.5h")
-      ->transform(duration())
-      ->type_name("TIME");
-  command.add_flag("--strict", options->strict,
-                   "Exit with status 75 if the target noise was not reached or could not be estimated");
-  command
-      .add_option("-t,--threads", options->batch.job.resources.threads,
-                  "Number of threads; default: all that this process may use")
-      ->transform(whole_number(1, kMaxThreads))
-      ->type_name("N");
-  command
-      .add_option("--traversal", options->traversal,
-                  "BVH traversal: packet, single, or auto (times both and uses the faster); default: auto")
-      ->check(one_of({"auto", "packet", "single"}))
-      ->type_name("MODE");
-  command
-      .add_option("--isa", options->batch.job.resources.isa,
-                  "Highest instruction set to use: sse4, avx2 or avx512; default: the processor's best")
-      ->type_name("NAME");
-  command
-      .add_option("--memory-limit", options->batch.job.resources.memory_limit,
-                  "Refuse to render if the estimated memory exceeds SIZE, e.g. 8G; default: free memory")
-      ->transform(byte_size())
-      ->type_name("SIZE");
-  command
-      .add_option("--progress", options->progress,
-                  "Progress format: auto, bar, alf, openjd, arnold, json or none; default: auto")
-      ->check(one_of(progress_style_names()))
-      ->type_name("STYLE");
-  command.add_option("--stats", options->batch.job.outputs.statistics, "Write statistics of the render as JSON")
-      ->type_name("FILE");
-  command.add_option("--log", options->batch.log, "Append all messages to a log file, with timestamps")
-      ->type_name("FILE");
-  command.add_flag("-q,--quiet", options->quiet, "Print only errors");
-  command.add_flag("-v,--verbose", options->verbose, "Also print the time of each phase");
   command.footer(
       "Examples:\n"
       "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"
@@ -236,7 +230,7 @@ void add_render(Command& program, Action& action) {
       "  orrery render shot.toml -o shot.####.exr --frames 1-240 --resume --skip-existing\n"
       "  orrery render shot.toml -o shard.2.exr --samples 100:200\n"
       "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");
-  command.callback([options, &action] { action = [options] { return render(*options); }; });
+  command.callback([options, &action] { action = [options] { return run_render(*options); }; });
 }
 
 }  // namespace orrery::cli

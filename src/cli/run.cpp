@@ -37,6 +37,7 @@ void configure(CLI::App& program) {
 void add_commands(Command& program, Action& action) {
   program.heading("Render");
   add_render(program, action);
+  add_plot(program, action);
   add_merge(program, action);
   add_submit(program, action);
   program.heading("Inspect");

@@ -83,7 +83,11 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   // A single job checks its scene's files when it reads the scene. Here, another job or the log could overwrite them
   // before that.
   if (jobs.size() > 1 || !batch.log.empty())
-    for (const fs::path& scene : batch.scenes) add_readable_files({scene, common.scene.overrides}, frames, files);
+    for (const fs::path& scene : batch.scenes) {
+      job::SceneSource source = common.scene;
+      source.file = scene;
+      add_readable_files(source, frames, files);
+    }
   return jobs;
 }
 

@@ -6,11 +6,13 @@
 
 namespace orrery::format {
 
-NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<Override>& overrides) {
+NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<Override>& overrides,
+                       const std::string* text) {
   SourceText source;
   Diagnostics diagnostics;
   const toml::table root =
-      parse_tree(scene_file.string(), read_file(scene_file, kLargestSceneFile), overrides, source, diagnostics);
+      parse_tree(scene_file.string(), text != nullptr ? *text : read_file(scene_file, kLargestSceneFile), overrides,
+                 source, diagnostics);
   if (root.empty()) diagnostics.raise_errors(scene_file.string());
   NamedFiles out;
   out.ocio_config = root["color"]["config"].value_or(std::string());

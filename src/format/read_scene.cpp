@@ -254,7 +254,7 @@ std::vector<Setting> settings_of(const SourceText& source, const toml::table& ro
 ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides,
                       const ReadOptions& options) {
   const int frame = options.frame;
-  const std::string text = read_file(file, kLargestSceneFile), name = file.string();
+  const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile), name = file.string();
   Reading reading;
   const toml::table root = parse_tree(name, text, overrides, reading.source, reading.diagnostics);
   if (root.empty()) reading.diagnostics.raise_errors(name);

@@ -27,7 +27,7 @@ std::vector<OutputFile> outputs_of(const Job& job) {
 }
 
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner) {
-  files.add_input(job.scene.file, "scene");
+  if (!job.scene.text) files.add_input(job.scene.file, "scene");
   for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
   add_ocio_configs(job.outputs.display.config, files);
   for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
@@ -35,7 +35,7 @@ void add_job_files(const Job& job, base::FileSet& files, const std::string& owne
 
 void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
   const fs::path& scene_file = scene.file;
-  const format::NamedFiles named = format::named_files(scene_file, scene.overrides);
+  const format::NamedFiles named = format::named_files(scene_file, scene.overrides, scene.text.get());
   scene::Color color;
   color.config = named.ocio_config;
   add_ocio_configs(config_of(scene_file, color), files);

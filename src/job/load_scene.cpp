@@ -118,6 +118,7 @@ LoadedScene load_scene(const SceneRequest& request) {
     return out.background->diagnostics;
   };
   format::ReadOptions options;
+  options.text = request.source.text;
   options.frame = request.source.frame;
   options.also = check_and_load;
   options.memory_limit = request.memory_limit > 0 ? request.memory_limit : available_memory().value_or(0);

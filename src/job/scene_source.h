@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "format/override.h"
@@ -13,6 +15,7 @@ struct SceneSource {
   std::filesystem::path file;
   std::vector<format::Override> overrides;  ///< "camera.vfov=30"
   int frame = 1;
+  std::shared_ptr<const std::string> text = {};  ///< of the scene, if `file` is only its name; null: read the file
 };
 
 }  // namespace orrery::job

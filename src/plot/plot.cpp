@@ -14,6 +14,7 @@
 #include "plot/view.h"
 #include "points/load_points.h"
 #include "points/spacing.h"
+#include "scene/limits.h"
 #include "scene/value_text.h"
 
 namespace orrery::plot {
@@ -42,6 +43,7 @@ class PlotMaker {
     const std::string up = options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up;
     if (options_.up.empty()) chose("up " + up, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
     const ViewAxes axes = view_axes(options_.look_from, up);
+    if (options_.slice) slice(axes);
     ViewExtent extent(axes);
     visit_frames(extent);
     if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: no frame has spheres");
@@ -119,10 +121,9 @@ class PlotMaker {
       chose("radius vdw", "van der Waals radii of the elements");
     } else {
       radius.value = 1;
-      scene::Points alone = out_.points;
-      std::swap(alone.replicate, out_.points.replicate = {1, 1, 1});
+      const math::Vec3d replicate = std::exchange(out_.points.replicate, {1, 1, 1});
       const double spacing = points::median_neighbor_distance(load(first_frame()).centers);
-      out_.points.replicate = alone.replicate;
+      out_.points.replicate = replicate;
       radius.value = spacing > 0 ? rounded(spacing / 2) : 1;
       chose("radius " + number_text(*radius.value), "half the median distance to the nearest neighbour");
     }
@@ -159,6 +160,15 @@ class PlotMaker {
   bool is_text(const std::string& name) const {
     return std::any_of(info_.columns.begin(), info_.columns.end(),
                        [&](const auto& c) { return c.name == name && c.type == data::ColumnType::kText; });
+  }
+
+  /// Removes the spheres on the camera's side of a plane.
+  void slice(const ViewAxes& axes) {
+    const auto [axis, place] = *options_.slice;
+    const double back[3] = {axes.back.x, axes.back.y, axes.back.z};
+    const bool is_before = back[axis] > 0;
+    out_.points.clip[static_cast<std::size_t>(axis)] =
+        is_before ? scene::Interval{-scene::kLargestLength, place} : scene::Interval{place, scene::kLargestLength};
   }
 
   /// Reads all frames once: the view contains all of them, and one range of the colour map holds for all, or a film

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -21,6 +22,7 @@ struct PlotOptions {
   scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
   std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: chosen
   bool has_map = false;        ///< `points.color.map` is the user's
+  std::optional<std::pair<int, double>> slice = {};  ///< axis 0, 1 or 2, and the plane's place: removes what is before it
   std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
   std::string up;                 ///< "x", "y" or "z"; empty: by the format
   Style style = Style::kStudio;

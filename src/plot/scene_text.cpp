@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scene/schema.h"
 #include "scene/value_text.h"
 
 namespace orrery::plot {
@@ -57,6 +58,10 @@ std::string points_text(const scene::Points& points) {
   if (!(points.replicate == math::Vec3d{1, 1, 1})) out += "replicate = " + vector_text(points.replicate) + "\n";
   if (points.unwrap) out += "unwrap = true\n";
   if (!points.assembly.empty()) out += "assembly = " + string_text(points.assembly) + "\n";
+  InlineTable clip;
+  for (std::size_t axis = 0; axis < points.clip.size(); ++axis)
+    if (points.clip[axis]) clip.add(std::string(1, "xyz"[axis]), scene::interval_text(*points.clip[axis]));
+  if (!clip.is_empty()) out += "clip = " + clip.text() + "\n";
   if (points.skip_bad) out += "skip_bad = true\n";
   return out;
 }

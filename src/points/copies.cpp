@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "base/text.h"
 
@@ -106,6 +108,28 @@ std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& po
                                              info.box->edges[1] * j + info.box->edges[2] * k;
         }
   return all;
+}
+
+void clip(scene::Points& points) {
+  const auto& [x, y, z] = points.clip;
+  if (!x && !y && !z) return;
+  const auto holds = [](const std::optional<scene::Interval>& interval, double at) {
+    return !interval || (at >= interval->low && at <= interval->high);
+  };
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    const Vec3d c = points.centers[i];
+    if (!holds(x, c.x) || !holds(y, c.y) || !holds(z, c.z)) continue;
+    points.centers[kept] = c;
+    points.radii[kept] = points.radii[i];
+    if (!points.materials.empty()) points.materials[kept] = points.materials[i];
+    if (!points.colors.empty()) points.colors[kept] = points.colors[i];
+    ++kept;
+  }
+  points.centers.resize(kept);
+  points.radii.resize(kept);
+  if (!points.materials.empty()) points.materials.resize(kept);
+  if (!points.colors.empty()) points.colors.resize(kept);
 }
 
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points) {

@@ -30,4 +30,7 @@ std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& po
 /// `chains`   chain of each sphere, if a copy is limited to some; else ignored
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points);
 
+/// Removes the spheres whose centres are outside `points.clip`.
+void clip(scene::Points& points);
+
 }  // namespace orrery::points

@@ -158,6 +158,7 @@ class Loader {
     if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)
       chains = labels_of(*column, rows, table.rows);
     make_copies(copies_, chains, points_);
+    clip(points_);
   }
 
   /// Returns the selected rows, ascending by particle id if there are ids: files list particles in any order.

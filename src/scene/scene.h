@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -189,6 +190,7 @@ struct Points {
   bool unwrap = false;        ///< by the counts of periodic images in the file
   std::string assembly;       ///< biological assembly; empty: the file's own atoms
   PointsTransform transform;
+  std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
   bool skip_bad = false;      ///< leaves out rows with coordinates that are not finite
   std::vector<Vec3d> centers = {};
   std::vector<double> radii = {};             ///< as many as centers

@@ -409,7 +409,7 @@ TEST(FormatReadScene, FurtherChecksAreReported) {
     return std::vector<scene::SceneDiagnostic>{{base::Severity::kError, "color.space", "no " + s.color.space}};
   };
   try {
-    read_scene(files.folder() / "scene.toml", {}, {kFirstFrame, also});
+    read_scene(files.folder() / "scene.toml", {}, {{}, kFirstFrame, also});
     FAIL() << "no error";
   } catch (const base::Error& error) {
     EXPECT_EQ(files.told(error),

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "cli/picture_options.h"
+#include "cli/scene_options.h"
+#include "farm/batch.h"
+
+namespace orrery::cli {
+
+/// The options of a command that renders.
+struct RenderOptions {
+  farm::Batch batch;
+  SceneOptions scene;
+  PictureOptions picture;
+  std::string progress = "auto", traversal = "auto", shard, frames;
+  bool quiet = false, verbose = false, strict = false, fail_fast = false;
+};
+
+/// Adds the options of rendering, except those that name the scene, its frames and its shard.
+///
+/// `allows_range`  --samples may be A:B
+/// Domain     called once; `options` does not move until the command line is parsed
+void add_render_options(Command& command, RenderOptions& options, bool allows_range);
+
+/// Renders the scenes and frames of a batch.
+///
+/// Result     the exit status
+/// Errors     those of farm::jobs_of and farm::run_batch
+int run_render(RenderOptions& options);
+
+}  // namespace orrery::cli
