@@ -126,7 +126,7 @@ class Header {
     layout_.first_line = place.line;
     layout_.rows = *rows_;
     if (*rows_ == 0) return;
-    layout_.allows_more = row.find('#') != std::string::npos;  // comments behind the values
+    layout_.comment = '#';
     const Parts words = words_of(content(row));
     if (words.size() == info_.columns.size() + 3)
       for (const char* const name : {"ix", "iy", "iz"}) info_.columns.push_back({name, ColumnType::kInt64});

@@ -85,7 +85,7 @@ TEST_F(DataLammpsData, BoxAndTitleAreRead) {
 }
 
 TEST_F(DataLammpsData, TypesMayBeLabels) {
-  const auto file = open("\n2 atoms\n\nAtom Type Labels\n\n1 C\n2 H\n\nAtoms # atomic\n\n1 C 0 0 0 # x\n2 H 0 0 0\n");
+  const auto file = open("\n2 atoms\n\nAtom Type Labels\n\n1 C\n2 H\n\nAtoms # atomic\n\n1 C 0 0 0\n2 H 0 0 0 # x\n");
   EXPECT_EQ(column_texts(file->read(0, {"type"}), "type"), (std::vector<std::string>{"C", "H"}));
 }
 

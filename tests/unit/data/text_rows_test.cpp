@@ -123,6 +123,13 @@ TEST_F(DataTextRows, RowsMayHaveMoreValuesIfAllowed) {
   EXPECT_EQ(numbers(read("1,x,y\n2\n", rows), 0), (std::vector<double>{1, 2}));
 }
 
+TEST_F(DataTextRows, CommentsMayFollowTheValues) {
+  TextLayout rows = layout({kNumber, kNumber});
+  rows.comment = '#';
+  EXPECT_EQ(numbers(read("1 2 # x y\n6 7 #\n8 9\n", rows), 1), (std::vector<double>{2, 7, 9}));
+  EXPECT_EQ(errors("1 2 3 # x\n1 # x\n", rows), "1: has more than 2 values\n2: column 2: '#' is not a number\n");
+}
+
 TEST_F(DataTextRows, MemoryIsNotReservedForRowsThatCannotBeThere) {
   EXPECT_EQ(errors("1 2\n", layout({kNumber, kNumber}, kRowsToEnd - 1)),
             "2: the file ends after 1 of 18446744073709551614 rows\n");
