@@ -201,7 +201,7 @@ TEST_F(DataTextRows, ResultDoesNotDependOnChunksAndThreads) {
 TEST_F(DataTextRows, ErrorsDoNotDependOnChunksAndThreads) {
   std::mt19937 random(8);
   std::string text;
-  for (int row = 0; row < 200; ++row) text += random() % 4 == 0 ? "1 x\n" : "1 2\n";
+  for (int row = 0; row < 200; ++row) text += random() % 4 == 0 ? "1 x\n" : random() % 4 == 0 ? "\n" : "1 2\n";
   TextLayout rows = layout({kInteger, kNumber});
   const std::string expected = errors(text, rows);
   EXPECT_EQ(std::count(expected.begin(), expected.end(), '\n'), 11);  // ten, and how many there are

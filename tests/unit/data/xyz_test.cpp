@@ -132,7 +132,17 @@ TEST_F(DataXyz, FramesAreReadInAnyOrder) {
   }
 }
 
+TEST_F(DataXyz, FramesMayBeginAnywhereInABlockOfTheFile) {
+  constexpr std::size_t kBlock = 16384;  // of TextCursor
+  for (std::size_t length = kBlock - 40; length < kBlock + 10; ++length) {
+    const auto file = open("1\n" + std::string(length, 'x') + "\nHe 1 0 0\n2\nsecond\nHe 2 0 0\nHe 2 0 0\n");
+    ASSERT_EQ(file->frame_count(), 2);
+    ASSERT_EQ(file->describe(1).title, "second");
+  }
+}
+
 TEST_F(DataXyz, ErrorsHaveLines) {
+  EXPECT_EQ(errors("1\n\nH 1 2 3\n-1\n\n"), "4: expected a number of atoms, found '-1'\n");
   EXPECT_EQ(errors("2\n\nH 1 2 3\n"), "4: the file ends after 1 of 2 rows\n");
   EXPECT_EQ(errors("1\n\nH 1 2 3\nH 1 2 3\n"), "4: expected a number of atoms, found 'H 1 2 3'\n");
   EXPECT_EQ(errors("1\n\nH 1 2 b\n"), "3: column 4: 'b' is not a number\n");
