@@ -14,6 +14,7 @@
 #include "data/lammps_frame.h"
 #include "data/readers.h"
 #include "data/text_cursor.h"
+#include "data/text_frames.h"
 #include "data/text_rows.h"
 
 namespace orrery::data {
@@ -72,17 +73,50 @@ FrameInfo described(const LammpsFrame& frame) {
   return info;
 }
 
-class LammpsDump final : public DataFile {
+/// One coordinate of positions that the file has in units of the box.
+std::vector<double> unscaled(const Box& box, std::size_t axis, const std::array<const double*, 3>& scaled,
+                             std::size_t rows) {
+  const auto part = [axis](const Vec3d& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+  const double origin = part(box.origin);
+  const double a = part(box.edges[0]);
+  const double b = part(box.edges[1]);
+  const double c = part(box.edges[2]);
+  std::vector<double> out(rows);
+  constexpr std::size_t kGrain = std::size_t{1} << 16;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows, kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      out[i] = origin + scaled[0][i] * a + scaled[1][i] * b + scaled[2][i] * c;
+  });
+  return out;
+}
+
+/// The requested columns, out of those that were read.
+Table taken(const std::vector<std::string>& columns, const LammpsFrame& frame, TextTable text) {
+  Table table;
+  table.rows = text.rows;
+  const auto values = [&](const std::string& name) -> Values& {
+    const auto at = std::find(frame.columns.begin(), frame.columns.end(), name);
+    return text.values[static_cast<std::size_t>(at - frame.columns.begin())];
+  };
+  // Computed columns first: the others are moved.
+  if (const Axes* const names = scaled_position(frame); names != nullptr)
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+      if (!contains(columns, kAxes[axis])) continue;
+      std::array<const double*, 3> scaled{};
+      for (std::size_t i = 0; i < scaled.size(); ++i)
+        scaled[i] = std::get<std::vector<double>>(values((*names)[i])).data();
+      table.columns.push_back({kAxes[axis], unscaled(*frame.box, axis, scaled, table.rows)});
+    }
+  for (const std::string& name : columns)
+    if (table.find(name) == nullptr) table.columns.push_back({name, std::move(values(name))});
+  return table;
+}
+
+class LammpsDump final : public TextFrames {
  public:
-  explicit LammpsDump(Bytes bytes) : bytes_(std::move(bytes)), end_(*bytes_) {}
+  explicit LammpsDump(const Bytes& bytes) : TextFrames(bytes) {}
 
   Format format() const override { return Format::kLammpsDump; }
-
-  int frame_count() override {
-    while (add_frame()) {
-    }
-    return static_cast<int>(frames_.size());
-  }
 
   FrameInfo describe(int frame) override { return described(header(frame).first); }
 
@@ -90,7 +124,7 @@ class LammpsDump final : public DataFile {
     const auto [frame, cursor] = header(number);
     const Axes* const scaled = scaled_position(frame);
     const auto is_computed = [&](const std::string& name) {
-      return scaled != nullptr && std::find(kAxes.begin(), kAxes.end(), name) != kAxes.end();
+      return scaled != nullptr && std::count(kAxes.begin(), kAxes.end(), name) > 0;
     };
     const bool needs_scaled = std::any_of(columns.begin(), columns.end(), is_computed);
     TextLayout layout;
@@ -98,102 +132,36 @@ class LammpsDump final : public DataFile {
     layout.rows = frame.rows;
     layout.first_line = cursor.line();
     for (const std::string& name : frame.columns) {
-      const bool is_scaled = needs_scaled && std::find(scaled->begin(), scaled->end(), name) != scaled->end();
-      const bool is_wanted = !is_computed(name) && std::find(columns.begin(), columns.end(), name) != columns.end();
+      const bool is_scaled = needs_scaled && std::count(scaled->begin(), scaled->end(), name) > 0;
+      const bool is_wanted = !is_computed(name) && contains(columns, name);
       layout.columns.push_back({type_of(name), is_wanted || is_scaled});
     }
-    Faults faults(bytes_->file());
-    TextTable text = read_text_rows(*bytes_, layout, faults);
-    require_end_of_frame(TextCursor(*bytes_, text.end, layout.first_line + text.rows), frame);
+    Faults faults(bytes().file());
+    TextTable text = read_text_rows(bytes(), layout, faults);
+    require_end(TextCursor(bytes(), {text.end, layout.first_line + text.rows}), frame.rows_line);
     return taken(columns, frame, std::move(text));
   }
 
  private:
-  struct Entry {
-    std::uint64_t offset;
-    std::uint64_t line;
-  };
-
-  /// Extends the index by a frame.
-  ///
-  /// Result     false if there are no more
-  bool add_frame() {
-    std::string line;
-    for (TextCursor ahead = end_;; end_ = ahead) {
-      if (!ahead.next(line)) {
-        if (frames_.empty()) Faults(bytes_->file()).fail(end_.line(), "the file has no frames");
-        return false;
-      }
-      if (line.find_first_not_of(" \t") != std::string::npos) break;
-    }
-    const Entry entry{end_.offset(), end_.line()};
-    Faults faults(bytes_->file());
-    // A frame with too few rows is reported when it is read: those before it are usable.
-    end_.skip(read_lammps_frame(end_, faults).rows);
-    frames_.push_back(entry);
-    return true;
+  std::uint64_t skip_header(TextCursor& cursor) const override {
+    Faults faults(bytes().file());
+    return read_lammps_frame(cursor, faults).rows;
   }
+
+  bool begins_frame(std::string_view line) const override { return line.starts_with("ITEM:"); }
 
   /// The header of a frame, and the cursor at its rows.
   std::pair<LammpsFrame, TextCursor> header(int number) {
-    const auto index = static_cast<std::size_t>(number);
-    while (frames_.size() <= index && add_frame()) {
-    }
-    TextCursor cursor(*bytes_, frames_.at(index).offset, frames_[index].line);
-    Faults faults(bytes_->file());
-    LammpsFrame frame = read_lammps_frame(cursor, faults);
+    TextCursor cursor = frame(number);
+    Faults faults(bytes().file());
+    LammpsFrame header = read_lammps_frame(cursor, faults);
     const std::uint64_t line = cursor.line() - 1;
-    if (!contains(frame.columns, kAxes) && !contains(frame.columns, kUnwrapped) && scaled_position(frame) == nullptr)
+    if (!contains(header.columns, kAxes) && !contains(header.columns, kUnwrapped) && scaled_position(header) == nullptr)
       faults.fail(line, "no columns with positions", "write x y z, xu yu zu, xs ys zs or xsu ysu zsu");
-    if (scaled_position(frame) != nullptr && !frame.box)
+    if (scaled_position(header) != nullptr && !header.box)
       faults.fail(line, "positions are scaled, but the frame has no item \"BOX BOUNDS\"");
-    return {std::move(frame), cursor};
+    return {std::move(header), cursor};
   }
-
-  void require_end_of_frame(TextCursor cursor, const LammpsFrame& frame) const {
-    std::string line;
-    while (cursor.next(line)) {
-      if (line.starts_with("ITEM:")) return;
-      if (line.find_first_not_of(" \t") != std::string::npos)
-        Faults(bytes_->file())
-            .fail(cursor.line() - 1, "expected the end of the frame after " + std::to_string(frame.rows) + " rows",
-                  "check the number of atoms in line " + std::to_string(frame.rows_line));
-    }
-  }
-
-  static Table taken(const std::vector<std::string>& columns, const LammpsFrame& frame, TextTable text) {
-    Table table;
-    table.rows = text.rows;
-    const auto index = [&](const std::string& name) {
-      return static_cast<std::size_t>(std::find(frame.columns.begin(), frame.columns.end(), name) -
-                                      frame.columns.begin());
-    };
-    const Axes* const scaled = scaled_position(frame);
-    for (const std::string& name : columns) {
-      const auto axis = static_cast<std::size_t>(std::find(kAxes.begin(), kAxes.end(), name) - kAxes.begin());
-      if (scaled == nullptr || axis == kAxes.size()) continue;
-      std::array<const double*, 3> s;
-      for (std::size_t i = 0; i < 3; ++i) s[i] = std::get<std::vector<double>>(text.values[index((*scaled)[i])]).data();
-      std::vector<double> values(text.rows);
-      const auto part = [axis](const Vec3d& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
-      const double origin = part(frame.box->origin);
-      const std::array<double, 3> edges = {part(frame.box->edges[0]), part(frame.box->edges[1]),
-                                           part(frame.box->edges[2])};
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, values.size(), std::size_t{1} << 16),
-                        [&](const auto& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                            values[i] = origin + s[0][i] * edges[0] + s[1][i] * edges[1] + s[2][i] * edges[2];
-                        });
-      table.columns.push_back({name, std::move(values)});
-    }
-    for (const std::string& name : columns)
-      if (table.find(name) == nullptr) table.columns.push_back({name, std::move(text.values[index(name)])});
-    return table;
-  }
-
-  Bytes bytes_;
-  std::vector<Entry> frames_;  ///< those found so far
-  TextCursor end_;             ///< behind them
 };
 
 /// Binary dumps since 2020 begin with a negative length and the style; older ones have no signature.

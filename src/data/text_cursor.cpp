@@ -21,15 +21,15 @@ constexpr std::size_t kSkipBytes = std::size_t{1} << 20;
 /// Result     false at the end of the file
 bool TextCursor::fill(std::size_t count) {
   if (at_end()) return false;
-  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(count, bytes_->size() - offset_)));
-  bytes_->read(offset_, buffer_.size(), buffer_.data());
+  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(count, bytes_->size() - place_.offset)));
+  bytes_->read(place_.offset, buffer_.size(), buffer_.data());
   begin_ = 0;
   return true;
 }
 
 bool TextCursor::next(std::string& text) {
   text.clear();
-  const std::uint64_t start = offset_;
+  const std::uint64_t start = place_.offset;
   for (bool is_complete = false; !is_complete;) {
     if (begin_ == buffer_.size() && !fill(kHeaderBytes)) break;
     const char* const begin = buffer_.data() + begin_;
@@ -39,14 +39,20 @@ bool TextCursor::next(std::string& text) {
     is_complete = newline != end;
     const auto taken = static_cast<std::size_t>(newline - begin) + (is_complete ? 1 : 0);
     begin_ += taken;
-    offset_ += taken;
+    place_.offset += taken;
     if (text.size() > kMaxLineBytes)
-      Faults(bytes_->file()).fail(line_, "a line is longer than 1 MiB", "the file is damaged, or no text file");
+      Faults(bytes_->file()).fail(place_.line, "a line is longer than 1 MiB", "the file is damaged, or no text file");
   }
-  if (offset_ == start) return false;
-  ++line_;
+  if (place_.offset == start) return false;
+  ++place_.line;
   if (text.ends_with('\r')) text.pop_back();
   return true;
+}
+
+bool TextCursor::next_filled(std::string& text) {
+  while (next(text))
+    if (text.find_first_not_of(" \t\r") != std::string::npos) return true;
+  return false;
 }
 
 std::uint64_t TextCursor::skip(std::uint64_t count) {
@@ -66,10 +72,10 @@ std::uint64_t TextCursor::skip(std::uint64_t count) {
     }
     is_inside = end[-1] != '\n';
     begin_ += static_cast<std::size_t>(end - begin);
-    offset_ += static_cast<std::uint64_t>(end - begin);
+    place_.offset += static_cast<std::uint64_t>(end - begin);
   }
   if (is_inside && skipped < count) ++skipped;  // the last line may lack its newline
-  line_ += skipped;
+  place_.line += skipped;
   return skipped;
 }
 

@@ -14,20 +14,26 @@ namespace orrery::data {
 /// Reads a text line by line, and skips lines fast.
 class TextCursor {
  public:
-  explicit TextCursor(const ByteSource& bytes, std::uint64_t offset = 0, std::uint64_t line = 1)
-      : bytes_(&bytes), offset_(offset), line_(line) {}
+  struct Place {
+    std::uint64_t offset = 0;
+    std::uint64_t line = 1;
+  };
 
-  /// Offset of the next line.
-  std::uint64_t offset() const { return offset_; }
-  /// Number of the next line, from 1.
-  std::uint64_t line() const { return line_; }
-  bool at_end() const { return offset_ >= bytes_->size(); }
+  explicit TextCursor(const ByteSource& bytes, Place place = {0, 1}) : bytes_(&bytes), place_(place) {}
+
+  /// The next line.
+  Place place() const { return place_; }
+  std::uint64_t offset() const { return place_.offset; }
+  std::uint64_t line() const { return place_.line; }
+  bool at_end() const { return place_.offset >= bytes_->size(); }
 
   /// Reads a line, without its end.
   ///
   /// Result     false at the end of the file
   /// Errors     base::Error: kIo; kBadData for a line that is too long
   bool next(std::string& text);
+  /// As next(), after skipping lines of white space.
+  bool next_filled(std::string& text);
 
   /// Skips lines.
   ///
@@ -38,8 +44,7 @@ class TextCursor {
   bool fill(std::size_t count);
 
   const ByteSource* bytes_;
-  std::uint64_t offset_;
-  std::uint64_t line_;
+  Place place_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  ///< of the unread bytes in the buffer
 };

@@ -93,6 +93,7 @@ const char* RowParser::parse_blank_separated(const char* at) {
   if (layout_->allows_more) return line_end(at);
   at = skip_blanks(at);
   if (*at == '\n') return at;
+  if (*at == layout_->comment && *at != '\0') return line_end(at);
   fail("has more than " + std::to_string(count) + " values");
   return nullptr;
 }

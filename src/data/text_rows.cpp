@@ -41,7 +41,7 @@ struct Chunk {
   std::uint64_t end = 0;  ///< offset behind the last row
 };
 
-/// Asks for huge pages: page faults take a fifth of the time otherwise.
+/// Requests huge pages: page faults take a fifth of the time otherwise.
 template <typename T>
 void prefer_huge_pages(std::vector<T>& values) {
 #ifdef MADV_HUGEPAGE
@@ -128,10 +128,13 @@ class Reading {
     lines.read(bytes_, first, first + layout_.chunk_bytes, chunk == 0);
   }
 
-  /// An upper bound, by which declared numbers of rows are checked before memory is reserved.
+  /// An upper bound, by which declared numbers of rows are checked before memory is reserved. It has room for some
+  /// malformed rows, so that those are reported.
   std::uint64_t possible_rows() const {
+    constexpr std::uint64_t kRoom = 1000;
     const std::uint64_t bytes_per_value = layout_.separator == ' ' ? 2 : 1;
-    return (bytes_.size() - begin_ + 1) / std::max<std::uint64_t>(1, bytes_per_value * layout_.columns.size());
+    const std::uint64_t bytes_per_row = std::max<std::uint64_t>(1, bytes_per_value * layout_.columns.size());
+    return (bytes_.size() - begin_) / bytes_per_row + kRoom;
   }
 
   std::uint64_t counted_rows() const {

@@ -27,6 +27,7 @@ struct TextLayout {
   std::uint64_t first_line = 1;     ///< line number of the first row
   char separator = ' ';             ///< ' ': any number of blanks and tabs; else one character, values may be quoted
   bool allows_more = false;         ///< rows may have values beyond the last column
+  char comment = '\0';              ///< begins a comment behind the last value (only with separator ' '); 0: none
   bool allows_missing = false;      ///< an empty value is NaN (only with a separator other than ' ')
   /// Bytes that a thread parses at a time; the result does not depend on it.
   std::uint64_t chunk_bytes = std::uint64_t{1} << 18;

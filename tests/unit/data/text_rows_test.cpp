@@ -123,6 +123,13 @@ TEST_F(DataTextRows, RowsMayHaveMoreValuesIfAllowed) {
   EXPECT_EQ(numbers(read("1,x,y\n2\n", rows), 0), (std::vector<double>{1, 2}));
 }
 
+TEST_F(DataTextRows, CommentsMayFollowTheValues) {
+  TextLayout rows = layout({kNumber, kNumber});
+  rows.comment = '#';
+  EXPECT_EQ(numbers(read("1 2 # x y\n6 7 #\n8 9\n", rows), 1), (std::vector<double>{2, 7, 9}));
+  EXPECT_EQ(errors("1 2 3 # x\n1 # x\n", rows), "1: has more than 2 values\n2: column 2: '#' is not a number\n");
+}
+
 TEST_F(DataTextRows, MemoryIsNotReservedForRowsThatCannotBeThere) {
   EXPECT_EQ(errors("1 2\n", layout({kNumber, kNumber}, kRowsToEnd - 1)),
             "2: the file ends after 1 of 18446744073709551614 rows\n");
@@ -194,7 +201,7 @@ TEST_F(DataTextRows, ResultDoesNotDependOnChunksAndThreads) {
 TEST_F(DataTextRows, ErrorsDoNotDependOnChunksAndThreads) {
   std::mt19937 random(8);
   std::string text;
-  for (int row = 0; row < 200; ++row) text += random() % 4 == 0 ? "1 x\n" : "1 2\n";
+  for (int row = 0; row < 200; ++row) text += random() % 4 == 0 ? "1 x\n" : random() % 4 == 0 ? "\n" : "1 2\n";
   TextLayout rows = layout({kInteger, kNumber});
   const std::string expected = errors(text, rows);
   EXPECT_EQ(std::count(expected.begin(), expected.end(), '\n'), 11);  // ten, and how many there are
@@ -227,6 +234,8 @@ TEST(DataTextNumbers, AreCorrectlyRounded) {
                                  "1e23",
                                  "9007199254740993",
                                  "9007199254740992.5",
+                                 "18446744073709551617",
+                                 "1844674407370955161.7",
                                  "123456789012345678901234567890",
                                  "0.1",
                                  "2.2250738585072014e-308",

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/readers.h"
+#include "data/text_cursor.h"
+
+namespace orrery::data {
+
+/// A text file of frames, each a header and a number of rows. Frames are looked for only as far as they are needed.
+class TextFrames : public DataFile {
+ public:
+  int frame_count() override;
+
+ protected:
+  explicit TextFrames(Bytes bytes) : bytes_(std::move(bytes)), end_(*bytes_) {}
+
+  const ByteSource& bytes() const { return *bytes_; }
+
+  /// The cursor at the first line of a frame.
+  ///
+  /// Errors     base::Error(kBadData) for a malformed header up to that frame
+  TextCursor frame(int number);
+
+  /// Checks that a frame, or nothing, follows the rows of a frame.
+  ///
+  /// `rows_end`   behind the rows
+  /// `count_line` the line that declares their number
+  void require_end(TextCursor rows_end, std::uint64_t count_line) const;
+
+ private:
+  /// Reads a header, and returns the number of rows.
+  virtual std::uint64_t skip_header(TextCursor& cursor) const = 0;
+  virtual bool begins_frame(std::string_view line) const = 0;
+
+  bool add_frame();
+
+  Bytes bytes_;
+  std::vector<TextCursor::Place> frames_;  ///< those found so far
+  TextCursor end_;                         ///< behind them
+};
+
+}  // namespace orrery::data
