@@ -5,8 +5,8 @@
 
 namespace orrery::data {
 
-/// The public functions of this room that need third-party libraries. They are in a module that the program loads at the
-/// first call.
+/// The public functions of this room that need third-party libraries. They are in a module that the program loads at
+/// the first call.
 struct Functions {
   decltype(&data::open) open;
 };

@@ -138,6 +138,11 @@ TEST_F(DataPdb, CellWithoutSymmetryIsTheBox) {
   EXPECT_NEAR(box->edges[1].x, 10, 1e-12);
   EXPECT_NEAR(box->edges[1].y, 17.320508075688775, 1e-12);
   EXPECT_EQ(md->describe(1).box->edges[0].x, 11);
+  const auto models =
+      opened("CRYST1   10.000   20.000   30.000  90.00  90.00  60.00 P 1           1\nMODEL        1\n" + carbon +
+             "ENDMDL\nMODEL        2\n" + carbon + "ENDMDL\n");
+  ASSERT_TRUE(models->describe(1).box);
+  EXPECT_EQ(models->describe(1).box->edges[0].x, 10);
   EXPECT_FALSE(
       opened("CRYST1   10.000   20.000   30.000  90.00  90.00  90.00 P 21 21 21    4\n" + carbon)->describe(0).box);
   EXPECT_FALSE(
@@ -190,6 +195,9 @@ TEST_F(DataPdb, DamagedAssembliesAreRefused) {
   const auto missing_row = error_of(head + good.substr(0, good.find('\n') + 1) + biomt(2, 1) + carbon);
   EXPECT_NE(missing_row.text.find("out of order"), std::string::npos);
   EXPECT_EQ(missing_row.line, 3);
+  std::string serial = good;
+  serial.replace(serial.find("BIOMT2   1"), 10, "BIOMT2   2");
+  EXPECT_NE(error_of(head + serial + carbon).text.find("out of order"), std::string::npos);
   EXPECT_NE(error_of(head + good.substr(0, good.find('\n') + 1) + carbon).text.find("incomplete"), std::string::npos);
   std::string word = good;
   word.replace(word.find("0.500000"), 8, "******* ");
