@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/csv_shape.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "data/customary.h"
+#include "data/text_cursor.h"
+#include "data/text_rows.h"
+
+namespace orrery::data {
+namespace {
+
+/// Rows that are examined, and bytes: lines may be long.
+constexpr std::size_t kSampleRows = 1000;
+constexpr std::uint64_t kSampleBytes = std::uint64_t{4} << 20;
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+struct Line {
+  std::string text;
+  std::uint64_t offset = 0, number = 0;
+};
+
+struct Sample {
+  std::string comment;      ///< the last one, without its sign
+  std::vector<Line> lines;  ///< that are neither comments nor blank
+};
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+}
+
+Sample read_sample(const ByteSource& bytes) {
+  TextCursor cursor(bytes, bytes.text(0, kByteOrderMark.size()) == kByteOrderMark ? kByteOrderMark.size() : 0);
+  Sample sample;
+  std::uint64_t begin = 0;
+  for (Line line; sample.lines.size() <= kSampleRows; line.text.clear()) {
+    line.offset = cursor.offset();
+    line.number = cursor.line();
+    if (!sample.lines.empty() && line.offset > begin + kSampleBytes) break;
+    if (!cursor.next(line.text)) break;
+    const std::string_view text = trimmed(line.text);
+    if (text.empty()) continue;
+    if (sample.lines.empty() && (text[0] == '#' || text[0] == '%')) {
+      sample.comment = trimmed(text.substr(std::min(text.find_first_not_of("#%"), text.size())));
+      continue;
+    }
+    if (sample.lines.empty()) begin = line.offset;
+    sample.lines.push_back(line);
+  }
+  return sample;
+}
+
+bool divides_equally(const std::vector<Line>& lines, char separator) {
+  const std::size_t count = split_row(lines[0].text, separator).size();
+  return count > 1 && std::all_of(lines.begin(), lines.end(),
+                                  [&](const Line& line) { return split_row(line.text, separator).size() == count; });
+}
+
+char separator_of(const std::vector<Line>& lines) {
+  constexpr std::array<char, 4> kSeparators = {'\t', ';', ',', ' '};
+  for (const char separator : kSeparators)
+    if (divides_equally(lines, separator)) return separator;
+  // The reader will report the rows that differ.
+  return *std::max_element(kSeparators.begin(), kSeparators.end(), [&](char a, char b) {
+    return split_row(lines[0].text, a).size() < split_row(lines[0].text, b).size();
+  });
+}
+
+bool is_number(const std::string& word) {
+  double ignored = 0;
+  return parse_number(word, ignored);
+}
+
+/// Determines type and largest number of a column.
+void examine(CsvShape& shape, std::size_t column, const std::vector<std::vector<std::string>>& rows) {
+  for (const auto& row : rows) {
+    if (column >= row.size() || row[column].empty()) continue;
+    double number = 0;
+    if (!parse_number(row[column], number)) shape.columns[column].type = ColumnType::kText;
+    shape.largest[column] = std::max(shape.largest[column], number);
+  }
+}
+
+}  // namespace
+
+CsvShape csv_shape(const ByteSource& bytes) {
+  const Sample sample = read_sample(bytes);
+  CsvShape shape;
+  if (sample.lines.empty()) return shape;
+  shape.separator = separator_of(sample.lines);
+  std::vector<std::vector<std::string>> rows;
+  for (const Line& line : sample.lines) rows.push_back(split_row(line.text, shape.separator));
+  std::vector<std::string> names = rows[0];
+  const bool is_first_row = std::none_of(names.begin(), names.end(), is_number);
+  if (is_first_row) {
+    rows.erase(rows.begin());
+  } else {
+    names = split_row(sample.comment, shape.separator);
+    if (names.size() != rows[0].size()) names = split_row(sample.comment, ' ');
+  }
+  shape.has_header = is_first_row || names.size() == rows[0].size();
+  if (!shape.has_header) names.assign(rows[0].size(), {});
+  const Line& first = sample.lines[0];
+  shape.first_line = first.number + (is_first_row ? 1 : 0);
+  shape.begin = first.offset;
+  if (is_first_row) {
+    TextCursor cursor(bytes, first.offset);
+    cursor.skip(1);
+    shape.begin = cursor.offset();
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), kMostColumns + 1); ++i) {
+    if (names[i].empty()) names[i] = "column" + std::to_string(i + 1);
+    shape.columns.push_back({unique_name(names[i], shape.columns), ColumnType::kFloat64});
+    shape.largest.push_back(-std::numeric_limits<double>::infinity());
+    examine(shape, i, rows);
+  }
+  return shape;
+}
+
+std::vector<std::string> split_row(std::string_view line, char separator) {
+  std::vector<std::string> out;
+  if (separator == ' ') {
+    for (const std::string_view word : words_of(line)) out.emplace_back(word);
+    return out;
+  }
+  for (std::size_t at = 0;;) {
+    // A value is quoted if a quote is its first character that is not blank.
+    std::size_t begin = std::min(line.find_first_not_of(separator == '\t' ? " " : " \t", at), line.size());
+    std::string value;
+    if (begin < line.size() && line[begin] == '"') {
+      for (++begin; begin < line.size(); ++begin) {
+        if (line[begin] == '"' && (begin + 1 == line.size() || line[begin + 1] != '"')) break;
+        if (line[begin] == '"') ++begin;
+        value += line[begin];
+      }
+      at = line.find(separator, std::min(begin, line.size()));
+    } else {
+      at = line.find(separator, begin);
+      value = trimmed(line.substr(begin, at - begin));
+    }
+    out.push_back(std::move(value));
+    if (at == std::string_view::npos) return out;
+    ++at;
+  }
+}
+
+}  // namespace orrery::data
