@@ -71,19 +71,50 @@ char separator_of(const std::vector<Line>& lines) {
   });
 }
 
-bool is_number(const std::string& word) {
+using Rows = std::vector<std::vector<CsvValue>>;
+
+bool is_number(const CsvValue& value) {
   double ignored = 0;
-  return parse_number(word, ignored);
+  return parse_number(value.text, ignored);
+}
+
+bool is_quoted(const Rows& rows, std::size_t column) {
+  return !rows.empty() && std::all_of(rows.begin(), rows.end(), [column](const auto& row) {
+    return column < row.size() && row[column].is_quoted;
+  });
+}
+
+/// Returns whether all values are integers, some of which a float64 cannot represent.
+bool has_large_integers(const Rows& rows, std::size_t column) {
+  constexpr std::int64_t kLargestExact = std::int64_t{1} << 53;
+  bool is_large = false;
+  for (const auto& row : rows) {
+    std::int64_t integer = 0;
+    if (column >= row.size() || !parse_integer(row[column].text, integer)) return false;
+    is_large = is_large || integer > kLargestExact || integer < -kLargestExact;
+  }
+  return is_large;
 }
 
 /// Determines type and largest number of a column.
-void examine(CsvShape& shape, std::size_t column, const std::vector<std::vector<std::string>>& rows) {
+void examine(CsvShape& shape, std::size_t column, const Rows& rows) {
+  ColumnType& type = shape.columns[column].type;
   for (const auto& row : rows) {
-    if (column >= row.size() || row[column].empty()) continue;
+    if (column >= row.size() || row[column].text.empty()) continue;
     double number = 0;
-    if (!parse_number(row[column], number)) shape.columns[column].type = ColumnType::kText;
+    if (!parse_number(row[column].text, number)) type = ColumnType::kText;
     shape.largest[column] = std::max(shape.largest[column], number);
   }
+  if (has_large_integers(rows, column)) type = ColumnType::kInt64;
+}
+
+/// Some programs quote all values, others only texts.
+void examine_quotes(CsvShape& shape, const Rows& rows) {
+  std::vector<bool> quoted;
+  for (std::size_t i = 0; i < shape.columns.size(); ++i) quoted.push_back(is_quoted(rows, i));
+  if (std::find(quoted.begin(), quoted.end(), false) == quoted.end()) return;
+  for (std::size_t i = 0; i < shape.columns.size(); ++i)
+    if (quoted[i]) shape.columns[i].type = ColumnType::kText;
 }
 
 }  // namespace
@@ -93,9 +124,9 @@ CsvShape csv_shape(const ByteSource& bytes) {
   CsvShape shape;
   if (sample.lines.empty()) return shape;
   shape.separator = separator_of(sample.lines);
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (const Line& line : sample.lines) rows.push_back(split_row(line.text, shape.separator));
-  std::vector<std::string> names = rows[0];
+  std::vector<CsvValue> names = rows[0];
   const bool is_first_row = std::none_of(names.begin(), names.end(), is_number);
   if (is_first_row) {
     rows.erase(rows.begin());
@@ -114,34 +145,36 @@ CsvShape csv_shape(const ByteSource& bytes) {
     shape.begin = cursor.offset();
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), kMostColumns + 1); ++i) {
-    if (names[i].empty()) names[i] = "column" + std::to_string(i + 1);
-    shape.columns.push_back({unique_name(names[i], shape.columns), ColumnType::kFloat64});
+    const std::string name = names[i].text.empty() ? "column" + std::to_string(i + 1) : names[i].text;
+    shape.columns.push_back({unique_name(name, shape.columns), ColumnType::kFloat64});
     shape.largest.push_back(-std::numeric_limits<double>::infinity());
     examine(shape, i, rows);
   }
+  examine_quotes(shape, rows);
   return shape;
 }
 
-std::vector<std::string> split_row(std::string_view line, char separator) {
-  std::vector<std::string> out;
+std::vector<CsvValue> split_row(std::string_view line, char separator) {
+  std::vector<CsvValue> out;
   if (separator == ' ') {
-    for (const std::string_view word : words_of(line)) out.emplace_back(word);
+    for (const std::string_view word : words_of(line)) out.push_back({std::string(word), false});
     return out;
   }
   for (std::size_t at = 0;;) {
     // A value is quoted if a quote is its first character that is not blank.
     std::size_t begin = std::min(line.find_first_not_of(separator == '\t' ? " " : " \t", at), line.size());
-    std::string value;
+    CsvValue value;
     if (begin < line.size() && line[begin] == '"') {
+      value.is_quoted = true;
       for (++begin; begin < line.size(); ++begin) {
         if (line[begin] == '"' && (begin + 1 == line.size() || line[begin + 1] != '"')) break;
         if (line[begin] == '"') ++begin;
-        value += line[begin];
+        value.text += line[begin];
       }
       at = line.find(separator, std::min(begin, line.size()));
     } else {
       at = line.find(separator, begin);
-      value = trimmed(line.substr(begin, at - begin));
+      value.text = trimmed(line.substr(begin, at - begin));
     }
     out.push_back(std::move(value));
     if (at == std::string_view::npos) return out;

@@ -17,7 +17,7 @@ struct CsvShape {
   std::uint64_t begin = 0;          ///< offset of the first row of values
   std::uint64_t first_line = 1;     ///< its line number
   bool has_header = false;          ///< otherwise the columns are named column1, column2 ..
-  std::vector<ColumnInfo> columns;  ///< kFloat64 or kText
+  std::vector<ColumnInfo> columns;  ///< kFloat64, kInt64 or kText
   std::vector<double> largest;      ///< the largest number of each column in the first rows
 };
 
@@ -27,12 +27,18 @@ struct CsvShape {
 ///   values, at least two.
 /// - The first row is the header if none of its values is a number; otherwise the last comment is, if it has as many
 ///   words as the rows have values.
-/// - A column has numbers if all of its values are numbers or empty.
+/// - A column has numbers if all of its values are numbers or empty. They are integers of 64 bits if all are integers,
+///   of which a float64 cannot represent some. If all values of a column are quoted, but not those of all columns, then
+///   it has texts.
 ///
 /// Errors     base::Error: kBadData for a line that is too long; kIo
 CsvShape csv_shape(const ByteSource& bytes);
 
-/// Splits a row into values, without their quotes.
-std::vector<std::string> split_row(std::string_view line, char separator);
+/// A value of a row, without quotes and blanks around it.
+struct CsvValue {
+  std::string text;
+  bool is_quoted = false;
+};
+std::vector<CsvValue> split_row(std::string_view line, char separator);
 
 }  // namespace orrery::data

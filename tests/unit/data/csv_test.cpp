@@ -133,6 +133,19 @@ TEST_F(DataCsv, ATextInAColumnOfNumbersIsAnErrorWithItsLine) {
   EXPECT_EQ(columns("x,y,z,q\n1,2,3,4\n1,2,3,none\n"), "x:float64 y:float64 z:float64 q:text");
 }
 
+TEST_F(DataCsv, QuotedColumnsAreTextsUnlessAllAreQuoted) {
+  EXPECT_EQ(columns("x,y,z,chain\n1,2,3,\"1\"\n1,2,3,\"2\"\n"), "x:float64 y:float64 z:float64 chain:text");
+  EXPECT_EQ(columns("x,y,z,chain\n1,2,3,\"1\"\n1,2,3,2\n"), "x:float64 y:float64 z:float64 chain:float64");
+  EXPECT_EQ(columns("\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n"), "x:float64 y:float64 z:float64");
+}
+
+TEST_F(DataCsv, LargeIntegersAreInt64) {
+  const auto file = open("x,y,z,id,n\n1,2,3,4295806720,9007199254740992\n1,2,3,-9223372036854775807,1\n");
+  EXPECT_EQ(support::columns_text(file->describe(0)), "x:float64 y:float64 z:float64 id:int64 n:float64");
+  EXPECT_EQ(std::get<std::vector<std::int64_t>>(file->read(0, {"id"}).columns[0].values),
+            (std::vector<std::int64_t>{4295806720, -9223372036854775807}));
+}
+
 TEST_F(DataCsv, NamesAreUnique) {
   EXPECT_EQ(columns("x,y,z,,x,x_2\n1,2,3,4,5,6\n"),
             "x:float64 y:float64 z:float64 column4:float64 x_2:float64 x_2_2:float64");
