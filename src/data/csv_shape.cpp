@@ -20,7 +20,7 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 struct Line {
   std::string text;
-  std::uint64_t offset = 0, number = 0;
+  std::uint64_t offset = 0, end = 0, number = 0;
 };
 
 struct Sample {
@@ -35,7 +35,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 Sample read_sample(const ByteSource& bytes) {
-  TextCursor cursor(bytes, bytes.text(0, kByteOrderMark.size()) == kByteOrderMark ? kByteOrderMark.size() : 0);
+  TextCursor cursor(bytes);
   Sample sample;
   std::uint64_t begin = 0;
   for (Line line; sample.lines.size() <= kSampleRows; line.text.clear()) {
@@ -43,6 +43,11 @@ Sample read_sample(const ByteSource& bytes) {
     line.number = cursor.line();
     if (!sample.lines.empty() && line.offset > begin + kSampleBytes) break;
     if (!cursor.next(line.text)) break;
+    line.end = cursor.offset();
+    if (line.offset == 0 && line.text.starts_with(kByteOrderMark)) {
+      line.offset = kByteOrderMark.size();
+      line.text.erase(0, kByteOrderMark.size());
+    }
     const std::string_view text = trimmed(line.text);
     if (text.empty()) continue;
     if (sample.lines.empty() && (text[0] == '#' || text[0] == '%')) {
@@ -138,12 +143,7 @@ CsvShape csv_shape(const ByteSource& bytes) {
   if (!shape.has_header) names.assign(rows[0].size(), {});
   const Line& first = sample.lines[0];
   shape.first_line = first.number + (is_first_row ? 1 : 0);
-  shape.begin = first.offset;
-  if (is_first_row) {
-    TextCursor cursor(bytes, first.offset);
-    cursor.skip(1);
-    shape.begin = cursor.offset();
-  }
+  shape.begin = is_first_row ? first.end : first.offset;
   for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), kMostColumns + 1); ++i) {
     const std::string name = names[i].text.empty() ? "column" + std::to_string(i + 1) : names[i].text;
     shape.columns.push_back({unique_name(name, shape.columns), ColumnType::kFloat64});
