@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 
 namespace orrery::data {
 namespace {
@@ -105,6 +104,10 @@ Roles required_roles(const std::vector<ColumnInfo>& columns, Faults& faults) {
     faults.fail(0, "there are no columns x, y and z of numbers; the columns are: " + listed(columns),
                 "name the coordinates x, y and z");
   return roles;
+}
+
+std::string number_column(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names) {
+  return Names(columns).number(names);
 }
 
 bool is_position_name(std::string_view name) {

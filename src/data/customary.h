@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,10 @@ Roles customary_roles(const std::vector<ColumnInfo>& columns);
 ///
 /// Errors     base::Error(kBadData) by `faults`, which lists the columns
 Roles required_roles(const std::vector<ColumnInfo>& columns, Faults& faults);
+
+/// Returns the column of numbers with one of the names, of which earlier ones have priority, regardless of case; empty
+/// if there is none.
+std::string number_column(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names);
 
 /// Returns whether an array of three components with this name contains positions: pos, position, positions, coords,
 /// coordinates, points, xyz; regardless of case.

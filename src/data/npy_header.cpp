@@ -15,8 +15,6 @@ using Kind = PythonLiteral::Kind;
 using namespace std::string_view_literals;
 
 constexpr std::string_view kSignature = "\x93NUMPY"sv;
-/// Of one text: more is a damaged header.
-constexpr std::uint64_t kLongestText = std::uint64_t{1} << 16;
 /// NumPy's own limit.
 constexpr std::size_t kMostDimensions = 64;
 
@@ -36,7 +34,7 @@ std::string parse_type(const std::string& code, NpyField& field) {
   if (error != std::errc() || end != last) return unsupported;
   field.is_big_endian = code[0] == '>';
   if (code[1] == 'S' || code[1] == 'a' || code[1] == 'U' || code[1] == 'V') {
-    if (field.size > kLongestText) return type + " is longer than " + std::to_string(kLongestText);
+    if (field.size > kLongestNpyText) return type + " is longer than " + std::to_string(kLongestNpyText);
     field.kind = code[1] == 'U' ? NpyField::Kind::kUtf32 : NpyField::Kind::kBytes;
     if (code[1] == 'U') field.size *= 4;
     if (code[1] == 'V') field.components = 0;

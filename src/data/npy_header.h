@@ -38,6 +38,9 @@ struct NpyHeader {
 /// Maximum length of a header, bytes. NumPy itself refuses to read more than 10,000.
 inline constexpr std::uint64_t kLongestNpyHeader = std::uint64_t{1} << 20;
 
+/// Maximum length of a text, bytes or characters: more is a damaged header.
+inline constexpr std::uint64_t kLongestNpyText = std::uint64_t{1} << 16;
+
 /// Returns whether bytes begin like a file of NumPy.
 bool has_npy_signature(std::string_view head);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <utility>
 #include <vector>
 
 #include "data/table.h"
@@ -75,11 +75,17 @@ template <class T>
 T load(const char* from, bool is_big_endian) {
   char bytes[sizeof(T)];
   std::memcpy(bytes, from, sizeof(T));
-  if (is_big_endian != (std::endian::native == std::endian::big))
-    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
+  if (is_big_endian != (std::endian::native == std::endian::big)) std::reverse(bytes, bytes + sizeof(T));
   T value;
   std::memcpy(&value, bytes, sizeof(T));
   return value;
+}
+
+/// Stores a number in either byte order.
+template <class T>
+void store(T value, char* to, bool is_big_endian) {
+  std::memcpy(to, &value, sizeof(T));
+  if (is_big_endian != (std::endian::native == std::endian::big)) std::reverse(to, to + sizeof(T));
 }
 
 }  // namespace orrery::data

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "data/table.h"
+
+namespace orrery::data {
+
+/// Formats that are written.
+enum class TableFormat { kPly, kXyz, kNpy, kCsv };
+
+/// Returns the format that the extension of a file selects: .ply, .xyz, .npy, .csv.
+///
+/// Errors     base::Error(kUsage) for another extension
+TableFormat table_format(const std::filesystem::path& file);
+
+/// Writes a table; what open() reads from the file has the same values.
+///
+/// - .ply: binary, little-endian. It has no texts.
+/// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`.
+/// - .npy: a structured array.
+/// - .csv: a header row; texts are quoted, numbers have as many digits as needed.
+///
+/// Text formats have fewer types of numbers, and reading returns float64 or int64. A 64-bit integer in a CSV file is
+/// read as a float64 unless the first rows show that this is too small.
+///
+/// Domain     columns x, y, z of numbers; all columns have table.rows rows and different names
+/// Result     names of the columns that were left out because the format has no texts
+/// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
+///            kCannotCreate; kIo
+[[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table);
+
+}  // namespace orrery::data

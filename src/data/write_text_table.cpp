@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "data/quoted_word.h"
+#include "data/table_output.h"
+
+namespace orrery::data {
+namespace {
+
+/// Appends a number with as many digits as distinguish it from all others.
+template <class T>
+void append_number(std::string& out, T value) {
+  constexpr std::size_t kLongestNumber = 32;
+  char text[kLongestNumber];
+  if constexpr (std::is_floating_point_v<T>) {
+    if (std::isnan(value)) {
+      out += "nan";
+      return;
+    }
+    // A float32 is read as a float64: its own shortest digits would give another number.
+    out.append(text, std::to_chars(text, text + kLongestNumber, static_cast<double>(value)).ptr);
+  } else {
+    out.append(text, std::to_chars(text, text + kLongestNumber, +value).ptr);
+  }
+}
+
+/// Appends a value; texts by `append_text(out, word)`.
+template <class AppendText>
+void append_value(std::string& out, const Column& column, std::size_t row, AppendText append_text) {
+  std::visit(
+      [&](const auto& values) {
+        if constexpr (requires { values.index; }) {
+          append_text(out, values.words[values.index[row]]);
+        } else {
+          append_number(out, values[row]);
+        }
+      },
+      column.values);
+}
+
+void append_quoted(std::string& out, std::string_view text) {
+  out += '"';
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  out += '"';
+}
+
+/// Refuses texts with characters that a format cannot store.
+void check_texts(const TableOutput& out, const Column& column, const char* format, std::string_view forbidden,
+                 bool allows_empty) {
+  const auto* const words = std::get_if<Words>(&column.values);
+  if (words == nullptr) return;
+  for (const std::string& word : words->words)
+    if (word.find_first_of(forbidden) != std::string::npos || (word.empty() && !allows_empty))
+      refuse_to_write(out.path(), std::string(format) + " cannot store the text " + quoted_word(word) + " of column " +
+                                      quoted_word(column.name) + "; write .npy, or leave the column out");
+}
+
+/// A property of extended XYZ: one or more columns.
+struct XyzOutput {
+  std::string name;
+  std::vector<const Column*> columns;
+  char type = 'R';
+};
+
+char xyz_type(const Column& column) {
+  const ColumnType type = column.type();
+  if (type == ColumnType::kText) return 'S';
+  return type == ColumnType::kFloat64 || type == ColumnType::kFloat32 ? 'R' : 'I';
+}
+
+/// Returns a name without the characters that separate names, and different from those before.
+std::string xyz_name(std::string name, std::set<std::string>& used) {
+  if (name.empty()) name = "_";
+  for (char& c : name)
+    if (std::string_view(" \t\r\n:=\"'{}[]\\,").find(c) != std::string_view::npos) c = '_';
+  while (!used.insert(name).second) name += '_';
+  return name;
+}
+
+/// Returns the columns from `first` on that are the components of one property, name[1], name[2] ..; else the first.
+XyzOutput property_at(const Table& table, std::size_t first) {
+  const Column& column = table.columns[first];
+  XyzOutput out{column.name, {&column}, xyz_type(column)};
+  if (!column.name.ends_with("[1]")) return out;
+  const std::string name = column.name.substr(0, column.name.size() - 3);
+  for (std::size_t i = first + 1; i < table.columns.size(); ++i) {
+    const Column& next = table.columns[i];
+    if (next.name != name + "[" + std::to_string(i - first + 1) + "]" || xyz_type(next) != out.type) break;
+    out.columns.push_back(&next);
+  }
+  if (out.columns.size() > 1) out.name = name;
+  return out;
+}
+
+/// Returns the properties: species, pos, then the other columns in their order.
+std::vector<XyzOutput> xyz_outputs(const Table& table) {
+  std::vector<XyzOutput> out;
+  const Column* const element = table.find("element");
+  const bool has_species = element != nullptr && element->type() == ColumnType::kText;
+  if (has_species) out.push_back({"species", {element}, 'S'});
+  out.push_back({"pos", {table.find("x"), table.find("y"), table.find("z")}, 'R'});
+  std::set<std::string> used = {"species", "pos"};
+  for (std::size_t i = 0; i < table.columns.size();) {
+    const std::string& name = table.columns[i].name;
+    if (name == "x" || name == "y" || name == "z" || (has_species && name == "element")) {
+      ++i;
+      continue;
+    }
+    XyzOutput property = property_at(table, i);
+    i += property.columns.size();
+    property.name = xyz_name(property.name, used);
+    out.push_back(std::move(property));
+  }
+  return out;
+}
+
+}  // namespace
+
+void write_csv_table(TableOutput& out, const Table& table) {
+  constexpr std::string_view kLineEnds = "\n\r";
+  std::string& text = out.buffer();
+  for (const Column& column : table.columns) {
+    check_texts(out, column, "CSV", kLineEnds, true);
+    if (column.name.find_first_of(kLineEnds) != std::string::npos)
+      refuse_to_write(out.path(), "the name of column " + quoted_word(column.name) + " has a line end; rename it");
+    if (!text.empty()) text += ',';
+    if (column.name.find_first_of(" \t,;\"") == std::string::npos) {
+      text += column.name;
+    } else {
+      append_quoted(text, column.name);
+    }
+  }
+  text += '\n';
+  for (std::size_t row = 0; row < table.rows; ++row) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      if (c > 0) text += ',';
+      append_value(text, table.columns[c], row, append_quoted);
+    }
+    text += '\n';
+    out.flush();
+  }
+}
+
+void write_xyz_table(TableOutput& out, const Table& table) {
+  std::string& text = out.buffer();
+  const std::vector<XyzOutput> properties = xyz_outputs(table);
+  text = std::to_string(table.rows) + "\nProperties=";
+  for (const XyzOutput& property : properties) {
+    for (const Column* const column : property.columns) check_texts(out, *column, "XYZ", " \t\r\n\"", false);
+    if (&property != &properties.front()) text += ':';
+    text += property.name + ":" + property.type + ":" + std::to_string(property.columns.size());
+  }
+  text += '\n';
+  for (std::size_t row = 0; row < table.rows; ++row) {
+    bool is_first = true;
+    for (const XyzOutput& property : properties)
+      for (const Column* const column : property.columns) {
+        if (!is_first) text += ' ';
+        is_first = false;
+        append_value(text, *column, row, [](std::string& to, const std::string& word) { to += word; });
+      }
+    text += '\n';
+    out.flush();
+  }
+}
+
+}  // namespace orrery::data
