@@ -6,7 +6,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "format/read_ply.h"
+#include "points/load_points.h"
 #include "support/temp_dir.h"
 
 namespace orrery::format {
@@ -26,7 +26,11 @@ scene::Points some_points(std::size_t count, bool with_materials) {
 
 scene::Points read_back(const std::filesystem::path& file) {
   scene::Points points;
-  read_ply(file, 5, points);
+  points::LoadRequest request;
+  request.file = file;
+  request.key = "points[0]";
+  request.materials = 5;
+  EXPECT_TRUE(points::load_points(request, points).empty());
   return points;
 }
 

@@ -31,7 +31,9 @@ Value other_value(const Key<Target>& key) {
     case ValueType::kInteger: return std::int64_t{7};
     case ValueType::kNumber: return 0.375;
     case ValueType::kVector: return Vec3d{0.125, 0.375, 0.625};
-    case ValueType::kText: return std::string("other");
+    case ValueType::kText:
+    case ValueType::kName: return std::string("other");
+    case ValueType::kInterval: return Interval{0.25, 0.75};
     case ValueType::kChoice: return key.choices.back();
     case ValueType::kWindow: return Window{1, 2, 3, 4};
     case ValueType::kBoolean: return false;
@@ -52,6 +54,16 @@ TEST(SceneSchema, EachKeySetsItsOwnMemberAndNoOther) {
           EXPECT_EQ(other.text(scene) == other.text(defaults), &other != &key)
               << table.name << "." << key.name << " and " << other_table.name << "." << other.name;
     }
+  }
+}
+
+TEST(SceneSchema, EachPointsKeySetsItsOwnMemberAndNoOther) {
+  const Points defaults;
+  for (const auto& key : points_keys()) {
+    Points points;
+    key.set(points, key.type == ValueType::kBoolean ? Value(true) : other_value(key));
+    for (const auto& other : points_keys())
+      EXPECT_EQ(other.text(points) == other.text(defaults), &other != &key) << key.name << " and " << other.name;
   }
 }
 
