@@ -227,18 +227,24 @@ class Loader {
       if (math::is_finite(centers[i]) && std::isfinite(radii[i]) && radii[i] != 0) {
         good.push_back(i);
       } else if (!points_.skip_bad && ++bad <= scene::kMaxReported) {
-        faults_.error("", "row " + std::to_string(rows[i] + 1) + " has center " + scene::vector_text(centers[i]) +
-                              " and radius " + scene::number_text(radii[i]));
+        faults_.error(".file", row_name(rows[i]) + " has center " + scene::vector_text(centers[i]) + " and radius " +
+                                   scene::number_text(radii[i]));
       }
     }
     const std::size_t count = rows.size() - good.size();
     if (bad > 0)
-      faults_.error("", std::to_string(count) + " of " + std::to_string(rows.size()) +
-                            " rows have coordinates that are not finite or no radius; `skip_bad = true` leaves them out");
+      faults_.error(".file", std::to_string(count) + " of " + std::to_string(rows.size()) +
+                                 " rows have coordinates that are not finite or no radius; `skip_bad = true`, or "
+                                 "--skip-bad, leaves them out");
     else if (count > 0)
       faults_.warning(".skip_bad", std::to_string(count) + " of " + std::to_string(rows.size()) +
                                        " rows were left out: their coordinates are not finite, or they have no radius");
     return good;
+  }
+
+  /// "row 3 of melt.dump"
+  std::string row_name(std::size_t row) const {
+    return "row " + std::to_string(row + 1) + " of " + points_.file.string();
   }
 
   /// Keeps the listed rows with their centres and radii.
@@ -263,11 +269,11 @@ class Loader {
       const bool exists = v >= 0 && v < static_cast<double>(request_.materials) && v == std::floor(v);
       points_.materials[i] = exists ? static_cast<std::uint32_t>(v) : 0;
       if (!exists && ++bad <= scene::kMaxReported)
-        faults_.error("", "row " + std::to_string(rows[i] + 1) + " has material " + scene::number_text(v) +
-                              "; the scene has " + std::to_string(request_.materials) + ", counted from 0");
+        faults_.error(".file", row_name(rows[i]) + " has material " + scene::number_text(v) + "; the scene has " +
+                                   std::to_string(request_.materials) + ", counted from 0");
     });
     if (bad > scene::kMaxReported)
-      faults_.error("", "and " + std::to_string(bad - scene::kMaxReported) + " more (" + std::to_string(bad) + " in all)");
+      faults_.error(".file", "and " + std::to_string(bad - scene::kMaxReported) + " more (" + std::to_string(bad) + " in all)");
   }
 
   const LoadRequest& request_;

@@ -173,8 +173,7 @@ void check_points(const Points& points, const std::string& key, const Scene& sce
       (!points.colors.empty() && points.colors.size() != points.centers.size())) {
     diagnostics.error(key, "has " + std::to_string(points.centers.size()) + " centres, " +
                                std::to_string(points.radii.size()) + " radii and " +
-                               std::to_string(points.materials.size()) + " materials and " +
-                               std::to_string(points.colors.size()) + " colours");
+                               std::to_string(points.materials.size()) + " materials");
     return;
   }
   if (points.materials.empty())
