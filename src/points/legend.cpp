@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/legend.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+
+#include "base/file_name.h"
+#include "base/text.h"
+#include "points/ticks.h"
+
+namespace orrery::points {
+namespace {
+
+// Lengths in px.
+constexpr double kMargin = 12, kFont = 14, kTitleHeight = 28, kBarWidth = 24, kBarHeight = 240, kTickLength = 6,
+                 kGap = 6, kPatch = 16, kPatchPitch = 24;
+/// Width of a character of a sans-serif font, in font sizes; SVG cannot ask for the true width.
+constexpr double kCharacterWidth = 0.62;
+constexpr std::size_t kMaxTextBytes = 120;
+
+/// Length of the valid UTF-8 character at a position, of characters that XML allows; 0 if there is none.
+std::size_t character_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+  const unsigned lead = byte(at);
+  if (lead < 0x80) return lead >= 0x20 && lead != 0x7F ? 1 : 0;
+  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || at + length > text.size()) return 0;
+  unsigned code = lead & (0x7Fu >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xC0u) != 0x80u) return 0;
+    code = code << 6 | (byte(at + i) & 0x3Fu);
+  }
+  const bool is_overlong = code < (length == 4 ? 0x10000u : length == 3 ? 0x800u : 0x80u);
+  const bool is_forbidden = code < 0xA0 || (code >= 0xD800 && code < 0xE000) || code == 0xFFFE || code == 0xFFFF;
+  return is_overlong || is_forbidden || code > 0x10FFFF ? 0 : length;
+}
+
+/// A text as XML, and its estimated width.
+struct Label {
+  std::string xml;
+  double width = 0;
+};
+
+Label label_of(const std::string& text) {
+  Label out;
+  const std::string_view prefix = base::utf8_prefix(text, kMaxTextBytes);
+  const auto add = [&](std::string_view xml) {
+    out.xml += xml;
+    out.width += kCharacterWidth * kFont;
+  };
+  for (std::size_t i = 0; i < prefix.size();) {
+    const std::size_t length = character_length(prefix, i);
+    const std::string_view character = prefix.substr(i, std::max<std::size_t>(length, 1));
+    if (length == 0) {
+      add("?");
+    } else if (character == "<") {
+      add("&lt;");
+    } else if (character == ">") {
+      add("&gt;");
+    } else if (character == "&") {
+      add("&amp;");
+    } else {
+      add(character);
+    }
+    i += character.size();
+  }
+  if (prefix.size() < text.size()) add("…");
+  return out;
+}
+
+/// Formats a length with two decimals, independent of the locale.
+std::string px(double length) {
+  char text[64];
+  const auto [end, status] = std::to_chars(text, text + sizeof text, length, std::chars_format::fixed, 2);
+  return {text, status == std::errc() ? end : text};
+}
+
+std::string hex(const Srgb8& color) {
+  std::string out;
+  base::append(out, "#%02x%02x%02x", static_cast<unsigned>(color[0]), static_cast<unsigned>(color[1]),
+               static_cast<unsigned>(color[2]));
+  return out;
+}
+
+/// The body of the image, drawn from the top.
+class Drawing {
+ public:
+  void add_title(const std::string& title) {
+    if (title.empty()) return;
+    add_text(kMargin, y_ + kFont, title, " font-weight=\"bold\"");
+    y_ += kTitleHeight;
+  }
+
+  void add_bar(const Legend& legend) {
+    body_ += "<defs><linearGradient id=\"bar\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">\n";
+    const double count = static_cast<double>(legend.bar.size());
+    for (std::size_t i = 0; i < legend.bar.size(); ++i) {
+      const double offset = count > 1 ? static_cast<double>(i) / (count - 1) : 0;
+      body_ += "<stop offset=\"" + px(100 * offset) + "%\" stop-color=\"" + hex(legend.bar[i]) + "\"/>\n";
+    }
+    body_ += "</linearGradient></defs>\n";
+    y_ += kFont / 2;  // half of the label of a tick at the end
+    add_rectangle(kMargin, y_, kBarWidth, kBarHeight, "url(#bar)");
+    for (const Tick& tick : nice_ticks(legend.first, legend.last)) {
+      const double range = legend.last - legend.first;
+      const double share = range != 0 ? (tick.value - legend.first) / range : 0.5;
+      const double y = y_ + kBarHeight * (1 - std::clamp(share, 0.0, 1.0)), x = kMargin + kBarWidth;
+      body_ += "<path d=\"M" + px(x) + ' ' + px(y) + "h" + px(kTickLength) + "\" stroke=\"#000000\"/>\n";
+      add_text(x + kTickLength + kGap, y + 0.35 * kFont, tick.label);
+    }
+    y_ += kBarHeight + kFont / 2 + kMargin;
+  }
+
+  void add_patch(const Legend::Patch& patch) {
+    add_rectangle(kMargin, y_, kPatch, kPatch, hex(patch.color));
+    add_text(kMargin + kPatch + kGap, y_ + kPatch / 2 + 0.35 * kFont, patch.label);
+    y_ += kPatchPitch;
+  }
+
+  std::string svg() const {
+    const std::string width = px(std::ceil(width_ + kMargin)), height = px(std::ceil(y_));
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
+           "\" viewBox=\"0 0 " + width + ' ' + height + "\" font-family=\"sans-serif\" font-size=\"" + px(kFont) +
+           "\">\n" + "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n" + body_ + "</svg>\n";
+  }
+
+ private:
+  void add_text(double x, double y, const std::string& text, const std::string& style = {}) {
+    const Label label = label_of(text);
+    body_ += "<text x=\"" + px(x) + "\" y=\"" + px(y) + '"' + style + '>' + label.xml + "</text>\n";
+    width_ = std::max(width_, x + label.width);
+  }
+
+  void add_rectangle(double x, double y, double width, double height, const std::string& fill) {
+    body_ += "<rect x=\"" + px(x) + "\" y=\"" + px(y) + "\" width=\"" + px(width) + "\" height=\"" + px(height) +
+             "\" fill=\"" + fill + "\" stroke=\"#000000\" stroke-width=\"0.5\"/>\n";
+    width_ = std::max(width_, x + width);
+  }
+
+  std::string body_;
+  double y_ = kMargin, width_ = 0;
+};
+
+}  // namespace
+
+std::string legend_svg(const Legend& legend) {
+  Drawing drawing;
+  drawing.add_title(legend.title);
+  if (!legend.bar.empty()) drawing.add_bar(legend);
+  for (const Legend::Patch& patch : legend.patches) drawing.add_patch(patch);
+  if (legend.nan_color) drawing.add_patch({"no value", *legend.nan_color});
+  return drawing.svg();
+}
+
+std::vector<Srgb8> bar_pixels(const std::vector<Srgb8>& bar, int width_px, int height_px) {
+  const auto width = static_cast<std::size_t>(width_px), height = static_cast<std::size_t>(height_px);
+  std::vector<Srgb8> out(width * height);
+  for (std::size_t row = 0; row < height; ++row) {
+    // The centres of the first and the last row have the colours of the ends.
+    const double share = height > 1 ? static_cast<double>(height - 1 - row) / static_cast<double>(height - 1) : 0.5;
+    const double at = share * static_cast<double>(bar.size() - 1);
+    const auto i = static_cast<std::size_t>(at);
+    const Srgb8 &below = bar[i], &above = bar[std::min(i + 1, bar.size() - 1)];
+    Srgb8 color{};
+    for (std::size_t c = 0; c < 3; ++c)
+      color[c] =
+          static_cast<std::uint8_t>(std::lround(below[c] + (at - static_cast<double>(i)) * (above[c] - below[c])));
+    std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(row * width), width, color);
+  }
+  return out;
+}
+
+}  // namespace orrery::points

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "points/elements.h"
+
+namespace orrery::points {
+
+/// A legend of colours: a bar, or patches with labels. All colours are display values, as they are in the image: the
+/// caller passes them through the image's display transform.
+struct Legend {
+  struct Patch {
+    std::string label;
+    Srgb8 color{};
+  };
+
+  std::string title;           ///< UTF-8, one line: the name of the column
+  std::vector<Srgb8> bar;      ///< colours from `first` to `last` at equal distances; empty: patches only
+  double first = 0, last = 1;  ///< finite
+  std::vector<Patch> patches;
+  std::optional<Srgb8> nan_color;  ///< shown as a patch "no value"
+};
+
+/// Returns the legend as an SVG image: a vertical bar with `last` at the top and ticks at round numbers, patches below.
+/// Bytes that XML does not allow are replaced by question marks, long texts are truncated.
+std::string legend_svg(const Legend& legend);
+
+/// Returns the pixels of a bar of a size, row by row from the top, where the last colour is.
+///
+/// Domain     at least one colour; a size of at least 1 x 1
+std::vector<Srgb8> bar_pixels(const std::vector<Srgb8>& bar, int width_px, int height_px);
+
+}  // namespace orrery::points
