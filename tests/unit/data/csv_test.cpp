@@ -49,6 +49,7 @@ TEST_F(DataCsv, SeparatorsAreDetected) {
     EXPECT_EQ(numbers(read(text), "z"), std::vector<double>{3}) << text;
   EXPECT_EQ(columns("x;y;z;n\n1;2;3;a, b\n"), "x:float64 y:float64 z:float64 n:text");
   EXPECT_EQ(columns("x\ty\tz\tn\n1\t\t3\ta; b, c\n"), "x:float64 y:float64 z:float64 n:text") << "an empty value";
+  EXPECT_EQ(columns("x;y;z;a,b\n1;2;3;4,5\n"), "x:float64 y:float64 z:float64 a,b:text");
 }
 
 TEST_F(DataCsv, TheHeaderMayBeAComment) {
@@ -70,6 +71,10 @@ TEST_F(DataCsv, WithoutAHeaderTheFirstThreeColumnsArePositions) {
       faults("Ar 1 2 3\nAr 4 5 6\n"),
       "1: there are neither columns x, y and z of numbers nor ra, dec and distance (or parallax); the columns are: "
       "column1, column2, column3, column4; add a header line with the names of the columns\n");
+}
+
+TEST_F(DataCsv, AByteOrderMarkIsSkipped) {
+  EXPECT_EQ(numbers(read(std::string("\xEF\xBB\xBF") + "1,2,3\n4,5,6\n"), "column1"), (std::vector<double>{1, 4}));
 }
 
 TEST_F(DataCsv, RolesByCustomaryNames) {
@@ -140,8 +145,9 @@ TEST_F(DataCsv, QuotedColumnsAreTextsUnlessAllAreQuoted) {
 }
 
 TEST_F(DataCsv, LargeIntegersAreInt64) {
-  const auto file = open("x,y,z,id,n\n1,2,3,4295806720,9007199254740992\n1,2,3,-9223372036854775807,1\n");
-  EXPECT_EQ(support::columns_text(file->describe(0)), "x:float64 y:float64 z:float64 id:int64 n:float64");
+  const auto file =
+      open("x,y,z,id,n,m\n1,2,3,4295806720,9007199254740992,9007199254740993\n1,2,3,-9223372036854775807,1,2\n");
+  EXPECT_EQ(support::columns_text(file->describe(0)), "x:float64 y:float64 z:float64 id:int64 n:float64 m:int64");
   EXPECT_EQ(std::get<std::vector<std::int64_t>>(file->read(0, {"id"}).columns[0].values),
             (std::vector<std::int64_t>{4295806720, -9223372036854775807}));
 }

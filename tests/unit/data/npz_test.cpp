@@ -141,12 +141,35 @@ TEST_F(DataNpz, LyingShapesAreRefused) {
       << "a declared width makes no columns";
 }
 
+TEST_F(DataNpz, ItemsWithoutBytesAreRefused) {
+  const auto file = open({{"pos.npy", npy_bytes("'<f8'", false, "(1000000000000, 3)", "")},
+                          {"name.npy", npy_bytes("'|S0'", false, "(1000000000000,)", "")}});
+  EXPECT_THROW(file->read(0, {"name"}), base::Error);
+}
+
+TEST_F(DataNpz, AFileThatBecomesShorterIsAnIoError) {
+  const auto file =
+      open({{"pos.npy", kPositions}, {"a.npy", npy_bytes("'|u1'", false, "(3000000,)", std::string(3000000, 'a'))}},
+           "store");
+  std::filesystem::resize_file(folder_ / "a.npz", 100);
+  try {
+    file->read(0, {"x"});
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kIo);
+  }
+}
+
 TEST_F(DataNpz, DecompressedDataAreLimited) {
   const std::string zeros = npy_bytes("'<f8'", false, "(100000, 3)", std::string(2400000, '\0'));
   support::write_bytes(folder_ / "a.npz", zip({{"pos.npy", zeros}, {"v.npy", zeros}}, "deflate"));
   OpenOptions options;
   options.decompressed_limit = 5000000;
   EXPECT_EQ(support::read_faults(folder_ / "a.npz", options), "");
+  options.decompressed_limit = 2400000;
+  EXPECT_NE(support::read_faults(folder_ / "a.npz", options).find("array `pos` of the shape (100000, 3) exceeds"),
+            std::string::npos)
+      << "with its header";
   options.decompressed_limit = 4800000;
   EXPECT_NE(support::read_faults(folder_ / "a.npz", options).find("array `v` of the shape (100000, 3) exceeds"),
             std::string::npos);

@@ -254,6 +254,10 @@ TEST_F(DataVtk, LyingBinaryHeadersAreRefusedBeforeAllocation) {
   std::string damaged = good.data;
   damaged[6] = static_cast<char>(damaged[6] ^ 0x55);
   EXPECT_EQ(faults(with(zlib, good.header + damaged)), "array `Points`: the compressed data are damaged\n");
+  const Encoded shorter = encoded<std::uint32_t>(data.substr(0, 22), true, false);
+  std::string claims_more = shorter.header;
+  claims_more.replace(4, 8, number_bytes(12) + number_bytes(12));  // blocks of 12 bytes, not of 12 and 10
+  EXPECT_EQ(faults(with(zlib, claims_more + shorter.data)), "array `Points`: the compressed data are damaged\n");
   EXPECT_EQ(faults(with(zlib, good.header + good.data.substr(0, 20))), "array `Points`: the data end too early\n");
   const auto header = [](std::uint64_t blocks, std::uint64_t size, std::uint64_t last, std::uint64_t packed) {
     return number_bytes(blocks) + number_bytes(size) + number_bytes(last) + number_bytes(packed);
@@ -279,7 +283,8 @@ TEST_F(DataVtk, DecompressedDataAreLimited) {
 }
 
 TEST_F(DataVtk, MalformedBase64IsRefused) {
-  for (const char* wrong : {"GAAA", "GAAAA!==", "G===", "GA=A", "GAAAAAAA"})
+  const std::string good = base64(number_bytes(24) + std::string(24, '\0'));
+  for (const std::string& wrong : {std::string("GAAA"), "GA!A" + good, "G===" + good, "====" + good, "GA=A" + good})
     EXPECT_NE(faults(root("", poly(piece(2, std::string("<DataArray type=\"Float32\" NumberOfComponents=\"3\" "
                                                         "format=\"binary\">") +
                                                 wrong + "</DataArray>")))),

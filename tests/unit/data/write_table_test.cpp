@@ -109,6 +109,8 @@ TEST_F(DataWriteTable, NpyKeepsValuesTypesAndTexts) {
 TEST_F(DataWriteTable, PlyKeepsValuesAndTypesButNoTexts) {
   Table table = extremes();
   table.columns.push_back({"unsigned", std::vector<std::int64_t>{0, 4294967295, 1, 2}});
+  table.columns.push_back({"beyond", std::vector<std::int64_t>{0, 2147483648, 1, 2}});
+  table.columns.push_back({"below", std::vector<std::int64_t>{-2147483649, 4294967296, 1, 2}});
   table.columns.push_back({"exact", std::vector<std::int64_t>{-9007199254740992, 9007199254740992, 1, 2}});
   const Table read = round_trip(table, "a.ply");
   EXPECT_EQ(left_out_, std::vector<std::string>{"element"});
