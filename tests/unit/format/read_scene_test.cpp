@@ -357,8 +357,14 @@ TEST(FormatReadScene, ErrorsOfAPointsFileAreReportedWithItsKey) {
       "[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"bad.ply\"\nmaterial = \"a\"\n"
       "[[points]]\nfile = \"none.ply\"\nmaterial = \"a\"\n";
   EXPECT_EQ(files.diagnostics(scene),
-            "bad.ply:9: error: vertex 0 has a non-finite value\n"
-            "scene.toml:4:8: error: points[0].file: cannot use bad.ply\n"
+            "scene.toml:4:8: error: points[0].file: row 1 of bad.ply has center [1, 2, nan] and radius 0.5\n"
+            "    file = \"bad.ply\"\n"
+            "           ^~~~~~~~~\n"
+            "scene.toml:4:8: error: points[0].file: row 2 of bad.ply has center [4, 5, 6] and radius 0\n"
+            "    file = \"bad.ply\"\n"
+            "           ^~~~~~~~~\n"
+            "scene.toml:4:8: error: points[0].file: 2 of 2 rows have coordinates that are not finite or no radius; "
+            "`skip_bad = true`, or --skip-bad, leaves them out\n"
             "    file = \"bad.ply\"\n"
             "           ^~~~~~~~~\n"
             "scene.toml:7:8: error: points[1].file: cannot open none.ply: No such file or directory\n"
@@ -420,14 +426,13 @@ TEST(FormatReadScene, FurtherChecksAreReported) {
 
 TEST(FormatReadScene, RadiiOfPointsAreChecked) {
   SceneFiles files;
-  files.add("zero.ply",
+  files.add("tiny.ply",
             "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
-            "property float radius\nend_header\n1 2 3 0.5\n4 5 6 0\n");
+            "property double radius\nend_header\n1 2 3 0.5\n4 5 6 1e-40\n");
   const std::string told =
-      files.diagnostics("[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"zero.ply\"\nmaterial = \"a\"\n");
+      files.diagnostics("[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"tiny.ply\"\nmaterial = \"a\"\n");
   EXPECT_EQ(told,
-            "scene.toml:3:1: error: points[0][1].radius: radius is 0; must be in 1e-30..1e+18, or negative for "
-            "an inward normal\n"
+            "scene.toml:3:1: error: points[0][1].radius: radius is 1e-40; its magnitude must be in 1e-30..1e+18\n"
             "    [[points]]\n    ^~~~~~~~~~\n");
 }
 
