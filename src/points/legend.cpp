@@ -17,7 +17,7 @@ namespace {
 // Lengths in px.
 constexpr double kMargin = 12, kFont = 14, kTitleHeight = 28, kBarWidth = 24, kBarHeight = 240, kTickLength = 6,
                  kGap = 6, kPatch = 16, kPatchPitch = 24;
-/// Width of a character of a sans-serif font, in font sizes; SVG cannot ask for the true width.
+/// Width of a character of a sans-serif font, in font sizes; the true width is unknown.
 constexpr double kCharacterWidth = 0.62;
 constexpr std::size_t kMaxTextBytes = 120;
 
