@@ -42,6 +42,7 @@ constexpr const char* type_name(ColumnType type) {
 struct ColumnInfo {
   std::string name;
   ColumnType type = ColumnType::kFloat64;
+  bool is_derived = false;  ///< not in the file, but computed from other columns by room `points`
 };
 
 struct Column {

@@ -12,6 +12,7 @@
 #include "data/data_file.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
+#include "points/derived.h"
 #include "points/load_points.h"
 #include "points/spacing.h"
 #include "scene/limits.h"
@@ -72,6 +73,7 @@ class PlotMaker {
     const int first = options_.frames.empty() ? 1 : options_.frames.front();
     file_ = data::open(file_of(first), open_options);
     info_ = file_->describe(0);
+    points::add_derived_columns(info_);
     chose(data::format_name(file_->format()), std::to_string(info_.rows) + " particles");
   }
 

@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "data/data_file.h"
 #include "points/copies.h"
+#include "points/derived.h"
 #include "points/point_colors.h"
 #include "points/point_radii.h"
 #include "points/rows.h"
@@ -44,6 +45,7 @@ class Loader {
     file_ = data::open(request_.file, options);
     if (const std::optional<int> frame = choose_frame()) {
       info_ = file_->describe(*frame);
+      add_derived_columns(info_);
       plan();
       if (!faults_.has_errors()) load(*frame);
     }
@@ -72,6 +74,11 @@ class Loader {
   }
 
   void need(const std::string& column) {
+    if (const std::vector<std::string> sources = sources_of(info_, column); !sources.empty()) {
+      speed_sources_ = sources;
+      for (const std::string& source : sources) need(source);
+      return;
+    }
     if (!column.empty() && std::find(columns_.begin(), columns_.end(), column) == columns_.end())
       columns_.push_back(column);
   }
@@ -93,7 +100,7 @@ class Loader {
       for (const data::ColumnInfo& column : info_.columns)
         if (column.name == "material") need(material_ = column.name);
     for (const data::ColumnInfo& column : info_.columns)
-      if (std::find(columns_.begin(), columns_.end(), column.name) == columns_.end())
+      if (!column.is_derived && std::find(columns_.begin(), columns_.end(), column.name) == columns_.end())
         points_.unused.push_back(column.name);
     if (info_.rows > kMaxRows)
       faults_.error(".file", "has " + std::to_string(info_.rows) + " rows; the maximum is " + std::to_string(kMaxRows));
@@ -132,7 +139,8 @@ class Loader {
 
   void load(int frame) {
     require_memory();
-    const data::Table table = file_->read(frame, columns_);
+    data::Table table = file_->read(frame, columns_);
+    if (!speed_sources_.empty()) compute_speed(speed_sources_, table);
     Rows rows = chosen_rows(table);
     std::vector<double> radii = radii_of(table, rows, radius_, points_.radius, faults_);
     std::vector<Vec3d> centers = centers_of(table, rows);
@@ -286,6 +294,7 @@ class Loader {
   ColorSource color_;
   Selection selection_;
   std::vector<Copy> copies_;
+  std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed
   std::string material_;  ///< column of material indices; empty: none
 };
 

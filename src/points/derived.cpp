@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/derived.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "points/rows.h"
+
+namespace orrery::points {
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// The file's names of the three components of the velocity; empty if it has none.
+std::vector<std::string> velocity_of(const data::FrameInfo& info) {
+  const auto find = [&](const std::string& name) -> std::string {
+    for (const data::ColumnInfo& c : info.columns)
+      if (c.type != data::ColumnType::kText && lower(c.name) == name) return c.name;
+    return {};
+  };
+  const std::vector<std::vector<std::string>> candidates = {{"vx", "vy", "vz"},
+                                                            {"velocity[1]", "velocity[2]", "velocity[3]"},
+                                                            {"velocities[1]", "velocities[2]", "velocities[3]"},
+                                                            {"vel[1]", "vel[2]", "vel[3]"},
+                                                            {"velo[1]", "velo[2]", "velo[3]"}};
+  for (const std::vector<std::string>& names : candidates) {
+    std::vector<std::string> found;
+    for (const std::string& name : names)
+      if (std::string own = find(name); !own.empty()) found.push_back(std::move(own));
+    if (found.size() == names.size()) return found;
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_derived_columns(data::FrameInfo& info) {
+  const bool has_speed =
+      std::any_of(info.columns.begin(), info.columns.end(), [](const auto& c) { return c.name == kSpeed; });
+  if (!has_speed && !velocity_of(info).empty()) info.columns.push_back({kSpeed, data::ColumnType::kFloat64, true});
+}
+
+std::vector<std::string> sources_of(const data::FrameInfo& info, const std::string& column) {
+  const bool is_derived = std::any_of(info.columns.begin(), info.columns.end(),
+                                      [&](const auto& c) { return c.name == column && c.is_derived; });
+  return is_derived ? velocity_of(info) : std::vector<std::string>();
+}
+
+void compute_speed(const std::vector<std::string>& sources, data::Table& table) {
+  std::vector<double> speed(table.rows);
+  for (const std::string& name : sources)
+    for_each_number(*table.find(name), Rows(table.rows), [&](std::size_t i, double v) { speed[i] += v * v; });
+  for (double& s : speed) s = std::sqrt(s);
+  table.columns.push_back({kSpeed, std::move(speed)});
+}
+
+}  // namespace orrery::points
