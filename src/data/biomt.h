@@ -12,6 +12,8 @@ namespace orrery::data {
 
 /// Reads the biological assemblies in REMARK 350 of a PDB file. Values are separated by blanks: the serial numbers of
 /// transforms beyond 999 overflow their columns and shift those to the right.
+///
+/// Reference  pdb-format
 class BiomtReader {
  public:
   /// Takes the text of a line after "REMARK 350".

@@ -13,6 +13,8 @@ namespace orrery::data {
 
 /// Builds the biological assemblies of an mmCIF file from the tables _pdbx_struct_oper_list and
 /// _pdbx_struct_assembly_gen, which may come in any order.
+///
+/// Reference  mmcif
 class CifAssemblies {
  public:
   void add_operator(const std::string& id, const Transform& transform) { operators_[id] = transform; }

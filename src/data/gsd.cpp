@@ -189,9 +189,11 @@ Table GsdReader::read(int index, const std::vector<std::string>& columns) {
   table.rows = static_cast<std::size_t>(rows_of(frame));
   const auto from = [&](const Source& source, const std::string& name) {
     for (std::uint32_t i = 0; i < source.components; ++i)
-      if (name == source.columns[i])
-        if (const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components))
-          table.columns.push_back({name, file_.component(*chunk, i)});
+      if (name == source.columns[i]) {
+        const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components);
+        // Only a frame without particles has no positions.
+        table.columns.push_back({name, chunk != nullptr ? file_.component(*chunk, i) : Values(std::vector<float>())});
+      }
   };
   for (const std::string& name : columns) {
     if (name == "type") {

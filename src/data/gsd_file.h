@@ -25,7 +25,7 @@ struct GsdChunk {
 
 /// The file layer of GSD, versions 1 and 2: finds chunks by frame and name.
 ///
-/// Reference  GSD file layer
+/// Reference  gsd-format
 class GsdFile {
  public:
   /// Errors     base::Error(kBadData): damaged header, index or list of names; chunks beyond the end of the file

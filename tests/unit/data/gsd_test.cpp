@@ -185,7 +185,10 @@ TEST_F(DataGsd, FlatBoxIsNotPeriodicInZ) {
 TEST_F(DataGsd, FrameWithoutParticlesHasNoRows) {
   GsdWriter gsd;
   gsd.add<std::uint64_t>(0, "configuration/step", kUint64, 1, {1});
-  EXPECT_EQ(opened(gsd.file(2))->read(0, {"x", "diameter", "type"}).rows, 0U);
+  const Table table = opened(gsd.file(2))->read(0, {"x", "y", "z", "diameter", "type"});
+  EXPECT_EQ(table.rows, 0U);
+  ASSERT_EQ(table.columns.size(), 5U);
+  for (const Column& column : table.columns) EXPECT_EQ(column.size(), 0U) << column.name;
 }
 
 TEST_F(DataGsd, DamagedFilesAreRefused) {
