@@ -16,6 +16,7 @@
 #include "cli/render_options.h"
 #include "job/memory.h"
 #include "plot/plot.h"
+#include "plot/write_legend.h"
 
 namespace orrery::cli {
 namespace {
@@ -27,7 +28,7 @@ struct PlotArguments {
   RenderOptions render;
   plot::PlotOptions plot;
   std::string frame, frames, radius, range, slice, replicate, style = "studio", component;
-  std::filesystem::path save_scene;
+  std::filesystem::path save_scene, legend;
   const Option* map = nullptr;
 };
 
@@ -100,8 +101,21 @@ void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) 
   if (arguments.render.quiet) return;
   std::string text;
   for (const std::string& choice : made.choices) text += "plot: " + choice + "\n";
-  if (!arguments.render.batch.job.sampling.noise) return print_message(text);
   print_message(text);
+}
+
+/// Checks the files that plot itself writes, before anything is read.
+void check_own_outputs(const PlotArguments& arguments) {
+  base::FileSet files;
+  files.add_input(arguments.plot.file, "data file");
+  const auto add = [&](const std::filesystem::path& file, const char* option) {
+    if (file.empty()) return;
+    files.add_output(file, option);
+    base::check_creatable(file);
+  };
+  add(arguments.save_scene, "--save-scene");
+  add(arguments.legend, "--legend");
+  for (const job::ImageFile& image : arguments.render.batch.job.outputs.images) files.add_output(image.path, "-o");
 }
 
 int run_plot(PlotArguments& arguments) {
@@ -122,21 +136,22 @@ int run_plot(PlotArguments& arguments) {
   read_points(arguments, plot.points);
   read_slice(arguments.slice, plot);
   const bool saves = !arguments.save_scene.empty();
-  if (saves) {
-    base::FileSet files;
-    files.add_input(plot.file, "data file");
-    files.add_output(arguments.save_scene, "--save-scene");
-    base::check_creatable(arguments.save_scene);
-  }
+  render.picture.finish(render.batch.job);
+  check_own_outputs(arguments);
   const plot::PlotScene made =
       plot::make_plot(plot, saves ? arguments.save_scene.parent_path() : plot.file.parent_path());
   render.batch.frames = made.frames;
   job::Job& job = render.batch.job;
-  const bool has_samples =
-      std::any_of(overrides.begin(), overrides.end(), [](const auto& o) { return o.text.starts_with("render.samples="); });
+  const bool has_samples = std::any_of(overrides.begin(), overrides.end(),
+                                       [](const auto& o) { return o.text.starts_with("render.samples="); });
   if (!job.sampling.noise && !job.sampling.seconds && !has_samples && plot.style != plot::Style::kFlat)
     job.sampling.noise = kNoise;
   print_choices(made, arguments);
+  if (!arguments.legend.empty()) {
+    display::Settings display = job.outputs.display;
+    if (display.view.empty()) display.view = "Un-tone-mapped";
+    plot::write_legend(arguments.legend, made.points, display);
+  }
   if (saves) {
     base::write_text_file(arguments.save_scene, made.text);
     render.batch.scenes = {arguments.save_scene};
@@ -153,7 +168,8 @@ void add_data_options(Command& command, const std::shared_ptr<PlotArguments>& ar
   command.add_option("--frame", arguments->frame, "Frame of the file, from 1; default: 1")
       ->check(whole_number(1, 2'000'000'000))
       ->type_name("N");
-  command.add_option("--frames", arguments->frames, "Frames to render: all, or e.g. 1-48; name outputs like pour.####.png")
+  command
+      .add_option("--frames", arguments->frames, "Frames to render: all, or e.g. 1-48; name outputs like pour.####.png")
       ->type_name("RANGE");
   command.add_option("--select", points.select, "Plot only rows that match, e.g. 'type == 2 && z > 0'")
       ->type_name("CONDITION");
@@ -162,7 +178,8 @@ void add_data_options(Command& command, const std::shared_ptr<PlotArguments>& ar
   command.add_option("--component", arguments->component, "HDF5: particle type, N of PartTypeN")
       ->check(whole_number(0, 1000))
       ->type_name("N");
-  command.add_option("--assembly", points.assembly, "PDB, mmCIF: plot a biological assembly, e.g. 1")->type_name("NAME");
+  command.add_option("--assembly", points.assembly, "PDB, mmCIF: plot a biological assembly, e.g. 1")
+      ->type_name("NAME");
   command.add_option("--replicate", arguments->replicate, "Copies of the periodic box along its edges, e.g. 2,2,1")
       ->type_name("A,B,C");
   command.add_flag("--unwrap", points.unwrap, "Undo periodic wrapping by the file's image counts");
@@ -174,7 +191,9 @@ void add_look_options(Command& command, const std::shared_ptr<PlotArguments>& ar
   scene::Points& points = arguments->plot.points;
   command.add_option("--radius", arguments->radius, "Radius: a number, or a column of radii; default: from the file")
       ->type_name("X|COLUMN");
-  command.add_option("--radius-scale", points.radius.scale, "Factor for radii by column or element, e.g. 0.5 for diameters")
+  command
+      .add_option("--radius-scale", points.radius.scale,
+                  "Factor for radii by column or element, e.g. 0.5 for diameters")
       ->check(real_number(1e-30, 1e30))
       ->type_name("X");
   command.add_option("--element-radii", points.radius.element, "Radii of the chemical elements: vdw, covalent or ball")
@@ -206,8 +225,12 @@ void add_look_options(Command& command, const std::shared_ptr<PlotArguments>& ar
 void add_plot(Command& program, Action& action) {
   const auto arguments = std::make_shared<PlotArguments>();
   Command& command = *program.add_subcommand("plot", "Render a particle data file");
-  command.add_option("FILE", arguments->plot.file, "Data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, LAS, GSD, HDF5, VTK")
+  command
+      .add_option("FILE", arguments->plot.file,
+                  "Data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, LAS, GSD, HDF5, VTK")
       ->required()
+      ->type_name("FILE");
+  command.add_option("--legend", arguments->legend, "Write a legend of the colours: .svg, or .png for the bar alone")
       ->type_name("FILE");
   command.add_option("--save-scene", arguments->save_scene, "Also write the scene file")->type_name("FILE");
   add_data_options(command, arguments);

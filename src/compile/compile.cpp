@@ -170,9 +170,9 @@ void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
       const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
       const bool inside_out = points.radii[i] < 0;
       add_sphere(compiled, points.centers[i], points.radii[i],
-                 points.colors.empty()
-                     ? table.index(material, inside_out)
-                     : table.colored_index(material, inside_out, p, points.colors[i], points.palette[points.colors[i]]));
+                 points.colors.empty() ? table.index(material, inside_out)
+                                       : table.colored_index(material, inside_out, p, points.colors[i],
+                                                             points.palette[points.colors[i]]));
     }
   }
 }

@@ -64,7 +64,9 @@ using Archive = std::unique_ptr<archive, decltype(&archive_read_free)>;
 bool has_compression_signature(std::string_view head) {
   using namespace std::string_view_literals;
   return head.starts_with("\x1f\x8b"sv) || head.starts_with("\x28\xb5\x2f\xfd"sv) || head.starts_with("BZh"sv) ||
-         head.starts_with("\xfd" "7zXZ\0"sv);
+         head.starts_with(
+             "\xfd"
+             "7zXZ\0"sv);
 }
 
 std::vector<char> decompressed(const std::filesystem::path& file, std::uint64_t limit) {

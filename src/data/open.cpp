@@ -26,7 +26,8 @@ std::string extension_of(const std::filesystem::path& file) {
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
   std::string remedy =
-      "supported are LAMMPS dump and data, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5 (Gadget, SWIFT), VTP and "
+      "supported are LAMMPS dump and data, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5 (Gadget, SWIFT), VTP "
+      "and "
       "VTU";
   if (signature.head.empty()) {
     text = "the file is empty";

@@ -100,7 +100,7 @@ struct Transform {
   Vec3d translation{0, 0, 0};
 };
 struct AssemblyPart {
-  std::vector<std::string> chains;     ///< empty: all
+  std::vector<std::string> chains;  ///< empty: all
   std::vector<Transform> transforms;
 };
 

@@ -116,15 +116,17 @@ std::optional<Value> read_interval(Reading& reading, const toml::node& node, con
                                    const scene::Range& range) {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 2) {
-    reading.error(place_of(node), name + " must be two numbers like [0, 1], not " +
-                                      (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+    reading.error(place_of(node),
+                  name + " must be two numbers like [0, 1], not " +
+                      (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
   const auto low = read_number(reading, *array->get(0), name + "[0]", range);
   const auto high = read_number(reading, *array->get(1), name + "[1]", range);
   if (!low || !high) return {};
   if (!(*low < *high)) {
-    reading.error(place_of(node), name + " is " + scene::interval_text({*low, *high}) + "; the first number must be less than the second");
+    reading.error(place_of(node), name + " is " + scene::interval_text({*low, *high}) +
+                                      "; the first number must be less than the second");
     return {};
   }
   return scene::Interval{*low, *high};

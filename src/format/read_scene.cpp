@@ -118,8 +118,8 @@ void add_problem(Reading& reading, const toml::table& root, const std::string& f
   reading.add(diagnostic.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, diagnostic.kind);
 }
 
-/// Reads the data file of a points table. Errors in the file are reported at the location in the scene that names it, and
-/// at those in the file.
+/// Reads the data file of a points table. Errors in the file are reported at the location in the scene that names it,
+/// and at those in the file.
 void read_points_file(Reading& reading, const toml::table& root, const std::string& scene_file, const Place& place,
                       const points::LoadRequest& request, scene::Points& points) {
   const std::string& full_name = request.key;

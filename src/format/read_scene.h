@@ -39,8 +39,8 @@ using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene
 
 struct ReadOptions {
   std::shared_ptr<const std::string> text = {};  ///< of the scene; null: read the file
-  int frame = kFirstFrame;  ///< selects the values of animated keys, and the files and frames of data
-  SceneCheck also = {};     ///< called if [color] has no errors
+  int frame = kFirstFrame;         ///< selects the values of animated keys, and the files and frames of data
+  SceneCheck also = {};            ///< called if [color] has no errors
   std::uint64_t memory_limit = 0;  ///< bytes that the spheres of a data file may take while they are read; 0: no limit
 };
 

@@ -42,6 +42,15 @@ std::array<int, 2> rational(double rate) {
   return {static_cast<int>(std::lround(rate * 1000)), 1000};
 }
 
+/// The colour map of a points table as in a scene file, with the range that was used; empty: none.
+std::string color_text(const scene::Points& points) {
+  if (points.color.column.empty()) return {};
+  std::string out =
+      "column = " + scene::string_text(points.color.column) + ", map = " + scene::string_text(points.color.map);
+  if (points.color_range) out += ", range = " + scene::interval_text(*points.color_range);
+  return out;
+}
+
 /// Samples per pixel; with adaptive sampling, their mean.
 int mean_samples(const compile::CompiledScene& compiled, const JobReport& report) {
   if (!report.render.noise) return compiled.samples;
@@ -69,6 +78,9 @@ image::Header picture_header(const format::ReadResult& read, const compile::Comp
                        {"orrery/samples", mean_samples(compiled, report)},
                        {"orrery/maxDepth", static_cast<int>(compiled.max_depth)},
                        {"orrery/seed", std::to_string(compiled.sampler.seed)}};
+  for (std::size_t i = 0; i < read.scene.points.size(); ++i)
+    if (const std::string text = color_text(read.scene.points[i]); !text.empty())
+      header.attributes.push_back({fmt::format("orrery/points[{}].color", i), text});
   if (report.render.noise) header.attributes.push_back({"orrery/noise", static_cast<float>(*report.render.noise)});
   for (const format::Setting& setting : read.settings)
     if (setting.key == "render.precision" || setting.key == "render.shading" || setting.key == "render.sampler")

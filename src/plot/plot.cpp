@@ -42,7 +42,8 @@ class PlotMaker {
     choose_radius();
     choose_color();
     const std::string up = options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up;
-    if (options_.up.empty()) chose("up " + up, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
+    if (options_.up.empty())
+      chose("up " + up, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
     const ViewAxes axes = view_axes(options_.look_from, up);
     if (options_.slice) slice(axes);
     ViewExtent extent(axes);
@@ -81,8 +82,9 @@ class PlotMaker {
     out_.frames = options_.frames;
     if (!options_.all_frames) return;
     if (is_sequence_)
-      throw base::Error(base::ErrorKind::kUsage, "--frames: `all` are the frames of one file; for a sequence of files, write "
-                                                 "a range, e.g. 1-48");
+      throw base::Error(base::ErrorKind::kUsage,
+                        "--frames: `all` are the frames of one file; for a sequence of files, write "
+                        "a range, e.g. 1-48");
     const int count = file_->frame_count();
     out_.frames.resize(static_cast<std::size_t>(count));
     std::iota(out_.frames.begin(), out_.frames.end(), 1);
@@ -185,11 +187,19 @@ class PlotMaker {
       extent.add(points);
       for (std::size_t i = 0; i < points.centers.size(); ++i)
         lowest_ = std::min(lowest_, math::dot(points.centers[i], up) - std::abs(points.radii[i]));
-      if (!points.color_range || points.centers.empty()) continue;
+      if (points.centers.empty()) continue;
+      if (out_.points.palette.empty()) {
+        out_.points.palette = points.palette;
+        out_.points.palette_rec709 = points.palette_rec709;
+        out_.points.color_names = points.color_names;
+        out_.points.colors = points.colors;
+      }
+      if (!points.color_range) continue;
       if (!range) range = points.color_range;
       range->low = std::min(range->low, points.color_range->low);
       range->high = std::max(range->high, points.color_range->high);
     }
+    out_.points.color_range = out_.points.color.range ? out_.points.color.range : range;
     if (!needs_range || !range) return;
     if (range->low < range->high) out_.points.color.range = range;
     chose("range " + number_text(range->low) + ":" + number_text(range->high),

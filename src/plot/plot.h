@@ -22,7 +22,8 @@ struct PlotOptions {
   scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
   std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: chosen
   bool has_map = false;        ///< `points.color.map` is the user's
-  std::optional<std::pair<int, double>> slice = {};  ///< axis 0, 1 or 2, and the plane's place: removes what is before it
+  std::optional<std::pair<int, double>> slice =
+      {};                         ///< axis 0, 1 or 2, and the plane's place: removes what is before it
   std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
   std::string up;                 ///< "x", "y" or "z"; empty: by the format
   Style style = Style::kStudio;
@@ -35,8 +36,8 @@ struct PlotScene {
   std::string text;                  ///< the scene file
   std::vector<std::string> choices;  ///< "radius 0.53: half the median distance to the nearest neighbour"
   std::vector<std::string> warnings;
-  std::vector<int> frames;           ///< to render; empty: one still image
-  scene::Points points;              ///< keys of the scene's points, with the range of a map; no spheres
+  std::vector<int> frames;  ///< to render; empty: one still image
+  scene::Points points;     ///< keys of the scene's points, and the colours of the first frame with spheres
 };
 
 /// Reads the data and writes a scene for it.

@@ -90,11 +90,12 @@ std::string ground_text(const PlotParts& parts) {
 std::string scene_text(const PlotParts& parts) {
   const PlotOptions& options = parts.options;
   const bool is_night = options.style == Style::kNight;
-  std::string out = "# Written by orrery plot for " + options.file.filename().string() + "\n\n[image]\nwidth = " +
-                    std::to_string(options.width) + "\nheight = " + std::to_string(options.height) +
-                    "\n\n[camera]\nprojection = \"orthographic\"\nwidth = " + number_text(parts.camera.width.value_or(1)) +
-                    "\nlook_from = " + vector_text(parts.camera.look_from) +
-                    "\nlook_at = " + vector_text(parts.camera.look_at) + "\nup = " + vector_text(parts.camera.up) + "\n";
+  std::string out =
+      "# Written by orrery plot for " + options.file.filename().string() +
+      "\n\n[image]\nwidth = " + std::to_string(options.width) + "\nheight = " + std::to_string(options.height) +
+      "\n\n[camera]\nprojection = \"orthographic\"\nwidth = " + number_text(parts.camera.width.value_or(1)) +
+      "\nlook_from = " + vector_text(parts.camera.look_from) + "\nlook_at = " + vector_text(parts.camera.look_at) +
+      "\nup = " + vector_text(parts.camera.up) + "\n";
   out += std::string("\n[background]\ntype = \"constant\"\ncolor = ") +
          (is_night ? "[0.02, 0.02, 0.025]" : "[1, 1, 1]") + "\n";
   if (options.style == Style::kFlat) out += "\n[render]\nshading = \"flat\"\n";

@@ -67,9 +67,10 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
   else
     angles = parse_angles(look_from);
   if (!angles)
-    throw base::Error(base::ErrorKind::kUsage,
-                      "--look-from: `" + look_from +
-                          "` is not a view; write iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION in degrees, e.g. 30,20");
+    throw base::Error(
+        base::ErrorKind::kUsage,
+        "--look-from: `" + look_from +
+            "` is not a view; write iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION in degrees, e.g. 30,20");
   const double azimuth = angles->first / 180 * std::numbers::pi, elevation = angles->second / 180 * std::numbers::pi;
   const Vec3d level = scene.front * std::cos(azimuth) + scene.right * std::sin(azimuth);
   ViewAxes out;

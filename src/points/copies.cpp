@@ -104,8 +104,8 @@ std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& po
       for (double i = 0; i < n.x; ++i)
         for (const Copy& copy : out) {
           all.push_back(copy);
-          all.back().transform.translation = copy.transform.translation + info.box->edges[0] * i +
-                                             info.box->edges[1] * j + info.box->edges[2] * k;
+          all.back().transform.translation =
+              copy.transform.translation + info.box->edges[0] * i + info.box->edges[1] * j + info.box->edges[2] * k;
         }
   return all;
 }

@@ -67,9 +67,9 @@ class Loader {
     const int count = file_->frame_count();
     if (frame >= 1 && frame <= count) return frame - 1;
     if (!points_.frame && count == 1) return 0;
-    faults_.error(points_.frame ? ".frame" : ".file",
-                  "there is no frame " + std::to_string(frame) + "; " + points_.file.string() + " has " +
-                      std::to_string(count) + (count == 1 ? " frame" : " frames"));
+    faults_.error(points_.frame ? ".frame" : ".file", "there is no frame " + std::to_string(frame) + "; " +
+                                                          points_.file.string() + " has " + std::to_string(count) +
+                                                          (count == 1 ? " frame" : " frames"));
     return {};
   }
 
@@ -152,8 +152,8 @@ class Loader {
     }
     if (rows.size() == 0)
       faults_.warning(table.rows == 0 ? ".file" : ".select",
-                      table.rows == 0 ? "the frame has no particles" : "selects none of the " +
-                                            std::to_string(table.rows) + " particles");
+                      table.rows == 0 ? "the frame has no particles"
+                                      : "selects none of the " + std::to_string(table.rows) + " particles");
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
     points_.centers = std::move(centers);
     points_.radii = std::move(radii);
@@ -161,6 +161,7 @@ class Loader {
     points_.palette = std::move(colors.palette);
     points_.palette_rec709 = colors.rec709;
     points_.color_range = colors.range;
+    points_.color_names = std::move(colors.names);
     if (!material_.empty()) set_materials(table, rows);
     Labels chains;
     if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)
@@ -176,8 +177,10 @@ class Loader {
       const std::vector<std::uint8_t> mask = selection_.evaluate(table);
       for (std::uint32_t i = 0; i < mask.size(); ++i)
         if (mask[i] != 0) list.push_back(i);
-      if (list.size() == mask.size()) list.clear();
-      else if (list.empty()) return Rows(list);
+      if (list.size() == mask.size())
+        list.clear();
+      else if (list.empty())
+        return Rows(list);
     }
     const data::Column* const ids = table.find(info_.roles.id);
     if (ids == nullptr) return list.empty() ? Rows(table.rows) : Rows(std::move(list));
@@ -216,7 +219,8 @@ class Loader {
   std::vector<Vec3d> centers_of(const data::Table& table, const Rows& rows) const {
     std::vector<Vec3d> out(rows.size());
     const auto set = [&](std::size_t axis, double Vec3d::*component) {
-      for_each_number(*table.find(info_.roles.position[axis]), rows, [&](std::size_t i, double v) { out[i].*component = v; });
+      for_each_number(*table.find(info_.roles.position[axis]), rows,
+                      [&](std::size_t i, double v) { out[i].*component = v; });
     };
     set(0, &Vec3d::x);
     set(1, &Vec3d::y);
@@ -281,7 +285,8 @@ class Loader {
                                    std::to_string(request_.materials) + ", counted from 0");
     });
     if (bad > scene::kMaxReported)
-      faults_.error(".file", "and " + std::to_string(bad - scene::kMaxReported) + " more (" + std::to_string(bad) + " in all)");
+      faults_.error(".file",
+                    "and " + std::to_string(bad - scene::kMaxReported) + " more (" + std::to_string(bad) + " in all)");
   }
 
   const LoadRequest& request_;
@@ -295,7 +300,7 @@ class Loader {
   Selection selection_;
   std::vector<Copy> copies_;
   std::vector<std::string> speed_sources_;  ///< columns that `speed` is computed from; empty: it is not needed
-  std::string material_;  ///< column of material indices; empty: none
+  std::string material_;                    ///< column of material indices; empty: none
 };
 
 }  // namespace

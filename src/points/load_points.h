@@ -12,12 +12,12 @@
 namespace orrery::points {
 
 struct LoadRequest {
-  std::filesystem::path file;   ///< the data file
-  std::filesystem::path folder; ///< of the scene file, for the file of a colour map
-  std::string key;              ///< "points[0]", for diagnostics
-  int frame = 1;                ///< the rendered frame
-  bool is_sequence = false;     ///< the rendered frame has chosen the file
-  std::size_t materials = 0;    ///< number of materials of the scene
+  std::filesystem::path file;      ///< the data file
+  std::filesystem::path folder;    ///< of the scene file, for the file of a colour map
+  std::string key;                 ///< "points[0]", for diagnostics
+  int frame = 1;                   ///< the rendered frame
+  bool is_sequence = false;        ///< the rendered frame has chosen the file
+  std::size_t materials = 0;       ///< number of materials of the scene
   std::uint64_t memory_limit = 0;  ///< bytes that the spheres may take; 0: no limit
 };
 

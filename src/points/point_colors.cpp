@@ -32,9 +32,7 @@ std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows
 }
 
 /// Gives each label the colour with its index.
-std::vector<std::uint16_t> indices_of(const Labels& labels) {
-  return {labels.of_rows.begin(), labels.of_rows.end()};
-}
+std::vector<std::uint16_t> indices_of(const Labels& labels) { return {labels.of_rows.begin(), labels.of_rows.end()}; }
 
 /// Distinct values spread evenly over a continuous map, or the colours of a categorical one in turn.
 PointColors colors_by_label(const Labels& labels, const ColorMap& map) {
@@ -47,6 +45,7 @@ PointColors colors_by_label(const Labels& labels, const ColorMap& map) {
   }
   out.rec709 = out.palette.size();
   out.indices = indices_of(labels);
+  out.names = labels.names;
   return out;
 }
 
@@ -102,6 +101,7 @@ PointColors colors_by_element(const data::Table& table, const Rows& rows, const 
   }
   out.rec709 = out.palette.size();
   out.indices = indices_of(*labels);
+  out.names = labels->names;
   return out;
 }
 
@@ -112,7 +112,8 @@ PointColors colors_by_type(const data::Table& table, const Rows& rows, const Col
   if (!labels) return out;
   std::vector<std::string> missing;
   for (const std::string& name : labels->names) {
-    const auto found = std::find_if(color.types.begin(), color.types.end(), [&](const auto& t) { return t.first == name; });
+    const auto found =
+        std::find_if(color.types.begin(), color.types.end(), [&](const auto& t) { return t.first == name; });
     if (found == color.types.end()) missing.push_back("`" + name + "`");
     out.palette.push_back(found == color.types.end() ? Vec3d{} : found->second);
   }
@@ -122,6 +123,7 @@ PointColors colors_by_type(const data::Table& table, const Rows& rows, const Col
     faults.error(".color.type", "type " + base::joined(missing) + " has no colour; add it");
   }
   out.indices = indices_of(*labels);
+  out.names = labels->names;
   return out;
 }
 
@@ -161,8 +163,8 @@ PointColors colors_by_rgb(const data::Table& table, const Rows& rows, const Colo
   }
   PointColors out;
   for (const std::uint32_t b : distinct)
-    out.palette.push_back(linear_from_bytes({static_cast<std::uint8_t>(b >> 16), static_cast<std::uint8_t>(b >> 8),
-                                             static_cast<std::uint8_t>(b)}));
+    out.palette.push_back(linear_from_bytes(
+        {static_cast<std::uint8_t>(b >> 16), static_cast<std::uint8_t>(b >> 8), static_cast<std::uint8_t>(b)}));
   out.rec709 = out.palette.size();
   out.indices.resize(bytes.size());
   for (std::size_t i = 0; i < bytes.size(); ++i) out.indices[i] = static_cast<std::uint16_t>(index[bytes[i]]);
@@ -201,7 +203,8 @@ ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& 
     out.kind = ColorSource::Kind::kElement;
     out.columns = {info.roles.element};
     if (info.roles.element.empty())
-      faults.error(".color.element", "the file has no column of chemical elements; its columns are " + column_names(info));
+      faults.error(".color.element",
+                   "the file has no column of chemical elements; its columns are " + column_names(info));
   } else if (!color.types.empty()) {
     out.kind = ColorSource::Kind::kType;
     out.columns = {info.roles.type};

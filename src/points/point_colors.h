@@ -28,6 +28,7 @@ struct PointColors {
   std::vector<Vec3d> palette;
   std::size_t rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in the scene's colour space
   std::vector<std::uint16_t> indices;
+  std::vector<std::string> names;        ///< of the colours, if they stand for types, elements or texts
   std::optional<scene::Interval> range;  ///< of a map of numbers
 };
 
@@ -38,8 +39,8 @@ struct PointColors {
 ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& color,
                          const std::filesystem::path& folder, KeyFaults& faults);
 
-/// Returns the colours of the rows. A map becomes 256 colours. More than 65,536 distinct RGB colours are reduced to 7, 6
-/// or 5 bits per channel, whichever fits.
+/// Returns the colours of the rows. A map becomes 256 colours. More than 65,536 distinct RGB colours are reduced to 7,
+/// 6 or 5 bits per channel, whichever fits.
 ///
 /// Domain     a table with the source's columns
 PointColors colors_of(const data::Table& table, const Rows& rows, const ColorSource& source,

@@ -18,8 +18,8 @@ ElementRadius kind_of(const std::string& name) {
 }
 
 /// Returns the radius of each label; reports labels without a radius, all in one message.
-std::vector<double> radii_of_labels(const Labels& labels, const RadiusSource& source,
-                                    const scene::PointsRadius& radius, KeyFaults& faults) {
+std::vector<double> radii_of_labels(const Labels& labels, const RadiusSource& source, const scene::PointsRadius& radius,
+                                    KeyFaults& faults) {
   std::vector<double> out;
   std::vector<std::string> missing;
   for (const std::string& name : labels.names) {
@@ -66,7 +66,8 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
     out.kind = RadiusSource::Kind::kElement;
     out.column = info.roles.element;
     if (out.column.empty())
-      faults.error(".radius.element", "the file has no column of chemical elements; its columns are " + column_names(info));
+      faults.error(".radius.element",
+                   "the file has no column of chemical elements; its columns are " + column_names(info));
   } else if (!radius.types.empty()) {
     out.kind = RadiusSource::Kind::kType;
     out.column = info.roles.type;
@@ -77,9 +78,11 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
     out.column = info.roles.radius;
     out.scale = radius.scale * info.roles.radius_scale;
   } else {
-    faults.error(".radius",
-                 "the file has no radius; set `radius` to a number, or to a column, an element table or types, e.g. `radius "
-                 "= { column = \"size\", scale = 0.5 }`; its columns are " + column_names(info));
+    faults.error(
+        ".radius",
+        "the file has no radius; set `radius` to a number, or to a column, an element table or types, e.g. `radius "
+        "= { column = \"size\", scale = 0.5 }`; its columns are " +
+            column_names(info));
   }
   return out;
 }
@@ -95,7 +98,8 @@ std::vector<double> radii_of(const data::Table& table, const Rows& rows, const R
   }
   const Labels labels = labels_of(column, rows, kMaxLabels);
   if (labels.of_rows.size() != rows.size()) {
-    faults.error(".radius", "column `" + source.column + "` has more than " + std::to_string(kMaxLabels) + " distinct values");
+    faults.error(".radius",
+                 "column `" + source.column + "` has more than " + std::to_string(kMaxLabels) + " distinct values");
     return out;
   }
   const std::vector<double> of_labels = radii_of_labels(labels, source, radius, faults);

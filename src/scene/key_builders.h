@@ -135,9 +135,8 @@ Key<Target> optional_window(const char* name, const KeyDoc& about, const char* o
 /// Builds a key for an optional integer; `otherwise` describes its default.
 template <class Target, class At>
 Key<Target> optional_integer(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
-  return key_of<Target>(name, ValueType::kInteger, range, about, at, [otherwise](const auto& x) {
-    return x ? std::to_string(*x) : std::string(otherwise);
-  });
+  return key_of<Target>(name, ValueType::kInteger, range, about, at,
+                        [otherwise](const auto& x) { return x ? std::to_string(*x) : std::string(otherwise); });
 }
 /// Builds a key for an optional interval; `otherwise` describes its default.
 template <class Target, class At>

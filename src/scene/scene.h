@@ -147,21 +147,21 @@ struct Interval {
 /// Radii of the spheres of a points file: by one of `value`, `column`, `element` and `types`; by none of them, those in
 /// the file.
 struct PointsRadius {
-  std::optional<double> value;                         ///< of every sphere, scene units
-  std::string column;                                  ///< name of a column
-  std::string element;                                 ///< "vdw", "covalent" or "ball"
-  std::vector<std::pair<std::string, double>> types;   ///< by particle type, scene units
-  double scale = 1;                                    ///< multiplies column and element radii
+  std::optional<double> value;                        ///< of every sphere, scene units
+  std::string column;                                 ///< name of a column
+  std::string element;                                ///< "vdw", "covalent" or "ball"
+  std::vector<std::pair<std::string, double>> types;  ///< by particle type, scene units
+  double scale = 1;                                   ///< multiplies column and element radii
 };
 
 /// Colours of the spheres of a points file: by one of `column`, `element`, `types` and `rgb`; by none of them, those of
 /// the material.
 struct PointsColor {
-  std::string column;              ///< coloured by a map
-  std::string map = "viridis";     ///< name of a colour map, or a file relative to the scene file
-  std::optional<Interval> range;   ///< of the column's values; default: that of the selected spheres
-  Vec3d nan_color{0.5, 0.5, 0.5};  ///< of values that are not numbers
-  std::string element;             ///< "jmol"
+  std::string column;                                ///< coloured by a map
+  std::string map = "viridis";                       ///< name of a colour map, or a file relative to the scene file
+  std::optional<Interval> range;                     ///< of the column's values; default: that of the selected spheres
+  Vec3d nan_color{0.5, 0.5, 0.5};                    ///< of values that are not numbers
+  std::string element;                               ///< "jmol"
   std::vector<std::pair<std::string, Vec3d>> types;  ///< by particle type
   bool rgb = false;                                  ///< the file's colours
 
@@ -177,21 +177,21 @@ struct PointsTransform {
 
 /// Spheres of a points file, in flat arrays because there may be a hundred million. Filled by format::read_scene.
 struct Points {
-  std::filesystem::path file;  ///< as in the scene file, relative to it
-  std::uint32_t material = 0;  ///< index into Scene::materials; used if the file has no materials
-  std::string name = {};       ///< optional, for mattes: all spheres share it; default: the file name
-  std::string group = {};      ///< optional, for mattes
-  std::optional<int> frame;    ///< of the file, from 1; default: the rendered frame, if the file has several
+  std::filesystem::path file;    ///< as in the scene file, relative to it
+  std::uint32_t material = 0;    ///< index into Scene::materials; used if the file has no materials
+  std::string name = {};         ///< optional, for mattes: all spheres share it; default: the file name
+  std::string group = {};        ///< optional, for mattes
+  std::optional<int> frame;      ///< of the file, from 1; default: the rendered frame, if the file has several
   std::optional<int> component;  ///< particle type of an HDF5 snapshot
   PointsRadius radius;
   PointsColor color;
-  std::string select;         ///< condition on columns; empty: all
-  Vec3d replicate{1, 1, 1};   ///< number of periodic images along each edge of the box
-  bool unwrap = false;        ///< by the counts of periodic images in the file
-  std::string assembly;       ///< biological assembly; empty: the file's own atoms
+  std::string select;        ///< condition on columns; empty: all
+  Vec3d replicate{1, 1, 1};  ///< number of periodic images along each edge of the box
+  bool unwrap = false;       ///< by the counts of periodic images in the file
+  std::string assembly;      ///< biological assembly; empty: the file's own atoms
   PointsTransform transform;
   std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
-  bool skip_bad = false;      ///< leaves out rows with coordinates that are not finite
+  bool skip_bad = false;                             ///< leaves out rows with coordinates that are not finite
   std::vector<Vec3d> centers = {};
   std::vector<double> radii = {};             ///< as many as centers
   std::vector<std::uint32_t> materials = {};  ///< as many as centers, or empty: `material` for all
@@ -199,6 +199,7 @@ struct Points {
   std::vector<Vec3d> palette = {};            ///< colours that replace those of the material
   std::size_t palette_rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in Color::space
   std::optional<Interval> color_range = {};   ///< of the colour map, if there is one
+  std::vector<std::string> color_names = {};  ///< of the colours in `palette`, if they stand for types or elements
   std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
 };
 
