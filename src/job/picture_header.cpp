@@ -10,6 +10,7 @@
 #include "display/color_space.h"
 #include "job/camera_matrices.h"
 #include "job/version.h"
+#include "scene/schema.h"
 #include "scene/value_text.h"
 
 namespace orrery::job {
