@@ -224,6 +224,15 @@ TEST_F(DataVtk, WrongNumbersOfValuesAreRefused) {
             "there are more than 4096 columns\n");
 }
 
+TEST_F(DataVtk, TooManyArraysAreRefused) {
+  std::string arrays;
+  for (int i = 0; i < 4096; ++i) arrays += ascii("Int8", "a" + std::to_string(i), 0, "");
+  EXPECT_EQ(faults(root("", poly(piece(2, kPoints, arrays)))), "") << "without components";
+  arrays.clear();
+  for (int i = 0; i < 4096; ++i) arrays += ascii("Int8", "a" + std::to_string(i), 1, "1 2");
+  EXPECT_EQ(faults(root("", poly(piece(2, kPoints, arrays)))), "there are more than 4096 arrays\n");
+}
+
 TEST_F(DataVtk, LyingBinaryHeadersAreRefusedBeforeAllocation) {
   const auto with = [](const std::string& attributes, const std::string& bytes) {
     return root(attributes, poly(piece(2, "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">" +
