@@ -24,7 +24,7 @@ namespace {
 using scene::number_text;
 
 /// Colour map of numbers, and of types.
-constexpr const char* kMap = "viridis";
+constexpr const char* kMap = "fast";
 constexpr const char* kCategoricalMap = "tab10";
 
 /// A points table of the scene as its author would write it, completed step by step.
@@ -73,9 +73,12 @@ class PlotMaker {
     open_options.component = out_.points.component;
     const int first = options_.frames.empty() ? 1 : options_.frames.front();
     file_ = data::open(file_of(first), open_options);
-    info_ = file_->describe(0);
+    const int frame = out_.points.frame ? *out_.points.frame : is_sequence_ ? 1 : first;
+    const bool exists = frame == 1 || frame <= file_->frame_count();  // load() reports the others
+    info_ = file_->describe(exists ? frame - 1 : 0);
     points::add_derived_columns(info_);
-    chose(data::format_name(file_->format()), std::to_string(info_.rows) + " particles");
+    const std::string which = exists && frame > 1 ? " in frame " + std::to_string(frame) : "";
+    chose(data::format_name(file_->format()), std::to_string(info_.rows) + " particles" + which);
   }
 
   void choose_frames() {
@@ -154,7 +157,7 @@ class PlotMaker {
       color.column = by == "element" && !roles.element.empty() ? roles.element : by;
       if (options_.has_map) return;
       color.map = is_text(color.column) ? kCategoricalMap : kMap;
-      chose("map " + color.map, is_text(color.column) ? "colours for categories" : "perceptually uniform");
+      chose("map " + color.map, is_text(color.column) ? "colours for categories" : "no dark colours, which shading would hide");
     }
   }
 
