@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Renders the images of docs/gallery.md by the commands in it.
+#
+#   tools/gallery.sh DATA [NAME...]    DATA: folder with the data files that the page names
+#                                      NAME: images to render, e.g. virus; default: all
+#
+# ORRERY is the program; default: build/src/orrery, which ./run.sh builds.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+program=$(realpath "${ORRERY:-$root/build/src/orrery}")
+data=${1:?usage: tools/gallery.sh DATA [NAME...]}
+shift
+data=$(realpath "$data")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/bin"
+ln -s "$program" "$work/bin/orrery"
+PATH="$work/bin:$PATH"
+
+# The commands of an image are the code block below its heading `## NAME: ...`.
+commands_of() {
+  awk -v name="$1" '/^## /{found = ($2 == name ":")} /^```/{inside = found && !inside; next} inside' "$root/docs/gallery.md"
+}
+
+names=("$@")
+if [ ${#names[@]} -eq 0 ]; then mapfile -t names < <(sed -n 's/^## \([a-z-]*\):.*/\1/p' "$root/docs/gallery.md"); fi
+mkdir -p "$root/docs/gallery"
+for name in "${names[@]}"; do
+  echo "$name"
+  mkdir "$work/$name"
+  for file in "$data"/*; do ln -s "$file" "$work/$name/"; done
+  commands_of "$name" > "$work/$name.sh"
+  if ! [ -s "$work/$name.sh" ]; then
+    echo "gallery.sh: docs/gallery.md has no image $name" >&2
+    exit 2
+  fi
+  (cd "$work/$name" && bash -euo pipefail "$work/$name.sh")
+  cp "$work/$name/$name.jpg" "$root/docs/gallery/"
+done
