@@ -69,7 +69,9 @@ FrameInfo described(const LammpsFrame& frame) {
   roles.element = if_there("element");
   roles.type = contains(frame.columns, "type") ? "type" : if_there("typelabel");
   roles.id = if_there("id");
-  if (contains(frame.columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
+  // Counts of periodic images apply to wrapped coordinates only.
+  const bool is_wrapped = contains(frame.columns, kAxes) || scaled_position(frame) == &kScaled;
+  if (is_wrapped && contains(frame.columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
   return info;
 }
 

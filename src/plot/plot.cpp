@@ -115,7 +115,17 @@ class PlotMaker {
     return points;
   }
 
-  int first_frame() const { return out_.frames.empty() ? 1 : out_.frames.front(); }
+  std::vector<int> visited_frames() const { return out_.frames.empty() ? std::vector<int>{1} : out_.frames; }
+
+  /// The median distance between neighbours in the first frame where particles have neighbours; 0: in none.
+  double spacing() {
+    const math::Vec3d replicate = std::exchange(out_.points.replicate, {1, 1, 1});
+    double distance = 0;
+    for (const int frame : visited_frames())
+      if (distance == 0) distance = points::median_neighbor_distance(load(frame).centers);
+    out_.points.replicate = replicate;
+    return distance;
+  }
 
   void choose_radius() {
     scene::PointsRadius& radius = out_.points.radius;
@@ -128,11 +138,10 @@ class PlotMaker {
       chose("radius vdw", "van der Waals radii of the elements");
     } else {
       radius.value = 1;
-      const math::Vec3d replicate = std::exchange(out_.points.replicate, {1, 1, 1});
-      const double spacing = points::median_neighbor_distance(load(first_frame()).centers);
-      out_.points.replicate = replicate;
-      radius.value = spacing > 0 ? rounded(spacing / 2) : 1;
-      chose("radius " + number_text(*radius.value), "half the median distance to the nearest neighbour");
+      const double distance = spacing();
+      if (distance > 0) radius.value = rounded(distance / 2);
+      chose("radius " + number_text(*radius.value),
+            distance > 0 ? "half the median distance to the nearest neighbour" : "no particle has a neighbour");
     }
   }
 
@@ -183,7 +192,7 @@ class PlotMaker {
   void visit_frames(ViewExtent& extent) {
     const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
     std::optional<scene::Interval> range;
-    const std::vector<int> frames = out_.frames.empty() ? std::vector<int>{1} : out_.frames;
+    const std::vector<int> frames = visited_frames();
     const math::Vec3d up = axis_of(options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up);
     for (const int frame : frames) {
       const scene::Points points = load(frame);

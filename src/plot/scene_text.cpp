@@ -91,7 +91,7 @@ std::string scene_text(const PlotParts& parts) {
   const PlotOptions& options = parts.options;
   const bool is_night = options.style == Style::kNight;
   std::string out =
-      "# Written by orrery plot for " + options.file.filename().string() +
+      "# Written by orrery plot for " + string_text(options.file.filename().string()) +
       "\n\n[image]\nwidth = " + std::to_string(options.width) + "\nheight = " + std::to_string(options.height) +
       "\n\n[camera]\nprojection = \"orthographic\"\nwidth = " + number_text(parts.camera.width.value_or(1)) +
       "\nlook_from = " + vector_text(parts.camera.look_from) + "\nlook_at = " + vector_text(parts.camera.look_at) +

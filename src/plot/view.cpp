@@ -26,13 +26,13 @@ std::optional<std::pair<double, double>> parse_angles(const std::string& text) {
   return out;
 }
 
-/// The scene's axes: up, front (towards a viewer at azimuth 0) and right.
+/// The scene's axes: up, front (towards a viewer at azimuth 0) and right. Right-handed in the order right, up, front.
 struct SceneAxes {
   Vec3d right, up, front;
 };
 
 SceneAxes scene_axes(const std::string& up) {
-  if (up == "x") return {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+  if (up == "x") return {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
   if (up == "y") return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
 }
@@ -56,7 +56,7 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
                        look_from[1] <= 'z';
   if (is_axis) {
     const Vec3d back = axis_of(look_from.substr(1)) * (look_from[0] == '+' ? 1.0 : -1.0);
-    // Seen from above or below, the scene's front is at the bottom of the image.
+    // Seen from above, the scene's front is at the bottom of the image; from below, at the top.
     const bool is_vertical = std::abs(math::dot(back, scene.up)) > 0.5;
     const Vec3d above = is_vertical ? scene.front * -math::dot(back, scene.up) : scene.up;
     return {math::cross(above, back), above, back};
@@ -110,7 +110,8 @@ scene::Camera ViewExtent::camera(double aspect) const {
   // Parallel rays may start anywhere in front of all spheres.
   camera.look_from = camera.look_at + axes_.back * (2 * radius());
   const double width = std::max(high_[0] - low_[0], (high_[1] - low_[1]) * aspect);
-  camera.width = is_empty_ ? 2 : width / (1 - 2 * kMargin);
+  // Spheres that are tiny compared with their coordinates may have no extent.
+  camera.width = width > 0 ? width / (1 - 2 * kMargin) : 2;
   return camera;
 }
 

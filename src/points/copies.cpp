@@ -89,25 +89,41 @@ std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& po
     out.push_back({});
   }
   const Vec3d n = points.replicate;
-  if (n == Vec3d{1, 1, 1}) return out;
-  if (n.x != std::floor(n.x) || n.y != std::floor(n.y) || n.z != std::floor(n.z)) {
+  if (n.x != std::floor(n.x) || n.y != std::floor(n.y) || n.z != std::floor(n.z))
     faults.error(".replicate", "the numbers of copies must be integers");
-    return out;
-  }
-  if (!info.box) {
+  else if (!(n == Vec3d{1, 1, 1}) && !info.box)
     faults.error(".replicate", "the file has no periodic box");
-    return out;
-  }
-  std::vector<Copy> all;
-  for (double k = 0; k < n.z; ++k)
-    for (double j = 0; j < n.y; ++j)
-      for (double i = 0; i < n.x; ++i)
-        for (const Copy& copy : out) {
-          all.push_back(copy);
-          all.back().transform.translation =
-              copy.transform.translation + info.box->edges[0] * i + info.box->edges[1] * j + info.box->edges[2] * k;
+  return out;
+}
+
+std::vector<Copy> replicated(const std::vector<Copy>& copies, const data::Box& box, Vec3d counts) {
+  std::vector<Copy> out;
+  for (double k = 0; k < counts.z; ++k)
+    for (double j = 0; j < counts.y; ++j)
+      for (double i = 0; i < counts.x; ++i)
+        for (Copy copy : copies) {
+          copy.transform.translation =
+              copy.transform.translation + box.edges[0] * i + box.edges[1] * j + box.edges[2] * k;
+          out.push_back(copy);
         }
-  return all;
+  return out;
+}
+
+std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
+  std::vector<std::uint64_t> counts(chains.names.size());
+  for (const std::uint32_t label : chains.of_rows) ++counts[label];
+  std::uint64_t total = 0;
+  for (const Copy& copy : copies) {
+    if (copy.chains == nullptr) {
+      total += count;
+      continue;
+    }
+    for (const std::string& name : *copy.chains) {
+      const auto at = std::lower_bound(chains.names.begin(), chains.names.end(), name);
+      if (at != chains.names.end() && *at == name) total += counts[static_cast<std::size_t>(at - chains.names.begin())];
+    }
+  }
+  return total;
 }
 
 void clip(scene::Points& points) {

@@ -21,9 +21,18 @@ struct Copy {
   const std::vector<std::string>* chains = nullptr;  ///< null: all
 };
 
-/// The copies that an assembly and the replication of the box demand: the identity if neither is asked for. Reports an
-/// assembly that the file does not have, and a missing box.
+/// The copies of an assembly; without one, the identity. Reports an assembly that the file does not have, and a
+/// replication without a box.
 std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults);
+
+/// The copies in each periodic image of the box.
+///
+/// `counts`   number of images along each edge
+/// Cost       100 bytes per copy and image: check the memory first
+std::vector<Copy> replicated(const std::vector<Copy>& copies, const data::Box& box, data::Vec3d counts);
+
+/// The number of spheres that make_copies() makes of `count` spheres; at most this if a copy lists a chain twice.
+std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
 
 /// Replaces the spheres by their copies, one copy after the other, and applies the transform of the points.
 ///

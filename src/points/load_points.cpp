@@ -121,27 +121,40 @@ class Loader {
 
   void plan_unwrap() {
     if (info_.roles.image[0].empty() || !info_.box) {
-      faults_.error(".unwrap", "the file has no counts of periodic images, such as ix, iy and iz");
+      faults_.error(
+          ".unwrap",
+          "the file has no box, or no wrapped coordinates with counts of periodic images, such as ix, iy and iz");
       return;
     }
     for (const std::string& column : info_.roles.image) need(column);
   }
 
-  void require_memory() const {
-    const std::uint64_t spheres = info_.rows * copies_.size();
-    const std::uint64_t bytes = info_.rows * kBytesPerColumn * columns_.size() + spheres * kBytesPerSphere;
-    if (request_.memory_limit == 0 || bytes <= request_.memory_limit) return;
+  /// `count`   of spheres in one image of the periodic box
+  void require_memory(std::uint64_t count) const {
+    const Vec3d n = points_.replicate;
+    const double images = n.x * n.y * n.z, spheres = static_cast<double>(count) * images;  // may exceed 64 bits
+    const double bytes = static_cast<double>(info_.rows * kBytesPerColumn * columns_.size()) +
+                         spheres * kBytesPerSphere + images * static_cast<double>(copies_.size() * sizeof(Copy));
+    if (request_.memory_limit == 0 || bytes <= static_cast<double>(request_.memory_limit)) return;
+    const auto whole = [](double x) { return static_cast<std::uint64_t>(std::min(x, 1e18)); };
     throw base::Error(base::ErrorKind::kNoMemory,
-                      request_.file.string() + ": " + std::to_string(spheres) + " spheres need " +
-                          base::bytes_text(bytes) + " while they are read; " + base::bytes_text(request_.memory_limit) +
+                      request_.file.string() + ": " + std::to_string(info_.rows) + " rows" +
+                          (count > 0 ? " and " + std::to_string(whole(spheres)) + " spheres" : "") + " need " +
+                          base::bytes_text(whole(bytes)) + " while they are read; " +
+                          base::bytes_text(request_.memory_limit) +
                           " are available; select fewer rows, or render on a machine with more memory");
   }
 
   void load(int frame) {
-    require_memory();
+    // How many rows a selection leaves, and how many spheres are in some chains, is not known yet.
+    require_memory(points_.select.empty() ? copied_count(copies_, {}, info_.rows) : 0);
     data::Table table = file_->read(frame, columns_);
     if (!speed_sources_.empty()) compute_speed(speed_sources_, table);
     Rows rows = chosen_rows(table);
+    if (rows.size() == 0)
+      faults_.warning(table.rows == 0 ? ".file" : ".select",
+                      table.rows == 0 ? "the frame has no particles"
+                                      : "selects none of the " + std::to_string(table.rows) + " particles");
     std::vector<double> radii = radii_of(table, rows, radius_, points_.radius, faults_);
     std::vector<Vec3d> centers = centers_of(table, rows);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
@@ -150,10 +163,10 @@ class Loader {
       if (faults_.has_errors()) return;
       rows = kept(rows, good, centers, radii);
     }
-    if (rows.size() == 0)
-      faults_.warning(table.rows == 0 ? ".file" : ".select",
-                      table.rows == 0 ? "the frame has no particles"
-                                      : "selects none of the " + std::to_string(table.rows) + " particles");
+    Labels chains;
+    if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)
+      chains = labels_of(*column, rows, table.rows);
+    require_memory(copied_count(copies_, chains, rows.size()));
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
     points_.centers = std::move(centers);
     points_.radii = std::move(radii);
@@ -163,9 +176,7 @@ class Loader {
     points_.color_range = colors.range;
     points_.color_names = std::move(colors.names);
     if (!material_.empty()) set_materials(table, rows);
-    Labels chains;
-    if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)
-      chains = labels_of(*column, rows, table.rows);
+    if (!(points_.replicate == Vec3d{1, 1, 1})) copies_ = replicated(copies_, *info_.box, points_.replicate);
     make_copies(copies_, chains, points_);
     clip(points_);
   }
@@ -173,7 +184,7 @@ class Loader {
   /// Returns the selected rows, ascending by particle id if there are ids: files list particles in any order.
   Rows chosen_rows(const data::Table& table) {
     std::vector<std::uint32_t> list;
-    if (!selection_.columns().empty()) {
+    if (!points_.select.empty()) {
       const std::vector<std::uint8_t> mask = selection_.evaluate(table);
       for (std::uint32_t i = 0; i < mask.size(); ++i)
         if (mask[i] != 0) list.push_back(i);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/text.h"
 #include "points/elements.h"
@@ -34,23 +35,51 @@ std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows
 /// Gives each label the colour with its index.
 std::vector<std::uint16_t> indices_of(const Labels& labels) { return {labels.of_rows.begin(), labels.of_rows.end()}; }
 
-/// Distinct values spread evenly over a continuous map, or the colours of a categorical one in turn.
-PointColors colors_by_label(const Labels& labels, const ColorMap& map) {
+/// Returns for each label which colour of a categorical map it has, before it is reduced to their number. As far as
+/// possible it does not depend on which others occur, or colours would change from frame to frame and with selections:
+/// integers have the colour with their number, from 1; texts that with their place among all texts of the column.
+std::vector<std::size_t> categories_of(const Labels& labels, const data::Column& column, std::size_t count) {
+  std::vector<std::size_t> out(labels.names.size());
+  std::iota(out.begin(), out.end(), 0U);
+  if (const auto* words = std::get_if<data::Words>(&column.values)) {
+    std::vector<std::string> all = words->words;
+    std::sort(all.begin(), all.end());
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), labels.names[i]) - all.begin());
+    return out;
+  }
+  const auto is_integer = [](double v) { return v == std::floor(v) || std::isnan(v); };
+  if (!std::all_of(labels.values.begin(), labels.values.end(), is_integer)) return out;
+  const auto n = static_cast<double>(count);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double place = std::fmod(labels.values[i] - 1, n);
+    out[i] = std::isfinite(place) ? static_cast<std::size_t>(place < 0 ? place + n : place) : 0;
+  }
+  return out;
+}
+
+/// Distinct texts spread evenly over a continuous map, or the colours of a categorical one.
+PointColors colors_by_label(const Labels& labels, const data::Column& column, const ColorMap& map, Vec3d nan_color) {
   PointColors out;
   const std::size_t n = labels.names.size();
   if (map.is_categorical) {
-    for (std::size_t i = 0; i < n; ++i) out.palette.push_back(linear_from_srgb(map.knots[i % map.knots.size()].srgb));
+    for (const std::size_t category : categories_of(labels, column, map.knots.size()))
+      out.palette.push_back(linear_from_srgb(map.knots[category % map.knots.size()].srgb));
   } else {
     out.palette = palette(map, std::max<std::size_t>(n, 1));
   }
   out.rec709 = out.palette.size();
+  if (!labels.values.empty() && std::isnan(labels.values.back())) {
+    out.palette.back() = nan_color;
+    --out.rec709;
+  }
   out.indices = indices_of(labels);
   out.names = labels.names;
   return out;
 }
 
-/// The range of the finite values of a column; 0..1 if there is none.
-scene::Interval range_of(const data::Column& column, const Rows& rows) {
+/// The range of the finite values of a column, if there are any.
+std::optional<scene::Interval> range_of(const data::Column& column, const Rows& rows) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   scene::Interval range{kInfinity, -kInfinity};
   for_each_number(column, rows, [&](std::size_t, double v) {
@@ -58,7 +87,8 @@ scene::Interval range_of(const data::Column& column, const Rows& rows) {
     range.low = std::min(range.low, v);
     range.high = std::max(range.high, v);
   });
-  return range.low <= range.high ? range : scene::Interval{};
+  if (!(range.low <= range.high)) return {};
+  return range;
 }
 
 PointColors colors_by_number(const data::Column& column, const Rows& rows, const ColorMap& map,
@@ -67,14 +97,15 @@ PointColors colors_by_number(const data::Column& column, const Rows& rows, const
   out.palette = palette(map, kMapColors);
   out.rec709 = kMapColors;
   out.palette.push_back(color.nan_color);
-  out.range = color.range ? *color.range : range_of(column, rows);
-  const double low = out.range->low, high = out.range->high, span = high - low;
-  // A constant column has the colour in the middle.
-  const double scale = span > 0 ? (kMapColors - 1) / span : 0, offset = span > 0 ? 0.5 : kMapColors / 2.0;
+  out.range = color.range ? color.range : range_of(column, rows);
+  const auto [low, high] = out.range.value_or(scene::Interval{});
+  const double unit = std::isfinite(high - low) ? 1 : 0.5;  // halved, the largest range does not overflow
+  const double span = high * unit - low * unit;
   out.indices.resize(rows.size());
   for_each_number(column, rows, [&](std::size_t i, double v) {
-    const double at = std::clamp((std::clamp(v, low, high) - low) * scale + offset, 0.0, kMapColors - 0.5);
-    out.indices[i] = std::isnan(v) ? kMapColors : static_cast<std::uint16_t>(at);
+    // A constant column has the colour in the middle.
+    const double t = span > 0 ? (std::clamp(v, low, high) * unit - low * unit) / span : 0.5;
+    out.indices[i] = std::isnan(v) ? kMapColors : static_cast<std::uint16_t>(t * (kMapColors - 1) + 0.5);
   });
   return out;
 }
@@ -85,7 +116,7 @@ PointColors colors_by_map(const data::Table& table, const Rows& rows, const Colo
   if (!source.map->is_categorical && column.type() != data::ColumnType::kText)
     return colors_by_number(column, rows, *source.map, color);
   const auto labels = labels_or_fault(table, rows, source.columns[0], ".color.column", faults);
-  return labels ? colors_by_label(*labels, *source.map) : PointColors();
+  return labels ? colors_by_label(*labels, column, *source.map, color.nan_color) : PointColors();
 }
 
 PointColors colors_by_element(const data::Table& table, const Rows& rows, const ColorSource& source,

@@ -29,7 +29,7 @@ struct PointColors {
   std::size_t rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in the scene's colour space
   std::vector<std::uint16_t> indices;
   std::vector<std::string> names;        ///< of the colours, if they stand for types, elements or texts
-  std::optional<scene::Interval> range;  ///< of a map of numbers
+  std::optional<scene::Interval> range;  ///< of a map of numbers; none if all are NaN
 };
 
 /// Determines the source of the colours. Reports unknown columns and maps, and alternatives that exclude each other.

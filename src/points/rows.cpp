@@ -54,6 +54,7 @@ Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit
   for (auto& [value, label] : labels) {
     label = static_cast<std::uint32_t>(out.names.size());
     out.names.push_back(label_text(value));
+    out.values.push_back(value);
   }
   // NaN is a label of its own, the last.
   const auto none = static_cast<std::uint32_t>(out.names.size());
@@ -69,7 +70,10 @@ Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit
     has_nan = has_nan || last_label == none;
     out.of_rows[i] = last_label;
   });
-  if (has_nan) out.names.emplace_back("nan");
+  if (has_nan) {
+    out.names.emplace_back("nan");
+    out.values.push_back(std::nan(""));
+  }
   return out;
 }
 

@@ -49,6 +49,7 @@ void for_each_number(const data::Column& column, const Rows& rows, F f) {
 /// A column with few distinct values: particle types, elements.
 struct Labels {
   std::vector<std::string> names;      ///< distinct values as text, ascending: numbers by value, texts as texts
+  std::vector<double> values;          ///< numbers: the distinct values; NaN is the last
   std::vector<std::uint32_t> of_rows;  ///< one per row, index into `names`
 };
 

@@ -140,8 +140,8 @@ Key<Target> optional_integer(const char* name, Range range, const KeyDoc& about,
 }
 /// Builds a key for an optional interval; `otherwise` describes its default.
 template <class Target, class At>
-Key<Target> optional_interval(const char* name, const KeyDoc& about, const char* otherwise, At at) {
-  return key_of<Target>(name, ValueType::kInterval, {-kLargestLength, kLargestLength}, about, at,
+Key<Target> optional_interval(const char* name, Range range, const KeyDoc& about, const char* otherwise, At at) {
+  return key_of<Target>(name, ValueType::kInterval, range, about, at,
                         [otherwise](const auto& x) { return x ? interval_text(*x) : std::string(otherwise); });
 }
 /// Builds a key for a string or an integer.

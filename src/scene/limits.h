@@ -15,6 +15,9 @@ inline constexpr double kMaxFrame = 1e6;
 /// double.
 inline constexpr double kLargestLength = 1e18;
 
+/// Maximum absolute value at the ends of a colour map, in the unit of the column: their difference is finite.
+inline constexpr double kLargestValue = 1e300;
+
 /// Minimum absolute radius, and minimum length of a vector that defines a direction, scene units: their squares keep
 /// full precision.
 inline constexpr double kSmallestRadius = 1e-30;

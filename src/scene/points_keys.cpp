@@ -10,6 +10,7 @@ namespace {
 
 using P = Points;
 
+constexpr Range kAnyValue{-kLargestValue, kLargestValue};
 constexpr Range kAnyLength{-kLargestLength, kLargestLength};
 constexpr Range kLength{kSmallestRadius, kLargestLength};
 constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
@@ -49,9 +50,9 @@ std::vector<Key<P>> make_keys() {
            "Colour map: `fast`, `coolwarm`, `viridis`, `magma`, `inferno`, `plasma`, `cividis`, `batlow`, `turbo`, a "
            "categorical set, or a text file relative to the scene file; see [Data files](data.md)"},
           [](P& p) -> std::string& { return p.color.map; }),
-      optional_interval<P>("color.range", {"", "Values of the column at both ends of the map, e.g. `[-2, 2]`"},
-                           "minimum and maximum of the frame",
-                           [](P& p) -> std::optional<Interval>& { return p.color.range; }),
+      optional_interval<P>(
+          "color.range", kAnyValue, {"", "Values of the column at both ends of the map, e.g. `[-2, 2]`"},
+          "minimum and maximum of the frame", [](P& p) -> std::optional<Interval>& { return p.color.range; }),
       vector<P>("color.nan_color", {0, 1}, {"scene-linear", "Colour of values that are not numbers"},
                 [](P& p) -> Vec3d& { return p.color.nan_color; }),
       choice_of_text<P>("color.element", {"jmol"}, {"", "Colour by chemical element. `jmol`: the colours of Jmol"},
@@ -74,12 +75,12 @@ std::vector<Key<P>> make_keys() {
                 [](P& p) -> Vec3d& { return p.transform.rotate; }),
       vector<P>("transform.translate", kAnyLength, {"scene units", "Translation, after the rotation"},
                 [](P& p) -> Vec3d& { return p.transform.translate; }),
-      optional_interval<P>("clip.x",
+      optional_interval<P>("clip.x", kAnyLength,
                            {"scene units", "Keeps the spheres whose centres are in this interval, after all copies"},
                            "unlimited", [](P& p) -> std::optional<Interval>& { return p.clip[0]; }),
-      optional_interval<P>("clip.y", {"scene units", "As `clip.x`"}, "unlimited",
+      optional_interval<P>("clip.y", kAnyLength, {"scene units", "As `clip.x`"}, "unlimited",
                            [](P& p) -> std::optional<Interval>& { return p.clip[1]; }),
-      optional_interval<P>("clip.z", {"scene units", "As `clip.x`"}, "unlimited",
+      optional_interval<P>("clip.z", kAnyLength, {"scene units", "As `clip.x`"}, "unlimited",
                            [](P& p) -> std::optional<Interval>& { return p.clip[2]; }),
       boolean<P>("skip_bad", {"", "Leaves out rows whose coordinates or radius are not finite numbers"},
                  [](P& p) -> bool& { return p.skip_bad; }),

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/copies.h"
+
+#include <gtest/gtest.h>
+
+#include "points_file.h"
+
+namespace orrery::points {
+namespace {
+
+using data::Transform;
+using math::Vec3d;
+
+data::Box box() {
+  data::Box out;
+  out.origin = {100, 100, 100};  // copies do not depend on it
+  out.edges = {Vec3d{10, 0, 0}, Vec3d{1, 20, 0}, Vec3d{2, 3, 30}};
+  return out;
+}
+
+Transform moved(Vec3d by) {
+  Transform out;
+  out.translation = by;
+  return out;
+}
+
+/// Two spheres, with materials and colours.
+scene::Points two() {
+  scene::Points points;
+  points.centers = {{1, 0, 0}, {0, 2, 0}};
+  points.radii = {0.5, 0.25};
+  points.materials = {7, 8};
+  points.colors = {3, 4};
+  return points;
+}
+
+void expect_near(Vec3d a, Vec3d b) { EXPECT_LT(math::length(a - b), 1e-12) << a.x << ' ' << a.y << ' ' << a.z; }
+
+TEST(PointsCopies, UnwrapMovesByTheEdgesOfATriclinicBox) {
+  data::FrameInfo info;
+  info.box = box();
+  info.roles.image = {"ix", "iy", "iz"};
+  data::Table table;
+  table.rows = 2;
+  table.columns = {{"ix", std::vector<std::int64_t>{9, 1}},
+                   {"iy", std::vector<std::int64_t>{9, -2}},
+                   {"iz", std::vector<std::int64_t>{9, 3}}};
+  std::vector<Vec3d> centers = {{0.5, 0, 0}};
+  unwrap(table, Rows(std::vector<std::uint32_t>{1}), info, centers);
+  EXPECT_EQ(centers[0], (Vec3d{0.5 + 10 - 2 + 6, -40 + 9, 90}));
+}
+
+TEST(PointsCopies, OneCopyWithoutAnAssembly) {
+  KeyFaults faults("points[0]");
+  const std::vector<Copy> copies = copies_of({}, {}, faults);
+  ASSERT_EQ(copies.size(), 1u);
+  EXPECT_EQ(copies[0].chains, nullptr);
+  EXPECT_FALSE(faults.has_errors());
+}
+
+TEST(PointsCopies, AnAssemblyIsFoundByName) {
+  data::FrameInfo info;
+  info.assemblies = {{"1", {{{}, {moved({1, 0, 0})}}}},
+                     {"2", {{{"A"}, {moved({2, 0, 0}), moved({3, 0, 0})}}, {{}, {moved({4, 0, 0})}}}}};
+  KeyFaults faults("points[0]");
+  scene::Points points;
+  points.assembly = "2";
+  const std::vector<Copy> copies = copies_of(info, points, faults);
+  ASSERT_EQ(copies.size(), 3u);
+  EXPECT_EQ(copies[1].transform.translation.x, 3);
+  ASSERT_NE(copies[1].chains, nullptr);
+  EXPECT_EQ(*copies[1].chains, std::vector<std::string>{"A"});
+  EXPECT_EQ(copies[2].chains, nullptr) << "all chains";
+  points.assembly = "3";
+  EXPECT_TRUE(copies_of(info, points, faults).empty());
+  info.assemblies.clear();
+  copies_of(info, points, faults);
+  EXPECT_EQ(text_of(faults),
+            "error points[0].assembly: the file has no assembly 3; it has 1, 2\n"
+            "error points[0].assembly: the file has no assembly 3; it has none\n");
+}
+
+TEST(PointsCopies, ReplicationNeedsABoxAndIntegers) {
+  KeyFaults faults("points[0]");
+  scene::Points points;
+  points.replicate = {1, 1, 2};
+  copies_of({}, points, faults);
+  points.replicate = {1, 1.5, 1};
+  data::FrameInfo info;
+  info.box = box();
+  copies_of(info, points, faults);
+  EXPECT_EQ(text_of(faults),
+            "error points[0].replicate: the file has no periodic box\n"
+            "error points[0].replicate: the numbers of copies must be integers\n");
+}
+
+TEST(PointsCopies, ReplicatedAlongTheEdges) {
+  const std::vector<Copy> copies = replicated({{moved({0.5, 0, 0}), nullptr}, {moved({}), nullptr}}, box(), {2, 1, 2});
+  ASSERT_EQ(copies.size(), 8u);
+  EXPECT_EQ(copies[0].transform.translation, (Vec3d{0.5, 0, 0}));
+  EXPECT_EQ(copies[2].transform.translation, (Vec3d{10.5, 0, 0}));
+  EXPECT_EQ(copies[7].transform.translation, (Vec3d{12, 3, 30}));
+}
+
+TEST(PointsCopies, CopiesKeepRadiiMaterialsAndColors) {
+  scene::Points points = two();
+  make_copies({{moved({}), nullptr}, {moved({0, 0, 5}), nullptr}}, {}, points);
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{1, 0, 0}, {0, 2, 0}, {1, 0, 5}, {0, 2, 5}}));
+  EXPECT_EQ(points.radii, (std::vector<double>{0.5, 0.25, 0.5, 0.25}));
+  EXPECT_EQ(points.materials, (std::vector<std::uint32_t>{7, 8, 7, 8}));
+  EXPECT_EQ(points.colors, (std::vector<std::uint16_t>{3, 4, 3, 4}));
+}
+
+TEST(PointsCopies, CopiesOfSomeChains) {
+  const std::vector<std::string> first = {"A", "missing"}, none = {"X"};
+  const std::vector<Copy> copies = {
+      {moved({0, 0, 1}), &first}, {moved({0, 0, 2}), nullptr}, {moved({0, 0, 3}), &none}, {moved({0, 0, 4}), &first}};
+  const Labels chains{{"A", "B"}, {}, {1, 0}};
+  EXPECT_EQ(copied_count(copies, chains, 2), 4u);
+  EXPECT_EQ(copied_count(copies, {}, 2), 2u) << "those that are known without the chains";
+  scene::Points points = two();
+  make_copies(copies, chains, points);
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{0, 2, 1}, {1, 0, 2}, {0, 2, 2}, {0, 2, 4}}));
+  EXPECT_EQ(points.radii, (std::vector<double>{0.25, 0.5, 0.25, 0.25}));
+  EXPECT_EQ(points.colors, (std::vector<std::uint16_t>{4, 3, 4, 4}));
+}
+
+TEST(PointsCopies, RotationMatricesAreRows) {
+  scene::Points points = two();
+  Transform turn;  // x to y, y to -x
+  turn.rows = {Vec3d{0, -1, 0}, Vec3d{1, 0, 0}, Vec3d{0, 0, 1}};
+  turn.translation = {0, 0, 7};
+  make_copies({{turn, nullptr}}, {}, points);
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{0, 1, 7}, {-2, 0, 7}}));
+}
+
+/// Scale, turn about x, then y, then z, translate: every other order gives another point.
+TEST(PointsCopies, OrderOfTheTransform) {
+  scene::Points points;
+  points.centers = {{1, 2, 3}};
+  points.radii = {0.5};
+  points.transform.scale = 2;
+  points.transform.rotate = {90, 90, 90};
+  points.transform.translate = {10, 20, 30};
+  make_copies({{}}, {}, points);
+  // (2, 4, 6) about x: (2, -6, 4); about y: (4, -6, -2); about z: (6, 4, -2)
+  expect_near(points.centers[0], {16, 24, 28});
+  EXPECT_EQ(points.radii[0], 1);
+
+  points.centers = {{1, 0, 0}};
+  points.transform = {};
+  points.transform.rotate = {0, 0, 30};
+  make_copies({{}}, {}, points);
+  expect_near(points.centers[0], {std::sqrt(0.75), 0.5, 0});
+  EXPECT_EQ(points.radii[0], 1) << "a rotation changes no radius";
+}
+
+TEST(PointsCopies, CopiesAreTransformedAfterwards) {
+  scene::Points points;
+  points.centers = {{1, 0, 0}};
+  points.radii = {1};
+  points.transform.scale = 3;
+  points.transform.translate = {0, 1, 0};
+  make_copies({{moved({}), nullptr}, {moved({1, 0, 0}), nullptr}}, {}, points);
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{3, 1, 0}, {6, 1, 0}}));
+  EXPECT_EQ(points.radii, (std::vector<double>{3, 3}));
+}
+
+TEST(PointsCopies, ClipKeepsCentersInTheClosedIntervals) {
+  scene::Points points = two();
+  clip(points);
+  EXPECT_EQ(points.centers.size(), 2u);
+  points.clip[1] = scene::Interval{2, 3};
+  clip(points);
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{0, 2, 0}}));
+  EXPECT_EQ(points.radii, std::vector<double>{0.25});
+  EXPECT_EQ(points.materials, std::vector<std::uint32_t>{8});
+  EXPECT_EQ(points.colors, std::vector<std::uint16_t>{4});
+  points.clip[0] = scene::Interval{-2, -1};
+  clip(points);
+  EXPECT_TRUE(points.centers.empty() && points.radii.empty() && points.materials.empty() && points.colors.empty());
+  points = two();
+  points.clip[2] = scene::Interval{0.5, 1};
+  clip(points);
+  EXPECT_TRUE(points.centers.empty());
+}
+
+}  // namespace
+}  // namespace orrery::points

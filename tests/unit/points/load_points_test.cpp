@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/load_points.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "points/color_map.h"
+#include "points_file.h"
+
+namespace orrery::points {
+namespace {
+
+using math::Vec3d;
+using Numbers = std::vector<double>;
+
+/// A frame of a LAMMPS dump in a box of 10 x 20 x 30.
+std::string frame(const std::string& columns, const std::vector<std::string>& rows) {
+  std::string out = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + std::to_string(rows.size()) +
+                    "\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 20\n0 30\nITEM: ATOMS " + columns + "\n";
+  for (const std::string& row : rows) out += row + "\n";
+  return out;
+}
+
+/// Three particles as CSV.
+const std::string kCsv = "x,y,z,radius,type,name\n1,0,0,0.5,1,a\n2,0,0,0.25,2,b\n3,0,0,1,2,a\n";
+
+using PointsLoadPoints = PointsFile;
+
+TEST_F(PointsLoadPoints, CentersAndRadii) {
+  EXPECT_EQ(load("a.csv", "x,y,z,radius\n1,2,3,0.5\n-4,5e0,6,2\n"), "");
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{1, 2, 3}, {-4, 5, 6}}));
+  EXPECT_EQ(points.radii, (Numbers{0.5, 2}));
+  EXPECT_TRUE(points.colors.empty() && points.palette.empty() && points.materials.empty());
+}
+
+TEST_F(PointsLoadPoints, DiametersAreHalvedOnce) {
+  EXPECT_EQ(load("a.dump", frame("id x y z diameter", {"1 0 0 0 3"})), "");
+  EXPECT_EQ(points.radii, Numbers{1.5});
+  EXPECT_EQ(load("b.csv", "x,y,z,diameter\n0,0,0,3\n"), "");
+  EXPECT_EQ(points.radii, Numbers{1.5});
+  EXPECT_EQ(load("c.csv", "x,y,z,diameter,radius\n0,0,0,3,7\n"), "");
+  EXPECT_EQ(points.radii, Numbers{7}) << "a radius is used as it is, even beside a diameter";
+}
+
+/// Files list particles in any order; a particle keeps its place in all frames.
+TEST_F(PointsLoadPoints, FramesAreInTheOrderOfTheIds) {
+  const std::string dump = frame("id type x y z radius", {"3 2 30 0 0 0.3", "1 1 10 0 0 0.1", "2 2 20 0 0 0.2"}) +
+                           frame("id type x y z radius", {"2 2 21 0 0 0.2", "3 2 31 0 0 0.3", "1 1 11 0 0 0.1"});
+  points.color.types = {{"1", {1, 0, 0}}, {"2", {0, 0, 1}}};
+  EXPECT_EQ(load("a.dump", dump), "");
+  EXPECT_EQ(x(), (Numbers{10, 20, 30}));
+  EXPECT_EQ(points.radii, (Numbers{0.1, 0.2, 0.3}));
+  EXPECT_EQ(color(0), (Vec3d{1, 0, 0}));
+  EXPECT_EQ(color(2), (Vec3d{0, 0, 1}));
+  request.frame = 2;
+  EXPECT_EQ(load(), "");
+  EXPECT_EQ(x(), (Numbers{11, 21, 31}));
+  EXPECT_EQ(points.radii, (Numbers{0.1, 0.2, 0.3}));
+  EXPECT_EQ(color(0), (Vec3d{1, 0, 0}));
+}
+
+TEST_F(PointsLoadPoints, IdsNeedNotBeConsecutive) {
+  points.radius.value = 1;
+  EXPECT_EQ(load("a.dump", frame("id x y z", {"900 1 0 0", "-5 2 0 0", "70 3 0 0"})), "");
+  EXPECT_EQ(x(), (Numbers{2, 3, 1}));
+  EXPECT_EQ(load("b.dump", frame("id x y z", {"2 1 0 0", "1 2 0 0", "2 3 0 0", "0 4 0 0"})), "");
+  EXPECT_EQ(x(), (Numbers{4, 2, 1, 3})) << "equal ids stay in the order of the file";
+  points.select = "x != 2";
+  EXPECT_EQ(load("c.dump", frame("id x y z", {"3 1 0 0", "1 2 0 0", "2 3 0 0"})), "");
+  EXPECT_EQ(x(), (Numbers{3, 1})) << "selected rows in the order of their ids";
+}
+
+TEST_F(PointsLoadPoints, FilesWithoutIdsKeepTheirOrder) {
+  points.radius.value = 1;
+  EXPECT_EQ(load("a.csv", "x,y,z\n3,0,0\n1,0,0\n2,0,0\n"), "");
+  EXPECT_EQ(x(), (Numbers{3, 1, 2}));
+}
+
+TEST_F(PointsLoadPoints, Selection) {
+  points.select = "type == 2 && name == 'a'";
+  EXPECT_EQ(load("a.csv", kCsv), "");
+  EXPECT_EQ(x(), Numbers{3});
+  EXPECT_EQ(points.radii, Numbers{1});
+  points.select = "x > 0";
+  EXPECT_EQ(load(), "");
+  EXPECT_EQ(x().size(), 3u);
+  points.select = "1 > 2";
+  load();
+  EXPECT_TRUE(points.centers.empty()) << "a condition without columns is evaluated as well";
+}
+
+TEST_F(PointsLoadPoints, ASelectionThatMatchesNothingIsAWarning) {
+  points.select = "type == 3";
+  points.color.column = "type";
+  EXPECT_EQ(load("a.csv", kCsv), "warning points[0].select: selects none of the 3 particles\n");
+  EXPECT_TRUE(points.centers.empty());
+}
+
+TEST_F(PointsLoadPoints, AFrameWithoutParticlesIsAWarning) {
+  EXPECT_EQ(load("a.dump", frame("id x y z radius", {})), "warning points[0].file: the frame has no particles\n");
+  points.select = "x > 0";
+  EXPECT_EQ(load(), "warning points[0].file: the frame has no particles\n");
+}
+
+TEST_F(PointsLoadPoints, FaultsOfASelectionAreLocated) {
+  points.select = "type == 2 && siz > 1";
+  EXPECT_EQ(
+      load("a.csv", kCsv),
+      "error points[0].select: at character 14: selection: unknown column siz; columns are x, y, z, radius, type, "
+      "name\n");
+  EXPECT_TRUE(points.centers.empty());
+}
+
+TEST_F(PointsLoadPoints, UnknownColumnsAreReportedTogether) {
+  points.radius.column = "raduis";
+  points.color.column = "charge";
+  const std::string text = load("a.csv", kCsv);
+  EXPECT_NE(text.find("error points[0].radius.column: the file has no column `raduis`; did you mean `radius`? its "
+                      "columns are x, y, z, radius, type, name\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("error points[0].color.column: the file has no column `charge`;"), std::string::npos) << text;
+}
+
+TEST_F(PointsLoadPoints, AMissingRadiusIsAnError) {
+  const std::string text = load("a.csv", "x,y,z\n1,2,3\n");
+  EXPECT_EQ(text.substr(0, 52), "error points[0].radius: the file has no radius; set ");
+  EXPECT_TRUE(points.centers.empty());
+}
+
+TEST_F(PointsLoadPoints, UnusedColumnsAreListed) {
+  points.select = "type > 0";
+  load("a.csv", kCsv);
+  EXPECT_EQ(points.unused, std::vector<std::string>{"name"});
+}
+
+/// Twelve rows without usable numbers, one good row in front.
+std::string bad_rows() {
+  std::string out = "x,y,z,radius\n0,0,0,1\n";
+  for (int i = 0; i < 10; ++i) out += std::to_string(i) + ",nan,0,1\n";
+  return out + "10,0,inf,1\n11,0,0,0\n12,0,0,nan\n";
+}
+
+TEST_F(PointsLoadPoints, BadRowsAreErrors) {
+  write("a.csv", bad_rows());
+  const std::vector<scene::SceneDiagnostic> diagnostics = load_points(request, points);
+  ASSERT_EQ(diagnostics.size(), scene::kMaxReported + 1) << text_of(diagnostics);
+  for (const auto& d : diagnostics) EXPECT_EQ(d.kind, base::ErrorKind::kBadData);
+  EXPECT_EQ(diagnostics[0].text, "row 2 of a.csv has center [0, nan, 0] and radius 1");
+  EXPECT_EQ(diagnostics.back().text,
+            "13 of 14 rows have coordinates that are not finite or no radius; `skip_bad = true`, or --skip-bad, leaves "
+            "them out");
+  EXPECT_TRUE(points.centers.empty());
+}
+
+TEST_F(PointsLoadPoints, BadRowsCanBeSkipped) {
+  points.skip_bad = true;
+  points.color.column = "x";
+  EXPECT_EQ(
+      load("a.csv", bad_rows()),
+      "warning points[0].skip_bad: 13 of 14 rows were left out: their coordinates are not finite, or they have no "
+      "radius\n");
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{0, 0, 0}}));
+  EXPECT_EQ(points.radii, Numbers{1});
+  EXPECT_EQ(points.colors.size(), 1u);
+  EXPECT_EQ(load("b.csv", "x,y,z,radius\n1,0,0,1\nnan,0,0,2\n3,0,0,3\n").substr(0, 40),
+            "warning points[0].skip_bad: 1 of 3 rows ");
+  EXPECT_EQ(x(), (Numbers{1, 3}));
+  EXPECT_EQ(points.radii, (Numbers{1, 3}));
+  EXPECT_EQ(load("c.csv", "x,y,z,radius\nnan,0,0,2\n"),
+            "warning points[0].skip_bad: 1 of 1 rows were left out: their coordinates are not finite, or they have no "
+            "radius\n")
+      << "no selection is to blame";
+}
+
+TEST_F(PointsLoadPoints, BadRowsThatAreNotSelectedDoNotMatter) {
+  points.select = "y == 0";
+  EXPECT_EQ(load("a.csv", "x,y,z,radius\n1,0,0,1\n2,nan,0,1\n"), "");
+  EXPECT_EQ(x(), Numbers{1});
+}
+
+TEST_F(PointsLoadPoints, FrameOfTheFile) {
+  const std::string dump = frame("x y z radius", {"1 0 0 1"}) + frame("x y z radius", {"2 0 0 1"});
+  points.frame = 2;
+  request.frame = 7;
+  EXPECT_EQ(load("a.dump", dump), "");
+  EXPECT_EQ(x(), Numbers{2}) << "the scene's choice, not the rendered frame";
+  points.frame = 3;
+  EXPECT_EQ(load(), "error points[0].frame: there is no frame 3; a.dump has 2 frames\n");
+  points.frame.reset();
+  request.frame = 3;
+  EXPECT_EQ(load(), "error points[0].file: there is no frame 3; a.dump has 2 frames\n");
+  request.frame = 0;
+  EXPECT_EQ(load(), "error points[0].file: there is no frame 0; a.dump has 2 frames\n");
+  EXPECT_TRUE(points.centers.empty());
+}
+
+TEST_F(PointsLoadPoints, AFileOfOneFrameIsTheSameInAFilm) {
+  request.frame = 48;
+  EXPECT_EQ(load("a.csv", kCsv), "");
+  EXPECT_EQ(points.centers.size(), 3u);
+  points.frame = 2;
+  EXPECT_EQ(load(), "error points[0].frame: there is no frame 2; a.csv has 1 frame\n");
+}
+
+TEST_F(PointsLoadPoints, ASequenceHasOneFramePerFile) {
+  request.frame = 48;
+  request.is_sequence = true;
+  EXPECT_EQ(load("a.0048.dump", frame("x y z radius", {"1 0 0 1"}) + frame("x y z radius", {"2 0 0 1"})), "");
+  EXPECT_EQ(x(), Numbers{1});
+}
+
+TEST_F(PointsLoadPoints, Unwrap) {
+  points.unwrap = true;
+  points.radius.value = 1;
+  EXPECT_EQ(load("a.dump", frame("x y z ix iy iz", {"1 2 3 1 -1 2"})), "");
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{11, -18, 63}}));
+  EXPECT_EQ(load("b.dump", frame("xs ys zs ix iy iz", {"0.5 0.5 0.5 1 0 0"})), "");
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{15, 10, 15}}));
+  const std::string missing =
+      "error points[0].unwrap: the file has no box, or no wrapped coordinates with counts of periodic images, such as "
+      "ix, iy and iz\n";
+  EXPECT_EQ(load("c.dump", frame("x y z", {"1 2 3"})), missing);
+  EXPECT_EQ(load("d.dump", frame("xu yu zu ix iy iz", {"1 2 3 1 0 0"})), missing)
+      << "unwrapped coordinates are not moved again";
+}
+
+TEST_F(PointsLoadPoints, Replicate) {
+  points.replicate = {2, 1, 2};
+  points.color.column = "radius";
+  EXPECT_EQ(load("a.dump", frame("x y z radius", {"1 2 3 0.5", "4 5 6 1"})), "");
+  EXPECT_EQ(points.centers,
+            (std::vector<Vec3d>{
+                {1, 2, 3}, {4, 5, 6}, {11, 2, 3}, {14, 5, 6}, {1, 2, 33}, {4, 5, 36}, {11, 2, 33}, {14, 5, 36}}));
+  EXPECT_EQ(points.colors, (std::vector<std::uint16_t>{0, 255, 0, 255, 0, 255, 0, 255}));
+  EXPECT_EQ(load("b.csv", kCsv), "error points[0].replicate: the file has no periodic box\n");
+}
+
+/// Two atoms in two chains. Assembly 1 is chain A twice, and chain B once.
+std::string protein() {
+  const auto matrix = [](int row, int serial, double shift) {
+    char line[96];
+    std::snprintf(line, sizeof line, "REMARK 350   BIOMT%d %3d %9.6f %9.6f %9.6f     %10.5f\n", row, serial,
+                  row == 1 ? 1.0 : 0.0, row == 2 ? 1.0 : 0.0, row == 3 ? 1.0 : 0.0, row == 1 ? shift : 0);
+    return std::string(line);
+  };
+  const auto transform = [&](int serial, double shift) {
+    return matrix(1, serial, shift) + matrix(2, serial, shift) + matrix(3, serial, shift);
+  };
+  return "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n" + transform(1, 0) +
+         transform(2, 100) + "REMARK 350 APPLY THE FOLLOWING TO CHAINS: B\n" + transform(1, 50) +
+         "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
+         "ATOM      2  N   ALA B   1       4.000   5.000   6.000  1.00  0.00           N\nEND\n";
+}
+
+TEST_F(PointsLoadPoints, AssembliesOfChains) {
+  points.assembly = "1";
+  points.radius.element = "covalent";
+  points.color.element = "jmol";
+  EXPECT_EQ(load("a.pdb", protein()), "");
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{1, 2, 3}, {101, 2, 3}, {54, 5, 6}}));
+  EXPECT_EQ(points.radii, (Numbers{0.76, 0.76, 0.71}));
+  EXPECT_EQ(points.colors[0], points.colors[1]);
+  EXPECT_NE(points.colors[0], points.colors[2]);
+  points.select = "chain == 'B'";
+  EXPECT_EQ(load(), "");
+  EXPECT_EQ(x(), Numbers{54});
+  points.select.clear();
+  points.assembly = "7";
+  EXPECT_EQ(load(), "error points[0].assembly: the file has no assembly 7; it has 1\n");
+}
+
+TEST_F(PointsLoadPoints, TransformThenClip) {
+  points.transform.scale = 2;
+  points.transform.translate = {10, 0, 0};
+  points.clip[0] = scene::Interval{13, 14};
+  EXPECT_EQ(load("a.csv", kCsv), "");
+  EXPECT_EQ(x(), Numbers{14});
+  EXPECT_EQ(points.radii, Numbers{0.5});
+}
+
+TEST_F(PointsLoadPoints, ColorsByMap) {
+  points.color.column = "radius";
+  points.color.map = "fast";
+  EXPECT_EQ(load("a.csv", kCsv), "");
+  EXPECT_EQ(points.palette_rec709, 256u);
+  ASSERT_TRUE(points.color_range);
+  EXPECT_EQ(points.color_range->low, 0.25);
+  EXPECT_EQ(points.color_range->high, 1);
+  EXPECT_EQ(color(1), linear_from_srgb(find_color_map("fast")->knots.front().srgb));
+  EXPECT_EQ(color(2), linear_from_srgb(find_color_map("fast")->knots.back().srgb));
+}
+
+TEST_F(PointsLoadPoints, ColorsOfTextsAreNamed) {
+  points.color.column = "name";
+  points.color.map = "tab10";
+  EXPECT_EQ(load("a.csv", kCsv), "");
+  EXPECT_EQ(points.color_names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(points.colors, (std::vector<std::uint16_t>{0, 1, 0}));
+}
+
+TEST_F(PointsLoadPoints, ColorsOfAPly) {
+  points.color.rgb = true;
+  EXPECT_EQ(load("a.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+                 "property float radius\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
+                 "0 0 0 1 255 0 0\n1 0 0 1 188 188 188\n"),
+            "");
+  EXPECT_EQ(color(0), (Vec3d{1, 0, 0}));
+  EXPECT_NEAR(color(1).x, 0.5, 0.003) << "sRGB 188 is half the light";
+}
+
+TEST_F(PointsLoadPoints, MaterialsOfAPly) {
+  const auto ply = [](const std::string& type, const std::string& row) {
+    return "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+           "property float radius\nproperty " +
+           type + " material\nend_header\n0 0 0 1 " + row + "\n";
+  };
+  request.materials = 2;
+  EXPECT_EQ(load("a.ply", ply("uchar", "1")), "");
+  EXPECT_EQ(points.materials, std::vector<std::uint32_t>{1});
+  const std::string expected = "error points[0].file: row 1 of a.ply has material ";
+  EXPECT_EQ(load("a.ply", ply("uchar", "2")), expected + "2; the scene has 2, counted from 0\n");
+  EXPECT_EQ(load("a.ply", ply("int", "-1")), expected + "-1; the scene has 2, counted from 0\n");
+  EXPECT_EQ(load("a.ply", ply("float", "0.5")), expected + "0.5; the scene has 2, counted from 0\n");
+  EXPECT_TRUE(points.centers.empty() && points.materials.empty());
+}
+
+TEST_F(PointsLoadPoints, AColumnOfMaterialsElsewhereIsOrdinary) {
+  EXPECT_EQ(load("a.csv", "x,y,z,radius,material\n0,0,0,1,99\n"), "");
+  EXPECT_TRUE(points.materials.empty());
+}
+
+TEST_F(PointsLoadPoints, SpeedIsDerivedFromTheVelocity) {
+  points.radius.value = 1;
+  points.color.column = "speed";
+  points.select = "speed > 1";
+  EXPECT_EQ(load("a.dump", frame("x y z vx vy vz", {"1 0 0 0 0 0.5", "2 0 0 2 3 6", "3 0 0 0 2 0"})), "");
+  EXPECT_EQ(x(), (Numbers{2, 3}));
+  ASSERT_TRUE(points.color_range);
+  EXPECT_EQ(points.color_range->low, 2);
+  EXPECT_EQ(points.color_range->high, 7);
+}
+
+class PointsLoadPointsMemory : public PointsFile {
+ protected:
+  /// The message of a lack of memory; empty if there is enough.
+  std::string shortage() {
+    try {
+      EXPECT_EQ(load(), "");
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory);
+      EXPECT_TRUE(points.centers.empty() && points.radii.empty());
+      return error.what();
+    }
+    return {};
+  }
+};
+
+TEST_F(PointsLoadPointsMemory, LimitsRowsAndSpheres) {
+  write("a.csv", kCsv);
+  request.memory_limit = 100;
+  EXPECT_NE(shortage().find("a.csv: 3 rows and 3 spheres need "), std::string::npos) << shortage();
+  request.memory_limit = 10'000;
+  EXPECT_EQ(shortage(), "");
+  request.memory_limit = 0;
+  EXPECT_EQ(shortage(), "") << "no limit";
+}
+
+TEST_F(PointsLoadPointsMemory, CopiesAreCountedBeforeTheyAreMade) {
+  write("a.dump", frame("x y z radius", {"1 0 0 1", "2 0 0 1"}));
+  request.memory_limit = 1 << 20;
+  points.replicate = {1000, 1000, 1000};
+  EXPECT_NE(shortage().find(" 2000000000 spheres need "), std::string::npos) << shortage();
+  points.replicate = {3, 1, 1};
+  EXPECT_EQ(shortage(), "");
+  EXPECT_EQ(points.centers.size(), 6u);
+}
+
+TEST_F(PointsLoadPointsMemory, ASelectionReducesTheNeed) {
+  std::vector<std::string> rows(100, "1 0 0 1");
+  rows[7] = "2 0 0 1";
+  write("a.dump", frame("x y z radius", rows));
+  points.replicate = {100, 1, 1};
+  request.memory_limit = 100'000;
+  EXPECT_NE(shortage(), "");
+  points.select = "x == 2";
+  EXPECT_EQ(shortage(), "");
+  EXPECT_EQ(points.centers.size(), 100u);
+  points.centers.clear();
+  points.radii.clear();
+  points.select = "x == 1";
+  EXPECT_NE(shortage().find("100 rows and 9900 spheres need "), std::string::npos) << shortage();
+}
+
+TEST_F(PointsLoadPointsMemory, ChainsReduceTheNeed) {
+  points.radius.value = 1;
+  points.assembly = "1";
+  write("a.pdb", protein());
+  request.memory_limit = 2000;
+  EXPECT_EQ(shortage(), "");
+  EXPECT_EQ(points.centers.size(), 3u);
+}
+
+TEST_F(PointsLoadPoints, FaultsOfTheFileAreThrown) {
+  write("a.csv", kCsv);
+  request.file = folder_ / "missing.csv";
+  try {
+    load();
+    ADD_FAILURE();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kMissingInput);
+  }
+  EXPECT_THROW(load("b.csv", "x,y,z,radius\n1,2,three,1\n"), base::Error);
+}
+
+}  // namespace
+}  // namespace orrery::points

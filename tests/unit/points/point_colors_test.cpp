@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/point_colors.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "base/error.h"
+#include "points/elements.h"
+#include "points_file.h"
+
+namespace orrery::points {
+namespace {
+
+using Indices = std::vector<std::uint16_t>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A table of one column.
+data::Table table_of(data::Values values) {
+  data::Table out;
+  out.columns = {{"c", std::move(values)}};
+  out.rows = out.columns[0].size();
+  return out;
+}
+
+/// The colours of all rows of a table, by keys that name column `c`.
+class PointsPointColors : public testing::Test {
+ protected:
+  PointsPointColors() { keys.column = "c"; }
+
+  PointColors colors(const data::Table& table) { return colors(table, Rows(table.rows)); }
+  PointColors colors(const data::Table& table, const Rows& rows) {
+    data::FrameInfo info;
+    for (const data::Column& column : table.columns) info.columns.push_back({column.name, column.type()});
+    info.roles = roles;
+    KeyFaults faults("points[0]");
+    const ColorSource source = color_source(info, keys, folder_.path(), faults);
+    PointColors out;
+    if (!faults.has_errors()) out = colors_of(table, rows, source, keys, faults);
+    diagnostics = text_of(faults);
+    EXPECT_LE(out.rec709, out.palette.size());
+    for (const std::uint16_t i : out.indices) EXPECT_LT(i, out.palette.size());
+    return out;
+  }
+  Vec3d color_of(const data::Table& table, std::size_t row) {
+    const PointColors all = colors(table);
+    return all.palette.at(all.indices.at(row));
+  }
+
+  scene::PointsColor keys;
+  data::Roles roles;
+  std::string diagnostics;
+  support::TempDir folder_;
+};
+
+void expect_near(Vec3d a, Vec3d b) { EXPECT_LT(math::length(a - b), 1e-9) << a.x << ' ' << a.y << ' ' << a.z; }
+
+/// sRGB bytes to linear Rec.709, by the definition of sRGB.
+Vec3d light(int r, int g, int b) {
+  const auto decoded = [](int byte) {
+    const double c = byte / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  };
+  return {decoded(r), decoded(g), decoded(b)};
+}
+
+TEST_F(PointsPointColors, NoneUnlessAKeyIsSet) {
+  keys.column.clear();
+  const PointColors none = colors(table_of(std::vector<double>{1, 2}));
+  EXPECT_TRUE(none.palette.empty() && none.indices.empty() && !none.range && none.names.empty());
+}
+
+/// Tables of colour maps are display values. A renderer that takes them for light shows pastel colours.
+TEST_F(PointsPointColors, PaletteIsDecodedToLight) {
+  keys.map = "viridis";
+  const PointColors out = colors(table_of(std::vector<double>{0, 1}));
+  ASSERT_EQ(out.palette.size(), 257u);
+  EXPECT_EQ(out.rec709, 256u) << "the colour of NaN is in the scene's space";
+  // The published ends of viridis: #440154 and #fde725.
+  EXPECT_LT(math::length(out.palette[0] - light(0x44, 0x01, 0x54)), 0.005);
+  EXPECT_LT(math::length(out.palette[255] - light(0xfd, 0xe7, 0x25)), 0.02);
+  EXPECT_LT(out.palette[0].x, 0.07) << "0.27 if it is not decoded";
+}
+
+TEST_F(PointsPointColors, ADerivedRangeIsThatOfTheRows) {
+  const data::Table table = table_of(std::vector<double>{-100, 2, 4, 6, kInfinity, kNan});
+  const PointColors out = colors(table, Rows(std::vector<std::uint32_t>{1, 2, 3, 4, 5}));
+  ASSERT_TRUE(out.range);
+  EXPECT_EQ(out.range->low, 2);
+  EXPECT_EQ(out.range->high, 6);
+  EXPECT_EQ(out.indices, (Indices{0, 128, 255, 255, 256}));
+}
+
+TEST_F(PointsPointColors, AGivenRangeClampsValues) {
+  keys.range = scene::Interval{0, 255};
+  const PointColors out = colors(table_of(std::vector<double>{-3, 0, 0.4, 0.6, 100, 254.6, 1e9, -kInfinity}));
+  EXPECT_EQ(out.range->high, 255);
+  EXPECT_EQ(out.indices, (Indices{0, 0, 0, 1, 100, 255, 255, 0}));
+}
+
+TEST_F(PointsPointColors, NanHasItsOwnColor) {
+  keys.nan_color = {0.1, 0.2, 0.3};
+  expect_near(color_of(table_of(std::vector<float>{1, NAN, 2}), 1), {0.1, 0.2, 0.3});
+  const PointColors all = colors(table_of(std::vector<double>{kNan, kNan}));
+  EXPECT_FALSE(all.range) << "there is no range of no numbers";
+  expect_near(all.palette[all.indices[0]], {0.1, 0.2, 0.3});
+}
+
+TEST_F(PointsPointColors, AConstantColumnHasTheMiddleColor) {
+  EXPECT_EQ(colors(table_of(std::vector<std::int32_t>{7, 7, 7})).indices, (Indices{128, 128, 128}));
+}
+
+TEST_F(PointsPointColors, RangesOfAnyMagnitude) {
+  const double huge = std::numeric_limits<double>::max(), tiny = std::numeric_limits<double>::denorm_min();
+  EXPECT_EQ(colors(table_of(std::vector<double>{-huge, 0, huge})).indices, (Indices{0, 128, 255}));
+  EXPECT_EQ(colors(table_of(std::vector<double>{0, tiny, 2 * tiny})).indices, (Indices{0, 128, 255}));
+  EXPECT_EQ(colors(table_of(std::vector<double>{1e15, 1e15 + 1})).indices, (Indices{0, 255}));
+}
+
+TEST_F(PointsPointColors, NoRows) {
+  EXPECT_TRUE(colors(table_of(std::vector<double>{})).indices.empty());
+  keys.map = "tab10";
+  EXPECT_TRUE(colors(table_of(std::vector<double>{})).indices.empty());
+  keys.map = "viridis";
+  EXPECT_TRUE(colors(table_of(data::Words{})).indices.empty());
+  EXPECT_EQ(diagnostics, "");
+}
+
+/// Films and selections show the same colour of a type, whichever types occur.
+TEST_F(PointsPointColors, CategoriesOfIntegersHaveFixedColors) {
+  keys.map = "tab10";
+  const std::vector<ColorMap::Knot>& knots = find_color_map("tab10")->knots;
+  const PointColors out = colors(table_of(std::vector<std::int64_t>{3, 1, 11, 0, -9}));
+  EXPECT_EQ(out.names, (std::vector<std::string>{"-9", "0", "1", "3", "11"}));
+  EXPECT_EQ(out.rec709, 5u);
+  EXPECT_FALSE(out.range);
+  const std::size_t expected[] = {2, 0, 0, 9, 0};
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_EQ(out.palette[out.indices[i]], linear_from_srgb(knots[expected[i]].srgb)) << i;
+  EXPECT_EQ(color_of(table_of(std::vector<std::uint8_t>{3}), 0), linear_from_srgb(knots[2].srgb));
+}
+
+TEST_F(PointsPointColors, CategoriesOfFractionsAreNumbered) {
+  keys.map = "tab10";
+  const std::vector<ColorMap::Knot>& knots = find_color_map("tab10")->knots;
+  const PointColors out = colors(table_of(std::vector<double>{0.7, 0.5, kInfinity}));
+  EXPECT_EQ(out.palette[out.indices[0]], linear_from_srgb(knots[1].srgb));
+  EXPECT_EQ(out.palette[out.indices[1]], linear_from_srgb(knots[0].srgb));
+  colors(table_of(std::vector<double>{1, kInfinity, -kInfinity, 1e300}));
+  EXPECT_EQ(diagnostics, "");
+}
+
+TEST_F(PointsPointColors, CategoriesOfTextsDoNotDependOnTheSelection) {
+  keys.map = "tab10";
+  const std::vector<ColorMap::Knot>& knots = find_color_map("tab10")->knots;
+  const data::Table table = table_of(data::Words{{"S", "C", "N"}, {0, 1, 2}});
+  const PointColors out = colors(table, Rows(std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(out.palette, std::vector<Vec3d>{linear_from_srgb(knots[2].srgb)});
+  EXPECT_EQ(out.names, std::vector<std::string>{"S"});
+}
+
+TEST_F(PointsPointColors, NanIsACategoryOfItsOwn) {
+  keys.map = "tab10";
+  keys.nan_color = {0.1, 0.2, 0.3};
+  const PointColors out = colors(table_of(std::vector<double>{1, kNan, 2}));
+  EXPECT_EQ(out.palette.at(out.indices[1]), keys.nan_color);
+  EXPECT_EQ(out.rec709, 2u);
+  EXPECT_EQ(out.names, (std::vector<std::string>{"1", "2", "nan"}));
+}
+
+TEST_F(PointsPointColors, TextsBySpreadColorsOfAContinuousMap) {
+  const ColorMap& map = *find_color_map("viridis");
+  const PointColors out = colors(table_of(data::Words{{"b", "c", "a"}, {0, 1, 2}}));
+  EXPECT_EQ(out.palette, palette(map, 3));
+  EXPECT_EQ(out.indices, (Indices{1, 2, 0}));
+  EXPECT_FALSE(out.range);
+}
+
+TEST_F(PointsPointColors, TooManyCategories) {
+  std::vector<double> many(4097);
+  for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<double>(i);
+  keys.map = "tab10";
+  colors(table_of(many));
+  EXPECT_EQ(diagnostics, "error points[0].color.column: column `c` has more than 4096 distinct values\n");
+  many.pop_back();
+  colors(table_of(many));
+  EXPECT_EQ(diagnostics, "");
+}
+
+TEST_F(PointsPointColors, ElementsOfJmol) {
+  keys.column.clear();
+  keys.element = "jmol";
+  roles.element = "c";
+  const PointColors out = colors(table_of(data::Words{{"Qq", "O", "fe"}, {2, 1, 0, 1}}));
+  expect_near(out.palette.at(out.indices[0]), light(0xE0, 0x66, 0x33));
+  expect_near(out.palette.at(out.indices[1]), light(0xFF, 0x0D, 0x0D));
+  expect_near(out.palette.at(out.indices[2]), light(255, 20, 147));
+  EXPECT_EQ(out.rec709, out.palette.size());
+  EXPECT_EQ(out.names, (std::vector<std::string>{"O", "Qq", "fe"}));
+}
+
+TEST_F(PointsPointColors, TypesHaveTheScenesColors) {
+  keys.column.clear();
+  roles.type = "c";
+  keys.types = {{"2", {0.25, 0.5, 1}}, {"1", {0, 0, 1}}, {"7", {}}};
+  const PointColors out = colors(table_of(std::vector<std::int32_t>{2, 1, 2}));
+  EXPECT_EQ(out.palette.at(out.indices[0]), (Vec3d{0.25, 0.5, 1}));
+  EXPECT_EQ(out.palette.at(out.indices[1]), (Vec3d{0, 0, 1}));
+  EXPECT_EQ(out.rec709, 0u) << "authored colours are in the scene's space";
+  colors(table_of(std::vector<std::int32_t>{3, 1, 4}));
+  EXPECT_EQ(diagnostics, "error points[0].color.type: type `3`, `4` has no colour; add it\n");
+}
+
+/// A table with colours in the file's own range.
+template <class T>
+data::Table rgb_table(const std::vector<T>& r, const std::vector<T>& g, const std::vector<T>& b) {
+  data::Table out;
+  out.rows = r.size();
+  out.columns = {{"r", r}, {"g", g}, {"b", b}};
+  return out;
+}
+
+TEST_F(PointsPointColors, RgbIsDecoded) {
+  keys.column.clear();
+  keys.rgb = true;
+  roles.rgb = {"r", "g", "b"};
+  const PointColors out = colors(rgb_table<std::uint8_t>({255, 0, 128}, {0, 0, 64}, {10, 0, 32}));
+  expect_near(out.palette.at(out.indices[0]), light(255, 0, 10));
+  expect_near(out.palette.at(out.indices[1]), {0, 0, 0});
+  expect_near(out.palette.at(out.indices[2]), light(128, 64, 32));
+  EXPECT_EQ(out.rec709, 3u);
+  EXPECT_TRUE(out.names.empty());
+
+  roles.rgb_maximum = 65535;
+  expect_near(color_of(rgb_table<std::uint16_t>({65535}, {257 * 100}, {0}), 0), light(255, 100, 0));
+  roles.rgb_maximum = 1;
+  expect_near(color_of(rgb_table<float>({2, 0}, {-1, 0}, {NAN, 0}), 0), light(255, 0, 0));
+}
+
+TEST_F(PointsPointColors, ManyRgbColorsAreReduced) {
+  keys.column.clear();
+  keys.rgb = true;
+  roles.rgb = {"r", "g", "b"};
+  std::vector<std::uint8_t> r, g, b;
+  for (int i = 0; i < 256 * 256; ++i) {
+    r.push_back(static_cast<std::uint8_t>(i >> 8));
+    g.push_back(static_cast<std::uint8_t>(i & 255));
+    b.push_back(0);
+  }
+  EXPECT_EQ(colors(rgb_table(r, g, b)).palette.size(), 65'536u) << "as many as indices can distinguish";
+  r.push_back(200);
+  g.push_back(100);
+  b.push_back(50);
+  const PointColors out = colors(rgb_table(r, g, b));
+  EXPECT_EQ(out.palette.size(), 128u * 128 + 1);
+  expect_near(out.palette.at(out.indices.back()), light(201, 101, 51));
+  for (const Vec3d& c : {out.palette[out.indices[0]], out.palette[out.indices[256 * 255 + 255]]})
+    EXPECT_LE(std::min(math::length(c - light(0, 0, 0)), math::length(c - light(255, 255, 0))), 0.01);
+}
+
+TEST_F(PointsPointColors, MapFromAFile) {
+  support::write_bytes(folder_ / "two.txt", "0 0 0\n1 0 0\n");
+  keys.map = "two.txt";
+  const PointColors out = colors(table_of(std::vector<double>{0, 1}));
+  expect_near(out.palette[255], {1, 0, 0});
+  expect_near(out.palette[51], light(51, 0, 0));
+  keys.map = "missing.txt";
+  EXPECT_THROW(colors(table_of(std::vector<double>{0, 1})), base::Error);
+}
+
+TEST_F(PointsPointColors, UnknownNamesAreReportedWithThoseThatExist) {
+  const data::Table table = table_of(std::vector<double>{1});
+  keys.map = "viridi";
+  colors(table);
+  EXPECT_NE(
+      diagnostics.find("error points[0].color.map: there is no colour map \"viridi\"; did you mean `viridis`? maps "
+                       "are fast, "),
+      std::string::npos)
+      << diagnostics;
+  keys.map = "viridis";
+  keys.column = "charge";
+  colors(table);
+  EXPECT_EQ(diagnostics, "error points[0].color.column: the file has no column `charge`; its columns are c\n");
+  keys = {};
+  keys.element = "jmol";
+  colors(table);
+  EXPECT_EQ(diagnostics,
+            "error points[0].color.element: the file has no column of chemical elements; its columns are c\n");
+  keys = {};
+  keys.types = {{"1", {}}};
+  colors(table);
+  EXPECT_EQ(diagnostics, "error points[0].color.type: the file has no column of particle types; its columns are c\n");
+  keys = {};
+  keys.rgb = true;
+  colors(table);
+  EXPECT_EQ(diagnostics, "error points[0].color.rgb: the file has no colours; its columns are c\n");
+  keys.column = "c";
+  colors(table);
+  EXPECT_EQ(diagnostics, "error points[0].color: only one of `column`, `element`, `type` and `rgb` can be set\n");
+}
+
+}  // namespace
+}  // namespace orrery::points

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/point_radii.h"
+
+#include <gtest/gtest.h>
+
+#include "points/elements.h"
+#include "points_file.h"
+
+namespace orrery::points {
+namespace {
+
+using Kind = RadiusSource::Kind;
+using Radii = std::vector<double>;
+
+/// A file with columns of all roles.
+data::FrameInfo atoms() {
+  data::FrameInfo info;
+  info.columns = {{"x"}, {"diameter"}, {"element", data::ColumnType::kText}, {"type", data::ColumnType::kInt64}};
+  info.roles.radius = "diameter";
+  info.roles.radius_scale = 0.5;
+  info.roles.element = "element";
+  info.roles.type = "type";
+  return info;
+}
+data::Table table() {
+  data::Table out;
+  out.rows = 3;
+  out.columns = {{"diameter", std::vector<float>{1, 2, 4}},
+                 {"element", data::Words{{"O", "H", "Qq"}, {0, 1, 2}}},
+                 {"type", std::vector<std::int64_t>{2, 1, 12}}};
+  return out;
+}
+
+/// Radii of the listed rows, and diagnostics if there are any.
+Radii radii(const scene::PointsRadius& keys, std::vector<std::uint32_t> rows, std::string* diagnostics = nullptr) {
+  KeyFaults faults("points[0]");
+  const RadiusSource source = radius_source(atoms(), keys, faults);
+  const Radii out = radii_of(table(), Rows(std::move(rows)), source, keys, faults);
+  EXPECT_EQ(faults.has_errors(), diagnostics != nullptr);
+  const std::string text = text_of(faults);
+  if (diagnostics != nullptr)
+    *diagnostics = text;
+  else
+    EXPECT_EQ(text, "");
+  return out;
+}
+
+std::string fault(const data::FrameInfo& info, const scene::PointsRadius& keys) {
+  KeyFaults faults("points[0]");
+  radius_source(info, keys, faults);
+  return text_of(faults);
+}
+
+TEST(PointsPointRadii, ADiameterOfTheFileIsHalvedOnce) {
+  EXPECT_EQ(radii({}, {0, 1, 2}), (Radii{0.5, 1, 2}));
+  scene::PointsRadius keys;
+  keys.scale = 3;
+  EXPECT_EQ(radii(keys, {2}), Radii{6}) << "the scale multiplies the radius";
+}
+
+TEST(PointsPointRadii, AColumnIsScaledByTheKeyAlone) {
+  scene::PointsRadius keys;
+  keys.column = "diameter";
+  EXPECT_EQ(radii(keys, {0, 2}), (Radii{1, 4})) << "a named column contains radii, whatever its name";
+  keys.scale = 0.5;
+  EXPECT_EQ(radii(keys, {0, 2}), (Radii{0.5, 2}));
+}
+
+TEST(PointsPointRadii, ANumberOverridesTheFile) {
+  scene::PointsRadius keys;
+  keys.value = 0.75;
+  keys.scale = 2;
+  EXPECT_EQ(radii(keys, {2, 0}), (Radii{0.75, 0.75}));
+}
+
+TEST(PointsPointRadii, Elements) {
+  scene::PointsRadius keys;
+  keys.element = "vdw";
+  EXPECT_EQ(radii(keys, {1, 0}), (Radii{1.20, 1.52}));
+  keys.element = "covalent";
+  EXPECT_EQ(radii(keys, {1, 0}), (Radii{0.31, 0.66}));
+  keys.element = "ball";
+  keys.scale = 2;
+  EXPECT_EQ(radii(keys, {0}), Radii{2 * kBallScale * 1.52});
+}
+
+TEST(PointsPointRadii, UnknownElementsOfTheRowsAreReported) {
+  scene::PointsRadius keys;
+  keys.element = "vdw";
+  std::string text;
+  radii(keys, {0, 2}, &text);
+  EXPECT_EQ(
+      text,
+      "error points[0].radius.element: no radius is known for `Qq` in column `element`; leave these rows out with "
+      "`select`, or set another radius\n");
+}
+
+TEST(PointsPointRadii, Types) {
+  scene::PointsRadius keys;
+  keys.types = {{"1", 0.5}, {"12", 0.25}, {"2", 1.5}, {"99", 1}};
+  EXPECT_EQ(radii(keys, {0, 1, 2}), (Radii{1.5, 0.5, 0.25}));
+}
+
+TEST(PointsPointRadii, TypesWithoutARadiusAreReportedTogether) {
+  scene::PointsRadius keys;
+  keys.types = {{"1", 0.5}};
+  std::string text;
+  radii(keys, {0, 1, 2}, &text);
+  EXPECT_EQ(text, "error points[0].radius.type: type `2`, `12` has no radius; add it, e.g. `type = { 12 = 0.5 }`\n");
+  EXPECT_EQ(radii(keys, {1}), Radii{0.5}) << "types of other rows do not matter";
+}
+
+TEST(PointsPointRadii, ManyTypesWithoutARadiusAreShortened) {
+  data::Table many;
+  many.rows = 12;
+  many.columns = {{"type", std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}}};
+  scene::PointsRadius keys;
+  keys.types = {{"0", 1}};
+  KeyFaults faults("points[0]");
+  radii_of(many, Rows(12), radius_source(atoms(), keys, faults), keys, faults);
+  const std::string text = text_of(faults);
+  EXPECT_NE(text.find("`9`, `10` ... has no radius"), std::string::npos) << text;
+}
+
+TEST(PointsPointRadii, AColumnOfManyValuesHasNoTypes) {
+  data::Table many;
+  many.rows = 65'537;
+  std::vector<double> values(many.rows);
+  for (std::size_t i = 0; i < many.rows; ++i) values[i] = static_cast<double>(i);
+  many.columns = {{"type", std::move(values)}};
+  scene::PointsRadius keys;
+  keys.types = {{"0", 1}};
+  KeyFaults faults("points[0]");
+  radii_of(many, Rows(many.rows), radius_source(atoms(), keys, faults), keys, faults);
+  EXPECT_EQ(text_of(faults), "error points[0].radius: column `type` has more than 65536 distinct values\n");
+}
+
+TEST(PointsPointRadii, MissingColumnsAreReportedWithThoseThatExist) {
+  data::FrameInfo info;
+  info.columns = {{"x"}, {"siz"}, {"name", data::ColumnType::kText}};
+  EXPECT_EQ(
+      fault(info, {}),
+      "error points[0].radius: the file has no radius; set `radius` to a number, or to a column, an element table "
+      "or types, e.g. `radius = { column = \"size\", scale = 0.5 }`; its columns are x, siz, name\n");
+  scene::PointsRadius keys;
+  keys.column = "size";
+  EXPECT_EQ(fault(info, keys),
+            "error points[0].radius.column: the file has no column `size`; did you mean `siz`? its columns are x, siz, "
+            "name\n");
+  keys.column = "name";
+  EXPECT_EQ(fault(info, keys), "error points[0].radius.column: column `name` is text; it must be a number\n");
+  keys = {};
+  keys.element = "vdw";
+  EXPECT_EQ(
+      fault(info, keys),
+      "error points[0].radius.element: the file has no column of chemical elements; its columns are x, siz, name\n");
+  keys = {};
+  keys.types = {{"1", 1}};
+  EXPECT_EQ(fault(info, keys),
+            "error points[0].radius.type: the file has no column of particle types; its columns are x, siz, name\n");
+}
+
+TEST(PointsPointRadii, AlternativesExcludeEachOther) {
+  scene::PointsRadius keys;
+  keys.value = 1;
+  keys.element = "vdw";
+  const std::string expected = "error points[0].radius: only one of `column`, `element` and `type` can be set\n";
+  EXPECT_EQ(fault(atoms(), keys), expected);
+  keys.value.reset();
+  keys.column = "x";
+  EXPECT_EQ(fault(atoms(), keys), expected);
+  keys.element.clear();
+  keys.types = {{"1", 1}};
+  EXPECT_EQ(fault(atoms(), keys), expected);
+}
+
+}  // namespace
+}  // namespace orrery::points
