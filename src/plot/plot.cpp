@@ -166,7 +166,8 @@ class PlotMaker {
       color.column = by == "element" && !roles.element.empty() ? roles.element : by;
       if (options_.has_map) return;
       color.map = is_text(color.column) ? kCategoricalMap : kMap;
-      chose("map " + color.map, is_text(color.column) ? "colours for categories" : "no dark colours, which shading would hide");
+      chose("map " + color.map,
+            is_text(color.column) ? "colours for categories" : "no dark colours, which shading would hide");
     }
   }
 

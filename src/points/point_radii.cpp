@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "points/elements.h"
+#include "scene/value_text.h"
 
 namespace orrery::points {
 namespace {
@@ -62,6 +63,9 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
     out.kind = RadiusSource::Kind::kColumn;
     out.column = radius.column;
     require_column(info, radius.column, true, ".radius.column", faults);
+    if (radius.column == info.roles.radius && info.roles.radius_scale != 1 && radius.scale == 1)
+      faults.warning(".radius.column", "column `" + radius.column + "` holds diameters; set the scale to " +
+                                           scene::number_text(info.roles.radius_scale));
   } else if (!radius.element.empty()) {
     out.kind = RadiusSource::Kind::kElement;
     out.column = info.roles.element;

@@ -13,7 +13,7 @@ struct Case {
 
 const Case kCases[] = {
     {"", 2,
-     "orrery: no command given; use one of render, merge, submit, check, info, compare, bench, study, generate, "
+     "orrery: no command given; use one of render, plot, merge, submit, check, info, compare, bench, study, generate, "
      "develop, bake\n"
      "Try orrery --help.\n"},
     {"rendr good.toml", 2,

@@ -76,7 +76,7 @@ const Broken kBroken[] = {
     {"PointsOfAnUnknownVersion", "[[points]]\nfile = \"two.ply\"\nmaterial = \"grey\"\n", "", 65,
      "two.ply:2: error: unsupported format version `2.0`"},
     {"AnIncompletePointsLine", "[[points]]\nfile = \"lines.ply\"\nmaterial = \"grey\"\n", "", 65,
-     "lines.ply:9: error: vertex 0 of 2, `radius`: unexpected end of line"},
+     "lines.ply:9: error: has 3 values, not 4"},
     {"MorePointsThanDeclared", "[[points]]\nfile = \"more.ply\"\nmaterial = \"grey\"\n", "", 65,
      "more.ply:11: error: 9 bytes"},
     {"MissingPointsAndAnUnknownKey", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,
