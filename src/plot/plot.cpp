@@ -41,18 +41,19 @@ class PlotMaker {
     choose_frames();
     choose_radius();
     choose_color();
-    const std::string up = options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up;
+    const std::string up_name = options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up;
     if (options_.up.empty())
-      chose("up " + up, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
-    const ViewAxes axes = view_axes(options_.look_from, up);
+      chose("up " + up_name, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
+    const math::Vec3d up = axis_of(up_name);
+    const ViewAxes axes = view_axes(options_.look_from, up_name);
     if (options_.slice) slice(axes);
     ViewExtent extent(axes);
-    visit_frames(extent);
+    visit_frames(extent, up);
     if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: no frame has spheres");
     const scene::Camera camera = extent.camera(static_cast<double>(options_.width) / options_.height);
     chose("view " + options_.look_from + ", " + number_text(rounded(*camera.width)) + " wide",
           out_.frames.size() > 1 ? "fitted to the spheres of all frames" : "fitted to the spheres");
-    out_.text = scene_text({options_, out_.points, camera, axis_of(up), extent.center(), lowest_, extent.radius()});
+    out_.text = scene_text({options_, out_.points, camera, up, extent.center(), lowest_, extent.radius()});
     return std::move(out_);
   }
 
@@ -74,7 +75,7 @@ class PlotMaker {
     const int first = options_.frames.empty() ? 1 : options_.frames.front();
     file_ = data::open(file_of(first), open_options);
     const int frame = out_.points.frame ? *out_.points.frame : is_sequence_ ? 1 : first;
-    const bool exists = frame == 1 || frame <= file_->frame_count();  // load() reports the others
+    const bool exists = frame == 1 || (frame > 1 && frame <= file_->frame_count());  // load() reports the others
     info_ = file_->describe(exists ? frame - 1 : 0);
     points::add_derived_columns(info_);
     const std::string which = exists && frame > 1 ? " in frame " + std::to_string(frame) : "";
@@ -190,11 +191,10 @@ class PlotMaker {
 
   /// Reads all frames once: the view contains all of them, and one range of the colour map holds for all, or a film
   /// would flicker.
-  void visit_frames(ViewExtent& extent) {
+  void visit_frames(ViewExtent& extent, const math::Vec3d& up) {
     const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
     std::optional<scene::Interval> range;
     const std::vector<int> frames = visited_frames();
-    const math::Vec3d up = axis_of(options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up);
     for (const int frame : frames) {
       const scene::Points points = load(frame);
       extent.add(points);

@@ -22,7 +22,8 @@ std::optional<std::pair<double, double>> parse_angles(const std::string& text) {
   const auto [comma, error] = std::from_chars(begin, end, out.first);
   if (error != std::errc() || comma == end || *comma != ',') return {};
   const auto [stop, second_error] = std::from_chars(comma + 1, end, out.second);
-  if (second_error != std::errc() || stop != end || !std::isfinite(out.first) || std::abs(out.second) > 90) return {};
+  if (second_error != std::errc() || stop != end || !std::isfinite(out.first) || !(std::abs(out.second) <= 90))
+    return {};
   return out;
 }
 
@@ -110,8 +111,7 @@ scene::Camera ViewExtent::camera(double aspect) const {
   // Parallel rays may start anywhere in front of all spheres.
   camera.look_from = camera.look_at + axes_.back * (2 * radius());
   const double width = std::max(high_[0] - low_[0], (high_[1] - low_[1]) * aspect);
-  // Spheres that are tiny compared with their coordinates may have no extent.
-  camera.width = width > 0 ? width / (1 - 2 * kMargin) : 2;
+  camera.width = is_empty_ ? 2 : width / (1 - 2 * kMargin);
   return camera;
 }
 

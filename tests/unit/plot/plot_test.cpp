@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plot/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "format/read_scene.h"
+#include "points/color_map.h"
+#include "support/temp_dir.h"
+
+namespace orrery::plot {
+namespace {
+
+using math::Vec3d;
+
+/// A frame of a LAMMPS dump.
+std::string frame(const std::string& columns, const std::vector<std::string>& rows) {
+  std::string out = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + std::to_string(rows.size()) +
+                    "\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\nITEM: ATOMS " + columns + "\n";
+  for (const std::string& row : rows) out += row + "\n";
+  return out;
+}
+
+/// The corners of a cube of edge 4, one of them with a neighbour at distance 1.
+const std::string kCorners =
+    "x,y,z,mass\n0,0,0,1\n4,0,0,2\n0,4,0,3\n4,4,0,4\n0,0,4,5\n4,0,4,6\n0,4,4,7\n4,4,4,8\n1,0,0,9\n";
+
+class PlotPlot : public testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) {
+    support::write_bytes(folder_ / name, text);
+    options.file = folder_ / name;
+  }
+  void make() { made = make_plot(options, folder_.path()); }
+  void make(const std::string& name, const std::string& text) {
+    write(name, text);
+    make();
+  }
+  /// The scene that the plot writes, read at a frame.
+  scene::Scene read(int at = 1) {
+    format::ReadOptions read_options;
+    read_options.text = std::make_shared<const std::string>(made.text);
+    read_options.frame = at;
+    return format::read_scene(folder_ / "scene.toml", {}, read_options).scene;
+  }
+  bool chose(const std::string& choice) const {
+    return std::count(made.choices.begin(), made.choices.end(), choice) == 1;
+  }
+  std::string choices() const {
+    std::string out;
+    for (const std::string& choice : made.choices) out += choice + "\n";
+    return out;
+  }
+  /// The text of a usage error or of the first diagnostic.
+  std::string error() {
+    try {
+      make();
+    } catch (const base::Error& e) {
+      return e.diagnostics().empty() ? e.what() : e.diagnostics()[0].text;
+    }
+    return "no error";
+  }
+
+  PlotOptions options;
+  PlotScene made;
+  support::TempDir folder_;
+};
+
+TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
+  make("a.csv", kCorners);
+  EXPECT_EQ(choices(),
+            "CSV: 9 particles\n"
+            "radius 2: half the median distance to the nearest neighbour\n"
+            "no colour: light grey\n"
+            "up z: customary for simulations and scans\n"
+            "view iso, 20.8 wide: fitted to the spheres\n");
+  const scene::Scene scene = read();
+  ASSERT_EQ(scene.points.size(), 1u);
+  EXPECT_EQ(scene.points[0].file, "a.csv") << "relative to the scene file";
+  EXPECT_EQ(scene.points[0].radius.value, 2.0);
+  EXPECT_EQ(scene.points[0].centers.size(), 9u);
+  EXPECT_TRUE(scene.points[0].palette.empty());
+  EXPECT_EQ(scene.camera.projection, scene::Projection::kOrthographic);
+  EXPECT_EQ(scene.image.width, 1920);
+  EXPECT_EQ(scene.image.height, 1080);
+  EXPECT_EQ(scene.background.type, scene::BackgroundType::kConstant);
+  EXPECT_EQ(scene.background.color, (Vec3d{1, 1, 1}));
+  EXPECT_EQ(scene.color.view, "Un-tone-mapped") << "colours stay those of the map";
+  EXPECT_TRUE(scene.spheres.empty());
+  EXPECT_TRUE(made.warnings.empty());
+  EXPECT_TRUE(made.frames.empty());
+}
+
+TEST_F(PlotPlot, TheCameraOfTheSceneSeesAllSpheres) {
+  for (const auto& [width, height] : {std::pair{480, 270}, {100, 1000}}) {
+    options.width = width;
+    options.height = height;
+    make("a.csv", kCorners);
+    const scene::Scene scene = read();
+    const Vec3d back = math::normalized(scene.camera.look_from - scene.camera.look_at);
+    const Vec3d right = math::cross(scene.camera.up, back);
+    double reach = 0;
+    for (const Vec3d& c : scene.points[0].centers) {
+      const Vec3d at = c - scene.camera.look_at;
+      reach = std::max(
+          {reach, std::abs(math::dot(at, right)) + 2, (std::abs(math::dot(at, scene.camera.up)) + 2) * width / height});
+    }
+    EXPECT_NEAR(reach / (*scene.camera.width / 2), 0.9, 1e-9);
+  }
+}
+
+TEST_F(PlotPlot, RadiiOfTheFileAreKept) {
+  make("a.csv", "x,y,z,diameter\n0,0,0,3\n");
+  EXPECT_TRUE(chose("radius by diameter: a column of diameters, halved")) << choices();
+  EXPECT_EQ(read().points[0].radii, std::vector<double>{1.5}) << "halved once, although the scene is read again";
+  make("a.csv", "x,y,z,radius\n0,0,0,3\n");
+  EXPECT_TRUE(chose("radius by radius: a column of radii")) << choices();
+  EXPECT_EQ(read().points[0].radii, std::vector<double>{3});
+}
+
+TEST_F(PlotPlot, MoleculesHaveRadiiAndColorsOfTheirElements) {
+  make("a.pdb",
+       "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
+       "ATOM      2  N   ALA B   1       4.000   5.000   6.000  1.00  0.00           N\nEND\n");
+  EXPECT_TRUE(chose("radius vdw: van der Waals radii of the elements")) << choices();
+  EXPECT_TRUE(chose("colour by element: the file has no colours")) << choices();
+  EXPECT_TRUE(chose("up y: customary for molecules")) << choices();
+  const scene::Scene scene = read();
+  EXPECT_EQ(scene.points[0].radii, (std::vector<double>{1.70, 1.55}));
+  EXPECT_EQ(scene.points[0].color.element, "jmol");
+  EXPECT_EQ(scene.points[0].palette.size(), 2u);
+  options.points.radius.element = "ball";
+  make();
+  EXPECT_EQ(read().points[0].radii[0], 0.25 * 1.70);
+}
+
+TEST_F(PlotPlot, ColorsOfTheFileComeFirst) {
+  make("a.csv", "x,y,z,radius,type,red,green,blue\n0,0,0,1,1,255,0,0\n");
+  EXPECT_TRUE(chose("colour by rgb: the file's own")) << choices();
+  EXPECT_EQ(read().points[0].palette, (std::vector<Vec3d>{{1, 0, 0}}));
+}
+
+TEST_F(PlotPlot, TypesAreCategories) {
+  make("a.dump", frame("x y z radius type", {"1 0 0 1 2", "2 0 0 1 1"}));
+  EXPECT_TRUE(chose("colour by type: the file has no colours")) << choices();
+  const scene::Points points = read().points[0];
+  EXPECT_EQ(points.color.map, "tab10");
+  EXPECT_EQ(points.palette, points::palette(*points::find_color_map("tab10"), 2));
+  EXPECT_EQ(made.points.palette, points.palette) << "for the legend";
+  EXPECT_EQ(made.points.color_names, (std::vector<std::string>{"1", "2"}));
+  options.points.color.map = "viridis";
+  options.has_map = true;
+  make();
+  EXPECT_EQ(read().points[0].color.map, "viridis");
+}
+
+TEST_F(PlotPlot, ColorByAColumn) {
+  options.color_by = "mass";
+  make("a.csv", kCorners);
+  EXPECT_TRUE(chose("range 1:9: minimum and maximum")) << choices();
+  const scene::Points points = read().points[0];
+  EXPECT_EQ(points.color.column, "mass");
+  ASSERT_TRUE(points.color.range);
+  EXPECT_EQ(points.color.range->low, 1);
+  EXPECT_EQ(points.color.range->high, 9);
+  EXPECT_NE(choices().find("map " + points.color.map + ": "), std::string::npos) << "a chosen map is printed";
+  options.points.color.range = scene::Interval{0, 100};
+  options.points.color.map = "magma";
+  options.has_map = true;
+  make();
+  EXPECT_EQ(read().points[0].color.range->high, 100);
+  EXPECT_EQ(made.points.color_range->high, 100) << "for the legend";
+  EXPECT_EQ(read().points[0].color.map, "magma");
+  EXPECT_EQ(choices().find("map "), std::string::npos) << choices();
+  EXPECT_EQ(choices().find("range "), std::string::npos) << choices();
+  options.color_by = "none";
+  make();
+  EXPECT_FALSE(read().points[0].color.is_set());
+}
+
+TEST_F(PlotPlot, AConstantColumnHasNoRangeInTheScene) {
+  options.color_by = "mass";
+  make("a.csv", "x,y,z,mass\n0,0,0,5\n1,0,0,5\n");
+  EXPECT_FALSE(read().points[0].color.range) << "its ends must differ";
+  EXPECT_TRUE(chose("range 5:5: minimum and maximum")) << choices();
+}
+
+TEST_F(PlotPlot, OneRangeAndOneViewForAllFrames) {
+  options.color_by = "vx";
+  options.all_frames = true;
+  make("a.dump", frame("id x y z radius vx", {}) + frame("id x y z radius vx", {"1 0 0 0 1 5", "2 1 0 0 1 nan"}) +
+                     frame("id x y z radius vx", {"2 9 0 0 1 -3", "1 0 0 0 1 2"}));
+  EXPECT_EQ(made.frames, (std::vector<int>{1, 2, 3}));
+  EXPECT_TRUE(chose("frames 1-3: all of the file")) << choices();
+  EXPECT_TRUE(chose("range -3:5: minimum and maximum over all frames")) << choices();
+  const scene::Scene second = read(2), third = read(3);
+  EXPECT_EQ(second.points[0].color_range->low, -3);
+  EXPECT_EQ(third.points[0].color_range->high, 5);
+  EXPECT_EQ(second.points[0].centers.back().x, 1);
+  EXPECT_EQ(third.points[0].centers.back().x, 9);
+  EXPECT_EQ(second.camera.look_at, third.camera.look_at);
+  EXPECT_EQ(read(1).points[0].centers.size(), 0u) << "a frame without particles is rendered";
+}
+
+TEST_F(PlotPlot, ChosenFramesOnly) {
+  write("a.dump", frame("x y z radius vx", {"0 0 0 1 100"}) + frame("x y z radius vx", {"1 0 0 1 1"}) +
+                      frame("x y z radius vx", {"2 0 0 1 2"}));
+  options.color_by = "vx";
+  options.frames = {2, 3};
+  make();
+  EXPECT_EQ(made.points.color_range->high, 2);
+  EXPECT_EQ(made.frames, (std::vector<int>{2, 3}));
+  options.frames = {2, 4};
+  EXPECT_EQ(error(), "file: there is no frame 4; a.dump has 3 frames");
+  options.frames = {0};
+  EXPECT_EQ(error(), "file: there is no frame 0; a.dump has 3 frames");
+  options.frames.clear();
+  options.points.frame = 3;
+  make();
+  EXPECT_EQ(read().points[0].centers[0].x, 2);
+}
+
+TEST_F(PlotPlot, RadiusOfTheFirstFrameWithNeighbours) {
+  options.all_frames = true;
+  make("a.dump", frame("x y z", {}) + frame("x y z", {"0 0 0"}) + frame("x y z", {"0 0 0", "0 3 0"}) +
+                     frame("x y z", {"0 0 0", "0 1 0"}));
+  EXPECT_EQ(read(3).points[0].radius.value, 1.5) << choices();
+  options.all_frames = false;
+  make();
+  EXPECT_TRUE(chose("radius 1: no particle has a neighbour")) << choices();
+}
+
+TEST_F(PlotPlot, SequencesOfFiles) {
+  write("a.0001.csv", "x,y,z,radius\n1,0,0,1\n");
+  write("a.0002.csv", "x,y,z,radius\n5,0,0,1\n");
+  options.file = folder_ / "a.####.csv";
+  options.frames = {1, 2};
+  make();
+  EXPECT_EQ(read(2).points[0].centers[0].x, 5);
+  EXPECT_EQ(read(1).camera.look_at.x, 3);
+  options.frames.clear();
+  options.all_frames = true;
+  EXPECT_NE(error().find("--frames: `all` are the frames of one file"), std::string::npos) << error();
+}
+
+TEST_F(PlotPlot, NothingToSeeIsAWarning) {
+  make("a.dump", frame("x y z radius", {}));
+  ASSERT_EQ(made.warnings.size(), 1u);
+  EXPECT_EQ(made.warnings[0], "there is nothing to see: no frame has spheres");
+  options.ground = true;
+  make();
+  EXPECT_TRUE(read().points[0].centers.empty()) << "the scene is valid";
+}
+
+TEST_F(PlotPlot, SlicesRemoveTheSideOfTheCamera) {
+  write("a.csv", "x,y,z,radius\n0,0,-5,1\n0,0,0,1\n0,0,5,1\n");
+  const auto kept = [&] {
+    make();
+    std::vector<double> out;
+    for (const Vec3d& c : read().points[0].centers) out.push_back(c.z);
+    return out;
+  };
+  options.slice = std::pair{2, 1.0};
+  EXPECT_EQ(kept(), (std::vector<double>{-5, 0})) << "iso looks from above";
+  options.look_from = "-z";
+  EXPECT_EQ(kept(), (std::vector<double>{5}));
+  options.look_from = "30,-20";
+  EXPECT_EQ(kept(), (std::vector<double>{5}));
+}
+
+TEST_F(PlotPlot, KeysOfTheUserAreWritten) {
+  options.points.frame = 1;
+  options.points.radius.types = {{"1", 0.5}, {"2", 0.25}};
+  options.points.select = "type in [1, 2]";
+  options.points.replicate = {2, 1, 1};
+  options.points.unwrap = true;
+  options.points.skip_bad = true;
+  make("a.dump", frame("x y z type ix iy iz", {"1 0 0 1 0 0 0", "2 0 0 2 0 1 0", "nan 0 0 1 0 0 0", "5 5 5 3 0 0 0"}));
+  const scene::Points points = read().points[0];
+  EXPECT_EQ(points.frame, 1);
+  EXPECT_EQ(points.radius.types, options.points.radius.types);
+  EXPECT_EQ(points.select, options.points.select);
+  EXPECT_EQ(points.replicate, options.points.replicate);
+  EXPECT_TRUE(points.unwrap && points.skip_bad);
+  EXPECT_EQ(points.centers, (std::vector<Vec3d>{{1, 0, 0}, {2, 10, 0}, {11, 0, 0}, {12, 10, 0}}));
+  EXPECT_EQ(points.radii, (std::vector<double>{0.5, 0.25, 0.5, 0.25}));
+
+  options.points = {};
+  options.points.radius.column = "mass";
+  options.points.radius.scale = 0.5;
+  make("b.csv", kCorners);
+  EXPECT_EQ(read().points[0].radii.at(3), 2);
+}
+
+TEST_F(PlotPlot, StylesAndGround) {
+  write("a.csv", "x,y,z,radius\n0,0,2,1\n0,0,7,1\n");
+  options.style = Style::kFlat;
+  make();
+  EXPECT_EQ(read().render.shading, scene::Shading::kFlat);
+  options.style = Style::kNight;
+  options.ground = true;
+  make();
+  const scene::Scene scene = read();
+  EXPECT_LT(scene.background.color.x, 0.1);
+  ASSERT_EQ(scene.spheres.size(), 2u);
+  const scene::Sphere &ground = scene.spheres[0], &lamp = scene.spheres[1];
+  EXPECT_NEAR(ground.center.z + ground.radius, 1, 1e-9) << "touches the lowest sphere from below";
+  EXPECT_TRUE(std::holds_alternative<scene::Emitter>(scene.materials[lamp.material].model));
+  const Vec3d back = math::normalized(scene.camera.look_from - scene.camera.look_at);
+  EXPECT_GT(math::dot(lamp.center - scene.camera.look_from, back), lamp.radius) << "behind the camera";
+}
+
+TEST_F(PlotPlot, FileNamesCannotAddLines) {
+  make("a\"\n[image]\n.csv", kCorners);
+  EXPECT_EQ(read().points[0].file, "a\"\n[image]\n.csv");
+}
+
+TEST_F(PlotPlot, PathsAreRelativeToTheScene) {
+  write("a.csv", kCorners);
+  std::filesystem::create_directory(folder_ / "scenes");
+  made = make_plot(options, folder_ / "scenes");
+  EXPECT_EQ(made.points.file, "../a.csv");
+}
+
+TEST_F(PlotPlot, FaultsNameTheKey) {
+  write("a.csv", kCorners);
+  options.points.select = "mas > 1";
+  EXPECT_NE(error().find("select: at character 1: selection: unknown column mas"), std::string::npos) << error();
+  options.points.select.clear();
+  options.color_by = "mas";
+  EXPECT_NE(error().find("color.column: the file has no column `mas`; did you mean `mass`?"), std::string::npos)
+      << error();
+  options.color_by.clear();
+  options.look_from = "above";
+  EXPECT_NE(error().find("`above` is not a view"), std::string::npos) << error();
+}
+
+}  // namespace
+}  // namespace orrery::plot

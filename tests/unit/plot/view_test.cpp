@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plot/view.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "base/error.h"
+
+namespace orrery::plot {
+namespace {
+
+constexpr const char* kUps[] = {"x", "y", "z"};
+constexpr const char* kViews[] = {"iso", "+x",  "-x",    "+y",       "-y",    "+z",
+                                  "-z",  "0,0", "30,20", "-120,-70", "45,90", "1e3,-90"};
+
+double difference(Vec3d a, Vec3d b) { return math::length(a - b); }
+
+TEST(PlotView, AxesAreRightHandedUnitVectors) {
+  for (const char* up : kUps)
+    for (const char* view : kViews) {
+      const ViewAxes axes = view_axes(view, up);
+      for (const Vec3d& axis : {axes.right, axes.up, axes.back})
+        EXPECT_NEAR(math::length(axis), 1, 1e-14) << view << ' ' << up;
+      EXPECT_LT(difference(math::cross(axes.right, axes.up), axes.back), 1e-14) << view << ' ' << up;
+    }
+}
+
+TEST(PlotView, UpIsUpwards) {
+  for (const char* up : kUps)
+    for (const char* view : kViews) {
+      const ViewAxes axes = view_axes(view, up);
+      const double rise = math::dot(axes.up, axis_of(up));
+      const bool is_vertical = std::abs(math::dot(axes.back, axis_of(up))) > 1 - 1e-9;
+      if (is_vertical)
+        EXPECT_NEAR(rise, 0, 1e-9) << view << ' ' << up;
+      else
+        EXPECT_GT(rise, 0.3) << view << ' ' << up;
+      EXPECT_NEAR(math::dot(axes.right, axis_of(up)), 0, 1e-14) << "level, " << view << ' ' << up;
+    }
+}
+
+TEST(PlotView, NamedViewsLookFromTheirAxis) {
+  for (const char* up : kUps)
+    for (const char* axis : {"x", "y", "z"}) {
+      EXPECT_EQ(view_axes(std::string("+") + axis, up).back, axis_of(axis));
+      EXPECT_EQ(view_axes(std::string("-") + axis, up).back, axis_of(axis) * -1.0);
+    }
+}
+
+TEST(PlotView, ViewsWithZUp) {
+  const ViewAxes front = view_axes("0,0", "z");
+  EXPECT_EQ(front.back, (Vec3d{0, -1, 0}));
+  EXPECT_EQ(front.right, (Vec3d{1, 0, 0}));
+  EXPECT_EQ(front.up, (Vec3d{0, 0, 1}));
+  EXPECT_EQ(view_axes("-y", "z").right, front.right) << "the same as the named view";
+  EXPECT_LT(difference(view_axes("90,0", "z").back, {1, 0, 0}), 1e-14) << "azimuth turns to the right";
+  const ViewAxes above = view_axes("+z", "z"), below = view_axes("-z", "z");
+  EXPECT_EQ(above.up, (Vec3d{0, 1, 0})) << "a map: y is up";
+  EXPECT_EQ(above.right, (Vec3d{1, 0, 0}));
+  EXPECT_EQ(below.right, (Vec3d{1, 0, 0}));
+  EXPECT_LT(difference(view_axes("0,90", "z").up, above.up), 1e-14);
+}
+
+TEST(PlotView, IsoShowsThreeFacesEqually) {
+  for (const char* up : kUps) {
+    const Vec3d back = view_axes("iso", up).back;
+    for (const double part : {back.x, back.y, back.z}) EXPECT_NEAR(std::abs(part), std::sqrt(1.0 / 3), 1e-14);
+  }
+  EXPECT_LT(difference(view_axes("iso", "z").back, Vec3d{1, -1, 1} / std::sqrt(3.0)), 1e-14);
+  EXPECT_LT(difference(view_axes("iso", "y").back, Vec3d{1, 1, 1} / std::sqrt(3.0)), 1e-14);
+}
+
+TEST(PlotView, MalformedViewsAreUsageErrors) {
+  for (const char* view : {"", "isometric", "x", "+w", "+X", "30", "30,", ",20", "30,20,10", "30, 20", "30,91",
+                           "30,-90.5", "nan,0", "inf,0", "30,nan"}) {
+    try {
+      view_axes(view, "z");
+      ADD_FAILURE() << view;
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
+      EXPECT_NE(std::string(error.what()).find(std::string("`") + view + "` is not a view"), std::string::npos);
+    }
+  }
+}
+
+/// Spheres of different sizes away from the origin.
+scene::Points cloud() {
+  std::mt19937 random(5);
+  const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  scene::Points out;
+  for (int i = 0; i < 50; ++i) {
+    out.centers.push_back({100 + 8 * unit(), -50 + 3 * unit(), 5 * unit()});
+    out.radii.push_back((i % 7 == 0 ? -1 : 1) * (0.1 + 0.9 * unit()));  // negative: hollow glass
+  }
+  return out;
+}
+
+/// The largest extent of spheres from the centre of the image, in half widths and half heights of the image.
+struct Reach {
+  double left = -2, right = -2, bottom = -2, top = -2;
+};
+Reach reach_of(const scene::Points& points, const scene::Camera& camera, double aspect) {
+  const Vec3d back = math::normalized(camera.look_from - camera.look_at);
+  const Vec3d right = math::cross(camera.up, back);
+  const double half = *camera.width / 2;
+  Reach out;
+  for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    const Vec3d at = points.centers[i] - camera.look_at;
+    const double r = std::abs(points.radii[i]), x = math::dot(at, right), y = math::dot(at, camera.up);
+    out.left = std::max(out.left, (r - x) / half);
+    out.right = std::max(out.right, (r + x) / half);
+    out.bottom = std::max(out.bottom, (r - y) / half * aspect);
+    out.top = std::max(out.top, (r + y) / half * aspect);
+    EXPECT_GT(math::dot(camera.look_from - points.centers[i], back), r) << "in front of the camera";
+  }
+  return out;
+}
+
+TEST(PlotView, TheCameraFitsTheSpheresWithAMargin) {
+  const scene::Points points = cloud();
+  constexpr double kInside = 0.9;  // 5 % of the image on each side
+  for (const double aspect : {16.0 / 9, 1.0, 0.2, 9.0})
+    for (const char* view : kViews) {
+      const ViewAxes axes = view_axes(view, "z");
+      ViewExtent extent(axes);
+      extent.add(points);
+      const scene::Camera camera = extent.camera(aspect);
+      EXPECT_EQ(camera.projection, scene::Projection::kOrthographic);
+      const Reach reach = reach_of(points, camera, aspect);
+      const double wide = std::max(reach.left, reach.right), high = std::max(reach.bottom, reach.top);
+      EXPECT_NEAR(std::max(wide, high), kInside, 1e-12) << view << ' ' << aspect;
+      // The spheres are in the middle of the image.
+      EXPECT_NEAR(reach.left, reach.right, 1e-12);
+      EXPECT_NEAR(reach.bottom, reach.top, 1e-12);
+    }
+}
+
+TEST(PlotView, ExtentsOfFramesAreJoined) {
+  const ViewAxes axes = view_axes("+z", "y");
+  ViewExtent extent(axes);
+  EXPECT_TRUE(extent.is_empty());
+  extent.add({});
+  EXPECT_TRUE(extent.is_empty());
+  EXPECT_GT(*extent.camera(1).width, 0) << "a camera without spheres is valid";
+  scene::Points points;
+  points.centers = {{10, 0, 0}};
+  points.radii = {1};
+  extent.add(points);
+  EXPECT_FALSE(extent.is_empty());
+  EXPECT_EQ(extent.center(), (Vec3d{10, 0, 0}));
+  EXPECT_NEAR(*extent.camera(1).width, 2 / 0.9, 1e-12);
+  EXPECT_NEAR(extent.radius(), std::sqrt(3.0), 1e-12);
+  points.centers = {{14, 0, 0}};
+  extent.add(points);
+  EXPECT_EQ(extent.center(), (Vec3d{12, 0, 0}));
+  EXPECT_NEAR(*extent.camera(1).width, 6 / 0.9, 1e-12);
+}
+
+}  // namespace
+}  // namespace orrery::plot
