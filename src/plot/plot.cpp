@@ -32,6 +32,7 @@ class PlotMaker {
  public:
   PlotMaker(const PlotOptions& options, const std::filesystem::path& folder) : options_(options), folder_(folder) {
     out_.points = options.points;
+    out_.points.material_column = "";  // the scene of a plot has one material
     out_.points.file = folder.empty() ? options.file : std::filesystem::proximate(options.file, folder);
     is_sequence_ = base::with_frame(options.file.string(), 1) != options.file.string();
   }

@@ -50,7 +50,8 @@ std::string color_text(const scene::PointsColor& color) {
 }
 
 std::string points_text(const scene::Points& points) {
-  std::string out = "[[points]]\nfile = " + string_text(points.file.string()) + "\nmaterial = \"matte\"\n";
+  std::string out =
+      "[[points]]\nfile = " + string_text(points.file.string()) + "\nmaterial = \"matte\"\nmaterial_column = \"\"\n";
   if (points.frame) out += "frame = " + std::to_string(*points.frame) + "\n";
   if (points.component) out += "component = " + std::to_string(*points.component) + "\n";
   out += radius_text(points.radius) + color_text(points.color);

@@ -98,7 +98,7 @@ class Loader {
     if (points_.unwrap) plan_unwrap();
     if (file_->format() == data::Format::kPly)
       for (const data::ColumnInfo& column : info_.columns)
-        if (column.name == "material") need(material_ = column.name);
+        if (column.name == points_.material_column) need(material_ = column.name);
     for (const data::ColumnInfo& column : info_.columns)
       if (!column.is_derived && std::find(columns_.begin(), columns_.end(), column.name) == columns_.end())
         points_.unused.push_back(column.name);

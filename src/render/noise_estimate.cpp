@@ -42,6 +42,16 @@ float relative(float variance, float light) {
   return std::min(variance / (shown * shown), kLargestError);
 }
 
+/// Whether no pixel of a block has any variance, as where only a constant background is visible. Such blocks need no
+/// guide: all their errors are 0.
+bool is_noiseless(const PixelStatistics& s, const PixelBlock& b) {
+  for (int y = b.y; y < b.y + b.height; ++y) {
+    const float* const row = s.variance.data() + s.at(b.x, y);
+    if (std::any_of(row, row + b.width, [](float v) { return v != 0; })) return false;
+  }
+  return true;
+}
+
 /// Errors of single samples of all pixels except one class's, and their sums.
 class ErrorsOfOthers {
  public:
@@ -59,9 +69,12 @@ class ErrorsOfOthers {
         across_((s.width + kCell - 1) / kCell),
         down_((s.height + kCell - 1) / kCell),
         values_(s.samples.size()),
-        cells_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {}
+        cells_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)),
+        wide_(cells_.size()) {}
 
   /// Computes the errors of a block, whose sides are whole cells except at the image's border.
+  ///
+  /// `guide`    radiance of the block's pixels; empty: the block is noiseless
   void fill(const PixelBlock& b, const std::vector<float>& guide, int excluded_class) {
     for (int y = b.y; y < b.y + b.height; y += kCell)
       for (int x = b.x; x < b.x + b.width; x += kCell) cell(x / kCell, y / kCell) = {};
@@ -70,7 +83,8 @@ class ErrorsOfOthers {
       for (int x = b.x; x < b.x + b.width; ++x, ++i) {
         const std::size_t at = s_.at(x, y);
         const bool is_excluded = class_of(x, y) == excluded_class;
-        values_[at] = is_excluded ? 0 : relative(s_.variance[at] * static_cast<float>(s_.samples[at]), guide[i]);
+        values_[at] =
+            is_excluded || guide.empty() ? 0 : relative(s_.variance[at] * static_cast<float>(s_.samples[at]), guide[i]);
         if (is_excluded) continue;
         const auto v = static_cast<double>(values_[at]);
         Sums& c = cell(x / kCell, y / kCell);
@@ -81,12 +95,22 @@ class ErrorsOfOthers {
     }
   }
 
+  /// Adds up the windows of cells of a row of cells; after the errors of all blocks are computed.
+  void add_up_windows(int row) {
+    for (int x = 0; x < across_; ++x) {
+      const auto at = static_cast<std::size_t>(row * across_ + x);
+      wide_[at] = of_cells(x, row, 1);
+      if (!wide_[at].is_enough()) wide_[at] = of_cells(x, row, 4);
+    }
+  }
+  int cell_rows() const { return down_; }
+
   /// The mean around a pixel of the excluded class, over the smallest window in which enough pixels contribute. If a
   /// few pixels of a wide window have nearly all of its error, any pixel may be another of them, so the wide mean is a
   /// lower bound.
   float around(int x, int y) const {
-    Sums wide = of_cells(x, y, 1);
-    if (!wide.is_enough()) wide = of_cells(x, y, 4);
+    const Sums& wide = wide_[static_cast<std::size_t>(y / kCell * across_ + x / kCell)];
+    if (wide.sum == 0) return 0;
     Sums narrow = within(x, y, kReach);
     if (!narrow.is_enough()) narrow = within(x, y, kWideReach);
     if (narrow.sum > 0 && !narrow.is_enough()) return wide.mean();
@@ -111,10 +135,11 @@ class ErrorsOfOthers {
     return {static_cast<double>(sum), static_cast<double>(squares), count};
   }
 
+  /// Sums of the cells within `reach` cells of a cell.
   Sums of_cells(int x, int y, int reach) const {
     Sums out;
-    for (int v = std::max(y / kCell - reach, 0); v <= std::min(y / kCell + reach, down_ - 1); ++v) {
-      for (int u = std::max(x / kCell - reach, 0); u <= std::min(x / kCell + reach, across_ - 1); ++u) {
+    for (int v = std::max(y - reach, 0); v <= std::min(y + reach, down_ - 1); ++v) {
+      for (int u = std::max(x - reach, 0); u <= std::min(x + reach, across_ - 1); ++u) {
         const Sums& c = cells_[static_cast<std::size_t>(v * across_ + u)];
         out.sum += c.sum;
         out.squares += c.squares;
@@ -127,7 +152,7 @@ class ErrorsOfOthers {
   const PixelStatistics& s_;
   int across_, down_;  ///< cells
   std::vector<float> values_;
-  std::vector<Sums> cells_;
+  std::vector<Sums> cells_, wide_;  ///< of cells, and of the windows around them
 };
 
 /// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
@@ -152,6 +177,22 @@ bool has_evidence(const PixelStatistics& s, int x, int y) {
   return light * light >= kHits * variance;                // the number of hits if all are equally bright
 }
 
+/// Whether all pixels that has_evidence() reads for a block have the same radiance in every sample. Their evidence is
+/// then complete.
+bool is_lit_without_noise(const PixelStatistics& s, const PixelBlock& b) {
+  PixelBlock wide;
+  wide.x = std::max(b.x - kEvidenceReach, 0);
+  wide.y = std::max(b.y - kEvidenceReach, 0);
+  wide.width = std::min(b.x + b.width + kEvidenceReach, s.width) - wide.x;
+  wide.height = std::min(b.y + b.height + kEvidenceReach, s.height) - wide.y;
+  if (!is_noiseless(s, wide)) return false;
+  for (int y = wide.y; y < wide.y + wide.height; ++y) {
+    const float* const row = s.light.data() + s.at(wide.x, y);
+    if (!std::all_of(row, row + wide.width, [](float l) { return l > 0; })) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
@@ -165,6 +206,7 @@ NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
   const LightGuide guide(s, kNoClass);
   run(pool, blocks.size(), [&](std::size_t i) {
     const PixelBlock& b = blocks[i];
+    if (is_noiseless(s, b)) return;
     const std::vector<float> light = guide.of(b);
     std::size_t k = 0;
     for (int y = b.y; y < b.y + b.height; ++y) {
@@ -195,6 +237,7 @@ MissingEvidence find_missing_evidence(const PixelStatistics& s, TilePool& pool) 
   const std::vector<PixelBlock> blocks = blocks_of(s.width, s.height);
   run(pool, blocks.size(), [&](std::size_t i) {
     const PixelBlock& b = blocks[i];
+    if (is_lit_without_noise(s, b)) return;
     for (int y = b.y; y < b.y + b.height; ++y)
       for (int x = b.x; x < b.x + b.width; ++x) out.of_pixel[s.at(x, y)] = has_evidence(s, x, y) ? 0 : 1;
   });
@@ -210,9 +253,15 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, const NoiseEst
   std::vector<float> out(s.samples.size());
   const std::vector<PixelBlock> blocks = blocks_of(s.width, s.height);
   ErrorsOfOthers errors(s);
+  std::vector<std::uint8_t> noiseless(blocks.size());
+  run(pool, blocks.size(), [&](std::size_t i) { noiseless[i] = is_noiseless(s, blocks[i]) ? 1 : 0; });
   for (int own = 0; own < kClasses; ++own) {
     const LightGuide guide(s, own);
-    run(pool, blocks.size(), [&](std::size_t i) { errors.fill(blocks[i], guide.of(blocks[i]), own); });
+    run(pool, blocks.size(), [&](std::size_t i) {
+      errors.fill(blocks[i], noiseless[i] != 0 ? std::vector<float>() : guide.of(blocks[i]), own);
+    });
+    run(pool, static_cast<std::size_t>(errors.cell_rows()),
+        [&](std::size_t row) { errors.add_up_windows(static_cast<int>(row)); });
     run(pool, blocks.size(), [&](std::size_t i) {
       const PixelBlock& b = blocks[i];
       for (int y = b.y; y < b.y + b.height; ++y)

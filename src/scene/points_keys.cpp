@@ -82,6 +82,12 @@ std::vector<Key<P>> make_keys() {
                            [](P& p) -> std::optional<Interval>& { return p.clip[1]; }),
       optional_interval<P>("clip.z", kAnyLength, {"scene units", "As `clip.x`"}, "unlimited",
                            [](P& p) -> std::optional<Interval>& { return p.clip[2]; }),
+      text<P>(
+          "material_column",
+          {"",
+           "PLY: column of indices into the scene's materials, counted from 0 in the order of the scene file. `\"\"`: "
+           "none"},
+          [](P& p) -> std::string& { return p.material_column; }),
       boolean<P>("skip_bad", {"", "Leaves out rows whose coordinates or radius are not finite numbers"},
                  [](P& p) -> bool& { return p.skip_bad; }),
       text<P>("name", {"", "Name in the CryptoObject matte, shared by all spheres of the file. Default: the file name"},

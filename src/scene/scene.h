@@ -191,6 +191,7 @@ struct Points {
   std::string assembly;      ///< biological assembly; empty: the file's own atoms
   PointsTransform transform;
   std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
+  std::string material_column = "material";          ///< indices into Scene::materials, in PLY files; empty: none
   bool skip_bad = false;                             ///< leaves out rows with coordinates that are not finite
   std::vector<Vec3d> centers = {};
   std::vector<double> radii = {};             ///< as many as centers
