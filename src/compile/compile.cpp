@@ -113,6 +113,7 @@ class MaterialTable {
   std::uint32_t colored_index(std::uint32_t authored, bool inside_out, std::size_t points, std::uint16_t color,
                               Vec3d rgb) {
     const std::uint32_t plain = index(authored, inside_out);
+    if (out_.materials[plain].kind == kernel::MaterialKind::kDielectric) return plain;  // has no colour
     const std::uint64_t key = (std::uint64_t{plain} << 32 | points << 16) | color;
     const auto [at, is_new] = colored_.try_emplace(key, static_cast<std::uint32_t>(out_.materials.size()));
     if (!is_new) return at->second;
@@ -120,7 +121,7 @@ class MaterialTable {
     kernel::Emission e = out_.emission[plain];
     if (m.kind == kernel::MaterialKind::kEmitter) {
       for (int k = 0; k < 3; ++k) e.radiance[k] *= k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z;
-    } else if (m.kind != kernel::MaterialKind::kDielectric) {
+    } else {
       set(m.albedo, rgb);
     }
     out_.materials.push_back(m);

@@ -48,6 +48,29 @@ TEST_F(JobWorkingSpace, RadianceOfEmittersIsConverted) {
   EXPECT_NEAR(std::get<scene::Emitter>(s.materials[0].model).radiance.x, 20 * 0.613097, 1e-3);
 }
 
+/// Colour maps are Rec.709 whatever the scene's space is; colours that the scene authors are in its space.
+TEST_F(JobWorkingSpace, PalettesAreConvertedFromTheirOwnSpaces) {
+  scene::Scene s;
+  s.color.space = "ACEScg";
+  s.color.working = "ACEScg";
+  s.points.resize(2);
+  s.points[0].palette = {{0.5, 0, 0}, {0.5, 0, 0}};
+  s.points[0].palette_rec709 = 1;
+  s.points[1].palette = {{0.5, 0, 0}};
+  EXPECT_EQ(to_working_space({}, s), 0);
+  EXPECT_NEAR(s.points[0].palette[0].x, 0.5 * 0.613097, 1e-4);
+  EXPECT_NEAR(s.points[0].palette[0].z, 0.5 * 0.020616, 1e-4);
+  EXPECT_EQ(s.points[0].palette[1], (math::Vec3d{0.5, 0, 0}));
+  EXPECT_EQ(s.points[1].palette[0], (math::Vec3d{0.5, 0, 0}));
+
+  s.color.working = "lin_rec709";
+  s.points[0].palette = {{0.5, 0.25, 0}, {0.25, 0.25, 0.25}, {1, 1, 0}};
+  EXPECT_EQ(to_working_space({}, s), 2) << "yellow and red of ACEScg are outside Rec.709";
+  EXPECT_EQ(s.points[0].palette[0], (math::Vec3d{0.5, 0.25, 0})) << "already Rec.709";
+  EXPECT_NEAR(s.points[0].palette[1].y, 0.25, 1e-4);
+  EXPECT_EQ(s.points[0].palette[2].x, 1) << "an albedo is at most 1";
+}
+
 TEST_F(JobWorkingSpace, ClampsAndCountsColoursOutOfRange) {
   scene::Scene s = test::everything();
   s.color.space = "ACEScg";
