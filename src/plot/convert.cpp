@@ -88,6 +88,7 @@ class OutputTable {
  public:
   OutputTable(scene::Points& points, points::SourceRows& source, bool has_radius) : source_(source) {
     const data::Roles& roles = source.info.roles;
+    for (const std::string& axis : roles.position) find(axis)->values = {};
     table_.rows = points.centers.size();
     takes_all_ = table_.rows == source.table.rows;
     for (std::size_t i = 0; takes_all_ && i < source.rows.size(); ++i) takes_all_ = source.rows[i] == i;
@@ -100,8 +101,10 @@ class OutputTable {
       replaced_.push_back(roles.radius);
       add("radius", std::move(points.radii));
     }
+    std::vector<double>().swap(points.radii);
     add_colors(points);
-    for (data::Column& column : source.table.columns) add_other(column);
+    for (const data::ColumnInfo& column : source.info.columns)
+      if (!column.is_derived) add_other(column.name);
   }
 
   data::Table& table() { return table_; }
@@ -114,6 +117,13 @@ class OutputTable {
     out.reserve(points.centers.size());
     for (const math::Vec3d& center : points.centers) out.push_back(center.*component);
     return out;
+  }
+
+  /// A column of the source.
+  data::Column* find(const std::string& name) {
+    for (data::Column& column : source_.table.columns)
+      if (column.name == name) return &column;
+    return nullptr;
   }
 
   void add(const std::string& name, data::Values values) { table_.columns.push_back({name, std::move(values)}); }
@@ -130,20 +140,16 @@ class OutputTable {
     add("blue", std::move(blue));
   }
 
-  void add_other(data::Column& column) {
-    const bool is_listed = std::any_of(source_.info.columns.begin(), source_.info.columns.end(),
-                                       [&](const auto& c) { return c.name == column.name && !c.is_derived; });
-    if (!is_listed || std::find(replaced_.begin(), replaced_.end(), column.name) != replaced_.end()) return;
-    if (table_.find(column.name) != nullptr) {
-      left_out_.push_back(column.name);
+  void add_other(const std::string& name) {
+    if (std::find(replaced_.begin(), replaced_.end(), name) != replaced_.end()) return;
+    if (table_.find(name) != nullptr) {
+      left_out_.push_back(name);
       return;
     }
-    if (takes_all_)
-      add(column.name, std::move(column.values));
-    else
-      add(column.name,
-          std::visit([&](const auto& all) -> data::Values { return gathered(all, source_.rows); }, column.values));
-    column.values = {};
+    data::Values values = std::exchange(find(name)->values, {});
+    if (!takes_all_)
+      values = std::visit([&](const auto& all) -> data::Values { return gathered(all, source_.rows); }, values);
+    add(name, std::move(values));
   }
 
   points::SourceRows& source_;

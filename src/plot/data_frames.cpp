@@ -66,9 +66,11 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   LoadedFrame out{keys, {}};
   std::vector<base::Diagnostic> errors;
   for (const scene::SceneDiagnostic& d : points::load_points(request, out.points)) {
-    const std::string key = d.key.size() > request.key.size() ? d.key.substr(request.key.size() + 1) + ": " : "";
+    const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";
+    const std::string key = has_key ? d.key.substr(request.key.size() + 1) + ": " : "";
+    const std::string number = numbers_.size() > 1 ? "frame " + std::to_string(frame) + ": " : "";
     auto& list = d.severity == base::Severity::kError ? errors : out.warnings;
-    list.push_back(base::file_diagnostic(d.severity, request.file.string(), key + d.text));
+    list.push_back(base::file_diagnostic(d.severity, request.file.string(), number + key + d.text));
   }
   if (!errors.empty())
     throw base::Error(base::ErrorKind::kBadData, "cannot use " + request.file.string(), std::move(errors));
