@@ -64,6 +64,7 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   request.source = source;
   if (source != nullptr) request.materials = std::numeric_limits<std::size_t>::max();  // a column like any other
   LoadedFrame out{keys, {}};
+  out.points.file = request.file;
   std::vector<base::Diagnostic> errors;
   for (const scene::SceneDiagnostic& d : points::load_points(request, out.points)) {
     const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";
