@@ -5,20 +5,10 @@
 #include <string_view>
 #include <utility>
 
+#include "base/text.h"
+
 namespace orrery::base {
 namespace {
-
-/// Replaces control characters, which could control the terminal, by question marks.
-std::string printable(std::string_view text) {
-  std::string out(text);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(out[i]);
-    if ((byte < 0x20 && out[i] != '\t') || byte == 0x7f) out[i] = '?';
-    // U+0080..U+009F in UTF-8: control characters as well.
-    if (byte >= 0x80 && byte < 0xA0 && i > 0 && out[i - 1] == '\xC2') out[i - 1] = out[i] = '?';
-  }
-  return out;
-}
 
 /// True for the second and later bytes of a UTF-8 character, which take no column.
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }

@@ -37,6 +37,17 @@ std::string bytes_text(std::uint64_t bytes) {
   return out;
 }
 
+std::string printable(std::string_view text) {
+  std::string out(text);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(out[i]);
+    if ((byte < 0x20 && out[i] != '\t') || byte == 0x7f) out[i] = '?';
+    // U+0080..U+009F in UTF-8: control characters as well.
+    if (byte >= 0x80 && byte < 0xA0 && i > 0 && out[i - 1] == '\xC2') out[i - 1] = out[i] = '?';
+  }
+  return out;
+}
+
 std::string shell_quoted(const std::string& word) {
   static const std::string plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./:=,+@%^";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;

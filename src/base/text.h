@@ -14,6 +14,9 @@ namespace orrery::base {
 /// Formats a size in bytes: "49.4 MiB".
 std::string bytes_text(std::uint64_t bytes);
 
+/// Replaces control characters, which could control the terminal, by question marks; a tab stays.
+std::string printable(std::string_view text);
+
 /// Quotes a word for a POSIX shell; a word without special characters stays as it is.
 std::string shell_quoted(const std::string& word);
 

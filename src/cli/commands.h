@@ -25,6 +25,7 @@ void add_compare(Command& program, Action& action);
 void add_bench(Command& program, Action& action);
 void add_study(Command& program, Action& action);
 void add_generate(Command& program, Action& action);
+void add_convert(Command& program, Action& action);
 void add_develop(Command& program, Action& action);
 void add_bake(Command& program, Action& action);
 

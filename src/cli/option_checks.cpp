@@ -45,6 +45,12 @@ Check whole_number(std::uint64_t from, std::uint64_t to) {
   };
 }
 
+int integer_of(const std::string& text) {
+  int value = 0;
+  parse(text, value);
+  return value;
+}
+
 Check real_number(double from, double to) {
   return [from, to](std::string& text) -> std::string {
     double value = 0;

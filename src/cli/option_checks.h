@@ -22,6 +22,9 @@ Check one_of(std::vector<std::string> names);
 /// Rejects everything but a whole number from..to. Removes leading zeros, which CLI11 would take for octal.
 Check whole_number(std::uint64_t from, std::uint64_t to);
 
+/// The number in a text that whole_number() accepts; 0 if it is none.
+int integer_of(const std::string& text);
+
 /// Rejects everything but a finite number from..to.
 Check real_number(double from, double to);
 

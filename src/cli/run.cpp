@@ -47,8 +47,9 @@ void add_commands(Command& program, Action& action) {
   program.heading("Measure");
   add_bench(program, action);
   add_study(program, action);
-  program.heading("Scenes");
+  program.heading("Scenes and data");
   add_generate(program, action);
+  add_convert(program, action);
   program.heading("Colour");
   add_develop(program, action);
   add_bake(program, action);

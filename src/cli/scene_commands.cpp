@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands that inspect scenes without rendering: info and check.
+// The commands that inspect scenes and data files without rendering: info and check.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -8,10 +8,12 @@
 
 #include <fmt/core.h>
 
+#include "app/data_info.h"
 #include "app/info.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
+#include "cli/option_checks.h"
 #include "cli/output.h"
 #include "cli/scene_options.h"
 
@@ -19,8 +21,9 @@ namespace orrery::cli {
 namespace {
 
 struct InfoOptions {
-  std::filesystem::path scene;
+  std::filesystem::path file;
   SceneOptions overrides;
+  std::string component;
   bool json = false, settings = false, measure = false;
 };
 
@@ -37,9 +40,32 @@ std::string warnings_text(const app::SceneInfo& info) {
   return out;
 }
 
+/// Rejects an option that does not apply to the kind of file.
+void refuse_option(bool is_given, const std::string& option, const InfoOptions& options, const char* kind) {
+  if (is_given)
+    throw base::Error(base::ErrorKind::kUsage, fmt::format("{}: {} is a {}", option, options.file.string(), kind));
+}
+
+int data_info(const InfoOptions& options) {
+  constexpr const char* kKind = "data file; the option applies to scenes, which are *.toml";
+  refuse_option(options.settings, "--settings", options, kKind);
+  refuse_option(options.measure, "--measure", options, kKind);
+  for (const format::Override& override : options.overrides.overrides())
+    refuse_option(true, override.option, options, kKind);
+  app::DataInfoRequest request;
+  request.file = options.file;
+  request.frame = options.overrides.frame();
+  if (!options.component.empty()) request.component = integer_of(options.component);
+  const app::DataInfo found = app::data_info(request);
+  print_result(options.json ? app::data_info_json(found) : app::data_info_text(found));
+  return 0;
+}
+
 int info(const InfoOptions& options) {
+  if (options.file.extension() != ".toml") return data_info(options);
+  refuse_option(!options.component.empty(), "--component", options, "scene; the option applies to data files");
   job::SceneRequest request;
-  request.source.file = options.scene;
+  request.source.file = options.file;
   request.source.overrides = options.overrides.overrides();
   request.source.frame = options.overrides.frame();
   app::SceneInfo found = app::scene_info(request);
@@ -126,10 +152,13 @@ int check(const CheckOptions& options) {
 
 void add_info(Command& program, Action& action) {
   const auto options = std::make_shared<InfoOptions>();
-  Command& command = *program.add_subcommand("info", "Print a scene's contents, memory estimate and unused features");
-  command.add_option("SCENE", options->scene, "Scene file")->required()->type_name("FILE");
+  Command& command = *program.add_subcommand("info", "Print the contents of a scene or of a data file");
+  command.add_option("FILE", options->file, "Scene file, *.toml, or data file")->required()->type_name("FILE");
   options->overrides.add_to(command);
   options->overrides.add_frame_to(command);
+  command.add_option("--component", options->component, "HDF5: particle type, N of PartTypeN")
+      ->check(whole_number(0, 1000))
+      ->type_name("N");
   command.add_flag("--measure", options->measure,
                    "Measure the time saved by skipping unused features (takes a few seconds)");
   auto* json = command.add_flag("--json", options->json, "Print JSON, with all settings");
@@ -137,7 +166,8 @@ void add_info(Command& program, Action& action) {
   command.footer(
       "Examples:\n"
       "  orrery info scenes/book/final.toml\n"
-      "  orrery info scene.toml --settings --set camera.vfov=30");
+      "  orrery info scene.toml --settings --set camera.vfov=30\n"
+      "  orrery info melt.dump --frame 2");
   command.callback([options, &action] { action = [options] { return info(*options); }; });
 }
 

@@ -47,6 +47,6 @@ class TableOutput {
 std::vector<std::string> write_ply_table(TableOutput& out, const Table& table);
 void write_npy_table(TableOutput& out, const Table& table);
 void write_csv_table(TableOutput& out, const Table& table);
-void write_xyz_table(TableOutput& out, const Table& table);
+std::vector<std::string> write_xyz_table(TableOutput& out, const Table& table);
 
 }  // namespace orrery::data

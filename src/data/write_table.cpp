@@ -70,7 +70,7 @@ std::vector<std::string> write_table(const std::filesystem::path& file, const Ta
     case TableFormat::kPly: left_out = write_ply_table(out, table); break;
     case TableFormat::kNpy: write_npy_table(out, table); break;
     case TableFormat::kCsv: write_csv_table(out, table); break;
-    case TableFormat::kXyz: write_xyz_table(out, table); break;
+    case TableFormat::kXyz: left_out = write_xyz_table(out, table); break;
   }
   out.finish();
   return left_out;

@@ -20,7 +20,8 @@ TableFormat table_format(const std::filesystem::path& file);
 /// Writes a table; what open() reads from the file has the same values.
 ///
 /// - .ply: binary, little-endian. It has no texts.
-/// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`.
+/// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`. It has no empty texts,
+///   blanks and quotes.
 /// - .npy: a structured array.
 /// - .csv: a header row; texts are quoted, numbers have as many digits as needed.
 ///
@@ -28,7 +29,7 @@ TableFormat table_format(const std::filesystem::path& file);
 /// read as a float64 unless the first rows show that this is too small.
 ///
 /// Domain     columns x, y, z of numbers; all columns have table.rows rows and different names
-/// Result     names of the columns that were left out because the format has no texts
+/// Result     names of the columns that were left out because the format has no such texts
 /// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
 ///            kCannotCreate; kIo
 [[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table);

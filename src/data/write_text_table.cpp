@@ -54,15 +54,22 @@ void append_quoted(std::string& out, std::string_view text) {
   out += '"';
 }
 
-/// Refuses texts with characters that a format cannot store.
-void check_texts(const TableOutput& out, const Column& column, const char* format, std::string_view forbidden,
-                 bool allows_empty) {
+/// Refuses texts with line ends.
+void check_csv_texts(const TableOutput& out, const Column& column, std::string_view line_ends) {
   const auto* const words = std::get_if<Words>(&column.values);
   if (words == nullptr) return;
   for (const std::string& word : words->words)
-    if (word.find_first_of(forbidden) != std::string::npos || (word.empty() && !allows_empty))
-      refuse_to_write(out.path(), std::string(format) + " cannot store the text " + quoted_word(word) + " of column " +
+    if (word.find_first_of(line_ends) != std::string::npos)
+      refuse_to_write(out.path(), "CSV cannot store the text " + quoted_word(word) + " of column " +
                                       quoted_word(column.name) + "; write .npy, or leave the column out");
+}
+
+/// Returns whether XYZ, where blanks separate values, has the values of a column.
+bool is_storable_in_xyz(const Column& column) {
+  const auto* const words = std::get_if<Words>(&column.values);
+  return words == nullptr || std::all_of(words->words.begin(), words->words.end(), [](const std::string& word) {
+           return !word.empty() && word.find_first_of(" \t\r\n\"") == std::string::npos;
+         });
 }
 
 /// A property of extended XYZ: one or more columns.
@@ -95,24 +102,32 @@ XyzOutput property_at(const Table& table, std::size_t first) {
   const std::string name = column.name.substr(0, column.name.size() - 3);
   for (std::size_t i = first + 1; i < table.columns.size(); ++i) {
     const Column& next = table.columns[i];
-    if (next.name != name + "[" + std::to_string(i - first + 1) + "]" || xyz_type(next) != out.type) break;
+    if (next.name != name + "[" + std::to_string(i - first + 1) + "]" || xyz_type(next) != out.type ||
+        !is_storable_in_xyz(next))
+      break;
     out.columns.push_back(&next);
   }
   if (out.columns.size() > 1) out.name = name;
   return out;
 }
 
-/// Returns the properties: species, pos, then the other columns in their order.
-std::vector<XyzOutput> xyz_outputs(const Table& table) {
+/// Returns the properties: species, pos, then the other columns in their order. Adds the names of columns that XYZ
+/// cannot store to `left_out`.
+std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>& left_out) {
   std::vector<XyzOutput> out;
   const Column* const element = table.find("element");
-  const bool has_species = element != nullptr && element->type() == ColumnType::kText;
+  const bool has_species = element != nullptr && element->type() == ColumnType::kText && is_storable_in_xyz(*element);
   if (has_species) out.push_back({"species", {element}, 'S'});
   out.push_back({"pos", {table.find("x"), table.find("y"), table.find("z")}, 'R'});
   std::set<std::string> used = {"species", "pos"};
   for (std::size_t i = 0; i < table.columns.size();) {
     const std::string& name = table.columns[i].name;
     if (name == "x" || name == "y" || name == "z" || (has_species && name == "element")) {
+      ++i;
+      continue;
+    }
+    if (!is_storable_in_xyz(table.columns[i])) {
+      left_out.push_back(name);
       ++i;
       continue;
     }
@@ -130,7 +145,7 @@ void write_csv_table(TableOutput& out, const Table& table) {
   constexpr std::string_view kLineEnds = "\n\r";
   std::string& text = out.buffer();
   for (const Column& column : table.columns) {
-    check_texts(out, column, "CSV", kLineEnds, true);
+    check_csv_texts(out, column, kLineEnds);
     if (column.name.find_first_of(kLineEnds) != std::string::npos)
       refuse_to_write(out.path(), "the name of column " + quoted_word(column.name) + " has a line end; rename it");
     if (!text.empty()) text += ',';
@@ -151,12 +166,12 @@ void write_csv_table(TableOutput& out, const Table& table) {
   }
 }
 
-void write_xyz_table(TableOutput& out, const Table& table) {
+std::vector<std::string> write_xyz_table(TableOutput& out, const Table& table) {
   std::string& text = out.buffer();
-  const std::vector<XyzOutput> properties = xyz_outputs(table);
+  std::vector<std::string> left_out;
+  const std::vector<XyzOutput> properties = xyz_outputs(table, left_out);
   text = std::to_string(table.rows) + "\nProperties=";
   for (const XyzOutput& property : properties) {
-    for (const Column* const column : property.columns) check_texts(out, *column, "XYZ", " \t\r\n\"", false);
     if (&property != &properties.front()) text += ':';
     text += property.name + ":" + property.type + ":" + std::to_string(property.columns.size());
   }
@@ -172,6 +187,7 @@ void write_xyz_table(TableOutput& out, const Table& table) {
     text += '\n';
     out.flush();
   }
+  return left_out;
 }
 
 }  // namespace orrery::data

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "plot/data_options.h"
 #include "scene/scene.h"
 
 /// A scene for a data file: what the user did not choose is chosen from the data, and every choice is reported.
@@ -15,21 +13,12 @@ namespace orrery::plot {
 
 enum class Style { kStudio, kFlat, kNight };
 
-struct PlotOptions {
-  std::filesystem::path file;  ///< data file, may contain a frame pattern
-  std::vector<int> frames;     ///< to render; empty: one still image
-  bool all_frames = false;     ///< all frames of the file
-  scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
-  std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: chosen
-  bool has_map = false;        ///< `points.color.map` is the user's
-  std::optional<std::pair<int, double>> slice =
-      {};                         ///< axis 0, 1 or 2, and the plane's place: removes what is before it
+struct PlotOptions : DataOptions {
   std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
   std::string up;                 ///< "x", "y" or "z"; empty: by the format
   Style style = Style::kStudio;
   bool ground = false;
   int width = 1920, height = 1080;  ///< px
-  std::uint64_t memory_limit = 0;   ///< bytes; 0: no limit
 };
 
 struct PlotScene {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "scene/limits.h"
 
 namespace orrery::plot {
 namespace {
@@ -79,6 +80,13 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
   out.right = clean(scene.right * std::cos(azimuth) - scene.front * std::sin(azimuth));
   out.up = clean(math::cross(out.back, out.right));
   return out;
+}
+
+void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points) {
+  const auto [axis, place] = plane;
+  const double back[3] = {axes.back.x, axes.back.y, axes.back.z};
+  points.clip[static_cast<std::size_t>(axis)] =
+      back[axis] > 0 ? scene::Interval{-scene::kLargestLength, place} : scene::Interval{place, scene::kLargestLength};
 }
 
 void ViewExtent::add(const scene::Points& points) {

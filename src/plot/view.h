@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "scene/scene.h"
 
@@ -21,6 +22,11 @@ struct ViewAxes {
 /// `up`         "x", "y" or "z"
 /// Errors       base::Error(kUsage)
 ViewAxes view_axes(const std::string& look_from, const std::string& up);
+
+/// Removes the spheres on the camera's side of a plane: sets the clip of `points`.
+///
+/// `plane`    axis 0, 1 or 2, and place
+void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points);
 
 /// Extent of spheres along the axes of a view.
 class ViewExtent {

@@ -49,6 +49,11 @@ std::vector<Vec3d> palette(const ColorMap& map, std::size_t count);
 /// Decodes display-referred sRGB to scene-linear Rec.709.
 Vec3d linear_from_srgb(Vec3d srgb);
 
+/// Encodes scene-linear Rec.709 as display-referred sRGB.
+///
+/// Domain     0 to 1
+Vec3d srgb_from_linear(Vec3d linear);
+
 /// Reads a colour map from a text file. Each line is a colour: `r g b`, or `t r g b` with ascending t, or `#rrggbb`.
 /// Numbers are separated by blanks or commas. If one of r, g, b is greater than 1, all are 0 to 255. Blank lines and
 /// lines that begin with `#`, except colours, are skipped.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,9 +38,13 @@ std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains
 /// Replaces the spheres by their copies, one copy after the other, and applies the transform of the points.
 ///
 /// `chains`   chain of each sphere, if a copy is limited to some; else ignored
-void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points);
+/// `rows`     copied like the spheres; one per sphere, or empty
+void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points,
+                 std::vector<std::uint32_t>& rows);
 
 /// Removes the spheres whose centres are outside `points.clip`.
-void clip(scene::Points& points);
+///
+/// `rows`     one per sphere, or empty
+void clip(scene::Points& points, std::vector<std::uint32_t>& rows);
 
 }  // namespace orrery::points

@@ -99,6 +99,9 @@ class Loader {
     if (file_->format() == data::Format::kPly)
       for (const data::ColumnInfo& column : info_.columns)
         if (column.name == points_.material_column) need(material_ = column.name);
+    if (request_.source != nullptr)
+      for (const data::ColumnInfo& column : info_.columns)
+        if (!column.is_derived) need(column.name);
     for (const data::ColumnInfo& column : info_.columns)
       if (!column.is_derived && std::find(columns_.begin(), columns_.end(), column.name) == columns_.end())
         points_.unused.push_back(column.name);
@@ -133,8 +136,11 @@ class Loader {
   void require_memory(std::uint64_t count) const {
     const Vec3d n = points_.replicate;
     const double images = n.x * n.y * n.z, spheres = static_cast<double>(count) * images;  // may exceed 64 bits
-    const double bytes = static_cast<double>(info_.rows * kBytesPerColumn * columns_.size()) +
-                         spheres * kBytesPerSphere + images * static_cast<double>(copies_.size() * sizeof(Copy));
+    const std::uint64_t row_bytes = kBytesPerColumn * columns_.size();
+    const std::uint64_t copied = request_.source == nullptr ? 0 : sizeof(std::uint32_t) + row_bytes;
+    const double bytes = static_cast<double>(info_.rows * row_bytes) +
+                         spheres * static_cast<double>(kBytesPerSphere + copied) +
+                         images * static_cast<double>(copies_.size() * sizeof(Copy));
     if (request_.memory_limit == 0 || bytes <= static_cast<double>(request_.memory_limit)) return;
     const auto whole = [](double x) { return static_cast<std::uint64_t>(std::min(x, 1e18)); };
     throw base::Error(base::ErrorKind::kNoMemory,
@@ -177,8 +183,12 @@ class Loader {
     points_.color_names = std::move(colors.names);
     if (!material_.empty()) set_materials(table, rows);
     if (!(points_.replicate == Vec3d{1, 1, 1})) copies_ = replicated(copies_, *info_.box, points_.replicate);
-    make_copies(copies_, chains, points_);
-    clip(points_);
+    std::vector<std::uint32_t> row_of_sphere;
+    if (request_.source != nullptr)
+      for (std::size_t i = 0; i < rows.size(); ++i) row_of_sphere.push_back(static_cast<std::uint32_t>(rows[i]));
+    make_copies(copies_, chains, points_, row_of_sphere);
+    clip(points_, row_of_sphere);
+    if (request_.source != nullptr) *request_.source = {std::move(info_), std::move(table), std::move(row_of_sphere)};
   }
 
   /// Returns the selected rows, ascending by particle id if there are ids: files list particles in any order.

@@ -6,10 +6,18 @@
 #include <filesystem>
 #include <vector>
 
+#include "data/table.h"
 #include "scene/scene.h"
 #include "scene/validate.h"
 
 namespace orrery::points {
+
+/// What the spheres were made of.
+struct SourceRows {
+  data::FrameInfo info;             ///< of the frame
+  data::Table table;                ///< all columns of the frame
+  std::vector<std::uint32_t> rows;  ///< row of each sphere; copies of a particle have the same one
+};
 
 struct LoadRequest {
   std::filesystem::path file;      ///< the data file
@@ -18,6 +26,7 @@ struct LoadRequest {
   int frame = 1;                   ///< the rendered frame
   bool is_sequence = false;        ///< the rendered frame has chosen the file
   std::size_t materials = 0;       ///< number of materials of the scene
+  SourceRows* source = nullptr;    ///< if not null, receives the rows of the spheres
   std::uint64_t memory_limit = 0;  ///< bytes that the spheres may take; 0: no limit
 };
 
@@ -28,7 +37,7 @@ struct LoadRequest {
 /// Result     diagnostics about keys of the scene file: unknown columns, missing radii, selections that match nothing;
 ///            `points` has no spheres if one of them is an error
 /// Errors     base::Error: those of data::open and data::DataFile; kNoMemory
-/// Cost       one read of the needed columns
+/// Cost       one read of the needed columns, or of all columns for `source`
 std::vector<scene::SceneDiagnostic> load_points(const LoadRequest& request, scene::Points& points);
 
 }  // namespace orrery::points

@@ -5,7 +5,7 @@
 namespace orrery::data {
 
 extern "C" const void* orrery_data_functions() {
-  static constexpr Functions functions{open};
+  static constexpr Functions functions{open, table_format, write_table};
   return &functions;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program's side of the module: forwards the room's functions to the module and loads it at the first call, so that
-// only commands that read data files load libarchive, HDF5, gemmi and pugixml.
+// only commands that use data files load libarchive, HDF5, gemmi and pugixml.
 #include "base/module.h"
 #include "data/module/functions.h"
 
@@ -16,6 +16,12 @@ const Functions& module() {
 
 std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
   return module().open(file, options);
+}
+
+TableFormat table_format(const std::filesystem::path& file) { return module().table_format(file); }
+
+std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table) {
+  return module().write_table(file, table);
 }
 
 }  // namespace orrery::data

@@ -200,5 +200,17 @@ TEST_F(PointsColorMapFile, KnotsStayDistinctAfterScaling) {
   EXPECT_TRUE(math::is_finite(srgb_at(map, 0)));
 }
 
+TEST(PointsColorMap, EncodingAndDecodingOfSrgbAreInverse) {
+  for (int byte = 0; byte <= 255; ++byte) {
+    const double code = byte / 255.0;
+    const Vec3d back = srgb_from_linear(linear_from_srgb({code, code / 2, 0}));
+    EXPECT_NEAR(back.x, code, 1e-4) << byte;  // the two segments of the curve meet within 1e-4
+    EXPECT_NEAR(back.y, code / 2, 1e-4) << byte;
+    EXPECT_EQ(back.z, 0);
+  }
+  EXPECT_NEAR(srgb_from_linear({0.5, 0.18, 0.001}).x, 0.7353569, 1e-7);
+  EXPECT_NEAR(srgb_from_linear({0.5, 0.18, 0.001}).z, 0.01292, 1e-7);
+}
+
 }  // namespace
 }  // namespace orrery::points

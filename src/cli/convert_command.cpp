@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <string>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "cli/commands.h"
+#include "cli/data_options.h"
+#include "cli/messages.h"
+#include "job/memory.h"
+#include "plot/convert.h"
+
+namespace orrery::cli {
+namespace {
+
+struct ConvertArguments {
+  plot::ConvertOptions convert;
+  DataArguments data;
+  bool quiet = false;
+};
+
+void print_file(const plot::ConvertedFile& written, bool quiet) {
+  std::string text;
+  for (const base::Diagnostic& warning : written.warnings) text += base::formatted(warning);
+  if (!quiet) {
+    const std::string name = written.file.string();
+    text += base::printable("wrote " + name + ": " + std::to_string(written.spheres) +
+                            (written.spheres == 1 ? " sphere" : " spheres") + "; columns " +
+                            base::joined(written.columns)) +
+            "\n";
+    for (const std::string& note : written.notes) text += base::printable("note: " + name + ": " + note) + "\n";
+  }
+  print_message(text);
+}
+
+int run_convert(ConvertArguments& arguments) {
+  plot::ConvertOptions& convert = arguments.convert;
+  read_data_options(arguments.data, convert);
+  if (convert.color_by.empty() && (convert.has_map || convert.points.color.range))
+    throw base::Error(base::ErrorKind::kUsage, "--map and --range need --color-by");
+  convert.memory_limit = job::available_memory().value_or(0);
+  plot::convert(convert, [&](const plot::ConvertedFile& written) { print_file(written, arguments.quiet); });
+  return 0;
+}
+
+}  // namespace
+
+void add_convert(Command& program, Action& action) {
+  const auto arguments = std::make_shared<ConvertArguments>();
+  Command& command = *program.add_subcommand("convert", "Write the spheres of a data file as PLY, XYZ, NPY or CSV");
+  plot::ConvertOptions& convert = arguments->convert;
+  add_data_file(command, convert);
+  command.add_option("-o,--output", convert.output, "File to write: .ply, .xyz (extended), .npy or .csv")
+      ->required()
+      ->type_name("FILE");
+  command.add_flag("-q,--quiet", arguments->quiet, "Print only errors and warnings");
+  add_data_options(command, arguments->data, convert);
+  add_look_options(command, arguments->data, convert);
+  command.footer(
+      "Columns: x, y, z, radius if it is known, colours as red, green, blue, and all others of the file.\n"
+      "\n"
+      "Examples:\n"
+      "  orrery convert melt.dump -o melt.ply --select 'type == 2' --radius 0.5\n"
+      "  orrery convert 1m4x.pdb -o virus.npy --assembly 1 --element-radii vdw\n"
+      "  orrery convert pour.dump -o pour.####.ply --frames all --color-by speed --map viridis");
+  command.callback([arguments, &action] { action = [arguments] { return run_convert(*arguments); }; });
+}
+
+}  // namespace orrery::cli

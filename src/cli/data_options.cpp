@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/data_options.h"
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/frames.h"
+#include "cli/option_checks.h"
+
+namespace orrery::cli {
+namespace {
+
+[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
+
+/// Parses numbers with a separator: "0:12", "2,2,1".
+std::vector<double> numbers_of(const std::string& text, char separator, std::size_t count, const std::string& usage) {
+  std::vector<double> out;
+  const char *at = text.data(), *const end = at + text.size();
+  while (out.size() < count) {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(at, end, value);
+    const bool is_last = out.size() + 1 == count;
+    if (error != std::errc() || !std::isfinite(value) || (is_last ? stop != end : stop == end || *stop != separator))
+      refuse(usage);
+    out.push_back(value);
+    at = is_last ? end : stop + 1;
+  }
+  return out;
+}
+
+void read_points(const DataArguments& arguments, scene::Points& points) {
+  if (!arguments.frame.empty()) points.frame = integer_of(arguments.frame);
+  if (!arguments.component.empty()) points.component = integer_of(arguments.component);
+  if (!arguments.radius.empty()) {
+    double value = 0;
+    const char* const end = arguments.radius.data() + arguments.radius.size();
+    const auto [stop, error] = std::from_chars(arguments.radius.data(), end, value);
+    if (error == std::errc() && stop == end) {
+      if (!(value > 0) || !std::isfinite(value)) refuse("--radius: must be above 0");
+      points.radius.value = value;
+    } else {
+      points.radius.column = arguments.radius;
+    }
+  }
+  if (!arguments.range.empty()) {
+    const auto ends = numbers_of(arguments.range, ':', 2,
+                                 "--range: `" + arguments.range + "` is not a range; write LOW:HIGH, e.g. 0:12");
+    if (!(ends[0] < ends[1])) refuse("--range: the first number must be less than the second");
+    points.color.range = scene::Interval{ends[0], ends[1]};
+  }
+  if (!arguments.replicate.empty()) {
+    const auto counts =
+        numbers_of(arguments.replicate, ',', 3,
+                   "--replicate: `" + arguments.replicate + "` must be three numbers of copies, e.g. 2,2,1");
+    constexpr double kMaxCopies = 1000;
+    for (const double n : counts)
+      if (!(n >= 1 && n <= kMaxCopies && n == std::floor(n)))
+        refuse("--replicate: the numbers of copies must be whole numbers from 1 to 1000");
+    points.replicate = {counts[0], counts[1], counts[2]};
+  }
+}
+
+void read_slice(const std::string& text, plot::DataOptions& data) {
+  if (text.empty()) return;
+  const std::string usage = "--slice: `" + text + "` is not a plane; write AXIS=PLACE, e.g. z=10";
+  if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') refuse(usage);
+  data.slice = std::pair{text[0] - 'x', numbers_of(text.substr(2), '=', 1, usage)[0]};
+}
+
+}  // namespace
+
+void add_data_file(Command& command, plot::DataOptions& data) {
+  command.add_option("FILE", data.file, "Data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, LAS, GSD, HDF5, VTK")
+      ->required()
+      ->type_name("FILE");
+}
+
+void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data) {
+  const OptionGroup group(command, "Data options");
+  scene::Points& points = data.points;
+  command.add_option("--frame", arguments.frame, "Frame of the file, from 1; default: 1")
+      ->check(whole_number(1, 2'000'000'000))
+      ->type_name("N");
+  command
+      .add_option("--frames", arguments.frames, "Frames: all, or e.g. 1-48; names of outputs need a pattern, e.g. ####")
+      ->type_name("RANGE");
+  command.add_option("--select", points.select, "Use only rows that match, e.g. 'type == 2 && z > 0'")
+      ->type_name("CONDITION");
+  command.add_option("--slice", arguments.slice, "Cut open at a plane: remove the spheres in front of it, e.g. z=10")
+      ->type_name("AXIS=PLACE");
+  command.add_option("--component", arguments.component, "HDF5: particle type, N of PartTypeN")
+      ->check(whole_number(0, 1000))
+      ->type_name("N");
+  command.add_option("--assembly", points.assembly, "PDB, mmCIF: biological assembly, e.g. 1")->type_name("NAME");
+  command.add_option("--replicate", arguments.replicate, "Copies of the periodic box along its edges, e.g. 2,2,1")
+      ->type_name("A,B,C");
+  command.add_flag("--unwrap", points.unwrap, "Undo periodic wrapping by the file's image counts");
+  command.add_flag("--skip-bad", points.skip_bad, "Leave out rows whose coordinates are not finite numbers");
+}
+
+void add_look_options(Command& command, DataArguments& arguments, plot::DataOptions& data) {
+  const OptionGroup group(command, "Look options");
+  scene::Points& points = data.points;
+  command.add_option("--radius", arguments.radius, "Radius: a number, or a column of radii; default: from the file")
+      ->type_name("X|COLUMN");
+  command
+      .add_option("--radius-scale", points.radius.scale,
+                  "Factor for radii by column or element, e.g. 0.5 for diameters")
+      ->check(real_number(1e-30, 1e30))
+      ->type_name("X");
+  command.add_option("--element-radii", points.radius.element, "Radii of the chemical elements: vdw, covalent or ball")
+      ->check(one_of({"vdw", "covalent", "ball"}))
+      ->type_name("TABLE");
+  command
+      .add_option("--color-by", data.color_by,
+                  "Colour by a column, or by element, type or rgb; none: one colour; default: from the file")
+      ->type_name("COLUMN");
+  arguments.map = command.add_option("--map", points.color.map, "Colour map, e.g. viridis, fast, coolwarm, or a file")
+                      ->type_name("MAP");
+  command.add_option("--range", arguments.range, "Values at both ends of the colour map; default: all values")
+      ->type_name("LOW:HIGH");
+}
+
+void read_data_options(const DataArguments& arguments, plot::DataOptions& data) {
+  if (!arguments.frames.empty() && !arguments.frame.empty()) refuse("--frame and --frames exclude each other");
+  data.all_frames = arguments.frames == "all";
+  if (!arguments.frames.empty() && !data.all_frames) data.frames = base::parse_frames(arguments.frames);
+  data.has_map = arguments.map->count() > 0;
+  read_points(arguments, data.points);
+  read_slice(arguments.slice, data);
+}
+
+}  // namespace orrery::cli

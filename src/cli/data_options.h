@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "cli/arguments.h"
+#include "plot/data_options.h"
+
+namespace orrery::cli {
+
+/// The texts of options of data files that are more than a number or a name.
+struct DataArguments {
+  std::string frame, frames, radius, range, slice, replicate, component;
+  const Option* map = nullptr;
+};
+
+// The options that all commands on data files share. Values go to `data`, or to `arguments` and then to `data` by
+// read_data_options().
+//
+// Domain     called once; `arguments` and `data` do not move until the command line is parsed
+
+/// Adds FILE, the data file.
+void add_data_file(Command& command, plot::DataOptions& data);
+
+/// Adds the options that select frames and rows, and copy them.
+void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data);
+
+/// Adds the options of radius and colour, under the heading "Look options".
+void add_look_options(Command& command, DataArguments& arguments, plot::DataOptions& data);
+
+/// Sets the members of `data` by the options.
+///
+/// Errors     base::Error(kUsage)
+void read_data_options(const DataArguments& arguments, plot::DataOptions& data);
+
+}  // namespace orrery::cli

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plot/convert.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_set.h"
+#include "base/frames.h"
+#include "base/text.h"
+#include "data/write_table.h"
+#include "plot/data_frames.h"
+#include "plot/view.h"
+#include "points/color_map.h"
+
+namespace orrery::plot {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
+
+/// Rounds a display-referred value; NaN is 0.
+std::uint8_t byte_of(double srgb) {
+  return std::isnan(srgb) ? 0 : static_cast<std::uint8_t>(std::clamp(srgb, 0.0, 1.0) * 255 + 0.5);
+}
+
+/// Red, green and blue of the spheres by their palette.
+std::array<Bytes, 3> palette_colors(const scene::Points& points) {
+  std::vector<std::array<std::uint8_t, 3>> palette;
+  for (const math::Vec3d& light : points.palette) {
+    const math::Vec3d srgb = points::srgb_from_linear(light);
+    palette.push_back({byte_of(srgb.x), byte_of(srgb.y), byte_of(srgb.z)});
+  }
+  std::array<Bytes, 3> out;
+  for (std::size_t channel = 0; channel < out.size(); ++channel) {
+    out[channel].reserve(points.colors.size());
+    for (const std::uint16_t index : points.colors) out[channel].push_back(palette[index][channel]);
+  }
+  return out;
+}
+
+/// Red, green and blue of the spheres in the file.
+std::array<Bytes, 3> file_colors(const points::SourceRows& source) {
+  std::array<Bytes, 3> out;
+  for (std::size_t channel = 0; channel < out.size(); ++channel) {
+    const data::Column& column = *source.table.find(source.info.roles.rgb[channel]);
+    out[channel].reserve(source.rows.size());
+    for (const std::uint32_t row : source.rows)
+      out[channel].push_back(byte_of(column.number(row) / source.info.roles.rgb_maximum));
+  }
+  return out;
+}
+
+/// The texts in the given rows, without those of other rows, which the format of the output may not have.
+data::Words gathered(const data::Words& all, const std::vector<std::uint32_t>& rows) {
+  constexpr auto kUnused = static_cast<std::uint32_t>(-1);
+  std::vector<std::uint32_t> renumbered(all.words.size(), kUnused);
+  data::Words out;
+  out.index.reserve(rows.size());
+  for (const std::uint32_t row : rows) {
+    std::uint32_t& number = renumbered[all.index[row]];
+    if (number == kUnused) {
+      number = static_cast<std::uint32_t>(out.words.size());
+      out.words.push_back(all.words[all.index[row]]);
+    }
+    out.index.push_back(number);
+  }
+  return out;
+}
+
+/// The numbers in the given rows.
+template <class T>
+std::vector<T> gathered(const std::vector<T>& all, const std::vector<std::uint32_t>& rows) {
+  std::vector<T> out;
+  out.reserve(rows.size());
+  for (const std::uint32_t row : rows) out.push_back(all[row]);
+  return out;
+}
+
+/// Makes the table of an output. Takes the columns of the source one by one, to keep few of them twice.
+class OutputTable {
+ public:
+  OutputTable(scene::Points& points, points::SourceRows& source, bool has_radius) : source_(source) {
+    const data::Roles& roles = source.info.roles;
+    for (const std::string& axis : roles.position) find(axis)->values = {};
+    table_.rows = points.centers.size();
+    takes_all_ = table_.rows == source.table.rows;
+    for (std::size_t i = 0; takes_all_ && i < source.rows.size(); ++i) takes_all_ = source.rows[i] == i;
+    replaced_.insert(replaced_.end(), roles.position.begin(), roles.position.end());
+    add("x", coordinates(points, &math::Vec3d::x));
+    add("y", coordinates(points, &math::Vec3d::y));
+    add("z", coordinates(points, &math::Vec3d::z));
+    std::vector<math::Vec3d>().swap(points.centers);
+    if (has_radius) {
+      replaced_.push_back(roles.radius);
+      add("radius", std::move(points.radii));
+    }
+    std::vector<double>().swap(points.radii);
+    add_colors(points);
+    for (const data::ColumnInfo& column : source.info.columns)
+      if (!column.is_derived) add_other(column.name);
+  }
+
+  data::Table& table() { return table_; }
+  /// Columns of the file that have the name of another one in the output.
+  const std::vector<std::string>& left_out() const { return left_out_; }
+
+ private:
+  static std::vector<double> coordinates(const scene::Points& points, double math::Vec3d::*component) {
+    std::vector<double> out;
+    out.reserve(points.centers.size());
+    for (const math::Vec3d& center : points.centers) out.push_back(center.*component);
+    return out;
+  }
+
+  /// A column of the source.
+  data::Column* find(const std::string& name) {
+    for (data::Column& column : source_.table.columns)
+      if (column.name == name) return &column;
+    return nullptr;
+  }
+
+  void add(const std::string& name, data::Values values) { table_.columns.push_back({name, std::move(values)}); }
+
+  void add_colors(const scene::Points& points) {
+    const data::Roles& roles = source_.info.roles;
+    const bool has_own = !roles.rgb[0].empty();
+    const bool uses_own = has_own && (points.color.rgb || !points.color.is_set());
+    if (!uses_own && !points.color.is_set()) return;
+    if (has_own) replaced_.insert(replaced_.end(), roles.rgb.begin(), roles.rgb.end());
+    auto [red, green, blue] = uses_own ? file_colors(source_) : palette_colors(points);
+    add("red", std::move(red));
+    add("green", std::move(green));
+    add("blue", std::move(blue));
+  }
+
+  void add_other(const std::string& name) {
+    if (std::find(replaced_.begin(), replaced_.end(), name) != replaced_.end()) return;
+    if (table_.find(name) != nullptr) {
+      left_out_.push_back(name);
+      return;
+    }
+    data::Values values = std::exchange(find(name)->values, {});
+    if (!takes_all_)
+      values = std::visit([&](const auto& all) -> data::Values { return gathered(all, source_.rows); }, values);
+    add(name, std::move(values));
+  }
+
+  points::SourceRows& source_;
+  data::Table table_;
+  bool takes_all_ = false;             ///< the spheres are all rows, in their order
+  std::vector<std::string> replaced_;  ///< columns of the file whose values are in columns of the output's own
+  std::vector<std::string> left_out_;
+};
+
+class Converter {
+ public:
+  explicit Converter(const ConvertOptions& options)
+      : options_(options), data_(options, std::filesystem::path()), keys_(options.points) {
+    const data::Roles& roles = data_.info().roles;
+    scene::PointsRadius& radius = keys_.radius;
+    has_radius_ = radius.value || !radius.column.empty() || !radius.element.empty() || !roles.radius.empty();
+    if (!has_radius_) radius.value = 1;
+    if (!options.color_by.empty()) set_color(options, options.color_by, data_.info(), keys_.color);
+    if (options.slice) plot::slice(*options.slice, view_axes("iso", data_.info().z_up ? "z" : "y"), keys_);
+  }
+
+  void run(const std::function<void(const ConvertedFile&)>& written) {
+    check_outputs();
+    choose_range();
+    for (const int frame : data_.all()) written(convert_frame(frame));
+  }
+
+ private:
+  std::filesystem::path output_of(int frame) const {
+    return data_.numbers().empty() ? options_.output
+                                   : std::filesystem::path(base::with_frame(options_.output.string(), frame));
+  }
+
+  void check_outputs() const {
+    const std::string name = options_.output.string();
+    if (data_.numbers().size() > 1 && !base::has_frame_pattern(name))
+      refuse(name + " is one name for " + std::to_string(data_.numbers().size()) +
+             " frames; add a frame pattern, e.g. out.####.ply");
+    if (data_.numbers().empty() && base::has_frame_pattern(name))
+      refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames all");
+    base::FileSet files;
+    for (const int frame : data_.all()) files.add_input(data_.file_of(frame), "data file");
+    if (points::find_color_map(keys_.color.map) == nullptr) files.add_input(keys_.color.map, "colour map");
+    for (const int frame : data_.all()) files.add_output(output_of(frame), "-o");
+    for (const int frame : data_.all()) base::check_creatable(output_of(frame));
+  }
+
+  /// One range of the colour map for all frames, as in a plot.
+  void choose_range() {
+    if (keys_.color.column.empty() || keys_.color.range || data_.all().size() < 2) return;
+    std::optional<scene::Interval> range;
+    for (const int frame : data_.all()) widen(range, data_.load(frame, keys_).points);
+    keys_.color.range = range;
+  }
+
+  ConvertedFile convert_frame(int frame) const {
+    points::SourceRows source;
+    LoadedFrame loaded = data_.load(frame, keys_, &source);
+    OutputTable output(loaded.points, source, has_radius_);
+    ConvertedFile out;
+    out.file = output_of(frame);
+    out.spheres = output.table().rows;
+    out.warnings = std::move(loaded.warnings);
+    if (!has_radius_)
+      out.notes.push_back("no column radius: the file has no radius; --radius" +
+                          std::string(source.info.roles.element.empty() ? "" : " or --element-radii") + " sets it");
+    if (!output.left_out().empty())
+      out.notes.push_back("left out " + base::joined(output.left_out()) + ": the name is that of a column above");
+    const std::vector<std::string> unwritten = data::write_table(out.file, output.table());
+    if (!unwritten.empty())
+      out.notes.push_back("left out " + base::joined(unwritten) + ": the format cannot store these texts");
+    for (const data::Column& column : output.table().columns)
+      if (std::find(unwritten.begin(), unwritten.end(), column.name) == unwritten.end())
+        out.columns.push_back(column.name);
+    return out;
+  }
+
+  const ConvertOptions& options_;
+  DataFrames data_;
+  scene::Points keys_;
+  bool has_radius_ = false;
+};
+
+}  // namespace
+
+void convert(const ConvertOptions& options, const std::function<void(const ConvertedFile&)>& written) {
+  data::table_format(options.output);
+  Converter(options).run(written);
+}
+
+}  // namespace orrery::plot

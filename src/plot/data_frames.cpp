@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plot/data_frames.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/error.h"
+#include "base/frames.h"
+#include "points/derived.h"
+
+namespace orrery::plot {
+namespace {
+
+/// Colour map of numbers, and of categories.
+constexpr const char* kMap = "fast";
+constexpr const char* kCategoricalMap = "tab10";
+
+const data::ColumnInfo* find_column(const data::FrameInfo& info, const std::string& name) {
+  const auto at = std::find_if(info.columns.begin(), info.columns.end(), [&](const auto& c) { return c.name == name; });
+  return at == info.columns.end() ? nullptr : &*at;
+}
+
+bool is_text(const data::FrameInfo& info, const std::string& name) {
+  const data::ColumnInfo* const column = find_column(info, name);
+  return column != nullptr && column->type == data::ColumnType::kText;
+}
+
+}  // namespace
+
+DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& folder)
+    : options_(options),
+      folder_(folder),
+      is_sequence_(base::has_frame_pattern(options.file.string())),
+      numbers_(options.frames) {
+  data::OpenOptions open_options;
+  open_options.component = options.points.component;
+  const int first = all().front();
+  file_ = data::open(file_of(first), open_options);
+  const int frame = options.points.frame ? *options.points.frame : is_sequence_ ? 1 : first;
+  if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
+  info_ = file_->describe(described_ - 1);
+  points::add_derived_columns(info_);
+  if (!options.all_frames) return;
+  if (is_sequence_)
+    throw base::Error(base::ErrorKind::kUsage,
+                      "--frames: `all` are the frames of one file; for a sequence of files, write "
+                      "a range, e.g. 1-48");
+  numbers_.resize(static_cast<std::size_t>(file_->frame_count()));
+  std::iota(numbers_.begin(), numbers_.end(), 1);
+}
+
+std::filesystem::path DataFrames::file_of(int frame) const { return base::with_frame(options_.file.string(), frame); }
+
+LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::SourceRows* source) const {
+  points::LoadRequest request;
+  request.file = file_of(frame);
+  request.folder = folder_;
+  request.key = "points[0]";
+  request.frame = frame;
+  request.is_sequence = is_sequence_;
+  request.memory_limit = options_.memory_limit;
+  request.source = source;
+  if (source != nullptr) request.materials = std::numeric_limits<std::size_t>::max();  // a column like any other
+  LoadedFrame out{keys, {}};
+  out.points.file = request.file;
+  std::vector<base::Diagnostic> errors;
+  for (const scene::SceneDiagnostic& d : points::load_points(request, out.points)) {
+    const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";
+    const std::string key = has_key ? d.key.substr(request.key.size() + 1) + ": " : "";
+    const std::string number = numbers_.size() > 1 ? "frame " + std::to_string(frame) + ": " : "";
+    auto& list = d.severity == base::Severity::kError ? errors : out.warnings;
+    list.push_back(base::file_diagnostic(d.severity, request.file.string(), number + key + d.text));
+  }
+  if (!errors.empty())
+    throw base::Error(base::ErrorKind::kBadData, "cannot use " + request.file.string(), std::move(errors));
+  return out;
+}
+
+bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
+               scene::PointsColor& color) {
+  const data::Roles& roles = info.roles;
+  if (color_by == "none") return false;
+  if (color_by == "rgb" && find_column(info, "rgb") == nullptr) {
+    color.rgb = true;
+    return false;
+  }
+  if (color_by == "element" && !options.has_map) {
+    color.element = "jmol";
+    return false;
+  }
+  const bool is_type = color_by == "type";
+  color.column = is_type && !roles.type.empty()                    ? roles.type
+                 : color_by == "element" && !roles.element.empty() ? roles.element
+                                                                   : color_by;
+  if (options.has_map) return false;
+  color.map = is_type || is_text(info, color.column) ? kCategoricalMap : kMap;
+  return true;
+}
+
+void widen(std::optional<scene::Interval>& range, const scene::Points& points) {
+  if (!points.color_range || points.centers.empty()) return;
+  if (!range) range = points.color_range;
+  range->low = std::min(range->low, points.color_range->low);
+  range->high = std::max(range->high, points.color_range->high);
+}
+
+}  // namespace orrery::plot

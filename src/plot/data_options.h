@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace orrery::plot {
+
+/// What is read from a data file, and how: common to all commands that make spheres of particles.
+struct DataOptions {
+  std::filesystem::path file;  ///< data file, may contain a frame pattern
+  std::vector<int> frames;     ///< empty: one frame
+  bool all_frames = false;     ///< all frames of the file
+  scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
+  std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: not set
+  bool has_map = false;        ///< `points.color.map` is the user's
+  /// Axis 0, 1 or 2, and the plane's place: removes what is in front of it.
+  std::optional<std::pair<int, double>> slice = {};
+  std::uint64_t memory_limit = 0;  ///< bytes; 0: no limit
+};
+
+}  // namespace orrery::plot
