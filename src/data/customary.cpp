@@ -128,8 +128,11 @@ std::vector<std::string> component_names(const std::string& name, std::size_t co
 }
 
 std::string unique_name(const std::string& name, const std::vector<ColumnInfo>& columns) {
+  // Counting first keeps the cost quadratic if thousands of columns have one name.
+  const auto is_derived = [&](const ColumnInfo& c) { return c.name == name || c.name.starts_with(name + "_"); };
+  auto number = has_column(columns, name) ? std::count_if(columns.begin(), columns.end(), is_derived) : 0;
   std::string out = name;
-  for (int i = 2; has_column(columns, out); ++i) out = name + "_" + std::to_string(i);
+  while (has_column(columns, out)) out = name + "_" + std::to_string(++number);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "data/customary.h"
 #include "data/text_rows.h"
 
 namespace orrery::data {
@@ -112,7 +113,11 @@ class FrameReader {
 
   void read_columns(const std::string& name) {
     const auto words = words_of(name);
-    frame_.columns.assign(words.begin() + 1, words.end());
+    if (words.size() > kMostColumns)
+      faults_.fail(item_line(), "there are more than " + std::to_string(kMostColumns) + " columns");
+    std::vector<ColumnInfo> columns;
+    for (std::size_t i = 1; i < words.size(); ++i) columns.push_back({unique_name(std::string(words[i]), columns)});
+    for (ColumnInfo& column : columns) frame_.columns.push_back(std::move(column.name));
   }
 
   LammpsFrame finished() {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "data/customary.h"
 #include "data/readers.h"
 #include "data/text_cursor.h"
 #include "data/text_frames.h"
@@ -16,6 +18,7 @@ namespace orrery::data {
 namespace {
 
 constexpr std::size_t kMaxShown = 60;
+const std::array<std::string, 3> kAxes = {"x", "y", "z"};
 
 /// A line with nothing but a number of atoms.
 bool parse_count(std::string_view line, std::int64_t& count) {
@@ -65,7 +68,14 @@ class HeaderReader {
  private:
   using Parts = std::vector<std::string_view>;
 
-  void add(const std::string& name, ColumnType type) { out_.info.columns.push_back({name, type}); }
+  /// Adds a column, under another name if there is one with this name. Returns its name.
+  std::string add(const std::string& name, ColumnType type) {
+    out_.info.columns.push_back({unique_name(name, out_.info.columns), type});
+    return out_.info.columns.back().name;
+  }
+  std::array<std::string, 3> add_three(const std::array<std::string, 3>& names, ColumnType type) {
+    return {add(names[0], type), add(names[1], type), add(names[2], type)};
+  }
 
   /// Elements, or types: numbers in the place of elements mean atomic numbers to some programs, types to others.
   void set_species(const std::string& name, const Parts& first, std::size_t column) {
@@ -80,23 +90,25 @@ class HeaderReader {
       if (p.name == "pos") {
         if (p.count != 3 || p.type != ColumnType::kFloat64)
           faults_.fail(comment_line_, "property \"pos\" is not of 3 real numbers", "write pos:R:3");
-        roles.position = {"x", "y", "z"};
-        for (const char* const axis : {"x", "y", "z"}) add(axis, p.type);
+        roles.position = add_three(kAxes, p.type);
+        continue;
+      }
+      if (p.name == "color" && p.count == 3 && p.type == ColumnType::kFloat64) {
+        roles.rgb = add_three({"color[1]", "color[2]", "color[3]"}, p.type);
+        roles.rgb_maximum = 1;
         continue;
       }
       if (p.count == 1) {
-        if (p.name == "species") set_species(p.name, first, out_.info.columns.size());
-        if (p.name == "type") roles.type = p.name;
-        if (p.name == "id") roles.id = p.name;
-        if (p.name == "radius") roles.radius = p.name;
-        add(p.name, p.type);
+        const std::size_t column = out_.info.columns.size();
+        const std::string name = add(p.name, p.type);
+        const bool is_number = p.type != ColumnType::kText;
+        if (p.name == "species" && !is_number) set_species(name, first, column);
+        if (p.name == "type" || (p.name == "species" && is_number)) roles.type = name;
+        if (p.name == "id" && is_number) roles.id = name;
+        if (p.name == "radius" && is_number) roles.radius = name;
         continue;
       }
       for (std::size_t i = 1; i <= p.count; ++i) add(p.name + "[" + std::to_string(i) + "]", p.type);
-      if (p.name == "color" && p.count == 3 && p.type == ColumnType::kFloat64) {
-        roles.rgb = {"color[1]", "color[2]", "color[3]"};
-        roles.rgb_maximum = 1;
-      }
     }
     if (roles.position[0].empty())
       faults_.fail(comment_line_, "Properties has no positions", "write for example Properties=species:S:1:pos:R:3");
@@ -110,9 +122,8 @@ class HeaderReader {
     } else {
       add("element", ColumnType::kText);
     }
-    out_.info.roles.position = {"x", "y", "z"};
-    for (const char* const axis : {"x", "y", "z"}) add(axis, ColumnType::kFloat64);
-    for (std::size_t i = 4; i < first.size(); ++i) {
+    out_.info.roles.position = add_three(kAxes, ColumnType::kFloat64);
+    for (std::size_t i = 4; i < std::min<std::size_t>(first.size(), kMostColumns); ++i) {
       double ignored = 0;
       add("column" + std::to_string(i + 1), parse_number(first[i], ignored) ? ColumnType::kFloat64 : ColumnType::kText);
     }

@@ -114,6 +114,7 @@ class Parser {
     token_.kind = quote == '`' ? Kind::kQuotedName : Kind::kText;
     token_.span.end = end + 1;
     token_.text = verbatim({begin, end});
+    if (quote == '`' && end == begin) fail_at_token("no name between the backquotes", "write the name of a column");
   }
 
   void read_name() {
