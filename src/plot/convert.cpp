@@ -163,6 +163,7 @@ class Converter {
  public:
   explicit Converter(const ConvertOptions& options)
       : options_(options), data_(options, std::filesystem::path()), keys_(options.points) {
+    keys_.material_column = "";  // a column like any other
     const data::Roles& roles = data_.info().roles;
     scene::PointsRadius& radius = keys_.radius;
     has_radius_ = radius.value || !radius.column.empty() || !radius.element.empty() || !roles.radius.empty();

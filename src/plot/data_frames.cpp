@@ -2,7 +2,6 @@
 #include "plot/data_frames.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -62,9 +61,8 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   request.is_sequence = is_sequence_;
   request.memory_limit = options_.memory_limit;
   request.source = source;
-  if (source != nullptr) request.materials = std::numeric_limits<std::size_t>::max();  // a column like any other
   LoadedFrame out{keys, {}};
-  out.points.file = request.file;
+  if (keys.file.empty()) out.points.file = request.file;
   std::vector<base::Diagnostic> errors;
   for (const scene::SceneDiagnostic& d : points::load_points(request, out.points)) {
     const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";

@@ -126,7 +126,7 @@ std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains
   return total;
 }
 
-void clip(scene::Points& points, std::vector<std::uint32_t>& rows) {
+void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   const auto& [x, y, z] = points.clip;
   if (!x && !y && !z) return;
   const auto holds = [](const std::optional<scene::Interval>& interval, double at) {
@@ -140,18 +140,18 @@ void clip(scene::Points& points, std::vector<std::uint32_t>& rows) {
     points.radii[kept] = points.radii[i];
     if (!points.materials.empty()) points.materials[kept] = points.materials[i];
     if (!points.colors.empty()) points.colors[kept] = points.colors[i];
-    if (!rows.empty()) rows[kept] = rows[i];
+    if (rows != nullptr) (*rows)[kept] = (*rows)[i];
     ++kept;
   }
   points.centers.resize(kept);
   points.radii.resize(kept);
   if (!points.materials.empty()) points.materials.resize(kept);
   if (!points.colors.empty()) points.colors.resize(kept);
-  if (!rows.empty()) rows.resize(kept);
+  if (rows != nullptr) rows->resize(kept);
 }
 
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points,
-                 std::vector<std::uint32_t>& rows) {
+                 std::vector<std::uint32_t>* rows) {
   const Transform placement = transform_of(points.transform);
   const bool is_placed = !is_identity(placement);
   if (copies.size() == 1 && is_identity(copies[0].transform) && copies[0].chains == nullptr) {
@@ -185,7 +185,7 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
   repeat(points.radii, subsets, subset_of_copy, total);
   repeat(points.materials, subsets, subset_of_copy, total);
   repeat(points.colors, subsets, subset_of_copy, total);
-  repeat(rows, subsets, subset_of_copy, total);
+  if (rows != nullptr) repeat(*rows, subsets, subset_of_copy, total);
   auto center = points.centers.begin();
   for (std::size_t c = 0; c < copies.size(); ++c) {
     for (const auto end = center + static_cast<std::ptrdiff_t>(size_of_copy[c]); center != end; ++center) {

@@ -38,13 +38,13 @@ std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains
 /// Replaces the spheres by their copies, one copy after the other, and applies the transform of the points.
 ///
 /// `chains`   chain of each sphere, if a copy is limited to some; else ignored
-/// `rows`     copied like the spheres; one per sphere, or empty
+/// `rows`     a number for each sphere, which is copied with it; may be null
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points,
-                 std::vector<std::uint32_t>& rows);
+                 std::vector<std::uint32_t>* rows = nullptr);
 
 /// Removes the spheres whose centres are outside `points.clip`.
 ///
-/// `rows`     one per sphere, or empty
-void clip(scene::Points& points, std::vector<std::uint32_t>& rows);
+/// `rows`     a number for each sphere, which is removed with it; may be null
+void clip(scene::Points& points, std::vector<std::uint32_t>* rows = nullptr);
 
 }  // namespace orrery::points

@@ -183,12 +183,13 @@ class Loader {
     points_.color_names = std::move(colors.names);
     if (!material_.empty()) set_materials(table, rows);
     if (!(points_.replicate == Vec3d{1, 1, 1})) copies_ = replicated(copies_, *info_.box, points_.replicate);
-    std::vector<std::uint32_t> row_of_sphere;
-    if (request_.source != nullptr)
-      for (std::size_t i = 0; i < rows.size(); ++i) row_of_sphere.push_back(static_cast<std::uint32_t>(rows[i]));
+    std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
+    if (row_of_sphere != nullptr) *row_of_sphere = rows.list();
     make_copies(copies_, chains, points_, row_of_sphere);
     clip(points_, row_of_sphere);
-    if (request_.source != nullptr) *request_.source = {std::move(info_), std::move(table), std::move(row_of_sphere)};
+    if (request_.source == nullptr) return;
+    request_.source->info = std::move(info_);
+    request_.source->table = std::move(table);
   }
 
   /// Returns the selected rows, ascending by particle id if there are ids: files list particles in any order.

@@ -25,6 +25,12 @@ class Rows {
   explicit Rows(std::vector<std::uint32_t> rows) : rows_(std::move(rows)), count_(rows_.size()), is_list_(true) {}
 
   std::size_t size() const { return count_; }
+  /// The rows, each by its number.
+  std::vector<std::uint32_t> list() const {
+    std::vector<std::uint32_t> out = rows_;
+    for (std::size_t i = out.size(); i < count_; ++i) out.push_back(static_cast<std::uint32_t>(i));
+    return out;
+  }
   std::size_t operator[](std::size_t i) const { return is_list_ ? rows_[i] : i; }
 
  private:

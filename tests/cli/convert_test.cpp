@@ -135,7 +135,7 @@ TEST_F(CliConvert, ColorsOfAMapAreSrgb) {
   write("a.csv", "x,y,z,t\n1,0,0,0\n2,0,0,1\n3,0,0,nan\n");
   EXPECT_EQ(converted("a.csv --radius 1 --color-by t --map viridis"),
             "x,y,z,radius,red,green,blue,t\n1,0,0,1,68,1,84,0\n2,0,0,1,253,231,37,1\n3,0,0,1,188,188,188,nan\n");
-  EXPECT_TRUE(contains(converted("a.csv --radius 1 --color-by t --range 1:2"), "\n2,0,0,1,68,1,84,1\n"));
+  EXPECT_TRUE(contains(converted("a.csv --radius 1 --color-by t --map viridis --range 1:2"), "\n2,0,0,1,68,1,84,1\n"));
   EXPECT_EQ(info("out.csv")["roles"]["rgb"]["maximum"], 255);
   EXPECT_TRUE(contains(converted("a.dump --select 'id == 3' --color-by element"), "\n0.1,5,5,1.1,144,144,144,3,1,"));
   // Speeds are 2, 3, 0.5 and 1; the computed column is not written.

@@ -104,8 +104,7 @@ TEST(PointsCopies, ReplicatedAlongTheEdges) {
 
 TEST(PointsCopies, CopiesKeepRadiiMaterialsAndColors) {
   scene::Points points = two();
-  std::vector<std::uint32_t> rows;
-  make_copies({{moved({}), nullptr}, {moved({0, 0, 5}), nullptr}}, {}, points, rows);
+  make_copies({{moved({}), nullptr}, {moved({0, 0, 5}), nullptr}}, {}, points);
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{1, 0, 0}, {0, 2, 0}, {1, 0, 5}, {0, 2, 5}}));
   EXPECT_EQ(points.radii, (std::vector<double>{0.5, 0.25, 0.5, 0.25}));
   EXPECT_EQ(points.materials, (std::vector<std::uint32_t>{7, 8, 7, 8}));
@@ -120,8 +119,9 @@ TEST(PointsCopies, CopiesOfSomeChains) {
   EXPECT_EQ(copied_count(copies, chains, 2), 4u);
   EXPECT_EQ(copied_count(copies, {}, 2), 2u) << "those that are known without the chains";
   scene::Points points = two();
-  std::vector<std::uint32_t> rows;
-  make_copies(copies, chains, points, rows);
+  std::vector<std::uint32_t> rows = {20, 30};
+  make_copies(copies, chains, points, &rows);
+  EXPECT_EQ(rows, (std::vector<std::uint32_t>{30, 20, 30, 30}));
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{0, 2, 1}, {1, 0, 2}, {0, 2, 2}, {0, 2, 4}}));
   EXPECT_EQ(points.radii, (std::vector<double>{0.25, 0.5, 0.25, 0.25}));
   EXPECT_EQ(points.colors, (std::vector<std::uint16_t>{4, 3, 4, 4}));
@@ -132,8 +132,7 @@ TEST(PointsCopies, RotationMatricesAreRows) {
   Transform turn;  // x to y, y to -x
   turn.rows = {Vec3d{0, -1, 0}, Vec3d{1, 0, 0}, Vec3d{0, 0, 1}};
   turn.translation = {0, 0, 7};
-  std::vector<std::uint32_t> rows;
-  make_copies({{turn, nullptr}}, {}, points, rows);
+  make_copies({{turn, nullptr}}, {}, points);
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{0, 1, 7}, {-2, 0, 7}}));
 }
 
@@ -145,8 +144,7 @@ TEST(PointsCopies, OrderOfTheTransform) {
   points.transform.scale = 2;
   points.transform.rotate = {90, 90, 90};
   points.transform.translate = {10, 20, 30};
-  std::vector<std::uint32_t> rows;
-  make_copies({{}}, {}, points, rows);
+  make_copies({{}}, {}, points);
   // (2, 4, 6) about x: (2, -6, 4); about y: (4, -6, -2); about z: (6, 4, -2)
   expect_near(points.centers[0], {16, 24, 28});
   EXPECT_EQ(points.radii[0], 1);
@@ -154,7 +152,7 @@ TEST(PointsCopies, OrderOfTheTransform) {
   points.centers = {{1, 0, 0}};
   points.transform = {};
   points.transform.rotate = {0, 0, 30};
-  make_copies({{}}, {}, points, rows);
+  make_copies({{}}, {}, points);
   expect_near(points.centers[0], {std::sqrt(0.75), 0.5, 0});
   EXPECT_EQ(points.radii[0], 1) << "a rotation changes no radius";
 }
@@ -165,29 +163,29 @@ TEST(PointsCopies, CopiesAreTransformedAfterwards) {
   points.radii = {1};
   points.transform.scale = 3;
   points.transform.translate = {0, 1, 0};
-  std::vector<std::uint32_t> rows;
-  make_copies({{moved({}), nullptr}, {moved({1, 0, 0}), nullptr}}, {}, points, rows);
+  make_copies({{moved({}), nullptr}, {moved({1, 0, 0}), nullptr}}, {}, points);
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{3, 1, 0}, {6, 1, 0}}));
   EXPECT_EQ(points.radii, (std::vector<double>{3, 3}));
 }
 
 TEST(PointsCopies, ClipKeepsCentersInTheClosedIntervals) {
   scene::Points points = two();
-  std::vector<std::uint32_t> rows;
-  clip(points, rows);
+  clip(points);
   EXPECT_EQ(points.centers.size(), 2u);
   points.clip[1] = scene::Interval{2, 3};
-  clip(points, rows);
+  std::vector<std::uint32_t> rows = {20, 30};
+  clip(points, &rows);
+  EXPECT_EQ(rows, std::vector<std::uint32_t>{30});
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{0, 2, 0}}));
   EXPECT_EQ(points.radii, std::vector<double>{0.25});
   EXPECT_EQ(points.materials, std::vector<std::uint32_t>{8});
   EXPECT_EQ(points.colors, std::vector<std::uint16_t>{4});
   points.clip[0] = scene::Interval{-2, -1};
-  clip(points, rows);
+  clip(points);
   EXPECT_TRUE(points.centers.empty() && points.radii.empty() && points.materials.empty() && points.colors.empty());
   points = two();
   points.clip[2] = scene::Interval{0.5, 1};
-  clip(points, rows);
+  clip(points);
   EXPECT_TRUE(points.centers.empty());
 }
 

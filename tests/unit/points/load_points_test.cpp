@@ -404,6 +404,28 @@ TEST_F(PointsLoadPointsMemory, ChainsReduceTheNeed) {
   EXPECT_EQ(points.centers.size(), 3u);
 }
 
+TEST_F(PointsLoadPoints, RowsOfTheSpheres) {
+  const std::string dump =
+      frame("id type x y z radius c", {"3 2 30 0 0 0.3 13", "1 1 10 0 0 0.1 11", "2 2 20 5 0 0.2 12"});
+  SourceRows source;
+  request.source = &source;
+  EXPECT_EQ(load("a.dump", dump), "");
+  EXPECT_EQ(source.rows, (std::vector<std::uint32_t>{1, 2, 0}));
+  ASSERT_NE(source.table.find("c"), nullptr) << "all columns are read";
+  EXPECT_EQ(source.table.find("c")->number(2), 12);
+  EXPECT_EQ(source.info.roles.radius, "radius");
+  EXPECT_EQ(source.info.rows, 3u);
+  points.select = "type == 2";
+  points.replicate = {1, 2, 1};
+  points.clip[1] = scene::Interval{1, 20};
+  EXPECT_EQ(load(), "");
+  EXPECT_EQ(x(), (Numbers{20, 30}));
+  EXPECT_EQ(source.rows, (std::vector<std::uint32_t>{2, 0}));
+  request.source = nullptr;
+  EXPECT_EQ(load(), "");
+  EXPECT_EQ(points.unused, std::vector<std::string>{"c"});
+}
+
 TEST_F(PointsLoadPoints, FaultsOfTheFileAreThrown) {
   write("a.csv", kCsv);
   request.file = folder_ / "missing.csv";
