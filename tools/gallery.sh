@@ -36,5 +36,6 @@ for name in "${names[@]}"; do
     exit 2
   fi
   (cd "$work/$name" && bash -euo pipefail "$work/$name.sh")
-  cp "$work/$name/$name.jpg" "$root/docs/gallery/"
+  # Less detail than orrery writes, for pages that load quickly.
+  oiiotool "$work/$name/$name.jpg" --compression jpeg:70 -o "$root/docs/gallery/$name.jpg"
 done
