@@ -61,7 +61,7 @@ class RowReader {
     std::transform(tag.begin(), tag.end(), tag.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     for (std::size_t t = 0; t < tables_.size(); ++t) {
-      if (!tag.starts_with(tables_[t].category)) continue;
+      if (tag.rfind(tables_[t].category, 0) != 0) continue;
       const auto& items = tables_[t].items;
       const auto item = std::find(items.begin(), items.end(), tag.substr(tables_[t].category.size()));
       if (item != items.end()) return {t, static_cast<std::size_t>(item - items.begin()), true};

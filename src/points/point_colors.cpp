@@ -98,7 +98,8 @@ PointColors colors_by_number(const data::Column& column, const Rows& rows, const
   out.rec709 = kMapColors;
   out.palette.push_back(color.nan_color);
   out.range = color.range ? color.range : range_of(column, rows);
-  const auto [low, high] = out.range.value_or(scene::Interval{});
+  const scene::Interval range = out.range.value_or(scene::Interval{});
+  const double low = range.low, high = range.high;
   const double unit = std::isfinite(high - low) ? 1 : 0.5;  // halved, the largest range does not overflow
   const double span = high * unit - low * unit;
   out.indices.resize(rows.size());
