@@ -52,7 +52,7 @@ struct Camera {
   double shutter_open = 0;               ///< frames, relative to the frame
   double shutter_close = 0;              ///< frames, relative to the frame; equal to shutter_open: no motion blur
   Projection projection = Projection::kPerspective;
-  std::optional<double> width;  ///< orthographic: scene units, width of the frame
+  std::optional<double> width = {};  ///< orthographic: scene units, width of the frame
 };
 
 enum class BackgroundType { kGradient, kConstant, kImage, kSky };
