@@ -39,6 +39,7 @@ void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) 
   if (arguments.render.quiet) return;
   std::string text;
   for (const std::string& choice : made.choices) text += "plot: " + choice + "\n";
+  for (const std::string& warning : made.warnings) text += "warning: " + warning + "\n";
   print_message(text);
 }
 

@@ -25,6 +25,9 @@ class PlotMaker {
     out_.points = options.points;
     out_.points.material_column = "";  // the scene of a plot has one material
     out_.points.file = folder.empty() ? options.file : std::filesystem::proximate(options.file, folder);
+    // A colour map in a file is relative to the user's folder; in the scene it is relative to the scene's.
+    if (std::string& map = out_.points.color.map; options_.has_map && map.find_first_of("./") != std::string::npos)
+      map = std::filesystem::proximate(map, folder.empty() ? "." : folder).string();
     out_.frames = data_.numbers();
   }
 

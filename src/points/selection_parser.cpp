@@ -55,7 +55,7 @@ class Parser {
  public:
   explicit Parser(std::string_view text) {
     if (text.size() > kMaxLength)
-      fail_selection("", {}, "selection is longer than " + base::bytes_text(kMaxLength),
+      fail_selection("", {}, "the condition is longer than " + base::bytes_text(kMaxLength),
                      "select by ranges, or filter the file");
     code_.text = text;
     read();
@@ -173,7 +173,7 @@ class Parser {
     for (const auto& [word, symbol] : kForeignWords)
       if (is_word(word)) return "write " + std::string(symbol);
     if (is_symbol(")")) return "no parenthesis is open";
-    return "such as ==, &&, || or +";
+    return "e.g. ==, &&, || or +";
   }
 
   // Steps.
@@ -264,8 +264,8 @@ class Parser {
     } else if (token.kind == Kind::kQuotedName || token.kind == Kind::kName) {
       parse_name();
     } else {
-      fail_at_token(token.kind == Kind::kEnd ? "selection ends too early" : "expected a column, number or text",
-                    "such as: type == 2 && z > 0");
+      fail_at_token(token.kind == Kind::kEnd ? "the condition ends too early" : "expected a column, number or text",
+                    "e.g. type == 2 && z > 0");
     }
     --depth_;
   }
@@ -275,7 +275,7 @@ class Parser {
     if (token.kind == Kind::kName) {
       for (const auto& [word, symbol] : kForeignWords)
         if (is_word(word)) fail_at_token("unknown word " + std::string(word), "write " + std::string(symbol));
-      if (is_word("in")) fail_at_token("expected a column before `in`", "such as: chain in [\"A\", \"B\"]");
+      if (is_word("in")) fail_at_token("expected a column before `in`", "e.g. chain in [\"A\", \"B\"]");
     }
     read();
     if (token.kind == Kind::kName && is_symbol("(")) {
@@ -320,7 +320,7 @@ class Parser {
   void parse_list() {
     const Span in = token_.span;
     read();
-    if (!take("[")) fail_at_token("expected a list after `in`", "such as: type in [1, 2]");
+    if (!take("[")) fail_at_token("expected a list after `in`", "e.g. type in [1, 2]");
     std::vector<double> numbers;
     std::vector<std::string> texts;
     do {
@@ -330,12 +330,12 @@ class Parser {
       } else if (token_.kind == Kind::kText && !negative) {
         texts.emplace_back(token_.text);
       } else {
-        fail_at_token("expected a number or a text", "such as: type in [1, 2], chain in [\"A\", \"B\"]");
+        fail_at_token("expected a number or a text", "e.g. type in [1, 2], chain in [\"A\", \"B\"]");
       }
       if (!numbers.empty() && !texts.empty()) fail_at_token("list of both numbers and texts", "use two lists");
       read();
     } while (take(","));
-    if (!take("]")) fail_at_token("expected , or ]", "such as: type in [1, 2]");
+    if (!take("]")) fail_at_token("expected , or ]", "e.g. type in [1, 2]");
     if (texts.empty()) {
       std::sort(numbers.begin(), numbers.end());
       emit(SelectionOp::kInNumbers, in, 0, code_.number_lists.size());
@@ -359,7 +359,7 @@ SelectionCode parse_selection_code(std::string_view text) { return Parser(text).
 
 void fail_selection(const std::string& selection, Span span, const std::string& text, const std::string& remedy) {
   base::Diagnostic diagnostic;
-  diagnostic.text = "selection: " + text;
+  diagnostic.text = text;
   diagnostic.remedy = remedy;
   diagnostic.source_line = selection;
   diagnostic.column = selection.empty() ? 0 : static_cast<int>(span.begin) + 1;

@@ -328,7 +328,7 @@ TEST_F(PlotPlot, PathsAreRelativeToTheScene) {
 TEST_F(PlotPlot, FaultsNameTheKey) {
   write("a.csv", kCorners);
   options.points.select = "mas > 1";
-  EXPECT_NE(error().find("select: at character 1: selection: unknown column mas"), std::string::npos) << error();
+  EXPECT_NE(error().find("select: at character 1: unknown column mas"), std::string::npos) << error();
   options.points.select.clear();
   options.color_by = "mas";
   EXPECT_NE(error().find("color.column: the file has no column `mas`; did you mean `mass`?"), std::string::npos)

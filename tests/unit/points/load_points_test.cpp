@@ -106,10 +106,9 @@ TEST_F(PointsLoadPoints, AFrameWithoutParticlesIsAWarning) {
 
 TEST_F(PointsLoadPoints, FaultsOfASelectionAreLocated) {
   points.select = "type == 2 && siz > 1";
-  EXPECT_EQ(
-      load("a.csv", kCsv),
-      "error points[0].select: at character 14: selection: unknown column siz; columns are x, y, z, radius, type, "
-      "name\n");
+  EXPECT_EQ(load("a.csv", kCsv),
+            "error points[0].select: at character 14: unknown column siz; columns are x, y, z, radius, type, "
+            "name\n");
   EXPECT_TRUE(points.centers.empty());
 }
 
