@@ -109,6 +109,27 @@ TEST_F(DataLammpsDump, UnwrappedPositionsStayAsTheyAre) {
 
 /// A cell with a = (4, 0, 0), b = (xy, 5, 0), c = (xz, yz, 6) at (-1, 2, 3), as LAMMPS writes it: xlo_bound is
 /// xlo + min(0, xy, xz, xy + xz).
+TEST_F(DataLammpsDump, ImageCountsApplyToWrappedPositionsOnly) {
+  const auto image = [&](const std::string& columns) {
+    return open(kHead + kBox + "ITEM: ATOMS " + columns + " ix iy iz\n1 2 3 0 0 0\n1 2 3 0 0 0\n")
+        ->describe(0)
+        .roles.image[0];
+  };
+  EXPECT_EQ(image("x y z"), "ix");
+  EXPECT_EQ(image("xs ys zs"), "ix");
+  EXPECT_EQ(image("xu yu zu"), "");
+  EXPECT_EQ(image("xsu ysu zsu"), "");
+}
+
+TEST_F(DataLammpsDump, ColumnsOfOneNameAreNumbered) {
+  const auto file = open(kHead + kBox + "ITEM: ATOMS x y z v v v\n1 2 3 4 5 6\n1 2 3 7 8 9\n");
+  EXPECT_EQ(column_names(file->describe(0)), (std::vector<std::string>{"x", "y", "z", "v", "v_2", "v_3"}));
+  EXPECT_EQ(column_numbers(file->read(0, {"v_3"}), "v_3"), (Numbers{6, 9}));
+  std::string many = "ITEM: ATOMS x y z";
+  for (int i = 0; i < 4094; ++i) many += " v";
+  EXPECT_EQ(errors(kHead + kBox + many + "\n"), "9: there are more than 4096 columns\n");
+}
+
 TEST_F(DataLammpsDump, TiltedBoxIsRecoveredFromItsBounds) {
   struct Tilt {
     double xy, xz, yz;

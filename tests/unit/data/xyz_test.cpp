@@ -90,6 +90,20 @@ TEST_F(DataXyz, ExtendedFilesDeclareTheirColumns) {
   EXPECT_EQ(column_texts(table, "fixed"), (Texts{"T", "F"}));
 }
 
+TEST_F(DataXyz, ColumnsOfOneNameAreNumbered) {
+  const auto file = open("1\nProperties=x:R:1:pos:R:3:v:R:1:v:R:1\n9 1 2 3 4 5\n");
+  const FrameInfo info = file->describe(0);
+  EXPECT_EQ(column_names(info), (Texts{"x", "x_2", "y", "z", "v", "v_2"}));
+  EXPECT_EQ(info.roles.position[0], "x_2");
+  EXPECT_EQ(column_numbers(file->read(0, {"x_2", "v_2"}), "v_2"), (Numbers{5}));
+}
+
+TEST_F(DataXyz, RolesHaveTheTypeThatTheyNeed) {
+  const Roles roles = open("1\nProperties=species:R:1:pos:R:3:id:S:1:radius:L:1\n0.5 1 2 3 a T\n")->describe(0).roles;
+  EXPECT_EQ(roles.type, "species") << "a number is no element";
+  EXPECT_EQ(roles.element + roles.id + roles.radius, "");
+}
+
 TEST_F(DataXyz, ExtendedFilesAreRecognisedByTheirContent) {
   support::write_bytes(folder_ / "frame", "1\nProperties=species:S:1:pos:R:3\nH 0 0 0\n");
   EXPECT_EQ(data::open(folder_ / "frame")->format(), Format::kXyz);

@@ -201,6 +201,7 @@ TEST(PointsSelect, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(message("floor(z) > 1"), "1+5 unknown function floor; functions are abs, sqrt, min, max");
   EXPECT_EQ(message("abs(z, x) > 1").substr(0, 23), "1+3 abs with 2 operands");
   EXPECT_EQ(message("min(z) > 1").substr(0, 23), "1+3 min with 1 operands");
+  EXPECT_EQ(message("`` > 1"), "1+2 no name between the backquotes; write the name of a column");
   EXPECT_EQ(message("z > 1e999"), "5+5 number is out of range; at most 1.8e308");
   EXPECT_EQ(message("2x > 1").substr(0, 23), "1+2 malformed number 2x");
   EXPECT_EQ(message("z > 0 # comment").substr(0, 26), "7+1 unexpected character; ");
