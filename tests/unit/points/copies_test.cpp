@@ -148,13 +148,23 @@ TEST(PointsCopies, OrderOfTheTransform) {
   // (2, 4, 6) about x: (2, -6, 4); about y: (4, -6, -2); about z: (6, 4, -2)
   expect_near(points.centers[0], {16, 24, 28});
   EXPECT_EQ(points.radii[0], 1);
+}
 
-  points.centers = {{1, 0, 0}};
-  points.transform = {};
-  points.transform.rotate = {0, 0, 30};
-  make_copies({{}}, {}, points);
-  expect_near(points.centers[0], {std::sqrt(0.75), 0.5, 0});
-  EXPECT_EQ(points.radii[0], 1) << "a rotation changes no radius";
+TEST(PointsCopies, RotationsFollowOneAnother) {
+  const auto turned = [](Vec3d p, Vec3d degrees) {
+    scene::Points points;
+    points.centers = {p};
+    points.radii = {1};
+    points.transform.rotate = degrees;
+    make_copies({{}}, {}, points);
+    return points.centers[0];
+  };
+  const double c = std::sqrt(0.75), s = 0.5;
+  expect_near(turned({1, 2, 3}, {30, 0, 0}), {1, 2 * c - 3 * s, 2 * s + 3 * c});
+  expect_near(turned({1, 2, 3}, {0, 30, 0}), {1 * c + 3 * s, 2, 3 * c - 1 * s});
+  expect_near(turned({1, 2, 3}, {0, 0, 30}), {1 * c - 2 * s, 1 * s + 2 * c, 3});
+  const Vec3d after_x = turned({1, 2, 3}, {25, 0, 0}), after_y = turned(after_x, {0, -40, 0});
+  expect_near(turned({1, 2, 3}, {25, -40, 110}), turned(after_y, {0, 0, 110}));
 }
 
 TEST(PointsCopies, CopiesAreTransformedAfterwards) {
