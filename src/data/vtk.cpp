@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "data/customary.h"
@@ -146,12 +148,14 @@ class VtkFile final : public SingleFrame {
     for (std::size_t i = 0; i < targets.size(); ++i)
       std::visit(
           [&](auto& column) {
-            if constexpr (requires { column.insert(column.end(), column.begin(), column.end()); }) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(column)>, Words>) {
               auto& read = std::get<std::decay_t<decltype(column)>>(values[i]);
               if (column.empty()) {
                 column = std::move(read);
               } else {
-                column.insert(column.end(), read.begin(), read.end());
+                const std::size_t before = column.size();
+                column.resize(before + read.size());
+                std::copy(read.begin(), read.end(), column.begin() + static_cast<std::ptrdiff_t>(before));
               }
             }
           },
