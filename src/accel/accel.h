@@ -48,13 +48,20 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 /// Receives the progress of a build, 0..1, on any of its threads. Returns false to cancel the build.
 using BuildMonitor = std::function<bool(double fraction)>;
 
+/// From this many resting spheres of similar size on, these are one primitive of Embree's scene, with a BVH of their own
+/// inside (docs/decisions/0027-bvh-for-many-spheres.md). Below, each sphere is a primitive.
+inline constexpr std::size_t kBvhThreshold = 1000;
+
+/// A threshold that no scene reaches.
+inline constexpr std::size_t kNoBvh = ~std::size_t{0};
+
 /// Spheres as Embree user geometry.
 ///
 /// Domain     the view's spheres outlive the result
 /// Errors     base::Error(kInternal) if Embree fails or would drop a sphere, kStopped if the monitor cancelled
 ///            the build
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
-                                   const BuildMonitor& monitor = {});
+                                   const BuildMonitor& monitor = {}, std::size_t bvh_threshold = kBvhThreshold);
 
 /// Embree's built-in sphere points, traced one ray at a time in float, as in a renderer without its own intersection.
 /// Traces float packets only. Hits are Embree's, not the kernel's, so no image is rendered with them. For comparison.

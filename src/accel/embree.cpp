@@ -5,11 +5,14 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "accel/accel.h"
 #include "accel/duplicates.h"
 #include "accel/embree_scene.h"
 #include "accel/owned_scene.h"
+#include "accel/sphere_bvh.h"
 #include "base/error.h"
 
 namespace orrery::accel {
@@ -69,6 +72,19 @@ std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
   return all_but(without, count);
 }
 
+/// Spheres this many times larger than the median stay out of a SphereBvh: they would enlarge all boxes around them.
+constexpr double kGiantRatio = 16;
+
+/// The median radius of a sample.
+double median_radius(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids) {
+  const std::size_t stride = ids.size() / 4096 + 1;
+  std::vector<double> radii;
+  for (std::size_t i = 0; i < ids.size(); i += stride) radii.push_back(spheres[ids[i]].radius);
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return *middle;
+}
+
 /// A sphere at Embree's time step 0 or 1.
 kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsigned step) {
   kernel::Sphere s = scene.spheres[id];
@@ -106,18 +122,25 @@ void sphere_bounds(const RTCBoundsFunctionArguments* arguments) {
       state.refused.fetch_add(1, std::memory_order_relaxed);
 }
 
+void bvh_bounds(const RTCBoundsFunctionArguments* arguments) {
+  const BoxFrame::Box& box = static_cast<const SphereBvh*>(arguments->geometryUserPtr)->box;
+  *arguments->bounds_o = {box.lower[0], box.lower[1], box.lower[2], 0, box.upper[0], box.upper[1], box.upper[2], 0};
+}
+
 class Embree final : public Accel {
  public:
-  Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor)
+  Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor,
+         std::size_t bvh_threshold)
       : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view, precision)) {
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
+    if (primitives >= bvh_threshold) build_bvh(view, bvh_threshold, monitor);
     if (primitives > 0) build(primitives, monitor);
   }
 
   kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }
   void use(Traversals traversals) noexcept override { scene_.traversals = traversals; }
   std::string name() const override { return "embree " + embree_version(); }
-  std::size_t bytes() const noexcept override { return embree_.bytes(); }
+  std::size_t bytes() const noexcept override { return embree_.bytes() + bvh_.bytes(); }
 
  private:
   static EmbreeScene make_scene(const kernel::SceneView& view, kernel::Precision precision) {
@@ -134,12 +157,28 @@ class Embree final : public Accel {
     return scene;
   }
 
+  /// Puts resting spheres of similar size into one BVH, if there are enough of them.
+  void build_bvh(const kernel::SceneView& view, std::size_t threshold, const BuildMonitor& monitor) {
+    std::vector<std::uint32_t> many = boxed(scene_, view.sphere_count);
+    many.erase(many.begin(), std::lower_bound(many.begin(), many.end(), view.moving_count));
+    if (many.size() < threshold) return;
+    const double limit = kGiantRatio * median_radius(view.spheres, many);
+    std::vector<std::uint32_t> giants;
+    for (const std::uint32_t id : many)
+      if (view.spheres[id].radius > limit) giants.push_back(id);
+    if (many.size() - giants.size() < threshold) return;
+    std::erase_if(many, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
+    scene_.singles = std::move(giants);
+    bvh_ = SphereBvh(view.spheres, std::move(many), scene_.frame, monitor);
+  }
+
   /// Moving spheres get a separate geometry, since the others need no second time step.
   void build(std::size_t primitives, const BuildMonitor& monitor) {
     BuildState moving{&scene_, 0}, resting{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
     if (scene_.moving_primitives > 0) add_geometry(scene_.moving_primitives, 2, moving);
-    const std::size_t rest = primitives - scene_.moving_primitives;
+    const std::size_t rest = bvh_.empty() ? primitives - scene_.moving_primitives : scene_.singles.size();
     if (rest > 0) add_geometry(rest, 1, resting);
+    if (!bvh_.empty()) add_bvh();
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
           embree_.get(),
@@ -165,8 +204,20 @@ class Embree final : public Accel {
     embree_.attach(geometry);
   }
 
+  void add_bvh() {
+    RTCGeometry geometry = rtcNewGeometry(embree_.device(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryUserData(geometry, &bvh_);
+    rtcSetGeometryBoundsFunction(geometry, bvh_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, functions_.intersect_bvh);
+    rtcSetGeometryOccludedFunction(geometry, functions_.occluded_by_bvh);
+    rtcSetGeometryMask(geometry, ~0u);
+    embree_.attach(geometry);
+  }
+
   EmbreeFunctions functions_;
   EmbreeScene scene_;
+  SphereBvh bvh_;
   OwnedScene embree_;
 };
 
@@ -197,9 +248,9 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 }
 
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
-                                   const BuildMonitor& monitor) {
+                                   const BuildMonitor& monitor, std::size_t bvh_threshold) {
   if (scene.sphere_count == 0) return make_list(scene, precision);  // there is nothing to build a BVH of
-  return std::make_unique<Embree>(scene, precision, monitor);
+  return std::make_unique<Embree>(scene, precision, monitor, std::max<std::size_t>(1, bvh_threshold));
 }
 
 std::string embree_version() { return RTC_VERSION_STRING; }

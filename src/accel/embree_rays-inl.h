@@ -37,6 +37,32 @@ HWY_INLINE hn::Vec<D> far_limits(D d, hn::Vec<D> distance, double scale, hn::Vec
          hn::Set(d, static_cast<T>(std::numeric_limits<float>::min()));
 }
 
+/// The closest hits so far.
+template <class D>
+struct ClosestHit {
+  hn::Vec<D> distance;
+  hn::Vec<k::IdTag<D>> ids;
+  hn::Mask<D> is_new;  ///< lanes whose hit has changed since load()
+
+  template <class Packet>
+  static HWY_INLINE ClosestHit load(D d, const Packet& packet, int first) {
+    return {hn::Load(d, packet.distance + first), hn::Load(k::IdTag<D>(), packet.hit + first), hn::FirstN(d, 0)};
+  }
+  template <class Packet>
+  HWY_INLINE void store(D d, Packet& packet, int first) const {
+    hn::Store(distance, d, packet.distance + first);
+    hn::Store(ids, k::IdTag<D>(), packet.hit + first);
+  }
+  /// Keeps the closer hit; of two at the same distance, that with the smaller id.
+  HWY_INLINE void take(D d, const k::Distances<D>& found, hn::Vec<k::IdTag<D>> found_ids, hn::Mask<D> lanes) {
+    const auto same_place = hn::And(found.value == distance, hn::RebindMask(d, ids > found_ids));
+    const auto nearer = hn::And(hn::And(lanes, found.mask), hn::Or(found.value < distance, same_place));
+    distance = hn::IfThenElse(nearer, found.value, distance);
+    ids = hn::IfThenElse(hn::RebindMask(k::IdTag<D>(), nearer), found_ids, ids);
+    is_new = hn::Or(is_new, nearer);
+  }
+};
+
 /// Stores lanes as floats.
 template <class D>
 HWY_INLINE void store_float(D d, hn::Vec<D> value, float* to) {

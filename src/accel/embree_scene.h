@@ -27,10 +27,13 @@ struct EmbreeScene {
   /// ray tests them first, so that their hits limit the traversal.
   std::vector<std::uint32_t> outliers;
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
+  /// If there is a SphereBvh: ascending ids of the resting spheres outside of it, one primitive each.
+  std::vector<std::uint32_t> singles;
   Traversals traversals;
 
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.
   std::uint32_t sphere_id(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
+    if (!singles.empty() && (geometry > 0 || moving_primitives == 0)) return singles[primitive];
     primitive += geometry * moving_primitives;
     for (const std::uint32_t id : outliers) primitive += primitive >= id ? 1u : 0u;
     return primitive;
@@ -53,6 +56,8 @@ struct EmbreeQuery {
 struct EmbreeFunctions {
   RTCIntersectFunctionN intersect = nullptr;
   RTCOccludedFunctionN occluded = nullptr;
+  RTCIntersectFunctionN intersect_bvh = nullptr;  ///< for a geometry whose user data is a SphereBvh
+  RTCOccludedFunctionN occluded_by_bvh = nullptr;
   kernel::Tracer tracer;  ///< `self` is not set
 
   kernel::Tracer tracer_of(const EmbreeScene& scene) const noexcept {
@@ -65,5 +70,8 @@ EmbreeFunctions embree_functions(kernel::Precision precision, bool moves);
 
 /// Adds the occlusion queries to `functions`.
 void add_occlusion_functions(EmbreeFunctions& functions, kernel::Precision precision, bool moves);
+
+/// Adds the queries of a SphereBvh to `functions`.
+void add_bvh_functions(EmbreeFunctions& functions, kernel::Precision precision);
 
 }  // namespace orrery::accel

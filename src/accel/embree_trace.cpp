@@ -19,32 +19,6 @@ namespace orrery::accel::HWY_NAMESPACE {
 using EmbreeRays =
     std::conditional_t<kWidth == 16, RTCRayHit16, std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit4>>;
 
-/// The closest hits so far.
-template <class D>
-struct ClosestHit {
-  hn::Vec<D> distance;
-  hn::Vec<k::IdTag<D>> ids;
-  hn::Mask<D> is_new;  ///< lanes whose hit has changed since load()
-
-  template <class Packet>
-  static HWY_INLINE ClosestHit load(D d, const Packet& packet, int first) {
-    return {hn::Load(d, packet.distance + first), hn::Load(k::IdTag<D>(), packet.hit + first), hn::FirstN(d, 0)};
-  }
-  template <class Packet>
-  HWY_INLINE void store(D d, Packet& packet, int first) const {
-    hn::Store(distance, d, packet.distance + first);
-    hn::Store(ids, k::IdTag<D>(), packet.hit + first);
-  }
-  /// Keeps the closer hit; of two at the same distance, that with the smaller id.
-  HWY_INLINE void take(D d, const k::Distances<D>& found, hn::Vec<k::IdTag<D>> found_ids, hn::Mask<D> lanes) {
-    const auto same_place = hn::And(found.value == distance, hn::RebindMask(d, ids > found_ids));
-    const auto nearer = hn::And(hn::And(lanes, found.mask), hn::Or(found.value < distance, same_place));
-    distance = hn::IfThenElse(nearer, found.value, distance);
-    ids = hn::IfThenElse(hn::RebindMask(k::IdTag<D>(), nearer), found_ids, ids);
-    is_new = hn::Or(is_new, nearer);
-  }
-};
-
 /// Intersects rays, one per lane, with one sphere.
 template <class D, kernel::Precision kPrecision>
 HWY_INLINE void intersect_sphere(D d, const k::Rays<D>& ray, const k::Spheres<D>& sphere, std::uint32_t id,
@@ -210,6 +184,7 @@ HWY_EXPORT(functions);
 EmbreeFunctions embree_functions(kernel::Precision precision, bool moves) {
   EmbreeFunctions all = ORRERY_BEST(functions)(precision, moves);
   add_occlusion_functions(all, precision, moves);
+  add_bvh_functions(all, precision);
   return all;
 }
 

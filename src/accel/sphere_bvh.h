@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "accel/box_frame.h"
+#include "kernel/sphere.h"
+
+namespace orrery::accel {
+
+/// A BVH over many spheres at rest, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds in 8 bits
+/// relative to the parent. It takes 9 bytes per sphere.
+///
+/// Like Embree's boxes it only selects candidates. All bounds enclose the spheres plus the rounding errors of a
+/// single-precision ray in box space (docs/decisions/0027-bvh-for-many-spheres.md), so no hit is lost.
+class SphereBvh {
+ public:
+  /// Children of a node and spheres of a leaf.
+  static constexpr unsigned kArity = 16;
+
+  /// Centres, in box space: origin + step * center, which is at most step / 2 off on each axis.
+  struct alignas(64) Leaf {
+    std::uint8_t center[3][kArity];
+    float origin[3];
+    float step;
+  };
+
+  /// Radii of a leaf's spheres, if they differ between spheres: at most step * radius, box space.
+  struct LeafRadii {
+    std::uint8_t radius[kArity];
+    float step;
+  };
+
+  /// Boxes of the children, in box space: origin + step * bound.
+  struct alignas(64) Node {
+    std::uint8_t bound[2][3][kArity];  ///< lower and upper
+    float origin[3];
+    float step[3];
+    std::uint32_t first;  ///< the first child: a reference as `root()`
+    std::uint32_t count;  ///< of children
+  };
+
+  /// Set in references to leaves; the other bits are the index of the leaf or node.
+  static constexpr std::uint32_t kLeafBit = 0x80000000u;
+
+  /// Maximum number of references that a traversal has to remember: 15 siblings on each level, the last one visited, and
+  /// the end of the stack.
+  static constexpr std::size_t kMaxDepth = 8, kStackSize = kMaxDepth * (kArity - 1) + 2;
+
+  /// The largest number of spheres that fits references and depth.
+  static constexpr std::size_t kMaxSpheres = (std::size_t{1} << 31) - kArity;
+
+  SphereBvh() = default;
+
+  /// `monitor`  receives the progress, 0..1, on any thread; returns false to cancel
+  /// Domain     1 <= ids.size() <= kMaxSpheres; all spheres lie in the frame
+  /// Errors     base::Error(kStopped) if the monitor cancelled the build
+  SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
+            const std::function<bool(double)>& monitor = {});
+
+  bool empty() const noexcept { return ids.empty(); }
+  std::uint32_t root() const noexcept { return nodes.empty() ? kLeafBit : static_cast<std::uint32_t>(nodes.size() - 1); }
+  std::size_t bytes() const noexcept;
+
+  /// Spheres in a leaf; all leaves but the last are full.
+  unsigned count_in(std::uint32_t leaf) const noexcept {
+    const std::size_t rest = count - std::size_t{leaf} * kArity;
+    return rest < kArity ? static_cast<unsigned>(rest) : kArity;
+  }
+
+  std::size_t count = 0;           ///< of spheres
+  std::vector<std::uint32_t> ids;  ///< of the spheres, in the order of the leaves; kNoSphere up to a full leaf
+  std::vector<Leaf> leaves;
+  std::vector<LeafRadii> radii;  ///< one per leaf; empty if all spheres have `radius`
+  std::vector<Node> nodes;       ///< children before their parents
+  std::uint32_t last_leaf = 0;   ///< the only one that may have fewer than kArity spheres
+  float radius = 0;              ///< box space, rounded up
+  float padding = 0;             ///< of a sphere's radius for the rounding errors of a ray's distance from it, box space
+  BoxFrame::Box box{};           ///< of all spheres, padded
+};
+
+}  // namespace orrery::accel

@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: Apache-2.0
+// Embree's callbacks for a BVH of many spheres, which is one primitive. Compiled once per instruction set.
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <type_traits>
+
+#include "accel/embree_scene.h"
+#include "accel/sphere_bvh.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "accel/sphere_bvh_trace.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include "accel/embree_rays-inl.h"
+#include "kernel/gather-inl.h"
+#include "math/dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::accel::HWY_NAMESPACE {
+
+/// Floats of a vector of children or of a leaf's spheres.
+using ChildTag = hn::CappedTag<float, SphereBvh::kArity>;
+constexpr int kChildLanes = static_cast<int>(hn::MaxLanes(ChildTag()));
+
+/// Components of a direction smaller than this are replaced by it: over the length of a frame that is far less than the
+/// padding, and its reciprocal is finite.
+constexpr float kSmallestDirection = 0x1p-80F;
+
+/// A sphere that a ray may hit, and a lower bound of the distance there.
+struct Candidate {
+  float enter;
+  std::uint32_t id;
+};
+
+/// Candidates of a ray that wait to be intersected; one leaf more must fit.
+constexpr int kMaxCandidates = 2 * static_cast<int>(SphereBvh::kArity);
+
+/// A ray on its way through the tree, in box space.
+struct Traveller {
+  float origin[3], direction[3], inverse[3];
+  float limit;               ///< distance beyond which nothing is searched
+  std::uint32_t near[3];     ///< per axis: which bound the ray enters a box at, 0 or 1
+  int lane;                  ///< of the query
+  int waiting;               ///< entries of `enter` and `what`: the end of the stack, then the nearest last
+  int candidates;            ///< number of `spheres`, nearest last
+  Candidate spheres[kMaxCandidates];
+  // Vectors are stored beyond the last entry.
+  float enter[SphereBvh::kStackSize + SphereBvh::kArity];         ///< a lower bound of the distance there
+  std::uint32_t what[SphereBvh::kStackSize + SphereBvh::kArity];  ///< references as SphereBvh::root()
+};
+
+HWY_INLINE hn::Vec<ChildTag> from_bytes(const std::uint8_t* bytes) {
+  const ChildTag d;
+  const hn::Rebind<std::int32_t, ChildTag> di;
+  const hn::Rebind<std::uint8_t, ChildTag> d8;
+  return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, bytes)));
+}
+
+/// A sort key: the distance at which a ray enters a child, not negative, rounded down, and the child's index.
+constexpr std::uint32_t kIndexBits = SphereBvh::kArity - 1;
+
+/// Stores the keys of the children that a ray enters before its limit.
+///
+/// Result     their number; up to a vector more is written
+HWY_INLINE int entered(const SphereBvh::Node& node, const Traveller& ray, std::int32_t* keys) {
+  const ChildTag d;
+  const hn::RebindToSigned<ChildTag> di;
+  hn::Vec<ChildTag> scale[3], shift[3];
+  const std::uint8_t *near[3], *far[3];
+  for (int k = 0; k < 3; ++k) {
+    scale[k] = hn::Set(d, node.step[k] * ray.inverse[k]);
+    shift[k] = hn::Set(d, (node.origin[k] - ray.origin[k]) * ray.inverse[k]);
+    near[k] = node.bound[ray.near[k]][k];
+    far[k] = node.bound[1 - ray.near[k]][k];
+  }
+  const auto zero = hn::Zero(d), limit = hn::Set(d, ray.limit);
+  int count = 0;
+  for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
+    const auto begin = hn::Max(hn::Max(hn::MulAdd(from_bytes(near[0] + v), scale[0], shift[0]),
+                                       hn::MulAdd(from_bytes(near[1] + v), scale[1], shift[1])),
+                               hn::Max(hn::MulAdd(from_bytes(near[2] + v), scale[2], shift[2]), zero));
+    const auto end = hn::Min(hn::Min(hn::MulAdd(from_bytes(far[0] + v), scale[0], shift[0]),
+                                     hn::MulAdd(from_bytes(far[1] + v), scale[1], shift[1])),
+                             hn::Min(hn::MulAdd(from_bytes(far[2] + v), scale[2], shift[2]), limit));
+    const auto index = hn::Iota(di, v);
+    const auto hits = hn::And(hn::RebindMask(di, begin <= end), index < hn::Set(di, static_cast<int>(node.count)));
+    const auto key = hn::Or(hn::AndNot(hn::Set(di, static_cast<int>(kIndexBits)), hn::BitCast(di, begin)), index);
+    hn::StoreU(hn::Compress(key, hits), di, keys + count);
+    count += static_cast<int>(hn::CountTrue(di, hits));
+  }
+  return count;
+}
+
+/// Sorts four keys, largest first, by a network of three layers.
+HWY_INLINE hn::Vec<hn::FixedTag<std::int32_t, 4>> sorted(hn::Vec<hn::FixedTag<std::int32_t, 4>> keys) {
+  const hn::FixedTag<std::int32_t, 4> d;
+  alignas(16) static constexpr std::int32_t kOdd[4] = {0, -1, 0, -1}, kUpper[4] = {0, 0, -1, -1},
+                                            kMiddle[4] = {0, 2, 1, 3};
+  const auto exchange = [&](auto other, const std::int32_t* to_min) {
+    const auto lower = hn::Load(d, to_min) < hn::Zero(d);
+    keys = hn::IfThenElse(lower, hn::Min(keys, other), hn::Max(keys, other));
+  };
+  exchange(hn::Shuffle2301(keys), kOdd);
+  exchange(hn::Shuffle1032(keys), kUpper);
+  exchange(hn::TableLookupLanes(keys, hn::SetTableIndices(d, kMiddle)), kUpper);
+  return keys;
+}
+
+/// What a reference refers to: its upper two bits.
+enum Kind : unsigned { kNode = 0, kEnd = 1, kLeaf = 2, kKinds = 3 };
+constexpr int kIndexWidth = 30;
+constexpr std::uint32_t kIndexMask = (1u << kIndexWidth) - 1;
+constexpr std::uint32_t kEndOfStack = kEnd << kIndexWidth;
+static_assert(SphereBvh::kLeafBit == std::uint32_t{kLeaf} << kIndexWidth);
+
+/// The cache lines of nodes and leaves. Which kind a ray visits next is hard to predict, so nothing branches on it.
+class Lines {
+ public:
+  explicit Lines(const SphereBvh& bvh) : has_radii_(!bvh.radii.empty()) {
+    const auto at = [](const auto* p) { return reinterpret_cast<const std::uint8_t*>(p); };
+    first_[kNode] = second_[kNode] = third_[kNode] = at(bvh.nodes.data());
+    second_[kNode] += 64;
+    first_[kEnd] = second_[kEnd] = third_[kEnd] = first_[kNode];
+    first_[kLeaf] = at(bvh.leaves.data());
+    second_[kLeaf] = at(bvh.ids.data());
+    third_[kLeaf] = at(bvh.radii.data());
+  }
+  HWY_INLINE void prefetch(std::uint32_t reference) const {
+    static constexpr std::size_t kFirst[kKinds] = {sizeof(SphereBvh::Node), 0, sizeof(SphereBvh::Leaf)};
+    static constexpr std::size_t kSecond[kKinds] = {sizeof(SphereBvh::Node), 0,
+                                                    SphereBvh::kArity * sizeof(std::uint32_t)};
+    static constexpr std::size_t kThird[kKinds] = {0, 0, sizeof(SphereBvh::LeafRadii)};
+    const unsigned kind = reference >> kIndexWidth;
+    const std::size_t index = reference & kIndexMask;
+    hwy::Prefetch(first_[kind] + index * kFirst[kind]);
+    hwy::Prefetch(second_[kind] + index * kSecond[kind]);
+    if (has_radii_) hwy::Prefetch(third_[kind] + index * kThird[kind]);
+  }
+
+ private:
+  const std::uint8_t *first_[kKinds], *second_[kKinds], *third_[kKinds];
+  bool has_radii_;
+};
+
+/// Visits a node: adds the children that the ray enters to its stack.
+HWY_INLINE void visit_node(const SphereBvh::Node& node, Traveller& ray) {
+  const hn::FixedTag<std::int32_t, 4> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  alignas(64) std::int32_t keys[2 * SphereBvh::kArity];
+  const int count = entered(node, ray, keys);
+  const auto push = [&](hn::Vec<decltype(d)> four, int at) {
+    const auto index = hn::BitCast(du, hn::And(four, hn::Set(d, static_cast<int>(kIndexBits))));
+    hn::StoreU(hn::BitCast(hn::RebindToFloat<decltype(d)>(), hn::AndNot(hn::Set(d, static_cast<int>(kIndexBits)), four)),
+               hn::RebindToFloat<decltype(d)>(), ray.enter + at);
+    hn::StoreU(index + hn::Set(du, node.first), du, ray.what + at);
+  };
+  if (count > 4) {
+    std::sort(keys, keys + count, std::greater<>());
+    for (int i = 0; i < count; i += 4) push(hn::Load(d, keys + i), ray.waiting + i);
+  } else {
+    const auto four = hn::IfThenElse(hn::Iota(d, 0) < hn::Set(d, count), hn::Load(d, keys), hn::Set(d, -1));
+    push(sorted(four), ray.waiting);
+  }
+  ray.waiting += count;
+}
+
+/// Visits a leaf: adds the spheres that the ray may hit before its limit to its candidates, and shortens the ray to
+/// spheres that it certainly hits.
+///
+/// `shortest`  hits nearer than this are not certain, box space
+/// `target`    a sphere that is never hit
+template <bool kShadows>
+HWY_INLINE void visit_leaf(const SphereBvh& bvh, std::uint32_t index, const kernel::Sphere* spheres, float shortest,
+                           std::uint32_t target, Traveller& ray) {
+  const ChildTag d;
+  const SphereBvh::Leaf& leaf = bvh.leaves[index];
+  const auto set = [&](float x) { return hn::Set(d, x); };
+  const auto step = set(leaf.step);
+  // sqrt(3) / 2 of a step, rounded up: a centre is half a step off on each axis.
+  const auto margin = set(0.875F * leaf.step + bvh.padding);
+  const auto limit = set(ray.limit), zero = hn::Zero(d), growth = set(1 + 0x1p-20F);
+  const auto dx = set(ray.direction[0]), dy = set(ray.direction[1]), dz = set(ray.direction[2]);
+  const auto ox = set(leaf.origin[0] - ray.origin[0]), oy = set(leaf.origin[1] - ray.origin[1]),
+             oz = set(leaf.origin[2] - ray.origin[2]);
+  const std::uint32_t* const ids = &bvh.ids[std::size_t{index} * SphereBvh::kArity];
+  const hn::RebindToUnsigned<ChildTag> du;
+  const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, ids + v) == hn::Set(du, target)); };
+  const bool is_last = index == bvh.last_leaf;
+  alignas(64) float enter[SphereBvh::kArity];
+  unsigned bits = 0;
+  auto nearest = limit;
+  for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
+    const auto x = hn::MulAdd(from_bytes(leaf.center[0] + v), step, ox);
+    const auto y = hn::MulAdd(from_bytes(leaf.center[1] + v), step, oy);
+    const auto z = hn::MulAdd(from_bytes(leaf.center[2] + v), step, oz);
+    const auto along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, z * dz));
+    const auto px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y), pz = hn::NegMulAdd(along, dz, z);
+    const auto apart = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
+    auto radius = set(bvh.radius), low_radius = radius;
+    if (!bvh.radii.empty()) {
+      const SphereBvh::LeafRadii& own = bvh.radii[index];
+      radius = from_bytes(own.radius + v) * set(own.step);
+      low_radius = radius - set(own.step);
+    }
+    const auto outer = radius + margin, begin = along - outer;
+    auto may_hit = hn::And(hn::And(apart <= outer * outer * growth, along + outer >= zero), begin <= limit);
+    if (is_last) may_hit = hn::And(may_hit, hn::Iota(d, static_cast<float>(v)) < set(static_cast<float>(bvh.count_in(index))));
+    if (kShadows) may_hit = hn::AndNot(is_target(v), may_hit);
+    const unsigned part = bits_of(d, may_hit);
+    if (part == 0) continue;
+    bits |= part << v;
+    hn::StoreU(begin, d, enter + v);
+    const auto inner = low_radius - margin;
+    const auto deep = hn::NegMulAdd(apart, growth, inner * inner);
+    const auto pierced = hn::And(hn::And(may_hit, inner > zero), hn::And(deep > zero, begin > set(shortest)));
+    const auto certain = ((along - hn::Sqrt(deep)) + margin) * set(1 + 0x1p-18F);
+    nearest = hn::Min(nearest, hn::IfThenElse(pierced, certain, nearest));
+  }
+  if (bits == 0) return;
+  ray.limit = hn::GetLane(hn::MinOfLanes(d, nearest));
+  for (; bits != 0; bits &= bits - 1) {
+    const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
+    if (enter[i] > ray.limit) continue;
+    const Candidate found{enter[i], ids[i]};
+    hwy::Prefetch(&spheres[found.id]);
+    int at = ray.candidates++;
+    for (; at > 0 && ray.spheres[at - 1].enter < found.enter; --at) ray.spheres[at] = ray.spheres[at - 1];
+    ray.spheres[at] = found;
+  }
+}
+
+/// Intersects the candidates of rays, which are lanes of the query, and stores the results in the packet.
+///
+/// Result     lanes with a new hit, as bits
+template <class D, class Packet, kernel::Precision kPrecision>
+HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, Traveller* const (&ray_of)[kWidth],
+                                         int lanes) {
+  using Id = hn::TFromD<k::IdTag<D>>;
+  constexpr bool kShadows = requires(Packet p) { p.occluded; };
+  const k::IdTag<D> du;
+  const int step = static_cast<int>(hn::Lanes(d));
+  Packet& packet = *query.packet;
+  const EmbreeScene& scene = *query.scene;
+  unsigned changed = 0;
+  for (int v = 0; v < lanes; v += step) {
+    const int first = query.first + v;
+    HWY_ALIGN Id ids[hn::MaxLanes(D())];
+    const auto next = [&] {
+      bool any = false;
+      for (int i = 0; i < step; ++i) {
+        Traveller* const ray = ray_of[v + i];
+        ids[i] = kernel::kNoSphere;
+        if (ray == nullptr || ray->candidates == 0) continue;
+        const Candidate candidate = ray->spheres[--ray->candidates];
+        if (candidate.enter > ray->limit) {
+          ray->candidates = 0;  // the others are further away
+          continue;
+        }
+        ids[i] = candidate.id;
+        any = true;
+      }
+      return any;
+    };
+    if (!next()) continue;
+    const auto ray = k::load_rays(d, packet, first);
+    ClosestHit<D> nearest;
+    if constexpr (!kShadows) nearest = ClosestHit<D>::load(d, packet, first);
+    do {
+      const auto spheres = hn::Load(du, ids);
+      const auto active = hn::RebindMask(d, spheres != hn::Set(du, static_cast<Id>(kernel::kNoSphere)));
+      hn::Vec<D> row[4];
+      k::gather4(
+          d, [&](std::size_t i) { return &scene.spheres[ids[i] == kernel::kNoSphere ? 0 : ids[i]].x; }, row);
+      const k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
+      const auto found = k::nearest<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == spheres));
+      unsigned hits = 0;
+      if constexpr (kShadows) {
+        hits = bits_of(d, hn::And(hn::And(found.mask, active), found.value < hn::Load(d, packet.distance + first)));
+        for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
+          const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+          packet.occluded[first + i] = static_cast<Id>(~Id{0});
+          ray_of[v + i]->limit = -1;
+          ray_of[v + i]->candidates = 0;
+        }
+      } else {
+        nearest.is_new = hn::FirstN(d, 0);
+        nearest.take(d, found, spheres, active);
+        hits = bits_of(d, nearest.is_new);
+        if (hits != 0) {
+          alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
+          store_float(d, far_limits(d, nearest.distance, scene.frame.scale, hn::Load(d, query.start + v)), limits);
+          for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
+            const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+            ray_of[v + i]->limit = limits[i];
+          }
+        }
+      }
+      changed |= hits << v;
+    } while (next());
+    if constexpr (!kShadows) nearest.store(d, packet, first);
+  }
+  return changed;
+}
+
+/// Traces rays through the tree in rounds, in which each ray takes one step: while one waits for memory, the others go
+/// on. The spheres that they may hit are intersected at the end.
+///
+/// Result     lanes with a new hit, as bits
+template <class D, class Packet, kernel::Precision kPrecision>
+HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Packet>& query,
+                               Traveller* const (&ray_of)[kWidth], int lanes) {
+  constexpr bool kShadows = requires(Packet p) { p.occluded; };
+  const EmbreeScene& scene = *query.scene;
+  const float shortest =
+      kPrecision == kernel::Precision::kBook
+          ? static_cast<float>(kernel::kBookShortestDistance * scene.frame.scale) * (1 + 0x1p-20F) + bvh.padding
+          : 0.0F;
+  // Rays by what they visit next.
+  Traveller* queue[kKinds][kWidth + 1];
+  int queued[kKinds] = {0, 0, 0};
+  const Lines lines(bvh);
+  const auto enqueue = [&](Traveller& ray) {
+    int top = ray.waiting - 1;
+    while (ray.enter[top] > ray.limit) --top;
+    ray.waiting = top + 1;
+    const std::uint32_t next = ray.what[top];
+    const unsigned kind = next >> kIndexWidth;
+    queue[kind][queued[kind]++] = &ray;
+    lines.prefetch(next);
+  };
+  for (int i = 0; i < lanes; ++i)
+    if (ray_of[i] != nullptr) enqueue(*ray_of[i]);
+  unsigned changed = 0;
+  while (queued[kNode] + queued[kLeaf] > 0) {
+    Traveller* now[kWidth];
+    int count = queued[kNode];
+    std::copy_n(queue[kNode], kWidth, now);
+    queued[kNode] = 0;
+    for (int i = 0; i < count; ++i) {
+      Traveller& ray = *now[i];
+      visit_node(bvh.nodes[ray.what[--ray.waiting]], ray);
+      enqueue(ray);
+    }
+    count = queued[kLeaf];
+    std::copy_n(queue[kLeaf], kWidth, now);
+    queued[kLeaf] = 0;
+    bool full = false;
+    for (int i = 0; i < count; ++i) {
+      Traveller& ray = *now[i];
+      std::uint32_t target = kernel::kNoSphere;
+      if constexpr (kShadows) target = static_cast<std::uint32_t>(query.packet->target[query.first + ray.lane]);
+      visit_leaf<kShadows>(bvh, ray.what[--ray.waiting] & ~SphereBvh::kLeafBit, scene.spheres, shortest, target, ray);
+      full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
+      enqueue(ray);
+    }
+    if (full) changed |= intersect_candidates<D, Packet, kPrecision>(d, query, ray_of, lanes);
+  }
+  return changed | intersect_candidates<D, Packet, kPrecision>(d, query, ray_of, lanes);
+}
+
+/// Sets up a ray of Embree's packet.
+template <class EmbreeRays>
+HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned n, unsigned i, std::uint32_t root) {
+  ray.origin[0] = RTCRayN_org_x(rays, n, i);
+  ray.origin[1] = RTCRayN_org_y(rays, n, i);
+  ray.origin[2] = RTCRayN_org_z(rays, n, i);
+  ray.direction[0] = RTCRayN_dir_x(rays, n, i);
+  ray.direction[1] = RTCRayN_dir_y(rays, n, i);
+  ray.direction[2] = RTCRayN_dir_z(rays, n, i);
+  ray.limit = RTCRayN_tfar(rays, n, i);
+  for (int k = 0; k < 3; ++k) {
+    const float x = ray.direction[k];
+    ray.near[k] = x < 0 ? 1 : 0;
+    ray.inverse[k] = 1 / (x < 0 ? std::min(x, -kSmallestDirection) : std::max(x, kSmallestDirection));
+  }
+  ray.lane = static_cast<int>(i);
+  ray.candidates = 0;
+  ray.enter[0] = -std::numeric_limits<float>::infinity();  // never beyond the limit
+  ray.what[0] = kEndOfStack;
+  ray.enter[1] = 0;
+  ray.what[1] = root;
+  ray.waiting = 2;
+}
+
+/// Traces the valid rays of Embree's packet.
+///
+/// Result     lanes with a new hit, as bits
+template <class Packet, kernel::Precision kPrecision>
+HWY_INLINE unsigned trace_valid(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays,
+                                unsigned n, Traveller (&travellers)[kWidth]) {
+  Traveller* ray_of[kWidth] = {};
+  int count = 0;
+  for (unsigned i = 0; i < n; ++i) {
+    if (valid[i] == 0) continue;
+    ray_of[i] = &travellers[count++];
+    begin(*ray_of[i], rays, n, i, bvh.root());
+  }
+  using T = DistanceOf<Packet>;
+  if (n == 1) return trace_rays<hn::FixedTag<T, 1>, Packet, kPrecision>({}, bvh, query, ray_of, 1);
+  return trace_rays<hn::ScalableTag<T>, Packet, kPrecision>({}, bvh, query, ray_of, static_cast<int>(n));
+}
+
+/// Embree's callback for closest hits.
+template <class Packet, kernel::Precision kPrecision>
+void intersect_bvh(const RTCIntersectFunctionNArguments* arguments) {
+  const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
+  const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
+  const unsigned n = arguments->N;
+  RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, n);
+  Traveller travellers[kWidth];
+  unsigned hits = trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, rays, n, travellers);
+  for (int r = 0, i = 0; i < static_cast<int>(n); ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const bool is_new = (hits >> i & 1u) != 0;
+    arguments->valid[i] = is_new ? -1 : 0;
+    if (is_new) RTCRayN_tfar(rays, n, static_cast<unsigned>(i)) = travellers[r].limit;
+    ++r;
+  }
+}
+
+/// Embree's callback for occlusion.
+template <class Packet, kernel::Precision kPrecision>
+void occluded_by_bvh(const RTCOccludedFunctionNArguments* arguments) {
+  const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
+  const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
+  const unsigned n = arguments->N;
+  Traveller travellers[kWidth];
+  const unsigned hits = trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray, n, travellers);
+  for (unsigned i = 0; i < n; ++i)
+    if ((hits >> i & 1u) != 0) RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
+}
+
+void set_bvh_functions(EmbreeFunctions& f, kernel::Precision precision) {
+  using kernel::Precision, kernel::RayPacket, kernel::RayPacketFast, kernel::ShadowPacket, kernel::ShadowPacketFast;
+  switch (precision) {
+    case Precision::kExact:
+      f.intersect_bvh = intersect_bvh<RayPacket, Precision::kExact>;
+      f.occluded_by_bvh = occluded_by_bvh<ShadowPacket, Precision::kExact>;
+      break;
+    case Precision::kBook:
+      f.intersect_bvh = intersect_bvh<RayPacket, Precision::kBook>;
+      f.occluded_by_bvh = occluded_by_bvh<ShadowPacket, Precision::kBook>;
+      break;
+    case Precision::kFast:
+      f.intersect_bvh = intersect_bvh<RayPacketFast, Precision::kFast>;
+      f.occluded_by_bvh = occluded_by_bvh<ShadowPacketFast, Precision::kFast>;
+      break;
+  }
+}
+
+}  // namespace orrery::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orrery::accel {
+
+HWY_EXPORT(set_bvh_functions);
+
+void add_bvh_functions(EmbreeFunctions& functions, kernel::Precision precision) {
+  ORRERY_BEST(set_bvh_functions)(functions, precision);
+}
+
+}  // namespace orrery::accel
+#endif
