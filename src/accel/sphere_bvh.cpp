@@ -6,8 +6,10 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -68,25 +70,43 @@ struct Split {
   std::size_t left = 0;
 };
 
+using Cell = SphereBvh::Cell;
+
 class Builder {
  public:
-  Builder(std::vector<Item>& items, float margin, const std::function<bool(double)>& monitor)
-      : items_(items), margin_(margin), monitor_(monitor) {}
+  /// `margin`  average radius, for the surface area
+  /// `reach`   distance from a centre that its sphere does not exceed, padded
+  Builder(std::vector<Item>& items, float margin, float reach, const std::function<bool(double)>& monitor)
+      : items_(items), margin_(margin), reach_(reach), monitor_(monitor) {}
+
+  /// The nodes' cells by level, those above the leaves first.
+  std::array<std::vector<Cell>, SphereBvh::kMaxDepth> cells;
 
   /// Sorts all items into the order of the leaves.
   void sort() {
     std::size_t unit = kArity;
     while (unit * kArity < items_.size()) unit *= kArity;
-    divide(0, items_.size(), unit);
+    std::size_t level_unit = kArity * kArity;
+    for (std::vector<Cell>& level : cells) {
+      level.resize((items_.size() + level_unit - 1) / level_unit);
+      level_unit *= kArity;
+      if (level.size() == 1) break;
+    }
+    divide(0, items_.size(), unit * kArity, {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}});
     if (stopped_) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
   }
 
  private:
   /// Orders a range so that each subtree of `unit` spheres is contiguous, by binary splits at multiples of `unit`
   /// chosen by the surface area heuristic; then each of these.
-  void divide(std::size_t begin, std::size_t end, std::size_t unit) {
+  void divide(std::size_t begin, std::size_t end, std::size_t unit, Cell cell) {
     if (stopped_.load(std::memory_order_relaxed)) return;
-    while (end - begin <= unit && unit > kArity) unit /= kArity;
+    for (; end - begin <= unit && unit > kArity; unit /= kArity) {
+      // The range is one node.
+      std::size_t level = 0;
+      for (std::size_t u = kArity * kArity; u < unit; u *= kArity) ++level;
+      if (begin / unit < cells[level].size()) cells[level][begin / unit] = cell;
+    }
     if (end - begin <= unit) {
       report(end - begin);
       return;
@@ -102,11 +122,16 @@ class Builder {
     if (cut > middle) std::nth_element(first, middle, cut, by_axis);
     if (cut < middle) std::nth_element(cut, middle, last, by_axis);
     const std::size_t at = begin + split.left;
+    // No centre on the left is beyond the plane, and none on the right before it.
+    const float plane = cut == middle ? split.at : middle->center[axis];
+    Cell left = cell, right = cell;
+    left.upper[axis] = std::min(left.upper[axis], plane - reach_);
+    right.lower[axis] = std::max(right.lower[axis], plane + reach_);
     if (end - begin > kParallelSize) {
-      tbb::parallel_invoke([&] { divide(begin, at, unit); }, [&] { divide(at, end, unit); });
+      tbb::parallel_invoke([&] { divide(begin, at, unit, left); }, [&] { divide(at, end, unit, right); });
     } else {
-      divide(begin, at, unit);
-      divide(at, end, unit);
+      divide(begin, at, unit, left);
+      divide(at, end, unit, right);
     }
   }
 
@@ -181,7 +206,7 @@ class Builder {
   }
 
   std::vector<Item>& items_;
-  float margin_;
+  float margin_, reach_;
   const std::function<bool(double)>& monitor_;
   std::atomic<std::size_t> done_{0};
   std::atomic<bool> stopped_{false};
@@ -267,14 +292,18 @@ SphereBvh::SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> a
                   ids[i]};
     }
   });
-  Builder(items, static_cast<float>(sum / static_cast<double>(count) * frame.scale), monitor).sort();
+  const float box_padding = rounded_up(kBoxPadding * frame.reach);
+  Builder builder(items, static_cast<float>(sum / static_cast<double>(count) * frame.scale), radius + 2 * box_padding,
+                  monitor);
+  builder.sort();
 
   leaves.resize(leaf_count);
-  ids.resize(leaf_count * kArity, kernel::kNoSphere);
   last_leaf = static_cast<std::uint32_t>(leaf_count - 1);
+  leaves.resize(leaf_count);
+  places.assign(std::size_t{*std::max_element(ids.begin(), ids.end())} + 1, kernel::kNoSphere);
+  ids.resize(leaf_count * kArity, kernel::kNoSphere);
   if (own_radii) radii.resize(leaf_count);
   std::vector<Bounds> below(leaf_count);
-  const float box_padding = rounded_up(kBoxPadding * frame.reach);
   tbb::parallel_for(Range(0, leaf_count, 256), [&](const Range& range) {
     for (std::size_t l = range.begin(); l < range.end(); ++l) {
       const std::size_t n = count_in(static_cast<std::uint32_t>(l));
@@ -283,6 +312,7 @@ SphereBvh::SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> a
       float r[kArity], most = 0;
       for (std::size_t i = 0; i < n; ++i) {
         ids[l * kArity + i] = in_leaf[i].id;
+        places[in_leaf[i].id] = static_cast<std::uint32_t>(l * kArity + i);
         r[i] = own_radii ? rounded_up(spheres[in_leaf[i].id].radius * frame.scale) : radius;
         most = std::max(most, r[i]);
         float lower[3], upper[3];
@@ -299,6 +329,7 @@ SphereBvh::SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> a
   });
 
   std::uint32_t first = 0;
+  std::size_t level = 0;
   for (bool of_leaves = true; of_leaves || below.size() > 1; of_leaves = false) {
     const std::size_t parents = (below.size() + kArity - 1) / kArity, begin = nodes.size();
     std::vector<Bounds> above(parents);
@@ -311,15 +342,18 @@ SphereBvh::SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> a
         for (std::size_t i = 0; i < n; ++i) above[p].add(below[p * kArity + i]);
       }
     });
-    first = static_cast<std::uint32_t>(begin);
+    cells.insert(cells.end(), builder.cells[level].begin(), builder.cells[level].end());
+    level_begin[level++] = first = static_cast<std::uint32_t>(begin);
     below = std::move(above);
   }
+  std::fill(level_begin.begin() + static_cast<std::ptrdiff_t>(level), level_begin.end(),
+            static_cast<std::uint32_t>(nodes.size()));
   std::copy_n(below[0].lower, 3, box.lower);
   std::copy_n(below[0].upper, 3, box.upper);
 }
 
 std::size_t SphereBvh::bytes() const noexcept {
-  return ids.size() * sizeof(ids[0]) + leaves.size() * sizeof(Leaf) + radii.size() * sizeof(LeafRadii) +
+  return (ids.size() + places.size()) * sizeof(ids[0]) + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) + radii.size() * sizeof(LeafRadii) +
          nodes.size() * sizeof(Node);
 }
 

@@ -13,7 +13,7 @@
 namespace orrery::accel {
 
 /// A BVH over many spheres at rest, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds in 8 bits
-/// relative to the parent. It takes 9 bytes per sphere.
+/// relative to the parent. It takes 13 bytes per sphere.
 ///
 /// Like Embree's boxes it only selects candidates. All bounds enclose the spheres plus the rounding errors of a
 /// single-precision ray in box space (docs/decisions/0027-bvh-for-many-spheres.md), so no hit is lost.
@@ -44,6 +44,11 @@ class SphereBvh {
     std::uint32_t count;  ///< of children
   };
 
+  /// A region of box space that no sphere below any other node reaches into. Empty if lower > upper.
+  struct Cell {
+    float lower[3], upper[3];
+  };
+
   /// Set in references to leaves; the other bits are the index of the leaf or node.
   static constexpr std::uint32_t kLeafBit = 0x80000000u;
 
@@ -66,6 +71,12 @@ class SphereBvh {
   std::uint32_t root() const noexcept { return nodes.empty() ? kLeafBit : static_cast<std::uint32_t>(nodes.size() - 1); }
   std::size_t bytes() const noexcept;
 
+  /// The node above a sphere's leaf; kNoSphere if the sphere is not in the tree.
+  std::uint32_t home_of(std::uint32_t id) const noexcept {
+    const std::uint32_t place = id < places.size() ? places[id] : kernel::kNoSphere;
+    return place == kernel::kNoSphere ? place : place / (kArity * kArity);
+  }
+
   /// Spheres in a leaf; all leaves but the last are full.
   unsigned count_in(std::uint32_t leaf) const noexcept {
     const std::size_t rest = count - std::size_t{leaf} * kArity;
@@ -74,9 +85,12 @@ class SphereBvh {
 
   std::size_t count = 0;           ///< of spheres
   std::vector<std::uint32_t> ids;  ///< of the spheres, in the order of the leaves; kNoSphere up to a full leaf
+  std::vector<std::uint32_t> places;  ///< of each sphere of the scene in `ids`; kNoSphere: it is not in the tree
   std::vector<Leaf> leaves;
   std::vector<LeafRadii> radii;  ///< one per leaf; empty if all spheres have `radius`
-  std::vector<Node> nodes;       ///< children before their parents
+  std::vector<Node> nodes;       ///< level by level, those above the leaves first
+  std::vector<Cell> cells;       ///< one per node
+  std::array<std::uint32_t, kMaxDepth + 1> level_begin{};  ///< indices of the first node of each level, and the end
   std::uint32_t last_leaf = 0;   ///< the only one that may have fewer than kArity spheres
   float radius = 0;              ///< box space, rounded up
   float padding = 0;             ///< of a sphere's radius for the rounding errors of a ray's distance from it, box space

@@ -44,6 +44,8 @@ struct Traveller {
   float origin[3], direction[3], inverse[3];
   float limit;               ///< distance beyond which nothing is searched
   std::uint32_t near[3];     ///< per axis: which bound the ray enters a box at, 0 or 1
+  std::uint32_t home;        ///< the node below which everything has been visited once the stack is empty
+  unsigned home_level;
   int lane;                  ///< of the query
   int waiting;               ///< entries of `enter` and `what`: the end of the stack, then the nearest last
   int candidates;            ///< number of `spheres`, nearest last
@@ -65,8 +67,9 @@ constexpr std::uint32_t kIndexBits = SphereBvh::kArity - 1;
 
 /// Stores the keys of the children that a ray enters before its limit.
 ///
+/// `except`   index of a child that is left out, or -1
 /// Result     their number; up to a vector more is written
-HWY_INLINE int entered(const SphereBvh::Node& node, const Traveller& ray, std::int32_t* keys) {
+HWY_INLINE int entered(const SphereBvh::Node& node, const Traveller& ray, int except, std::int32_t* keys) {
   const ChildTag d;
   const hn::RebindToSigned<ChildTag> di;
   hn::Vec<ChildTag> scale[3], shift[3];
@@ -87,7 +90,8 @@ HWY_INLINE int entered(const SphereBvh::Node& node, const Traveller& ray, std::i
                                      hn::MulAdd(from_bytes(far[1] + v), scale[1], shift[1])),
                              hn::Min(hn::MulAdd(from_bytes(far[2] + v), scale[2], shift[2]), limit));
     const auto index = hn::Iota(di, v);
-    const auto hits = hn::And(hn::RebindMask(di, begin <= end), index < hn::Set(di, static_cast<int>(node.count)));
+    const auto hits = hn::And(hn::RebindMask(di, begin <= end),
+                              hn::AndNot(index == hn::Set(di, except), index < hn::Set(di, static_cast<int>(node.count))));
     const auto key = hn::Or(hn::AndNot(hn::Set(di, static_cast<int>(kIndexBits)), hn::BitCast(di, begin)), index);
     hn::StoreU(hn::Compress(key, hits), di, keys + count);
     count += static_cast<int>(hn::CountTrue(di, hits));
@@ -146,12 +150,12 @@ class Lines {
   bool has_radii_;
 };
 
-/// Visits a node: adds the children that the ray enters to its stack.
-HWY_INLINE void visit_node(const SphereBvh::Node& node, Traveller& ray) {
+/// Visits a node: adds the children that the ray enters, but not child `except`, to its stack.
+HWY_INLINE void visit_node(const SphereBvh::Node& node, Traveller& ray, int except = -1) {
   const hn::FixedTag<std::int32_t, 4> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   alignas(64) std::int32_t keys[2 * SphereBvh::kArity];
-  const int count = entered(node, ray, keys);
+  const int count = entered(node, ray, except, keys);
   const auto push = [&](hn::Vec<decltype(d)> four, int at) {
     const auto index = hn::BitCast(du, hn::And(four, hn::Set(d, static_cast<int>(kIndexBits))));
     hn::StoreU(hn::BitCast(hn::RebindToFloat<decltype(d)>(), hn::AndNot(hn::Set(d, static_cast<int>(kIndexBits)), four)),
@@ -166,6 +170,28 @@ HWY_INLINE void visit_node(const SphereBvh::Node& node, Traveller& ray) {
     push(sorted(four), ray.waiting);
   }
   ray.waiting += count;
+}
+
+/// Whether a ray ends, at its limit, in the region that belongs to one node alone.
+HWY_INLINE bool stays_in(const SphereBvh::Cell& cell, const Traveller& ray) {
+  bool inside = true;
+  for (int k = 0; k < 3; ++k) {
+    const float end = ray.origin[k] + ray.direction[k] * ray.limit;
+    // False for an infinite limit, too.
+    inside = inside & (std::min(ray.origin[k], end) >= cell.lower[k]) & (std::max(ray.origin[k], end) <= cell.upper[k]);
+  }
+  return inside;
+}
+
+/// Goes on above a ray's home, unless nothing there can be nearer.
+///
+/// Result     false if the ray is done
+HWY_INLINE bool climb(const SphereBvh& bvh, Traveller& ray) {
+  if (ray.home == bvh.root() || ray.limit < 0 || stays_in(bvh.cells[ray.home], ray)) return false;
+  const std::uint32_t in_level = ray.home - bvh.level_begin[ray.home_level];
+  ray.home = bvh.level_begin[++ray.home_level] + in_level / SphereBvh::kArity;
+  visit_node(bvh.nodes[ray.home], ray, static_cast<int>(in_level % SphereBvh::kArity));
+  return true;
 }
 
 /// Visits a leaf: adds the spheres that the ray may hit before its limit to its candidates, and shortens the ray to
@@ -320,7 +346,7 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
           ? static_cast<float>(kernel::kBookShortestDistance * scene.frame.scale) * (1 + 0x1p-20F) + bvh.padding
           : 0.0F;
   // Rays by what they visit next.
-  Traveller* queue[kKinds][kWidth + 1];
+  Traveller* queue[kKinds][kWidth];
   int queued[kKinds] = {0, 0, 0};
   const Lines lines(bvh);
   const auto enqueue = [&](Traveller& ray) {
@@ -335,7 +361,7 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
   for (int i = 0; i < lanes; ++i)
     if (ray_of[i] != nullptr) enqueue(*ray_of[i]);
   unsigned changed = 0;
-  while (queued[kNode] + queued[kLeaf] > 0) {
+  while (queued[kNode] + queued[kLeaf] + queued[kEnd] > 0) {
     Traveller* now[kWidth];
     int count = queued[kNode];
     std::copy_n(queue[kNode], kWidth, now);
@@ -357,6 +383,11 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
       full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
       enqueue(ray);
     }
+    count = queued[kEnd];
+    std::copy_n(queue[kEnd], kWidth, now);
+    queued[kEnd] = 0;
+    for (int i = 0; i < count; ++i)
+      if (climb(bvh, *now[i])) enqueue(*now[i]);
     if (full) changed |= intersect_candidates<D, Packet, kPrecision>(d, query, ray_of, lanes);
   }
   return changed | intersect_candidates<D, Packet, kPrecision>(d, query, ray_of, lanes);
@@ -364,7 +395,7 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
 
 /// Sets up a ray of Embree's packet.
 template <class EmbreeRays>
-HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned n, unsigned i, std::uint32_t root) {
+HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned n, unsigned i, const SphereBvh& bvh, std::uint32_t self) {
   ray.origin[0] = RTCRayN_org_x(rays, n, i);
   ray.origin[1] = RTCRayN_org_y(rays, n, i);
   ray.origin[2] = RTCRayN_org_z(rays, n, i);
@@ -382,7 +413,10 @@ HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned n, unsigned i, 
   ray.enter[0] = -std::numeric_limits<float>::infinity();  // never beyond the limit
   ray.what[0] = kEndOfStack;
   ray.enter[1] = 0;
-  ray.what[1] = root;
+  ray.home = bvh.home_of(self);
+  ray.home_level = 0;
+  if (ray.home == kernel::kNoSphere) ray.home = bvh.root();
+  ray.what[1] = ray.home;
   ray.waiting = 2;
 }
 
@@ -397,7 +431,7 @@ HWY_INLINE unsigned trace_valid(const SphereBvh& bvh, const EmbreeQuery<Packet>&
   for (unsigned i = 0; i < n; ++i) {
     if (valid[i] == 0) continue;
     ray_of[i] = &travellers[count++];
-    begin(*ray_of[i], rays, n, i, bvh.root());
+    begin(*ray_of[i], rays, n, i, bvh, static_cast<std::uint32_t>(query.packet->self[query.first + static_cast<int>(i)]));
   }
   using T = DistanceOf<Packet>;
   if (n == 1) return trace_rays<hn::FixedTag<T, 1>, Packet, kPrecision>({}, bvh, query, ray_of, 1);

@@ -11,8 +11,9 @@
 
 namespace orrery::measure {
 
-/// Benchmark of closest-hit queries on the same rays: packets and single rays with our user geometry, single rays with
-/// Embree's own sphere points, and a SIMD list.
+/// Benchmark of closest-hit queries on the same rays: packets and single rays with the accelerator that renders the
+/// scene, then with the other kind (one Embree primitive per sphere, or a SphereBvh); single rays with Embree's own sphere
+/// points; and a SIMD list.
 class TracingBench {
  public:
   /// Domain     `fast` is built for precision fast; it, the view and the rays outlive this; at least one sphere
@@ -32,7 +33,7 @@ class TracingBench {
     std::vector<double> rays_per_s;
   };
 
-  std::unique_ptr<accel::Accel> points_, list_;
+  std::unique_ptr<accel::Accel> other_, points_, list_;
   render::RecordedRays<kernel::RayPacketFast>& rays_;
   double ray_count_ = 0;
   std::vector<Method> methods_;
