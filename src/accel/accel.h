@@ -50,7 +50,7 @@ using BuildMonitor = std::function<bool(double fraction)>;
 
 /// From this many resting spheres of similar size on, these are one primitive of Embree's scene, with a BVH of their own
 /// inside (docs/decisions/0027-bvh-for-many-spheres.md). Below, each sphere is a primitive.
-inline constexpr std::size_t kBvhThreshold = 5000;
+inline constexpr std::size_t kBvhThreshold = 10'000;
 
 /// A threshold that no scene reaches.
 inline constexpr std::size_t kNoBvh = ~std::size_t{0};

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "accel/embree_scene.h"
 #include "accel/sphere_bvh.h"
@@ -194,14 +195,14 @@ HWY_INLINE bool climb(const SphereBvh& bvh, Traveller& ray) {
   return true;
 }
 
-/// Visits a leaf: adds the spheres that the ray may hit before its limit to its candidates, and shortens the ray to
-/// spheres that it certainly hits.
+/// Finds the spheres of a leaf that a ray may hit before its limit, as bits, and lower bounds of the distances there.
+/// Shortens the ray to spheres that it certainly hits.
 ///
 /// `shortest`  hits nearer than this are not certain, box space
 /// `target`    a sphere that is never hit
 template <bool kShadows>
-HWY_INLINE void visit_leaf(const SphereBvh& bvh, std::uint32_t index, const kernel::Sphere* spheres, float shortest,
-                           std::uint32_t target, Traveller& ray) {
+HWY_INLINE unsigned visit_leaf(const SphereBvh& bvh, std::uint32_t index, float shortest, std::uint32_t target,
+                               Traveller& ray, float* enter) {
   const ChildTag d;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
   const auto set = [&](float x) { return hn::Set(d, x); };
@@ -216,7 +217,6 @@ HWY_INLINE void visit_leaf(const SphereBvh& bvh, std::uint32_t index, const kern
   const hn::RebindToUnsigned<ChildTag> du;
   const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, ids + v) == hn::Set(du, target)); };
   const bool is_last = index == bvh.last_leaf;
-  alignas(64) float enter[SphereBvh::kArity];
   unsigned bits = 0;
   auto nearest = limit;
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
@@ -236,18 +236,21 @@ HWY_INLINE void visit_leaf(const SphereBvh& bvh, std::uint32_t index, const kern
     auto may_hit = hn::And(hn::And(apart <= outer * outer * growth, along + outer >= zero), begin <= limit);
     if (is_last) may_hit = hn::And(may_hit, hn::Iota(d, static_cast<float>(v)) < set(static_cast<float>(bvh.count_in(index))));
     if (kShadows) may_hit = hn::AndNot(is_target(v), may_hit);
-    const unsigned part = bits_of(d, may_hit);
-    if (part == 0) continue;
-    bits |= part << v;
+    bits |= bits_of(d, may_hit) << v;
     hn::StoreU(begin, d, enter + v);
     const auto inner = low_radius - margin;
     const auto deep = hn::NegMulAdd(apart, growth, inner * inner);
     const auto pierced = hn::And(hn::And(may_hit, inner > zero), hn::And(deep > zero, begin > set(shortest)));
-    const auto certain = ((along - hn::Sqrt(deep)) + margin) * set(1 + 0x1p-18F);
+    const auto certain = ((along - hn::Sqrt(hn::Max(deep, zero))) + margin) * set(1 + 0x1p-18F);
     nearest = hn::Min(nearest, hn::IfThenElse(pierced, certain, nearest));
   }
-  if (bits == 0) return;
   ray.limit = hn::GetLane(hn::MinOfLanes(d, nearest));
+  return bits;
+}
+
+/// Adds spheres of a leaf to the candidates of a ray.
+HWY_INLINE void add_candidates(unsigned bits, const std::uint32_t* ids, const float* enter,
+                               const kernel::Sphere* spheres, Traveller& ray) {
   for (; bits != 0; bits &= bits - 1) {
     const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
     if (enter[i] > ray.limit) continue;
@@ -361,31 +364,34 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
   for (int i = 0; i < lanes; ++i)
     if (ray_of[i] != nullptr) enqueue(*ray_of[i]);
   unsigned changed = 0;
+  // The arithmetic of all rays comes first, then what branches: a mispredicted branch would discard the next ray's
+  // arithmetic, which has already begun.
   while (queued[kNode] + queued[kLeaf] + queued[kEnd] > 0) {
     Traveller* now[kWidth];
-    int count = queued[kNode];
-    std::copy_n(queue[kNode], kWidth, now);
-    queued[kNode] = 0;
+    const auto take = [&](Kind kind) { return std::copy_n(queue[kind], kWidth, now), std::exchange(queued[kind], 0); };
+    int count = take(kNode);
+    for (int i = 0; i < count; ++i) visit_node(bvh.nodes[now[i]->what[--now[i]->waiting]], *now[i]);
+    for (int i = 0; i < count; ++i) enqueue(*now[i]);
+
+    count = take(kLeaf);
+    alignas(64) float enter[kWidth][SphereBvh::kArity];
+    unsigned bits[kWidth];
+    std::uint32_t leaf[kWidth];
     for (int i = 0; i < count; ++i) {
       Traveller& ray = *now[i];
-      visit_node(bvh.nodes[ray.what[--ray.waiting]], ray);
-      enqueue(ray);
-    }
-    count = queued[kLeaf];
-    std::copy_n(queue[kLeaf], kWidth, now);
-    queued[kLeaf] = 0;
-    bool full = false;
-    for (int i = 0; i < count; ++i) {
-      Traveller& ray = *now[i];
+      leaf[i] = ray.what[--ray.waiting] & kIndexMask;
       std::uint32_t target = kernel::kNoSphere;
       if constexpr (kShadows) target = static_cast<std::uint32_t>(query.packet->target[query.first + ray.lane]);
-      visit_leaf<kShadows>(bvh, ray.what[--ray.waiting] & ~SphereBvh::kLeafBit, scene.spheres, shortest, target, ray);
-      full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
-      enqueue(ray);
+      bits[i] = visit_leaf<kShadows>(bvh, leaf[i], shortest, target, ray, enter[i]);
     }
-    count = queued[kEnd];
-    std::copy_n(queue[kEnd], kWidth, now);
-    queued[kEnd] = 0;
+    bool full = false;
+    for (int i = 0; i < count; ++i) {
+      add_candidates(bits[i], &bvh.ids[std::size_t{leaf[i]} * SphereBvh::kArity], enter[i], scene.spheres, *now[i]);
+      full = full || now[i]->candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
+      enqueue(*now[i]);
+    }
+
+    count = take(kEnd);
     for (int i = 0; i < count; ++i)
       if (climb(bvh, *now[i])) enqueue(*now[i]);
     if (full) changed |= intersect_candidates<D, Packet, kPrecision>(d, query, ray_of, lanes);
@@ -428,10 +434,14 @@ HWY_INLINE unsigned trace_valid(const SphereBvh& bvh, const EmbreeQuery<Packet>&
                                 unsigned n, Traveller (&travellers)[kWidth]) {
   Traveller* ray_of[kWidth] = {};
   int count = 0;
+  const auto self = [&](unsigned i) {
+    return static_cast<std::uint32_t>(query.packet->self[query.first + static_cast<int>(i)]);
+  };
+  for (unsigned i = 0; i < n; ++i) hwy::Prefetch(&bvh.places[self(i) < bvh.places.size() ? self(i) : 0]);
   for (unsigned i = 0; i < n; ++i) {
     if (valid[i] == 0) continue;
     ray_of[i] = &travellers[count++];
-    begin(*ray_of[i], rays, n, i, bvh, static_cast<std::uint32_t>(query.packet->self[query.first + static_cast<int>(i)]));
+    begin(*ray_of[i], rays, n, i, bvh, self(i));
   }
   using T = DistanceOf<Packet>;
   if (n == 1) return trace_rays<hn::FixedTag<T, 1>, Packet, kPrecision>({}, bvh, query, ray_of, 1);
