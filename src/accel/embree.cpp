@@ -169,6 +169,7 @@ class Embree final : public Accel {
     if (many.size() - giants.size() < threshold) return;
     std::erase_if(many, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
     scene_.singles = std::move(giants);
+    scene_.has_bvh = true;
     bvh_ = SphereBvh(view.spheres, std::move(many), scene_.frame, monitor);
   }
 

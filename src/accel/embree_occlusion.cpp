@@ -95,7 +95,7 @@ void occlude(const void* self, Packet& packet) {
     set_rays<false, kMoves>(query, rays, valid);
     for (int i = 0; i < kWidth; ++i)
       if (packet.occluded[first + i] != 0) valid[i] = 0;
-    if (scene.traversals.bounced == Traversal::kPacket) {
+    if (scene.traversals.bounced == Traversal::kPacket || scene.has_bvh) {
       accel::occluded(valid, scene.scene, query.context, rays);
       continue;
     }

@@ -29,6 +29,7 @@ struct EmbreeScene {
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
   /// If there is a SphereBvh: ascending ids of the resting spheres outside of it, one primitive each.
   std::vector<std::uint32_t> singles;
+  bool has_bvh = false;  ///< Embree is passed packets; `traversals` applies to the SphereBvh
   Traversals traversals;
 
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.

@@ -139,7 +139,7 @@ void trace(const void* self, Packet& packet) {
   for (int first = 0; first < packet.count; first += kWidth) {
     query.first = first;
     set_rays<true, kMoves>(query, rays.ray, valid);
-    if (traversal == Traversal::kPacket) {
+    if (traversal == Traversal::kPacket || scene.has_bvh) {
       accel::intersect(valid, scene.scene, query.context, rays);
     } else {
       trace_one_by_one(valid, rays, query);

@@ -151,6 +151,14 @@ class Lines {
   bool has_radii_;
 };
 
+HWY_INLINE void prefetch_reference(const SphereBvh& bvh, std::uint32_t reference) {
+  const std::size_t index = reference & kIndexMask;
+  const auto* const at = (reference & SphereBvh::kLeafBit) != 0 ? static_cast<const void*>(&bvh.leaves[index])
+                                                                : static_cast<const void*>(&bvh.nodes[index]);
+  hwy::Prefetch(static_cast<const std::uint8_t*>(at));
+  hwy::Prefetch(static_cast<const std::uint8_t*>(at) + 64);
+}
+
 /// Visits a node: adds the children that the ray enters, but not child `except`, to its stack.
 HWY_INLINE void visit_node(const SphereBvh::Node& node, Traveller& ray, int except = -1) {
   const hn::FixedTag<std::int32_t, 4> d;
@@ -195,6 +203,40 @@ HWY_INLINE bool climb(const SphereBvh& bvh, Traveller& ray) {
   return true;
 }
 
+/// Covers the rounding of squares and of their sum.
+constexpr float kGrowth = 1 + 0x1p-20F;
+
+/// Covers the rounding of a distance that is compared with others.
+constexpr float kLonger = 1 + 0x1p-18F;
+
+/// How far a sphere's centre may be from its code, and a ray from where it is computed. The factor is sqrt(3) / 2, rounded
+/// up: a centre is half a step off on each axis.
+HWY_INLINE float margin_of(const SphereBvh& bvh, const SphereBvh::Leaf& leaf) {
+  return 0.875F * leaf.step + bvh.padding;
+}
+
+/// Bounds of the radii of spheres `first` .. of a leaf.
+struct RadiusBounds {
+  hn::Vec<ChildTag> most, least;
+};
+HWY_INLINE RadiusBounds radii_of(const SphereBvh& bvh, std::uint32_t leaf, int first) {
+  const ChildTag d;
+  if (bvh.radii.empty()) {
+    const auto radius = hn::Set(d, bvh.radius);
+    return {radius, radius};
+  }
+  const SphereBvh::LeafRadii& own = bvh.radii[leaf];
+  const auto step = hn::Set(d, own.step), most = from_bytes(own.radius + first) * step;
+  return {most, most - step};
+}
+
+/// The distance from which on a hit is certain, in box space: the book's arithmetic ignores near hits.
+template <kernel::Precision kPrecision>
+HWY_INLINE float shortest_certain(const SphereBvh& bvh, const BoxFrame& frame) {
+  if (kPrecision != kernel::Precision::kBook) return 0;
+  return static_cast<float>(kernel::kBookShortestDistance * frame.scale) * kLonger + bvh.padding;
+}
+
 /// Finds the spheres of a leaf that a ray may hit before its limit, as bits, and lower bounds of the distances there.
 /// Shortens the ray to spheres that it certainly hits.
 ///
@@ -207,9 +249,8 @@ HWY_INLINE unsigned visit_leaf(const SphereBvh& bvh, std::uint32_t index, float 
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
   const auto set = [&](float x) { return hn::Set(d, x); };
   const auto step = set(leaf.step);
-  // sqrt(3) / 2 of a step, rounded up: a centre is half a step off on each axis.
-  const auto margin = set(0.875F * leaf.step + bvh.padding);
-  const auto limit = set(ray.limit), zero = hn::Zero(d), growth = set(1 + 0x1p-20F);
+  const auto margin = set(margin_of(bvh, leaf));
+  const auto limit = set(ray.limit), zero = hn::Zero(d), growth = set(kGrowth);
   const auto dx = set(ray.direction[0]), dy = set(ray.direction[1]), dz = set(ray.direction[2]);
   const auto ox = set(leaf.origin[0] - ray.origin[0]), oy = set(leaf.origin[1] - ray.origin[1]),
              oz = set(leaf.origin[2] - ray.origin[2]);
@@ -226,22 +267,17 @@ HWY_INLINE unsigned visit_leaf(const SphereBvh& bvh, std::uint32_t index, float 
     const auto along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, z * dz));
     const auto px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y), pz = hn::NegMulAdd(along, dz, z);
     const auto apart = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
-    auto radius = set(bvh.radius), low_radius = radius;
-    if (!bvh.radii.empty()) {
-      const SphereBvh::LeafRadii& own = bvh.radii[index];
-      radius = from_bytes(own.radius + v) * set(own.step);
-      low_radius = radius - set(own.step);
-    }
-    const auto outer = radius + margin, begin = along - outer;
+    const auto radii = radii_of(bvh, index, v);
+    const auto outer = radii.most + margin, begin = along - outer;
     auto may_hit = hn::And(hn::And(apart <= outer * outer * growth, along + outer >= zero), begin <= limit);
     if (is_last) may_hit = hn::And(may_hit, hn::Iota(d, static_cast<float>(v)) < set(static_cast<float>(bvh.count_in(index))));
     if (kShadows) may_hit = hn::AndNot(is_target(v), may_hit);
     bits |= bits_of(d, may_hit) << v;
     hn::StoreU(begin, d, enter + v);
-    const auto inner = low_radius - margin;
+    const auto inner = radii.least - margin;
     const auto deep = hn::NegMulAdd(apart, growth, inner * inner);
     const auto pierced = hn::And(hn::And(may_hit, inner > zero), hn::And(deep > zero, begin > set(shortest)));
-    const auto certain = ((along - hn::Sqrt(hn::Max(deep, zero))) + margin) * set(1 + 0x1p-18F);
+    const auto certain = ((along - hn::Sqrt(hn::Max(deep, zero))) + margin) * set(kLonger);
     nearest = hn::Min(nearest, hn::IfThenElse(pierced, certain, nearest));
   }
   ray.limit = hn::GetLane(hn::MinOfLanes(d, nearest));
@@ -344,10 +380,7 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
                                Traveller* const (&ray_of)[kWidth], int lanes) {
   constexpr bool kShadows = requires(Packet p) { p.occluded; };
   const EmbreeScene& scene = *query.scene;
-  const float shortest =
-      kPrecision == kernel::Precision::kBook
-          ? static_cast<float>(kernel::kBookShortestDistance * scene.frame.scale) * (1 + 0x1p-20F) + bvh.padding
-          : 0.0F;
+  const float shortest = shortest_certain<kPrecision>(bvh, scene.frame);
   // Rays by what they visit next.
   Traveller* queue[kKinds][kWidth];
   int queued[kKinds] = {0, 0, 0};
@@ -448,6 +481,242 @@ HWY_INLINE unsigned trace_valid(const SphereBvh& bvh, const EmbreeQuery<Packet>&
   return trace_rays<hn::ScalableTag<T>, Packet, kPrecision>({}, bvh, query, ray_of, static_cast<int>(n));
 }
 
+/// A node or leaf that some rays of a packet have still to visit, or a sphere that they may hit.
+struct SharedVisit {
+  float enter;  ///< a lower bound of the distance there, for all of these rays
+  std::uint32_t what;
+  unsigned lanes;
+};
+
+/// Inserts a visit so that the nearest is the last.
+HWY_INLINE void insert(SharedVisit* visits, int begin, int& end, const SharedVisit& visit) {
+  int at = end++;
+  for (; at > begin && visits[at - 1].enter < visit.enter; --at) visits[at] = visits[at - 1];
+  visits[at] = visit;
+}
+
+/// The rays of an Embree packet, which visit nodes together: one pass over a node's children for all rays. Faster than
+/// each on its own way if they visit the same nodes, such as the camera rays of a pixel.
+template <class Packet, kernel::Precision kPrecision>
+class SharedRays {
+ public:
+  HWY_INLINE SharedRays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays)
+      : bvh_(bvh),
+        query_(query),
+        shortest_(shortest_certain<kPrecision>(bvh, query.scene->frame)),
+        direction_{&RTCRayN_dir_x(rays, kWidth, 0), &RTCRayN_dir_y(rays, kWidth, 0), &RTCRayN_dir_z(rays, kWidth, 0)},
+        origin_{&RTCRayN_org_x(rays, kWidth, 0), &RTCRayN_org_y(rays, kWidth, 0), &RTCRayN_org_z(rays, kWidth, 0)} {
+    const auto smallest = hn::Set(d_, kSmallestDirection), one = hn::Set(d_, 1.0F);
+    hn::Store(hn::LoadU(d_, &RTCRayN_tfar(rays, kWidth, 0)), d_, limit_);
+    for (int k = 0; k < 3; ++k) {
+      const auto x = hn::LoadU(d_, direction_[k]);
+      const auto inverse = one / hn::CopySign(hn::Max(hn::Abs(x), smallest), x);
+      hn::Store(inverse, d_, inverse_[k]);
+      hn::Store(hn::Neg(hn::LoadU(d_, origin_[k]) * inverse), d_, shift_[k]);
+    }
+    for (int i = 0; i < kWidth; ++i) lanes_ |= valid[i] != 0 ? 1u << i : 0u;
+  }
+
+  /// Result     lanes with a new hit, as bits
+  HWY_INLINE unsigned trace() {
+    SharedVisit stack[SphereBvh::kStackSize];
+    int waiting = 0;
+    stack[waiting++] = {0, bvh_.root(), lanes_};
+    while (waiting > 0) {
+      const SharedVisit visit = stack[--waiting];
+      const unsigned lanes = visit.lanes & within(visit.enter);
+      if (lanes == 0) continue;
+      if ((visit.what & SphereBvh::kLeafBit) == 0) {
+        visit_node(bvh_.nodes[visit.what], lanes, stack, waiting);
+      } else {
+        visit_leaf(visit.what & kIndexMask, lanes);
+        if (candidate_count_ > kMaxCandidates - static_cast<int>(SphereBvh::kArity)) intersect();
+      }
+    }
+    intersect();
+    return changed_;
+  }
+
+  const float* limits() const { return limit_; }
+
+ private:
+  using Wide = hn::ScalableTag<float>;  // kWidth lanes
+  static constexpr bool kShadows = requires(Packet p) { p.occluded; };
+
+  /// Lanes whose limit is not before a distance.
+  HWY_INLINE unsigned within(float distance) const {
+    return bits_of(d_, hn::Load(d_, limit_) >= hn::Set(d_, distance));
+  }
+
+  HWY_INLINE void visit_node(const SphereBvh::Node& node, unsigned lanes, SharedVisit* stack, int& waiting) const {
+    alignas(64) float bound[2][3][SphereBvh::kArity];
+    const ChildTag dc;
+    for (int side = 0; side < 2; ++side)
+      for (int k = 0; k < 3; ++k)
+        for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes)
+          hn::Store(hn::MulAdd(from_bytes(node.bound[side][k] + v), hn::Set(dc, node.step[k]),
+                               hn::Set(dc, node.origin[k])),
+                    dc, bound[side][k] + v);
+    hn::Vec<Wide> inverse[3], shift[3];
+    for (int k = 0; k < 3; ++k) {
+      inverse[k] = hn::Load(d_, inverse_[k]);
+      shift[k] = hn::Load(d_, shift_[k]);
+    }
+    const auto limit = hn::Load(d_, limit_), zero = hn::Zero(d_);
+    const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
+    const int begin = waiting;
+    for (std::uint32_t child = 0; child < node.count; ++child) {
+      auto enter = zero, leave = limit;
+      for (int k = 0; k < 3; ++k) {
+        const auto a = hn::MulAdd(hn::Set(d_, bound[0][k][child]), inverse[k], shift[k]);
+        const auto b = hn::MulAdd(hn::Set(d_, bound[1][k][child]), inverse[k], shift[k]);
+        enter = hn::Max(enter, hn::Min(a, b));
+        leave = hn::Min(leave, hn::Max(a, b));
+      }
+      const auto hits = enter <= leave;
+      const unsigned entering = bits_of(d_, hits) & lanes;
+      if (entering == 0) continue;
+      const float nearest = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(hits, enter, infinite)));
+      insert(stack, begin, waiting, {nearest, node.first + child, entering});
+    }
+    if (waiting > 0) prefetch_reference(bvh_, stack[waiting - 1].what);
+  }
+
+  HWY_INLINE void visit_leaf(std::uint32_t index, unsigned lanes) {
+    const SphereBvh::Leaf& leaf = bvh_.leaves[index];
+    alignas(64) float center[3][SphereBvh::kArity], outer[SphereBvh::kArity], inner[SphereBvh::kArity];
+    const ChildTag dc;
+    const auto margin = hn::Set(dc, margin_of(bvh_, leaf));
+    for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
+      for (int k = 0; k < 3; ++k)
+        hn::Store(hn::MulAdd(from_bytes(leaf.center[k] + v), hn::Set(dc, leaf.step), hn::Set(dc, leaf.origin[k])), dc,
+                  center[k] + v);
+      const auto radii = radii_of(bvh_, index, v);
+      hn::Store(radii.most + margin, dc, outer + v);
+      hn::Store(radii.least - margin, dc, inner + v);
+    }
+    const auto load = [&](const float* x) { return hn::LoadU(d_, x); };
+    const auto dx = load(direction_[0]), dy = load(direction_[1]), dz = load(direction_[2]);
+    const auto ox = load(origin_[0]), oy = load(origin_[1]), oz = load(origin_[2]);
+    const auto zero = hn::Zero(d_), growth = hn::Set(d_, kGrowth);
+    const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
+    auto limit = hn::Load(d_, limit_);
+    const unsigned count = bvh_.count_in(index);
+    const std::uint32_t* const ids = &bvh_.ids[std::size_t{index} * SphereBvh::kArity];
+    for (unsigned i = 0; i < count; ++i) {
+      const auto x = hn::Set(d_, center[0][i]) - ox, y = hn::Set(d_, center[1][i]) - oy,
+                 z = hn::Set(d_, center[2][i]) - oz;
+      const auto along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, z * dz));
+      const auto px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y),
+                 pz = hn::NegMulAdd(along, dz, z);
+      const auto apart = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
+      const auto radius = hn::Set(d_, outer[i]), begin = along - radius;
+      const auto may_hit = hn::And(hn::And(apart <= radius * radius * growth, along + radius >= zero), begin <= limit);
+      unsigned hitting = bits_of(d_, may_hit) & lanes;
+      if constexpr (kShadows) hitting = hitting == 0 ? 0 : without_target(hitting, ids[i]);
+      if (hitting == 0) continue;
+      const auto low = hn::Set(d_, inner[i]);
+      const auto deep = hn::NegMulAdd(apart, growth, low * low);
+      if (inner[i] > 0) {
+        auto pierced = hn::And(hn::And(may_hit, deep > zero), begin > hn::Set(d_, shortest_));
+        if constexpr (kShadows) pierced = hn::And(pierced, mask_of(hitting));
+        const auto certain =
+            ((along - hn::Sqrt(hn::Max(deep, zero))) + hn::Set(d_, margin_of(bvh_, leaf))) * hn::Set(d_, kLonger);
+        limit = hn::Min(limit, hn::IfThenElse(pierced, certain, limit));
+      }
+      const float nearest = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(may_hit, begin, infinite)));
+      hwy::Prefetch(&query_.scene->spheres[ids[i]]);
+      insert(candidates_, 0, candidate_count_, {nearest, ids[i], hitting});
+    }
+    hn::Store(limit, d_, limit_);
+  }
+
+  HWY_INLINE hn::Mask<Wide> mask_of(unsigned lanes) const {
+    const hn::RebindToUnsigned<Wide> du;
+    const auto bit = hn::Shl(hn::Set(du, 1u), hn::Iota(du, 0));
+    return hn::RebindMask(d_, hn::TestBit(hn::Set(du, lanes), bit));
+  }
+
+  /// Lanes whose target is not this sphere.
+  HWY_INLINE unsigned without_target(unsigned lanes, std::uint32_t id) const {
+    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+      const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+      if (query_.packet->target[query_.first + i] == id) lanes &= ~(1u << i);
+    }
+    return lanes;
+  }
+
+  /// Intersects the candidates, nearest first.
+  HWY_INLINE void intersect() {
+    using D = hn::ScalableTag<DistanceOf<Packet>>;
+    const D d;
+    const k::IdTag<D> du;
+    const int step = static_cast<int>(hn::Lanes(d));
+    Packet& packet = *query_.packet;
+    const EmbreeScene& scene = *query_.scene;
+    while (candidate_count_ > 0) {
+      const SharedVisit candidate = candidates_[--candidate_count_];
+      const unsigned lanes = candidate.lanes & within(candidate.enter);
+      if (lanes == 0) continue;
+      const auto ids = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(candidate.what));
+      const auto sphere = k::broadcast(d, scene.spheres[candidate.what]);
+      for (int v = 0; v < kWidth; v += step) {
+        const unsigned part = lanes >> v & ((1u << step) - 1u);
+        if (part == 0) continue;
+        const int first = query_.first + v;
+        const auto ray = k::load_rays(d, packet, first);
+        const auto found = k::nearest<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == ids));
+        unsigned hits = 0;
+        if constexpr (kShadows) {
+          hits = part & bits_of(d, hn::And(found.mask, found.value < hn::Load(d, packet.distance + first)));
+          for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
+            const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+            packet.occluded[first + i] = static_cast<hn::TFromD<decltype(du)>>(~hn::TFromD<decltype(du)>{0});
+            limit_[v + i] = -1;
+          }
+        } else {
+          auto nearest = ClosestHit<D>::load(d, packet, first);
+          nearest.take(d, found, ids, found.mask);
+          hits = part & bits_of(d, nearest.is_new);
+          if (hits == 0) continue;
+          alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
+          store_float(d, far_limits(d, nearest.distance, scene.frame.scale, hn::Load(d, query_.start + v)), limits);
+          // Lanes outside of `part` may belong to no ray.
+          HWY_ALIGN DistanceOf<Packet> distance[hn::MaxLanes(D())];
+          hn::Store(nearest.distance, d, distance);
+          for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
+            const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+            limit_[v + i] = limits[i];
+            packet.distance[first + i] = distance[i];
+            packet.hit[first + i] = candidate.what;
+          }
+        }
+        changed_ |= hits << v;
+      }
+    }
+  }
+
+  const Wide d_{};
+  const SphereBvh& bvh_;
+  const EmbreeQuery<Packet>& query_;
+  float shortest_;
+  const float *direction_[3], *origin_[3];
+  alignas(64) float limit_[kWidth];
+  alignas(64) float inverse_[3][kWidth];
+  alignas(64) float shift_[3][kWidth];  ///< box space to distance: bound * inverse + shift
+  unsigned lanes_ = 0, changed_ = 0;
+  int candidate_count_ = 0;
+  SharedVisit candidates_[kMaxCandidates];
+};
+
+/// Whether the rays of a packet visit nodes together.
+template <class Packet>
+HWY_INLINE bool are_together(const EmbreeQuery<Packet>& query) {
+  const bool from_camera = query.packet->self[0] == kernel::kNoSphere;
+  const Traversals& chosen = query.scene->traversals;
+  return (from_camera ? chosen.camera : chosen.bounced) == Traversal::kPacket;
+}
+
 /// Embree's callback for closest hits.
 template <class Packet, kernel::Precision kPrecision>
 void intersect_bvh(const RTCIntersectFunctionNArguments* arguments) {
@@ -455,6 +724,16 @@ void intersect_bvh(const RTCIntersectFunctionNArguments* arguments) {
   const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
   RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, n);
+  if (n == kWidth && are_together(query)) {
+    SharedRays<Packet, kPrecision> shared(bvh, query, arguments->valid, rays);
+    const unsigned hits = shared.trace();
+    for (int i = 0; i < kWidth; ++i) {
+      const bool is_new = (hits >> i & 1u) != 0;
+      arguments->valid[i] = is_new ? -1 : 0;
+      if (is_new) RTCRayN_tfar(rays, n, static_cast<unsigned>(i)) = shared.limits()[i];
+    }
+    return;
+  }
   Traveller travellers[kWidth];
   unsigned hits = trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, rays, n, travellers);
   for (int r = 0, i = 0; i < static_cast<int>(n); ++i) {
@@ -473,7 +752,10 @@ void occluded_by_bvh(const RTCOccludedFunctionNArguments* arguments) {
   const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
   Traveller travellers[kWidth];
-  const unsigned hits = trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray, n, travellers);
+  const unsigned hits =
+      n == kWidth && are_together(query)
+          ? SharedRays<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray).trace()
+          : trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray, n, travellers);
   for (unsigned i = 0; i < n; ++i)
     if ((hits >> i & 1u) != 0) RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
 }

@@ -17,6 +17,9 @@ constexpr double kMaxTrialPaths = 32 * 1024;
 /// Fewer tiles than this would sample only a corner of the image.
 constexpr int kMinTrialTiles = 4;
 
+/// Without a trial: in larger scenes bounced rays diverge too soon for packets.
+constexpr std::size_t kManySpheres = 1000;
+
 /// A deterministic set of tiles, spread over the image. Each fills a whole path stream; otherwise packets of secondary
 /// rays would be less full than in a render. As in a render, a packet of camera rays spans as many pixels as it needs.
 std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
@@ -57,8 +60,10 @@ accel::Traversals quicker(accel::Accel& accel, RecordedRays<Packet> rays) {
   return {quicker(accel, rays.camera), quicker(accel, rays.bounced)};
 }
 
-/// Without a trial. Rays in the BVH of many spheres are traced faster in packets even if they diverge.
-constexpr accel::Traversals kUnmeasured = {accel::Traversal::kPacket, accel::Traversal::kPacket};
+accel::Traversals unmeasured(const compile::CompiledScene& compiled) {
+  const bool many = compiled.spheres.size() >= kManySpheres;
+  return {accel::Traversal::kPacket, many ? accel::Traversal::kSingle : accel::Traversal::kPacket};
+}
 
 const char* name_of(accel::Traversal traversal) { return traversal == accel::Traversal::kPacket ? "packet" : "single"; }
 
@@ -67,10 +72,10 @@ const char* name_of(accel::Traversal traversal) { return traversal == accel::Tra
 accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel,
                                     std::optional<accel::Traversal> requested) {
   if (requested) return {*requested, *requested};
-  if (compiled.accelerator == compile::Accelerator::kList) return kUnmeasured;
+  if (compiled.accelerator == compile::Accelerator::kList) return unmeasured(compiled);
   const std::vector<kernel::Tile> tiles = trial_tiles(compiled);
-  if (tiles.empty()) return kUnmeasured;
-  accel.use(kUnmeasured);
+  if (tiles.empty()) return unmeasured(compiled);
+  accel.use(unmeasured(compiled));
   return compiled.precision == compile::Precision::kFast
              ? quicker(accel, record_rays_fast(compiled.view(), accel, tiles))
              : quicker(accel, record_rays(compiled.view(), accel, compiled.precision, tiles));
@@ -78,7 +83,7 @@ accel::Traversals choose_traversals(const compile::CompiledScene& compiled, acce
 
 std::string planned_traversal(const compile::CompiledScene& compiled) {
   if (compiled.accelerator == compile::Accelerator::kList || compiled.spheres.empty()) return "list";
-  return trial_tiles(compiled).empty() ? name_of(kUnmeasured)
+  return trial_tiles(compiled).empty() ? name_of(unmeasured(compiled))
                                        : "packet or single, chosen by a trial of the scene's rays";
 }
 
