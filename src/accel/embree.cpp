@@ -134,7 +134,10 @@ class Embree final : public Accel {
       : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view, precision)) {
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
     if (primitives >= bvh_threshold) build_bvh(view, bvh_threshold, monitor);
-    if (primitives > 0) build(primitives, monitor);
+    // The progress of the second part continues that of the first.
+    const double before = static_cast<double>(bvh_.count) / static_cast<double>(std::max<std::size_t>(1, primitives));
+    const BuildMonitor rest = [&](double fraction) { return !monitor || monitor(before + (1 - before) * fraction); };
+    if (primitives > 0) build(primitives, rest);
   }
 
   kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }
@@ -170,7 +173,10 @@ class Embree final : public Accel {
     std::erase_if(many, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
     scene_.singles = std::move(giants);
     scene_.has_bvh = true;
-    bvh_ = SphereBvh(view.spheres, std::move(many), scene_.frame, monitor);
+    const double share = static_cast<double>(many.size()) /
+                         static_cast<double>(view.sphere_count - scene_.outliers.size());
+    bvh_ = SphereBvh(view.spheres, std::move(many), scene_.frame,
+                     [&](double fraction) { return !monitor || monitor(share * fraction); });
   }
 
   /// Moving spheres get a separate geometry, since the others need no second time step.

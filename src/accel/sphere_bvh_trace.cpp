@@ -302,8 +302,7 @@ HWY_INLINE void add_candidates(unsigned bits, const std::uint32_t* ids, const fl
 ///
 /// Result     lanes with a new hit, as bits
 template <class D, class Packet, kernel::Precision kPrecision>
-HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, Traveller* const (&ray_of)[kWidth],
-                                         int lanes) {
+HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, Traveller* const (&ray_of)[kWidth]) {
   using Id = hn::TFromD<k::IdTag<D>>;
   constexpr bool kShadows = requires(Packet p) { p.occluded; };
   const k::IdTag<D> du;
@@ -311,7 +310,7 @@ HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, 
   Packet& packet = *query.packet;
   const EmbreeScene& scene = *query.scene;
   unsigned changed = 0;
-  for (int v = 0; v < lanes; v += step) {
+  for (int v = 0; v < kWidth; v += step) {
     const int first = query.first + v;
     HWY_ALIGN Id ids[hn::MaxLanes(D())];
     const auto next = [&] {
@@ -377,7 +376,7 @@ HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, 
 /// Result     lanes with a new hit, as bits
 template <class D, class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Packet>& query,
-                               Traveller* const (&ray_of)[kWidth], int lanes) {
+                               Traveller* const (&ray_of)[kWidth]) {
   constexpr bool kShadows = requires(Packet p) { p.occluded; };
   const EmbreeScene& scene = *query.scene;
   const float shortest = shortest_certain<kPrecision>(bvh, scene.frame);
@@ -394,7 +393,7 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
     queue[kind][queued[kind]++] = &ray;
     lines.prefetch(next);
   };
-  for (int i = 0; i < lanes; ++i)
+  for (int i = 0; i < kWidth; ++i)
     if (ray_of[i] != nullptr) enqueue(*ray_of[i]);
   unsigned changed = 0;
   // The arithmetic of all rays comes first, then what branches: a mispredicted branch would discard the next ray's
@@ -427,21 +426,21 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
     count = take(kEnd);
     for (int i = 0; i < count; ++i)
       if (climb(bvh, *now[i])) enqueue(*now[i]);
-    if (full) changed |= intersect_candidates<D, Packet, kPrecision>(d, query, ray_of, lanes);
+    if (full) changed |= intersect_candidates<D, Packet, kPrecision>(d, query, ray_of);
   }
-  return changed | intersect_candidates<D, Packet, kPrecision>(d, query, ray_of, lanes);
+  return changed | intersect_candidates<D, Packet, kPrecision>(d, query, ray_of);
 }
 
 /// Sets up a ray of Embree's packet.
 template <class EmbreeRays>
-HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned n, unsigned i, const SphereBvh& bvh, std::uint32_t self) {
-  ray.origin[0] = RTCRayN_org_x(rays, n, i);
-  ray.origin[1] = RTCRayN_org_y(rays, n, i);
-  ray.origin[2] = RTCRayN_org_z(rays, n, i);
-  ray.direction[0] = RTCRayN_dir_x(rays, n, i);
-  ray.direction[1] = RTCRayN_dir_y(rays, n, i);
-  ray.direction[2] = RTCRayN_dir_z(rays, n, i);
-  ray.limit = RTCRayN_tfar(rays, n, i);
+HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned i, const SphereBvh& bvh, std::uint32_t self) {
+  ray.origin[0] = RTCRayN_org_x(rays, kWidth, i);
+  ray.origin[1] = RTCRayN_org_y(rays, kWidth, i);
+  ray.origin[2] = RTCRayN_org_z(rays, kWidth, i);
+  ray.direction[0] = RTCRayN_dir_x(rays, kWidth, i);
+  ray.direction[1] = RTCRayN_dir_y(rays, kWidth, i);
+  ray.direction[2] = RTCRayN_dir_z(rays, kWidth, i);
+  ray.limit = RTCRayN_tfar(rays, kWidth, i);
   for (int k = 0; k < 3; ++k) {
     const float x = ray.direction[k];
     ray.near[k] = x < 0 ? 1 : 0;
@@ -459,26 +458,25 @@ HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned n, unsigned i, 
   ray.waiting = 2;
 }
 
-/// Traces the valid rays of Embree's packet.
+/// Traces the valid rays of Embree's packet, each on its own way. Embree passes packets only, as scene.has_bvh asks.
 ///
+/// `ray_of`   out: the traveller of each lane; null where the lane is not valid
 /// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_valid(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays,
-                                unsigned n, Traveller (&travellers)[kWidth]) {
-  Traveller* ray_of[kWidth] = {};
+                                Traveller (&travellers)[kWidth],
+                                Traveller* (&ray_of)[kWidth]) {
   int count = 0;
   const auto self = [&](unsigned i) {
     return static_cast<std::uint32_t>(query.packet->self[query.first + static_cast<int>(i)]);
   };
-  for (unsigned i = 0; i < n; ++i) hwy::Prefetch(&bvh.places[self(i) < bvh.places.size() ? self(i) : 0]);
-  for (unsigned i = 0; i < n; ++i) {
+  for (unsigned i = 0; i < kWidth; ++i) hwy::Prefetch(&bvh.places[self(i) < bvh.places.size() ? self(i) : 0]);
+  for (unsigned i = 0; i < kWidth; ++i) {
     if (valid[i] == 0) continue;
     ray_of[i] = &travellers[count++];
-    begin(*ray_of[i], rays, n, i, bvh, self(i));
+    begin(*ray_of[i], rays, i, bvh, self(i));
   }
-  using T = DistanceOf<Packet>;
-  if (n == 1) return trace_rays<hn::FixedTag<T, 1>, Packet, kPrecision>({}, bvh, query, ray_of, 1);
-  return trace_rays<hn::ScalableTag<T>, Packet, kPrecision>({}, bvh, query, ray_of, static_cast<int>(n));
+  return trace_rays<hn::ScalableTag<DistanceOf<Packet>>, Packet, kPrecision>({}, bvh, query, ray_of);
 }
 
 /// A node or leaf that some rays of a packet have still to visit, or a sphere that they may hit.
@@ -515,6 +513,20 @@ class SharedRays {
       hn::Store(hn::Neg(hn::LoadU(d_, origin_[k]) * inverse), d_, shift_[k]);
     }
     for (int i = 0; i < kWidth; ++i) lanes_ |= valid[i] != 0 ? 1u << i : 0u;
+    const auto active = mask_of(lanes_);
+    const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
+    const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(active, v, infinite))); };
+    for (int k = 0; k < 3; ++k) {
+      const auto o = hn::LoadU(d_, origin_[k]), inverse = hn::Load(d_, inverse_[k]);
+      const float low = least(o), high = -least(hn::Neg(o));
+      least_inverse_[k] = least(inverse);
+      greatest_inverse_[k] = -least(hn::Neg(inverse));
+      const bool forward = least_inverse_[k] > 0;
+      straddles_[k] = !forward && greatest_inverse_[k] > 0;
+      near_[k] = forward ? 0 : 1;
+      near_origin_[k] = forward ? high : low;
+      far_origin_[k] = forward ? low : high;
+    }
   }
 
   /// Result     lanes with a new hit, as bits
@@ -543,6 +555,25 @@ class SharedRays {
   using Wide = hn::ScalableTag<float>;  // kWidth lanes
   static constexpr bool kShadows = requires(Packet p) { p.occluded; };
 
+  /// Boxes that some ray may enter, as bits, by interval arithmetic over all rays of the packet.
+  HWY_INLINE unsigned entered_by_any(const float (&bound)[2][3][SphereBvh::kArity], unsigned count) const {
+    const ChildTag d;
+    unsigned bits = 0;
+    for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
+      auto enter = hn::Zero(d), leave = hn::Set(d, std::numeric_limits<float>::infinity());
+      for (int k = 0; k < 3; ++k) {
+        if (straddles_[k]) continue;
+        const auto low = hn::Set(d, least_inverse_[k]), high = hn::Set(d, greatest_inverse_[k]);
+        const auto a = hn::Load(d, bound[near_[k]][k] + v) - hn::Set(d, near_origin_[k]);
+        const auto b = hn::Load(d, bound[1 - near_[k]][k] + v) - hn::Set(d, far_origin_[k]);
+        enter = hn::Max(enter, hn::Min(a * low, a * high));
+        leave = hn::Min(leave, hn::Max(b * low, b * high));
+      }
+      bits |= bits_of(d, enter <= leave) << v;
+    }
+    return bits & ((1u << count) - 1u);
+  }
+
   /// Lanes whose limit is not before a distance.
   HWY_INLINE unsigned within(float distance) const {
     return bits_of(d_, hn::Load(d_, limit_) >= hn::Set(d_, distance));
@@ -565,7 +596,8 @@ class SharedRays {
     const auto limit = hn::Load(d_, limit_), zero = hn::Zero(d_);
     const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
     const int begin = waiting;
-    for (std::uint32_t child = 0; child < node.count; ++child) {
+    for (unsigned rest = entered_by_any(bound, node.count); rest != 0; rest &= rest - 1) {
+      const auto child = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
       auto enter = zero, leave = limit;
       for (int k = 0; k < 3; ++k) {
         const auto a = hn::MulAdd(hn::Set(d_, bound[0][k][child]), inverse[k], shift[k]);
@@ -585,15 +617,20 @@ class SharedRays {
   HWY_INLINE void visit_leaf(std::uint32_t index, unsigned lanes) {
     const SphereBvh::Leaf& leaf = bvh_.leaves[index];
     alignas(64) float center[3][SphereBvh::kArity], outer[SphereBvh::kArity], inner[SphereBvh::kArity];
+    alignas(64) float bound[2][3][SphereBvh::kArity];
     const ChildTag dc;
     const auto margin = hn::Set(dc, margin_of(bvh_, leaf));
     for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
-      for (int k = 0; k < 3; ++k)
-        hn::Store(hn::MulAdd(from_bytes(leaf.center[k] + v), hn::Set(dc, leaf.step), hn::Set(dc, leaf.origin[k])), dc,
-                  center[k] + v);
       const auto radii = radii_of(bvh_, index, v);
-      hn::Store(radii.most + margin, dc, outer + v);
+      const auto most = radii.most + margin;
+      hn::Store(most, dc, outer + v);
       hn::Store(radii.least - margin, dc, inner + v);
+      for (int k = 0; k < 3; ++k) {
+        const auto c = hn::MulAdd(from_bytes(leaf.center[k] + v), hn::Set(dc, leaf.step), hn::Set(dc, leaf.origin[k]));
+        hn::Store(c, dc, center[k] + v);
+        hn::Store(c - most, dc, bound[0][k] + v);
+        hn::Store(c + most, dc, bound[1][k] + v);
+      }
     }
     const auto load = [&](const float* x) { return hn::LoadU(d_, x); };
     const auto dx = load(direction_[0]), dy = load(direction_[1]), dz = load(direction_[2]);
@@ -601,9 +638,9 @@ class SharedRays {
     const auto zero = hn::Zero(d_), growth = hn::Set(d_, kGrowth);
     const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
     auto limit = hn::Load(d_, limit_);
-    const unsigned count = bvh_.count_in(index);
     const std::uint32_t* const ids = &bvh_.ids[std::size_t{index} * SphereBvh::kArity];
-    for (unsigned i = 0; i < count; ++i) {
+    for (unsigned rest = entered_by_any(bound, bvh_.count_in(index)); rest != 0; rest &= rest - 1) {
+      const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
       const auto x = hn::Set(d_, center[0][i]) - ox, y = hn::Set(d_, center[1][i]) - oy,
                  z = hn::Set(d_, center[2][i]) - oz;
       const auto along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, z * dz));
@@ -704,6 +741,10 @@ class SharedRays {
   alignas(64) float limit_[kWidth];
   alignas(64) float inverse_[3][kWidth];
   alignas(64) float shift_[3][kWidth];  ///< box space to distance: bound * inverse + shift
+  // Bounds of the rays' origins, at the nearer and the farther side of boxes, and of their inverse directions.
+  float near_origin_[3], far_origin_[3], least_inverse_[3], greatest_inverse_[3];
+  int near_[3];         ///< the bound of a box that rays enter at
+  bool straddles_[3];   ///< rays go both ways along this axis: nothing is known
   unsigned lanes_ = 0, changed_ = 0;
   int candidate_count_ = 0;
   SharedVisit candidates_[kMaxCandidates];
@@ -722,26 +763,22 @@ template <class Packet, kernel::Precision kPrecision>
 void intersect_bvh(const RTCIntersectFunctionNArguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
-  const unsigned n = arguments->N;
-  RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, n);
-  if (n == kWidth && are_together(query)) {
-    SharedRays<Packet, kPrecision> shared(bvh, query, arguments->valid, rays);
-    const unsigned hits = shared.trace();
+  RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, kWidth);
+  const auto store = [&](unsigned hits, auto limit_of) {
     for (int i = 0; i < kWidth; ++i) {
       const bool is_new = (hits >> i & 1u) != 0;
       arguments->valid[i] = is_new ? -1 : 0;
-      if (is_new) RTCRayN_tfar(rays, n, static_cast<unsigned>(i)) = shared.limits()[i];
+      if (is_new) RTCRayN_tfar(rays, kWidth, static_cast<unsigned>(i)) = limit_of(i);
     }
-    return;
-  }
-  Traveller travellers[kWidth];
-  unsigned hits = trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, rays, n, travellers);
-  for (int r = 0, i = 0; i < static_cast<int>(n); ++i) {
-    if (arguments->valid[i] == 0) continue;
-    const bool is_new = (hits >> i & 1u) != 0;
-    arguments->valid[i] = is_new ? -1 : 0;
-    if (is_new) RTCRayN_tfar(rays, n, static_cast<unsigned>(i)) = travellers[r].limit;
-    ++r;
+  };
+  if (are_together(query)) {
+    SharedRays<Packet, kPrecision> shared(bvh, query, arguments->valid, rays);
+    store(shared.trace(), [&](int i) { return shared.limits()[i]; });
+  } else {
+    Traveller travellers[kWidth];
+    Traveller* ray_of[kWidth] = {};
+    store(trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, rays, travellers, ray_of),
+          [&](int i) { return ray_of[i]->limit; });
   }
 }
 
@@ -750,14 +787,16 @@ template <class Packet, kernel::Precision kPrecision>
 void occluded_by_bvh(const RTCOccludedFunctionNArguments* arguments) {
   const auto& query = *reinterpret_cast<const EmbreeQuery<Packet>*>(arguments->context);
   const auto& bvh = *static_cast<const SphereBvh*>(arguments->geometryUserPtr);
-  const unsigned n = arguments->N;
-  Traveller travellers[kWidth];
-  const unsigned hits =
-      n == kWidth && are_together(query)
-          ? SharedRays<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray).trace()
-          : trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray, n, travellers);
-  for (unsigned i = 0; i < n; ++i)
-    if ((hits >> i & 1u) != 0) RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
+  unsigned hits = 0;
+  if (are_together(query)) {
+    hits = SharedRays<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray).trace();
+  } else {
+    Traveller travellers[kWidth];
+    Traveller* ray_of[kWidth] = {};
+    hits = trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray, travellers, ray_of);
+  }
+  for (unsigned i = 0; i < kWidth; ++i)
+    if ((hits >> i & 1u) != 0) RTCRayN_tfar(arguments->ray, kWidth, i) = -std::numeric_limits<float>::infinity();
 }
 
 void set_bvh_functions(EmbreeFunctions& f, kernel::Precision precision) {

@@ -47,8 +47,13 @@ struct Way {
 std::unique_ptr<Accel> embree(const kernel::SceneView& view, kernel::Precision precision) {
   return make_embree(view, precision);
 }
+std::unique_ptr<Accel> bvh(const kernel::SceneView& view, kernel::Precision precision) {
+  return make_embree(view, precision, {}, 1);
+}
 constexpr Way kWays[] = {{"packet", embree, Traversal::kPacket},
                          {"single", embree, Traversal::kSingle},
+                         {"sphere BVH, packet", bvh, Traversal::kPacket},
+                         {"sphere BVH, single", bvh, Traversal::kSingle},
                          {"SIMD list", make_simd_list, Traversal::kPacket}};
 
 /// Counts over rays traced by the list and by another accelerator.
@@ -89,7 +94,7 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
   return found;
 }
 
-/// Packet and single-ray BVH traversal and the SIMD list, on every available instruction set. Each instance reports the
+/// Packet and single-ray traversal of Embree's BVH and of a SphereBvh, and the SIMD list, on every available instruction set. Each instance reports the
 /// instruction set it was compiled for.
 TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
   const std::vector<std::string> isas = kernel::available_isas();
@@ -145,7 +150,9 @@ TEST(AccelAccel, PacketsCanBePartlyFilled) {
   kernel::SceneView view;
   view.spheres = spheres.data();
   view.sphere_count = 2;
-  const auto embree = make_embree(view, kernel::Precision::kExact);
+  for (const Way& way : kWays) {
+  const auto embree = way.make(view, kernel::Precision::kExact);
+  embree->use({way.traversal, way.traversal});
   for (int count = 1; count <= kPacketSize; ++count) {
     kernel::RayPacket p;
     p.count = count;
@@ -161,6 +168,7 @@ TEST(AccelAccel, PacketsCanBePartlyFilled) {
         EXPECT_EQ(p.distance[lane], 4);
       }
     }
+  }
   }
 }
 

@@ -30,8 +30,13 @@ struct Way {
 std::unique_ptr<Accel> embree(const kernel::SceneView& view, Precision precision) {
   return make_embree(view, precision);
 }
+std::unique_ptr<Accel> bvh(const kernel::SceneView& view, Precision precision) {
+  return make_embree(view, precision, {}, 1);
+}
 constexpr Way kWays[] = {{"packet", embree, Traversal::kPacket},
                          {"single", embree, Traversal::kSingle},
+                         {"sphere BVH, packet", bvh, Traversal::kPacket},
+                         {"sphere BVH, single", bvh, Traversal::kSingle},
                          {"SIMD list", make_simd_list, Traversal::kPacket},
                          {"list", make_list, Traversal::kPacket}};
 

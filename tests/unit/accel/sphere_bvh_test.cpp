@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bounds of a SphereBvh: whatever a ray may hit lies within them.
+#include "accel/sphere_bvh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "accel/box_frame.h"
+#include "base/error.h"
+#include "support/accel_rays.h"
+
+namespace orrery::accel {
+namespace {
+
+using kernel::Sphere;
+using test::Random;
+
+std::vector<std::uint32_t> all_of(const std::vector<Sphere>& spheres) {
+  std::vector<std::uint32_t> ids(spheres.size());
+  std::iota(ids.begin(), ids.end(), 0u);
+  return ids;
+}
+
+struct Tree {
+  std::vector<Sphere> spheres;
+  BoxFrame frame;
+  SphereBvh bvh;
+
+  explicit Tree(std::vector<Sphere> of)
+      : spheres(std::move(of)),
+        frame(spheres.data(), all_of(spheres)),
+        bvh(spheres.data(), all_of(spheres), frame) {}
+
+  double center(std::uint32_t id, int axis) const {
+    const Sphere& s = spheres[id];
+    return ((axis == 0 ? s.x : axis == 1 ? s.y : s.z) - frame.middle[axis]) * frame.scale;
+  }
+  double radius(std::uint32_t id) const { return spheres[id].radius * frame.scale; }
+
+  /// Calls f(id) for each sphere below a node or leaf.
+  template <class F>
+  void each_below(std::uint32_t reference, F f) const {
+    if ((reference & SphereBvh::kLeafBit) != 0) {
+      const std::uint32_t leaf = reference & ~SphereBvh::kLeafBit;
+      for (unsigned i = 0; i < bvh.count_in(leaf); ++i) f(bvh.ids[leaf * SphereBvh::kArity + i]);
+      return;
+    }
+    const SphereBvh::Node& node = bvh.nodes[reference];
+    for (std::uint32_t i = 0; i < node.count; ++i) each_below(node.first + i, f);
+  }
+};
+
+std::vector<Tree> trees() {
+  Random random;
+  std::vector<Tree> out;
+  out.emplace_back(std::vector<Sphere>{{1, 2, 3, 4}});
+  out.emplace_back(std::vector<Sphere>(300, {0.1, 0.2, 0.3, 0.01}));  // all centres coincide
+  out.emplace_back(test::scattered(random, 17, 1, 0.5, 0));
+  out.emplace_back(test::scattered(random, 256, 1e-12, 1e-13, 0));
+  out.emplace_back(test::scattered(random, 70'000, 1e6, 1e4, 1e9));
+  std::vector<Sphere> flat = test::scattered(random, 5000, 1, 0.01, 0);
+  for (Sphere& s : flat) s.y = 0, s.radius = 0.01;
+  out.emplace_back(flat);
+  return out;
+}
+
+TEST(AccelSphereBvh, EverySphereHasOnePlace) {
+  for (const Tree& tree : trees()) {
+    std::vector<int> seen(tree.spheres.size(), 0);
+    tree.each_below(tree.bvh.root(), [&](std::uint32_t id) { ++seen[id]; });
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<long>(seen.size()));
+    for (std::uint32_t id = 0; id < seen.size(); ++id) {
+      EXPECT_EQ(tree.bvh.ids[tree.bvh.places[id]], id);
+      bool found = false;
+      tree.each_below(tree.bvh.home_of(id), [&](std::uint32_t other) { found = found || other == id; });
+      EXPECT_TRUE(found) << id;
+    }
+  }
+}
+
+/// Codes are decoded as the traversal does, in single precision.
+TEST(AccelSphereBvh, LeavesHoldCentresAndRadii) {
+  for (const Tree& tree : trees())
+    for (std::uint32_t l = 0; l < tree.bvh.leaves.size(); ++l) {
+      const SphereBvh::Leaf& leaf = tree.bvh.leaves[l];
+      for (unsigned i = 0; i < tree.bvh.count_in(l); ++i) {
+        const std::uint32_t id = tree.bvh.ids[l * SphereBvh::kArity + i];
+        double square = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+          const double decoded = std::fma(static_cast<double>(leaf.center[axis][i]), static_cast<double>(leaf.step),
+                                          static_cast<double>(leaf.origin[axis]));
+          square += std::pow(decoded - tree.center(id, axis), 2);
+        }
+        EXPECT_LE(std::sqrt(square), 0.87 * leaf.step + 8 * 0x1p-24 * tree.frame.reach);
+        const double radius = tree.bvh.radii.empty()
+                                  ? static_cast<double>(tree.bvh.radius)
+                                  : static_cast<double>(tree.bvh.radii[l].radius[i]) * tree.bvh.radii[l].step;
+        EXPECT_GE(radius * (1 + 0x1p-23), tree.radius(id));
+        const double least = tree.bvh.radii.empty() ? radius : radius - static_cast<double>(tree.bvh.radii[l].step);
+        EXPECT_LE(least * (1 - 0x1p-23), tree.radius(id));
+      }
+    }
+}
+
+TEST(AccelSphereBvh, BoxesEnclosePaddedSpheres) {
+  for (const Tree& tree : trees()) {
+    // The derived bound of the rounding errors of a ray against a box, in units of the frame's reach.
+    const double needed = 19 * 0x1p-24 * tree.frame.reach;
+    for (const SphereBvh::Node& node : tree.bvh.nodes)
+      for (std::uint32_t child = 0; child < node.count; ++child)
+        tree.each_below(node.first + child, [&](std::uint32_t id) {
+          for (int axis = 0; axis < 3; ++axis) {
+            const auto bound = [&](int side) {
+              return static_cast<double>(node.origin[axis]) +
+                     static_cast<double>(node.bound[side][axis][child]) * static_cast<double>(node.step[axis]);
+            };
+            EXPECT_LE(bound(0), tree.center(id, axis) - tree.radius(id) - needed);
+            EXPECT_GE(bound(1), tree.center(id, axis) + tree.radius(id) + needed);
+          }
+        });
+  }
+}
+
+TEST(AccelSphereBvh, NoOtherSphereReachesIntoACell) {
+  for (const Tree& tree : trees()) {
+    long cells = 0;
+    for (std::uint32_t n = 0; n < tree.bvh.nodes.size(); ++n) {
+      const SphereBvh::Cell& cell = tree.bvh.cells[n];
+      if (!(cell.lower[0] <= cell.upper[0] && cell.lower[1] <= cell.upper[1] && cell.lower[2] <= cell.upper[2])) continue;
+      ++cells;
+      std::vector<bool> own(tree.spheres.size(), false);
+      tree.each_below(n, [&](std::uint32_t id) { own[id] = true; });
+      for (std::uint32_t id = 0; id < own.size(); ++id) {
+        if (own[id]) continue;
+        double square = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+          const double at = tree.center(id, axis);
+          const double nearest = std::clamp(at, static_cast<double>(cell.lower[axis]), static_cast<double>(cell.upper[axis]));
+          square += (at - nearest) * (at - nearest);
+        }
+        ASSERT_GT(std::sqrt(square), tree.radius(id) + 19 * 0x1p-24 * tree.frame.reach) << n;
+      }
+    }
+    EXPECT_GE(cells, 1) << "the root's cell is everything";
+  }
+}
+
+TEST(AccelSphereBvh, TakesFewBytes) {
+  Random random;
+  std::vector<Sphere> spheres = test::scattered(random, 100'000, 1, 0.01, 0);
+  const Tree own(spheres);
+  for (Sphere& s : spheres) s.radius = 0.01;
+  const Tree one(spheres);
+  EXPECT_LT(static_cast<double>(one.bvh.bytes()), 13.0 * static_cast<double>(spheres.size()));
+  EXPECT_LT(static_cast<double>(own.bvh.bytes()), 14.5 * static_cast<double>(spheres.size()));
+}
+
+TEST(AccelSphereBvh, BuildsCanBeStopped) {
+  Random random;
+  const Tree tree(test::scattered(random, 20'000, 1, 0.01, 0));
+  double last = 0;
+  int calls = 0;
+  try {
+    SphereBvh(tree.spheres.data(), all_of(tree.spheres), tree.frame, [&](double fraction) {
+      last = std::max(last, fraction);
+      return ++calls < 10;
+    });
+    FAIL() << "the build was not stopped";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kStopped);
+  }
+  EXPECT_GT(last, 0);
+  EXPECT_LT(last, 0.5);
+}
+
+}  // namespace
+}  // namespace orrery::accel
