@@ -46,7 +46,7 @@ SphereLanes<T> spheres_of(const compile::CompiledScene& compiled, const Packet& 
   SphereLanes<T> out;
   for (int i = 0; i < kernel::kPacketSize; ++i) {
     const bool none = packet.hit[i] == kernel::kNoSphere;
-    const kernel::Sphere& s = compiled.spheres[none ? 0 : static_cast<std::size_t>(packet.hit[i])];
+    const kernel::Sphere s = compiled.spheres[none ? 0 : static_cast<std::size_t>(packet.hit[i])];
     out.center[0][i] = static_cast<T>(s.x);
     out.center[1][i] = static_cast<T>(s.y);
     out.center[2][i] = static_cast<T>(s.z);
@@ -62,7 +62,7 @@ void nearest(benchmark::State& state, Precision precision, Lanes lanes) {
   Packet packet = full_packets(work).front();
   for (auto _ : state) {
     kernel::reset_hits(packet);
-    functions.nearest(packet, work.compiled.spheres.data(), kSpheres);
+    functions.nearest(packet, work.compiled.spheres.view().plain, kSpheres);
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSpheres) * kernel::kPacketSize);

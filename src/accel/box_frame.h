@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "kernel/sphere.h"
+#include "kernel/sphere_array.h"
 
 namespace orrery::accel {
 
@@ -19,7 +19,7 @@ class BoxFrame {
 
   /// `motion`   of the spheres below moving_count; the frame then encloses their whole motion
   /// Domain     `ids` not empty
-  BoxFrame(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
+  BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
            std::size_t moving_count = 0);
 
   /// A sphere's padded bounding box.

@@ -11,11 +11,11 @@ std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Pr
   const bool is_fast = precision == kernel::Precision::kFast;
   const auto number = [is_fast](double x) { return is_fast ? static_cast<double>(static_cast<float>(x)) : x; };
   const auto place = [&](std::size_t id) {
-    const kernel::Sphere& s = scene.spheres[id];
+    const kernel::Sphere s = scene.spheres[id];
     return std::array{number(s.x), number(s.y), number(s.z), number(s.radius)};
   };
   const auto path = [&](std::size_t id) {
-    const kernel::Sphere& s = scene.spheres[id];
+    const kernel::Sphere s = scene.spheres[id];
     const kernel::Sphere change = id < scene.moving_count ? scene.motion[id] : kernel::Sphere{0, 0, 0, 0};
     return std::array{number(s.x),      number(s.y),      number(s.z),      number(s.radius),
                       number(change.x), number(change.y), number(change.z), number(change.radius)};

@@ -43,25 +43,39 @@ std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, st
 }
 
 /// Ids, ascending, of the outliers; duplicates count neither as outliers nor as the rest.
-std::vector<std::uint32_t> find_outliers(const kernel::Sphere* spheres, std::size_t count,
+std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std::size_t count,
                                          const std::vector<std::uint32_t>& duplicates) {
-  std::vector<std::uint32_t> largest = all_but(duplicates, count);
-  const std::size_t candidates = std::min(largest.size(), kMaxOutliers);
-  std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(candidates), largest.end(),
-                    [&](std::uint32_t a, std::uint32_t b) {
-                      return spheres[a].radius != spheres[b].radius ? spheres[a].radius > spheres[b].radius : a < b;
-                    });
-  // Take the largest set whose smallest member dwarfs the rest.
-  std::size_t take = 0;
-  for (std::size_t n = candidates; n > 0 && take == 0; --n) {
-    const std::vector<std::uint32_t> rest(largest.begin() + static_cast<std::ptrdiff_t>(n), largest.end());
-    if (rest.empty()) continue;
-    const BoxFrame frame(spheres, rest);
-    if (spheres[largest[n - 1]].radius * frame.scale > kOutlierRatio * frame.reach) take = n;
+  struct Large {
+    double radius;
+    std::uint32_t id;
+  };
+  std::vector<Large> largest;  // descending, at most one more than there can be outliers
+  auto duplicate = duplicates.begin();
+  for (std::uint32_t id = 0; id < count; ++id) {
+    if (duplicate != duplicates.end() && *duplicate == id) {
+      ++duplicate;
+      continue;
+    }
+    const double radius = spheres[id].radius;
+    if (largest.size() > kMaxOutliers && !(radius > largest.back().radius)) continue;
+    const auto at = std::find_if(largest.begin(), largest.end(), [&](const Large& l) { return l.radius < radius; });
+    largest.insert(at, {radius, id});
+    if (largest.size() > kMaxOutliers + 1) largest.pop_back();
   }
-  std::vector<std::uint32_t> outliers(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(take));
-  std::sort(outliers.begin(), outliers.end());
-  return outliers;
+  // Take the largest set whose smallest member dwarfs the rest.
+  std::vector<std::uint32_t> outliers;
+  for (std::size_t n = std::min(largest.size(), kMaxOutliers); n > 0; --n) {
+    // The rest has a frame at least as large as its largest sphere.
+    if (n == largest.size() || !(largest[n - 1].radius > kOutlierRatio * largest[n].radius)) continue;
+    outliers.clear();
+    for (std::size_t i = 0; i < n; ++i) outliers.push_back(largest[i].id);
+    std::sort(outliers.begin(), outliers.end());
+    std::vector<std::uint32_t> without;
+    std::set_union(outliers.begin(), outliers.end(), duplicates.begin(), duplicates.end(), std::back_inserter(without));
+    const BoxFrame frame(spheres, all_but(without, count));
+    if (largest[n - 1].radius * frame.scale > kOutlierRatio * frame.reach) return outliers;
+  }
+  return {};
 }
 
 /// Ids of the spheres in the BVH.
@@ -76,7 +90,7 @@ std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
 constexpr double kGiantRatio = 16;
 
 /// The median radius of a sample.
-double median_radius(const kernel::Sphere* spheres, const std::vector<std::uint32_t>& ids) {
+double median_radius(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids) {
   const std::size_t stride = ids.size() / 4096 + 1;
   std::vector<double> radii;
   for (std::size_t i = 0; i < ids.size(); i += stride) radii.push_back(spheres[ids[i]].radius);

@@ -10,14 +10,14 @@
 #include "accel/embree_compat.h"
 #include "kernel/precision.h"
 #include "kernel/ray_packet.h"
-#include "kernel/sphere.h"
+#include "kernel/sphere_array.h"
 
 namespace orrery::accel {
 
 /// The data behind a packet query: Embree's scene, and the spheres outside of it.
 struct EmbreeScene {
   RTCScene scene = nullptr;  ///< null if every sphere is an outlier
-  const kernel::Sphere* spheres = nullptr;
+  kernel::SphereArray spheres;
   const kernel::Sphere* motion = nullptr;  ///< as in kernel::SceneView
   std::size_t moving_count = 0;
   /// If not 0, these are Embree's geometry 0, with two time steps, and geometry 1 has the rest. Else there is only one.

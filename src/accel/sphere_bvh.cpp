@@ -267,7 +267,7 @@ SphereBvh::Leaf make_leaf(const Item* items, std::size_t count) {
 
 }  // namespace
 
-SphereBvh::SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> all, const BoxFrame& frame,
+SphereBvh::SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32_t> all, const BoxFrame& frame,
                      const std::function<bool(double)>& monitor)
     : count(all.size()), ids(std::move(all)) {
   using Range = tbb::blocked_range<std::size_t>;
@@ -275,9 +275,10 @@ SphereBvh::SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> a
   padding = rounded_up(kSpherePadding * frame.reach);
   double smallest = std::numeric_limits<double>::infinity(), largest = 0, sum = 0;
   for (const std::uint32_t id : ids) {
-    smallest = std::min(smallest, spheres[id].radius);
-    largest = std::max(largest, spheres[id].radius);
-    sum += spheres[id].radius;
+    const double r = spheres[id].radius;
+    smallest = std::min(smallest, r);
+    largest = std::max(largest, r);
+    sum += r;
   }
   const bool own_radii = smallest < largest;
   radius = rounded_up(largest * frame.scale);
@@ -285,7 +286,7 @@ SphereBvh::SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> a
   std::vector<Item> items(count);
   tbb::parallel_for(Range(0, count, 4096), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const kernel::Sphere& s = spheres[ids[i]];
+      const kernel::Sphere s = spheres[ids[i]];
       items[i] = {{static_cast<float>((s.x - frame.middle[0]) * frame.scale),
                    static_cast<float>((s.y - frame.middle[1]) * frame.scale),
                    static_cast<float>((s.z - frame.middle[2]) * frame.scale)},

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "accel/box_frame.h"
-#include "kernel/sphere.h"
+#include "kernel/sphere_array.h"
 
 namespace orrery::accel {
 
@@ -64,7 +64,7 @@ class SphereBvh {
   /// `monitor`  receives the progress, 0..1, on any thread; returns false to cancel
   /// Domain     1 <= ids.size() <= kMaxSpheres; all spheres lie in the frame
   /// Errors     base::Error(kStopped) if the monitor cancelled the build
-  SphereBvh(const kernel::Sphere* spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
+  SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
             const std::function<bool(double)>& monitor = {});
 
   bool empty() const noexcept { return ids.empty(); }

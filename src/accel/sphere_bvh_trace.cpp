@@ -284,14 +284,18 @@ HWY_INLINE unsigned visit_leaf(const SphereBvh& bvh, std::uint32_t index, float 
   return bits;
 }
 
+HWY_INLINE void prefetch_sphere(const kernel::SphereArray& spheres, std::uint32_t id) {
+  hwy::Prefetch(static_cast<const std::uint8_t*>(spheres.address(id)));
+}
+
 /// Adds spheres of a leaf to the candidates of a ray.
 HWY_INLINE void add_candidates(unsigned bits, const std::uint32_t* ids, const float* enter,
-                               const kernel::Sphere* spheres, Traveller& ray) {
+                               const kernel::SphereArray& spheres, Traveller& ray) {
   for (; bits != 0; bits &= bits - 1) {
     const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
     if (enter[i] > ray.limit) continue;
     const Candidate found{enter[i], ids[i]};
-    hwy::Prefetch(&spheres[found.id]);
+    prefetch_sphere(spheres, found.id);
     int at = ray.candidates++;
     for (; at > 0 && ray.spheres[at - 1].enter < found.enter; --at) ray.spheres[at] = ray.spheres[at - 1];
     ray.spheres[at] = found;
@@ -337,8 +341,8 @@ HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, 
       const auto spheres = hn::Load(du, ids);
       const auto active = hn::RebindMask(d, spheres != hn::Set(du, static_cast<Id>(kernel::kNoSphere)));
       hn::Vec<D> row[4];
-      k::gather4(
-          d, [&](std::size_t i) { return &scene.spheres[ids[i] == kernel::kNoSphere ? 0 : ids[i]].x; }, row);
+      k::gather_spheres(
+          d, scene.spheres, [&](std::size_t i) { return ids[i] == kernel::kNoSphere ? 0 : ids[i]; }, row);
       const k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
       const auto found = k::nearest<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == spheres));
       unsigned hits = 0;
@@ -662,7 +666,7 @@ class SharedRays {
         limit = hn::Min(limit, hn::IfThenElse(pierced, certain, limit));
       }
       const float nearest = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(may_hit, begin, infinite)));
-      hwy::Prefetch(&query_.scene->spheres[ids[i]]);
+      prefetch_sphere(query_.scene->spheres, ids[i]);
       insert(candidates_, 0, candidate_count_, {nearest, ids[i], hitting});
     }
     hn::Store(limit, d_, limit_);

@@ -124,11 +124,12 @@ SceneInfo scene_info(const job::SceneRequest& request) {
   std::copy_n(std::array{low.x, low.y, low.z}.begin(), 3, info.lower);
   std::copy_n(std::array{high.x, high.y, high.z}.begin(), 3, info.upper);
   if (!compiled.spheres.empty()) {
-    const auto [smallest, largest] =
-        std::minmax_element(compiled.spheres.begin(), compiled.spheres.end(),
-                            [](const kernel::Sphere& a, const kernel::Sphere& b) { return a.radius < b.radius; });
-    info.smallest_radius = smallest->radius;
-    info.largest_radius = largest->radius;
+    info.smallest_radius = info.largest_radius = compiled.spheres[0].radius;
+    for (std::size_t i = 0; i < compiled.spheres.size(); ++i) {
+      const double radius = compiled.spheres[i].radius;
+      info.smallest_radius = std::min(info.smallest_radius, radius);
+      info.largest_radius = std::max(info.largest_radius, radius);
+    }
   }
   info.materials = count_materials(compiled);
   info.emitters = count_emitters(compiled);

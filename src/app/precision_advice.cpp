@@ -25,7 +25,8 @@ Proportions proportions_of(const compile::CompiledScene& compiled) {
   double largest = 0;
   const double* o = compiled.camera.origin;
   for (const double x : {o[0], o[1], o[2]}) largest = std::max(largest, std::abs(x));
-  for (const kernel::Sphere& s : compiled.spheres) {
+  for (std::size_t i = 0; i < compiled.spheres.size(); ++i) {
+    const kernel::Sphere s = compiled.spheres[i];
     p.smallest = std::min(p.smallest, s.radius);
     for (const double x : {s.x, s.y, s.z}) largest = std::max(largest, std::abs(x));
     const double dx = s.x - o[0], dy = s.y - o[1], dz = s.z - o[2];

@@ -153,36 +153,54 @@ class MaterialTable {
   std::unordered_map<std::uint64_t, std::uint32_t> colored_;  ///< by plain material, points table and colour
 };
 
-void add_sphere(CompiledScene& compiled, Vec3d center, double radius, std::uint32_t material) {
-  compiled.spheres.push_back({center.x, center.y, center.z, std::abs(radius)});
-  compiled.sphere_materials.push_back(material);
-}
+kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }
+
+/// Spheres of all points tables, by one index.
+class PointSpheres {
+ public:
+  explicit PointSpheres(const scene::Scene& scene) : scene_(scene) {}
+
+  /// Domain     i is 0 or at most one more than in the call before
+  kernel::Sphere operator()(std::size_t i) {
+    if (i == 0) table_ = 0, begin_ = 0;
+    while (i - begin_ >= scene_.points[table_].centers.size()) begin_ += scene_.points[table_++].centers.size();
+    const scene::Points& points = scene_.points[table_];
+    return sphere_of(points.centers[i - begin_], points.radii[i - begin_]);
+  }
+
+ private:
+  const scene::Scene& scene_;
+  std::size_t table_ = 0, begin_ = 0;
+};
 
 void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
   const std::size_t count = scene.sphere_count();
-  compiled.spheres.reserve(count);
   compiled.sphere_materials.reserve(count);
   MaterialTable table(scene, compiled);
-  for (const scene::Sphere& s : scene.spheres)
-    add_sphere(compiled, s.center, s.radius, table.index(s.material, s.radius < 0));
+  for (const scene::Sphere& s : scene.spheres) {
+    compiled.spheres.push_back(sphere_of(s.center, s.radius));
+    compiled.sphere_materials.push_back(table.index(s.material, s.radius < 0));
+  }
+  compiled.spheres.append(count - scene.spheres.size(), PointSpheres(scene));
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     const scene::Points& points = scene.points[p];
     for (std::size_t i = 0; i < points.centers.size(); ++i) {
       const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
       const bool inside_out = points.radii[i] < 0;
-      add_sphere(compiled, points.centers[i], points.radii[i],
-                 points.colors.empty() ? table.index(material, inside_out)
-                                       : table.colored_index(material, inside_out, p, points.colors[i],
-                                                             points.palette[points.colors[i]]));
+      compiled.sphere_materials.push_back(points.colors.empty()
+                                              ? table.index(material, inside_out)
+                                              : table.colored_index(material, inside_out, p, points.colors[i],
+                                                                    points.palette[points.colors[i]]));
     }
   }
 }
 
-Bounds bounds_of(const std::vector<kernel::Sphere>& spheres) {
+Bounds bounds_of(const SphereStore& spheres) {
   if (spheres.empty()) return {};
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Bounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const kernel::Sphere& s : spheres) {
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const kernel::Sphere s = spheres[i];
     b.lower = {std::min(b.lower.x, s.x - s.radius), std::min(b.lower.y, s.y - s.radius),
                std::min(b.lower.z, s.z - s.radius)};
     b.upper = {std::max(b.upper.x, s.x + s.radius), std::max(b.upper.y, s.y + s.radius),
@@ -271,7 +289,7 @@ kernel::Sampler compile_sampler(const scene::Render& render) {
 
 kernel::SceneView CompiledScene::view() const noexcept {
   kernel::SceneView v;
-  v.spheres = spheres.data();
+  v.spheres = spheres.view();
   v.sphere_materials = sphere_materials.data();
   v.materials = materials.data();
   v.sphere_count = spheres.size();

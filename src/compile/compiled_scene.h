@@ -10,6 +10,7 @@
 #include "compile/environment.h"
 #include "compile/light_tree.h"
 #include "compile/pixel_filter.h"
+#include "compile/sphere_store.h"
 #include "kernel/precision.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
@@ -31,7 +32,7 @@ struct Bounds {
 /// Spheres are in the order of the scene file, first the [[sphere]] tables, then each [[points]] file. The index of a
 /// sphere is its id in hits.
 struct CompiledScene {
-  std::vector<kernel::Sphere> spheres;
+  SphereStore spheres;
   std::vector<std::uint32_t> sphere_materials;  ///< one per sphere, index into `materials`
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits

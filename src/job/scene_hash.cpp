@@ -63,8 +63,8 @@ void add_lights(Hash& hash, const compile::CompiledScene& compiled) {
 std::string scene_hash(const compile::CompiledScene& compiled) {
   Hash hash;
   hash.add_bits(compiled.spheres.size());
-  for (const kernel::Sphere& s : compiled.spheres)
-    for (const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
+  for (std::size_t i = 0; i < compiled.spheres.size(); ++i)
+    for (const kernel::Sphere s = compiled.spheres[i]; const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
   for (const std::uint32_t m : compiled.sphere_materials) hash.add_bits(m);
   hash.add_bits(compiled.materials.size());
   for (const kernel::Material& m : compiled.materials) {

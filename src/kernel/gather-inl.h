@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "kernel/sphere_array.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
@@ -44,6 +46,20 @@ HWY_INLINE void gather4(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
       }
     }
     hn::LoadInterleaved4(d, rows, out[0], out[1], out[2], out[3]);
+  }
+}
+
+/// Loads a sphere per lane: centre and radius.
+template <class D, class IdOfLane>
+HWY_INLINE void gather_spheres(D d, const SphereArray& spheres, IdOfLane id_of_lane, hn::Vec<D> (&out)[4]) {
+  if (spheres.all_plain()) {
+    gather4(
+        d, [&](std::size_t i) { return &spheres.plain[id_of_lane(i)].x; }, out);
+  } else {
+    Sphere row[hn::MaxLanes(D())];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) row[i] = spheres[id_of_lane(i)];
+    gather4(
+        d, [&](std::size_t i) { return &row[i].x; }, out);
   }
 }
 

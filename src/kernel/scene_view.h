@@ -11,7 +11,7 @@
 #include "kernel/material.h"
 #include "kernel/pixel_filter.h"
 #include "kernel/sampler.h"
-#include "kernel/sphere.h"
+#include "kernel/sphere_array.h"
 
 namespace orrery::kernel {
 
@@ -49,7 +49,7 @@ inline constexpr std::uint32_t kNoRoulette = 0xffffffffu;
 
 /// The compiled scene as the inner loops see it. Owns nothing.
 struct SceneView {
-  const Sphere* spheres = nullptr;
+  SphereArray spheres;
   const std::uint32_t* sphere_materials = nullptr;  ///< one per sphere, index into `materials`
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
@@ -90,7 +90,7 @@ inline Sphere sphere_at(const SceneView& scene, std::size_t id, double time) noe
 
 /// The bounding sphere and power of a single emitter; if it moves, of its whole motion.
 inline LightNode light_leaf(const SceneView& scene, std::uint32_t id) noexcept {
-  const Sphere& s = scene.spheres[id];
+  const Sphere s = scene.spheres[id];
   const double* const rgb = scene.emission[scene.sphere_materials[id]].radiance;
   LightNode leaf{{s.x, s.y, s.z}, s.radius, (rgb[0] + rgb[1] + rgb[2]) * (s.radius * s.radius)};
   if (id >= scene.moving_count) return leaf;

@@ -41,8 +41,8 @@ template <class D, bool kMoves>
 HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD<IdTag<D>>* id,
                                    const hn::TFromD<D>* times) {
   hn::Vec<D> sphere[4];
-  gather4(
-      d, [&](std::size_t i) { return &scene.spheres[id[i]].x; }, sphere);
+  gather_spheres(
+      d, scene.spheres, [&](std::size_t i) { return id[i]; }, sphere);
   const Spheres<D> at_opening{{sphere[0], sphere[1], sphere[2]}, sphere[3]};
   if (!kMoves || scene.moving_count == 0) return at_opening;
   static constexpr Sphere kAtRest{0, 0, 0, 0};

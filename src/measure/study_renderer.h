@@ -22,7 +22,7 @@ class Spheres {
  public:
   /// Swaps the spheres with those of a compiled scene.
   void take_from(compile::CompiledScene& compiled) {
-    spheres_.swap(compiled.spheres);
+    std::swap(spheres_, compiled.spheres);
     materials_.swap(compiled.sphere_materials);
   }
 
@@ -40,7 +40,7 @@ class Spheres {
   };
 
  private:
-  std::vector<kernel::Sphere> spheres_;
+  compile::SphereStore spheres_;
   std::vector<std::uint32_t> materials_;
 };
 

@@ -28,7 +28,7 @@ TEST(CompileCompile, LeavesOutUnusedMaterials) {
 
 TEST(CompileCompile, ANegativeRadiusTurnsGlassInsideOut) {
   const CompiledScene compiled = compile(one_of_each());
-  for (const kernel::Sphere& s : compiled.spheres) EXPECT_GT(s.radius, 0);
+  for (std::size_t i = 0; i < compiled.spheres.size(); ++i) EXPECT_GT(compiled.spheres[i].radius, 0);
   const kernel::Material& outward = compiled.materials[compiled.sphere_materials[1]];
   const kernel::Material& inward = compiled.materials[compiled.sphere_materials[2]];
   EXPECT_EQ(outward.eta[0], 1 / 1.5);

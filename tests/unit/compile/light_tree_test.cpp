@@ -50,7 +50,7 @@ TEST(CompileLightTree, EveryNodeBoundsItsEmittersAndHoldsTheirPower) {
     const kernel::LightNode& node = tree.nodes[middle];
     double power = 0;
     for (std::uint32_t leaf = r.begin; leaf < r.end; ++leaf) {
-      const kernel::Sphere& s = compiled.spheres[tree.spheres[leaf]];
+      const kernel::Sphere s = compiled.spheres[tree.spheres[leaf]];
       EXPECT_LE(distance(node.center, s) + s.radius, node.radius * (1 + 1e-14));
       power += kernel::light_leaf(compiled.view(), tree.spheres[leaf]).power;
     }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "kernel/sphere.h"
+
+namespace orrery::kernel {
+
+/// The spheres of a scene. Owns nothing.
+///
+/// The first ones are stored as they are. The rest may be compact, if that loses nothing: centres in single precision, and
+/// a radius for all or one each.
+struct SphereArray {
+  const Sphere* plain = nullptr;
+  std::size_t plain_count = std::numeric_limits<std::size_t>::max();  ///< of the spheres in `plain`, the first ones
+  const float* centers = nullptr;  ///< of the others: x, y, z
+  const float* radii = nullptr;    ///< of the others; null: `radius`
+  double radius = 0;
+
+  SphereArray() = default;
+  SphereArray(const Sphere* spheres) : plain(spheres) {}  // NOLINT(google-explicit-constructor): an array is this view
+
+  Sphere operator[](std::size_t id) const noexcept {
+    if (id < plain_count) return plain[id];
+    const std::size_t i = id - plain_count;
+    return {static_cast<double>(centers[3 * i]), static_cast<double>(centers[3 * i + 1]),
+            static_cast<double>(centers[3 * i + 2]), radii != nullptr ? static_cast<double>(radii[i]) : radius};
+  }
+
+  /// The address of a sphere's centre, for prefetching.
+  const void* address(std::size_t id) const noexcept {
+    return id < plain_count ? static_cast<const void*>(plain + id)
+                            : static_cast<const void*>(centers + 3 * (id - plain_count));
+  }
+
+  bool all_plain() const noexcept { return centers == nullptr; }
+};
+
+}  // namespace orrery::kernel
