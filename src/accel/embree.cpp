@@ -187,8 +187,8 @@ class Embree final : public Accel {
     std::erase_if(many, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
     scene_.singles = std::move(giants);
     scene_.has_bvh = true;
-    const double share = static_cast<double>(many.size()) /
-                         static_cast<double>(view.sphere_count - scene_.outliers.size());
+    const double share =
+        static_cast<double>(many.size()) / static_cast<double>(view.sphere_count - scene_.outliers.size());
     bvh_ = SphereBvh(view.spheres, std::move(many), scene_.frame,
                      [&](double fraction) { return !monitor || monitor(share * fraction); });
   }

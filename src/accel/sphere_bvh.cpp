@@ -177,7 +177,8 @@ class Builder {
         if (left_count == 0) continue;
         if (left_count == sampled) break;
         // The split is moved to the next multiple of the unit, which makes it worse the further it moves.
-        const double share = static_cast<double>(left_count) / static_cast<double>(sampled) * static_cast<double>(count);
+        const double share =
+            static_cast<double>(left_count) / static_cast<double>(sampled) * static_cast<double>(count);
         const auto left_units = std::clamp<std::size_t>(
             static_cast<std::size_t>(std::llround(share / static_cast<double>(unit))), 1, units - 1);
         const std::size_t size = left_units * unit;
@@ -354,8 +355,8 @@ SphereBvh::SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32
 }
 
 std::size_t SphereBvh::bytes() const noexcept {
-  return (ids.size() + places.size()) * sizeof(ids[0]) + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) + radii.size() * sizeof(LeafRadii) +
-         nodes.size() * sizeof(Node);
+  return (ids.size() + places.size()) * sizeof(ids[0]) + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) +
+         radii.size() * sizeof(LeafRadii) + nodes.size() * sizeof(Node);
 }
 
 }  // namespace orrery::accel

@@ -41,15 +41,15 @@ struct Candidate {
 constexpr int kMaxCandidates = 2 * static_cast<int>(SphereBvh::kArity);
 
 /// A ray on its way through the tree, in box space.
-struct Traveller {
+struct SingleRay {
   float origin[3], direction[3], inverse[3];
-  float limit;               ///< distance beyond which nothing is searched
-  std::uint32_t near[3];     ///< per axis: which bound the ray enters a box at, 0 or 1
-  std::uint32_t home;        ///< the node below which everything has been visited once the stack is empty
+  float limit;            ///< distance beyond which nothing is searched
+  std::uint32_t near[3];  ///< per axis: which bound the ray enters a box at, 0 or 1
+  std::uint32_t home;     ///< the node below which everything has been visited once the stack is empty
   unsigned home_level;
-  int lane;                  ///< of the query
-  int waiting;               ///< entries of `enter` and `what`: the end of the stack, then the nearest last
-  int candidates;            ///< number of `spheres`, nearest last
+  int lane;        ///< of the query
+  int waiting;     ///< entries of `enter` and `what`: the end of the stack, then the nearest last
+  int candidates;  ///< number of `spheres`, nearest last
   Candidate spheres[kMaxCandidates];
   // Vectors are stored beyond the last entry.
   float enter[SphereBvh::kStackSize + SphereBvh::kArity];         ///< a lower bound of the distance there
@@ -70,7 +70,7 @@ constexpr std::uint32_t kIndexBits = SphereBvh::kArity - 1;
 ///
 /// `except`   index of a child that is left out, or -1
 /// Result     their number; up to a vector more is written
-HWY_INLINE int entered(const SphereBvh::Node& node, const Traveller& ray, int except, std::int32_t* keys) {
+HWY_INLINE int entered(const SphereBvh::Node& node, const SingleRay& ray, int except, std::int32_t* keys) {
   const ChildTag d;
   const hn::RebindToSigned<ChildTag> di;
   hn::Vec<ChildTag> scale[3], shift[3];
@@ -91,8 +91,9 @@ HWY_INLINE int entered(const SphereBvh::Node& node, const Traveller& ray, int ex
                                      hn::MulAdd(from_bytes(far[1] + v), scale[1], shift[1])),
                              hn::Min(hn::MulAdd(from_bytes(far[2] + v), scale[2], shift[2]), limit));
     const auto index = hn::Iota(di, v);
-    const auto hits = hn::And(hn::RebindMask(di, begin <= end),
-                              hn::AndNot(index == hn::Set(di, except), index < hn::Set(di, static_cast<int>(node.count))));
+    const auto hits =
+        hn::And(hn::RebindMask(di, begin <= end),
+                hn::AndNot(index == hn::Set(di, except), index < hn::Set(di, static_cast<int>(node.count))));
     const auto key = hn::Or(hn::AndNot(hn::Set(di, static_cast<int>(kIndexBits)), hn::BitCast(di, begin)), index);
     hn::StoreU(hn::Compress(key, hits), di, keys + count);
     count += static_cast<int>(hn::CountTrue(di, hits));
@@ -123,9 +124,9 @@ constexpr std::uint32_t kEndOfStack = kEnd << kIndexWidth;
 static_assert(SphereBvh::kLeafBit == std::uint32_t{kLeaf} << kIndexWidth);
 
 /// The cache lines of nodes and leaves. Which kind a ray visits next is hard to predict, so nothing branches on it.
-class Lines {
+class Prefetcher {
  public:
-  explicit Lines(const SphereBvh& bvh) : has_radii_(!bvh.radii.empty()) {
+  explicit Prefetcher(const SphereBvh& bvh) : has_radii_(!bvh.radii.empty()) {
     const auto at = [](const auto* p) { return reinterpret_cast<const std::uint8_t*>(p); };
     first_[kNode] = second_[kNode] = third_[kNode] = at(bvh.nodes.data());
     second_[kNode] += 64;
@@ -160,15 +161,16 @@ HWY_INLINE void prefetch_reference(const SphereBvh& bvh, std::uint32_t reference
 }
 
 /// Visits a node: adds the children that the ray enters, but not child `except`, to its stack.
-HWY_INLINE void visit_node(const SphereBvh::Node& node, Traveller& ray, int except = -1) {
+HWY_INLINE void visit_node(const SphereBvh::Node& node, SingleRay& ray, int except = -1) {
   const hn::FixedTag<std::int32_t, 4> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   alignas(64) std::int32_t keys[2 * SphereBvh::kArity];
   const int count = entered(node, ray, except, keys);
   const auto push = [&](hn::Vec<decltype(d)> four, int at) {
     const auto index = hn::BitCast(du, hn::And(four, hn::Set(d, static_cast<int>(kIndexBits))));
-    hn::StoreU(hn::BitCast(hn::RebindToFloat<decltype(d)>(), hn::AndNot(hn::Set(d, static_cast<int>(kIndexBits)), four)),
-               hn::RebindToFloat<decltype(d)>(), ray.enter + at);
+    hn::StoreU(
+        hn::BitCast(hn::RebindToFloat<decltype(d)>(), hn::AndNot(hn::Set(d, static_cast<int>(kIndexBits)), four)),
+        hn::RebindToFloat<decltype(d)>(), ray.enter + at);
     hn::StoreU(index + hn::Set(du, node.first), du, ray.what + at);
   };
   if (count > 4) {
@@ -182,7 +184,7 @@ HWY_INLINE void visit_node(const SphereBvh::Node& node, Traveller& ray, int exce
 }
 
 /// Whether a ray ends, at its limit, in the region that belongs to one node alone.
-HWY_INLINE bool stays_in(const SphereBvh::Cell& cell, const Traveller& ray) {
+HWY_INLINE bool stays_in(const SphereBvh::Cell& cell, const SingleRay& ray) {
   bool inside = true;
   for (int k = 0; k < 3; ++k) {
     const float end = ray.origin[k] + ray.direction[k] * ray.limit;
@@ -195,7 +197,7 @@ HWY_INLINE bool stays_in(const SphereBvh::Cell& cell, const Traveller& ray) {
 /// Goes on above a ray's home, unless nothing there can be nearer.
 ///
 /// Result     false if the ray is done
-HWY_INLINE bool climb(const SphereBvh& bvh, Traveller& ray) {
+HWY_INLINE bool climb(const SphereBvh& bvh, SingleRay& ray) {
   if (ray.home == bvh.root() || ray.limit < 0 || stays_in(bvh.cells[ray.home], ray)) return false;
   const std::uint32_t in_level = ray.home - bvh.level_begin[ray.home_level];
   ray.home = bvh.level_begin[++ray.home_level] + in_level / SphereBvh::kArity;
@@ -209,8 +211,8 @@ constexpr float kGrowth = 1 + 0x1p-20F;
 /// Covers the rounding of a distance that is compared with others.
 constexpr float kLonger = 1 + 0x1p-18F;
 
-/// How far a sphere's centre may be from its code, and a ray from where it is computed. The factor is sqrt(3) / 2, rounded
-/// up: a centre is half a step off on each axis.
+/// How far a sphere's centre may be from its code, and a ray from where it is computed. The factor is sqrt(3) / 2,
+/// rounded up: a centre is half a step off on each axis.
 HWY_INLINE float margin_of(const SphereBvh& bvh, const SphereBvh::Leaf& leaf) {
   return 0.875F * leaf.step + bvh.padding;
 }
@@ -244,7 +246,7 @@ HWY_INLINE float shortest_certain(const SphereBvh& bvh, const BoxFrame& frame) {
 /// `target`    a sphere that is never hit
 template <bool kShadows>
 HWY_INLINE unsigned visit_leaf(const SphereBvh& bvh, std::uint32_t index, float shortest, std::uint32_t target,
-                               Traveller& ray, float* enter) {
+                               SingleRay& ray, float* enter) {
   const ChildTag d;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
   const auto set = [&](float x) { return hn::Set(d, x); };
@@ -266,16 +268,17 @@ HWY_INLINE unsigned visit_leaf(const SphereBvh& bvh, std::uint32_t index, float 
     const auto z = hn::MulAdd(from_bytes(leaf.center[2] + v), step, oz);
     const auto along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, z * dz));
     const auto px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y), pz = hn::NegMulAdd(along, dz, z);
-    const auto apart = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
+    const auto offset_square = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
     const auto radii = radii_of(bvh, index, v);
     const auto outer = radii.most + margin, begin = along - outer;
-    auto may_hit = hn::And(hn::And(apart <= outer * outer * growth, along + outer >= zero), begin <= limit);
-    if (is_last) may_hit = hn::And(may_hit, hn::Iota(d, static_cast<float>(v)) < set(static_cast<float>(bvh.count_in(index))));
+    auto may_hit = hn::And(hn::And(offset_square <= outer * outer * growth, along + outer >= zero), begin <= limit);
+    if (is_last)
+      may_hit = hn::And(may_hit, hn::Iota(d, static_cast<float>(v)) < set(static_cast<float>(bvh.count_in(index))));
     if (kShadows) may_hit = hn::AndNot(is_target(v), may_hit);
     bits |= bits_of(d, may_hit) << v;
     hn::StoreU(begin, d, enter + v);
     const auto inner = radii.least - margin;
-    const auto deep = hn::NegMulAdd(apart, growth, inner * inner);
+    const auto deep = hn::NegMulAdd(offset_square, growth, inner * inner);
     const auto pierced = hn::And(hn::And(may_hit, inner > zero), hn::And(deep > zero, begin > set(shortest)));
     const auto certain = ((along - hn::Sqrt(hn::Max(deep, zero))) + margin) * set(kLonger);
     nearest = hn::Min(nearest, hn::IfThenElse(pierced, certain, nearest));
@@ -290,7 +293,7 @@ HWY_INLINE void prefetch_sphere(const kernel::SphereArray& spheres, std::uint32_
 
 /// Adds spheres of a leaf to the candidates of a ray.
 HWY_INLINE void add_candidates(unsigned bits, const std::uint32_t* ids, const float* enter,
-                               const kernel::SphereArray& spheres, Traveller& ray) {
+                               const kernel::SphereArray& spheres, SingleRay& ray) {
   for (; bits != 0; bits &= bits - 1) {
     const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
     if (enter[i] > ray.limit) continue;
@@ -306,7 +309,7 @@ HWY_INLINE void add_candidates(unsigned bits, const std::uint32_t* ids, const fl
 ///
 /// Result     lanes with a new hit, as bits
 template <class D, class Packet, kernel::Precision kPrecision>
-HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, Traveller* const (&ray_of)[kWidth]) {
+HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, SingleRay* const (&ray_of)[kWidth]) {
   using Id = hn::TFromD<k::IdTag<D>>;
   constexpr bool kShadows = requires(Packet p) { p.occluded; };
   const k::IdTag<D> du;
@@ -320,7 +323,7 @@ HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, 
     const auto next = [&] {
       bool any = false;
       for (int i = 0; i < step; ++i) {
-        Traveller* const ray = ray_of[v + i];
+        SingleRay* const ray = ray_of[v + i];
         ids[i] = kernel::kNoSphere;
         if (ray == nullptr || ray->candidates == 0) continue;
         const Candidate candidate = ray->spheres[--ray->candidates];
@@ -380,22 +383,22 @@ HWY_INLINE unsigned intersect_candidates(D d, const EmbreeQuery<Packet>& query, 
 /// Result     lanes with a new hit, as bits
 template <class D, class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Packet>& query,
-                               Traveller* const (&ray_of)[kWidth]) {
+                               SingleRay* const (&ray_of)[kWidth]) {
   constexpr bool kShadows = requires(Packet p) { p.occluded; };
   const EmbreeScene& scene = *query.scene;
   const float shortest = shortest_certain<kPrecision>(bvh, scene.frame);
   // Rays by what they visit next.
-  Traveller* queue[kKinds][kWidth];
+  SingleRay* queue[kKinds][kWidth];
   int queued[kKinds] = {0, 0, 0};
-  const Lines lines(bvh);
-  const auto enqueue = [&](Traveller& ray) {
+  const Prefetcher prefetcher(bvh);
+  const auto enqueue = [&](SingleRay& ray) {
     int top = ray.waiting - 1;
     while (ray.enter[top] > ray.limit) --top;
     ray.waiting = top + 1;
     const std::uint32_t next = ray.what[top];
     const unsigned kind = next >> kIndexWidth;
     queue[kind][queued[kind]++] = &ray;
-    lines.prefetch(next);
+    prefetcher.prefetch(next);
   };
   for (int i = 0; i < kWidth; ++i)
     if (ray_of[i] != nullptr) enqueue(*ray_of[i]);
@@ -403,7 +406,7 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
   // The arithmetic of all rays comes first, then what branches: a mispredicted branch would discard the next ray's
   // arithmetic, which has already begun.
   while (queued[kNode] + queued[kLeaf] + queued[kEnd] > 0) {
-    Traveller* now[kWidth];
+    SingleRay* now[kWidth];
     const auto take = [&](Kind kind) { return std::copy_n(queue[kind], kWidth, now), std::exchange(queued[kind], 0); };
     int count = take(kNode);
     for (int i = 0; i < count; ++i) visit_node(bvh.nodes[now[i]->what[--now[i]->waiting]], *now[i]);
@@ -414,7 +417,7 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
     unsigned bits[kWidth];
     std::uint32_t leaf[kWidth];
     for (int i = 0; i < count; ++i) {
-      Traveller& ray = *now[i];
+      SingleRay& ray = *now[i];
       leaf[i] = ray.what[--ray.waiting] & kIndexMask;
       std::uint32_t target = kernel::kNoSphere;
       if constexpr (kShadows) target = static_cast<std::uint32_t>(query.packet->target[query.first + ray.lane]);
@@ -437,7 +440,7 @@ HWY_INLINE unsigned trace_rays(D d, const SphereBvh& bvh, const EmbreeQuery<Pack
 
 /// Sets up a ray of Embree's packet.
 template <class EmbreeRays>
-HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned i, const SphereBvh& bvh, std::uint32_t self) {
+HWY_INLINE void begin(SingleRay& ray, EmbreeRays* rays, unsigned i, const SphereBvh& bvh, std::uint32_t self) {
   ray.origin[0] = RTCRayN_org_x(rays, kWidth, i);
   ray.origin[1] = RTCRayN_org_y(rays, kWidth, i);
   ray.origin[2] = RTCRayN_org_z(rays, kWidth, i);
@@ -464,12 +467,11 @@ HWY_INLINE void begin(Traveller& ray, EmbreeRays* rays, unsigned i, const Sphere
 
 /// Traces the valid rays of Embree's packet, each on its own way. Embree passes packets only, as scene.has_bvh asks.
 ///
-/// `ray_of`   out: the traveller of each lane; null where the lane is not valid
+/// `ray_of`   out: the ray of each lane; null where the lane is not valid
 /// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_valid(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays,
-                                Traveller (&travellers)[kWidth],
-                                Traveller* (&ray_of)[kWidth]) {
+                                SingleRay (&states)[kWidth], SingleRay* (&ray_of)[kWidth]) {
   int count = 0;
   const auto self = [&](unsigned i) {
     return static_cast<std::uint32_t>(query.packet->self[query.first + static_cast<int>(i)]);
@@ -477,7 +479,7 @@ HWY_INLINE unsigned trace_valid(const SphereBvh& bvh, const EmbreeQuery<Packet>&
   for (unsigned i = 0; i < kWidth; ++i) hwy::Prefetch(&bvh.places[self(i) < bvh.places.size() ? self(i) : 0]);
   for (unsigned i = 0; i < kWidth; ++i) {
     if (valid[i] == 0) continue;
-    ray_of[i] = &travellers[count++];
+    ray_of[i] = &states[count++];
     begin(*ray_of[i], rays, i, bvh, self(i));
   }
   return trace_rays<hn::ScalableTag<DistanceOf<Packet>>, Packet, kPrecision>({}, bvh, query, ray_of);
@@ -589,9 +591,9 @@ class SharedRays {
     for (int side = 0; side < 2; ++side)
       for (int k = 0; k < 3; ++k)
         for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes)
-          hn::Store(hn::MulAdd(from_bytes(node.bound[side][k] + v), hn::Set(dc, node.step[k]),
-                               hn::Set(dc, node.origin[k])),
-                    dc, bound[side][k] + v);
+          hn::Store(
+              hn::MulAdd(from_bytes(node.bound[side][k] + v), hn::Set(dc, node.step[k]), hn::Set(dc, node.origin[k])),
+              dc, bound[side][k] + v);
     hn::Vec<Wide> inverse[3], shift[3];
     for (int k = 0; k < 3; ++k) {
       inverse[k] = hn::Load(d_, inverse_[k]);
@@ -648,16 +650,16 @@ class SharedRays {
       const auto x = hn::Set(d_, center[0][i]) - ox, y = hn::Set(d_, center[1][i]) - oy,
                  z = hn::Set(d_, center[2][i]) - oz;
       const auto along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, z * dz));
-      const auto px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y),
-                 pz = hn::NegMulAdd(along, dz, z);
-      const auto apart = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
+      const auto px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y), pz = hn::NegMulAdd(along, dz, z);
+      const auto offset_square = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
       const auto radius = hn::Set(d_, outer[i]), begin = along - radius;
-      const auto may_hit = hn::And(hn::And(apart <= radius * radius * growth, along + radius >= zero), begin <= limit);
+      const auto may_hit =
+          hn::And(hn::And(offset_square <= radius * radius * growth, along + radius >= zero), begin <= limit);
       unsigned hitting = bits_of(d_, may_hit) & lanes;
       if constexpr (kShadows) hitting = hitting == 0 ? 0 : without_target(hitting, ids[i]);
       if (hitting == 0) continue;
       const auto low = hn::Set(d_, inner[i]);
-      const auto deep = hn::NegMulAdd(apart, growth, low * low);
+      const auto deep = hn::NegMulAdd(offset_square, growth, low * low);
       if (inner[i] > 0) {
         auto pierced = hn::And(hn::And(may_hit, deep > zero), begin > hn::Set(d_, shortest_));
         if constexpr (kShadows) pierced = hn::And(pierced, mask_of(hitting));
@@ -747,8 +749,8 @@ class SharedRays {
   alignas(64) float shift_[3][kWidth];  ///< box space to distance: bound * inverse + shift
   // Bounds of the rays' origins, at the nearer and the farther side of boxes, and of their inverse directions.
   float near_origin_[3], far_origin_[3], least_inverse_[3], greatest_inverse_[3];
-  int near_[3];         ///< the bound of a box that rays enter at
-  bool straddles_[3];   ///< rays go both ways along this axis: nothing is known
+  int near_[3];        ///< the bound of a box that rays enter at
+  bool straddles_[3];  ///< rays go both ways along this axis: nothing is known
   unsigned lanes_ = 0, changed_ = 0;
   int candidate_count_ = 0;
   SharedVisit candidates_[kMaxCandidates];
@@ -779,9 +781,9 @@ void intersect_bvh(const RTCIntersectFunctionNArguments* arguments) {
     SharedRays<Packet, kPrecision> shared(bvh, query, arguments->valid, rays);
     store(shared.trace(), [&](int i) { return shared.limits()[i]; });
   } else {
-    Traveller travellers[kWidth];
-    Traveller* ray_of[kWidth] = {};
-    store(trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, rays, travellers, ray_of),
+    SingleRay states[kWidth];
+    SingleRay* ray_of[kWidth] = {};
+    store(trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, rays, states, ray_of),
           [&](int i) { return ray_of[i]->limit; });
   }
 }
@@ -795,9 +797,9 @@ void occluded_by_bvh(const RTCOccludedFunctionNArguments* arguments) {
   if (are_together(query)) {
     hits = SharedRays<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray).trace();
   } else {
-    Traveller travellers[kWidth];
-    Traveller* ray_of[kWidth] = {};
-    hits = trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray, travellers, ray_of);
+    SingleRay states[kWidth];
+    SingleRay* ray_of[kWidth] = {};
+    hits = trace_valid<Packet, kPrecision>(bvh, query, arguments->valid, arguments->ray, states, ray_of);
   }
   for (unsigned i = 0; i < kWidth; ++i)
     if ((hits >> i & 1u) != 0) RTCRayN_tfar(arguments->ray, kWidth, i) = -std::numeric_limits<float>::infinity();

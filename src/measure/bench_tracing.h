@@ -12,8 +12,8 @@
 namespace orrery::measure {
 
 /// Benchmark of closest-hit queries on the same rays: packets and single rays with the accelerator that renders the
-/// scene, then with the other kind (one Embree primitive per sphere, or a SphereBvh); single rays with Embree's own sphere
-/// points; and a SIMD list.
+/// scene, then with the other kind (one Embree primitive per sphere, or a SphereBvh); single rays with Embree's own
+/// sphere points; and a SIMD list.
 class TracingBench {
  public:
   /// Domain     `fast` is built for precision fast; it, the view and the rays outlive this; at least one sphere

@@ -57,8 +57,7 @@ inline std::vector<Scene> scenes() {
   list.push_back({"radii over five decades", mixed, 20});
   list.push_back({"three levels of a SphereBvh", scattered(random, 5000, 1, 0.05, 0), 3});
   std::vector<Sphere> crystal;
-  for (int i = 0; i < 13 * 13 * 13; ++i)
-    crystal.push_back({i % 13 * 1.0, i / 13 % 13 * 1.0, i / 169 * 1.0, 0.5});
+  for (int i = 0; i < 13 * 13 * 13; ++i) crystal.push_back({i % 13 * 1.0, i / 13 % 13 * 1.0, i / 169 * 1.0, 0.5});
   list.push_back({"touching, of one radius", crystal, 20});
   list.push_back({"coincident", std::vector<Sphere>(40, {1, 2, 3, 0.5}), 4});
   return list;

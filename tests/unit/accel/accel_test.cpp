@@ -94,8 +94,8 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
   return found;
 }
 
-/// Packet and single-ray traversal of Embree's BVH and of a SphereBvh, and the SIMD list, on every available instruction set. Each instance reports the
-/// instruction set it was compiled for.
+/// Packet and single-ray traversal of Embree's BVH and of a SphereBvh, and the SIMD list, on every available
+/// instruction set. Each instance reports the instruction set it was compiled for.
 TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
   const std::vector<std::string> isas = kernel::available_isas();
   const std::vector<Scene> all = scenes();
@@ -151,24 +151,24 @@ TEST(AccelAccel, PacketsCanBePartlyFilled) {
   view.spheres = spheres.data();
   view.sphere_count = 2;
   for (const Way& way : kWays) {
-  const auto embree = way.make(view, kernel::Precision::kExact);
-  embree->use({way.traversal, way.traversal});
-  for (int count = 1; count <= kPacketSize; ++count) {
-    kernel::RayPacket p;
-    p.count = count;
-    for (int lane = 0; lane < kPacketSize; ++lane) {
-      test::set_ray(p, lane, {0, 0, 0}, {0, 0, 0}, {0, 0, -1}, kNoSphere);
-      p.distance[lane] = std::numeric_limits<double>::max();
-      p.hit[lane] = kNoSphere;
-    }
-    embree->tracer().trace(embree->tracer().self, p);
-    for (int lane = 0; lane < kPacketSize; ++lane) {
-      EXPECT_EQ(p.hit[lane], lane < count ? 0u : std::uint64_t{kNoSphere}) << count;
-      if (lane < count) {
-        EXPECT_EQ(p.distance[lane], 4);
+    const auto embree = way.make(view, kernel::Precision::kExact);
+    embree->use({way.traversal, way.traversal});
+    for (int count = 1; count <= kPacketSize; ++count) {
+      kernel::RayPacket p;
+      p.count = count;
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        test::set_ray(p, lane, {0, 0, 0}, {0, 0, 0}, {0, 0, -1}, kNoSphere);
+        p.distance[lane] = std::numeric_limits<double>::max();
+        p.hit[lane] = kNoSphere;
+      }
+      embree->tracer().trace(embree->tracer().self, p);
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        EXPECT_EQ(p.hit[lane], lane < count ? 0u : std::uint64_t{kNoSphere}) << count;
+        if (lane < count) {
+          EXPECT_EQ(p.distance[lane], 4);
+        }
       }
     }
-  }
   }
 }
 

@@ -32,9 +32,7 @@ struct Tree {
   SphereBvh bvh;
 
   explicit Tree(std::vector<Sphere> of)
-      : spheres(std::move(of)),
-        frame(spheres.data(), all_of(spheres)),
-        bvh(spheres.data(), all_of(spheres), frame) {}
+      : spheres(std::move(of)), frame(spheres.data(), all_of(spheres)), bvh(spheres.data(), all_of(spheres), frame) {}
 
   double center(std::uint32_t id, int axis) const {
     const Sphere& s = spheres[id];
@@ -131,7 +129,8 @@ TEST(AccelSphereBvh, NoOtherSphereReachesIntoACell) {
     long cells = 0;
     for (std::uint32_t n = 0; n < tree.bvh.nodes.size(); ++n) {
       const SphereBvh::Cell& cell = tree.bvh.cells[n];
-      if (!(cell.lower[0] <= cell.upper[0] && cell.lower[1] <= cell.upper[1] && cell.lower[2] <= cell.upper[2])) continue;
+      if (!(cell.lower[0] <= cell.upper[0] && cell.lower[1] <= cell.upper[1] && cell.lower[2] <= cell.upper[2]))
+        continue;
       ++cells;
       std::vector<bool> own(tree.spheres.size(), false);
       tree.each_below(n, [&](std::uint32_t id) { own[id] = true; });
@@ -140,7 +139,8 @@ TEST(AccelSphereBvh, NoOtherSphereReachesIntoACell) {
         double square = 0;
         for (int axis = 0; axis < 3; ++axis) {
           const double at = tree.center(id, axis);
-          const double nearest = std::clamp(at, static_cast<double>(cell.lower[axis]), static_cast<double>(cell.upper[axis]));
+          const double nearest =
+              std::clamp(at, static_cast<double>(cell.lower[axis]), static_cast<double>(cell.upper[axis]));
           square += (at - nearest) * (at - nearest);
         }
         ASSERT_GT(std::sqrt(square), tree.radius(id) + 19 * 0x1p-24 * tree.frame.reach) << n;

@@ -62,7 +62,7 @@ TEST_F(MeasureBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
   }
   EXPECT_EQ(b.cases[0].ratio.low, 1);
   EXPECT_EQ(b.cases[0].ratio.high, 1);
-  ASSERT_EQ(b.tracing.size(), 4u);
+  ASSERT_EQ(b.tracing.size(), 6u);
   for (const BenchTracing& t : b.tracing) EXPECT_GT(t.rays_per_s.low, 0) << t.name;
   EXPECT_EQ(b.tracing[0].ratio.median, 1);
   EXPECT_TRUE(b.left_out.empty());
