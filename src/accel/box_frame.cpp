@@ -23,8 +23,8 @@ float rounded_up(double x) { return -rounded_down(-x); }
 
 }  // namespace
 
-BoxFrame::BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion,
-                   std::size_t moving_count) {
+BoxFrame::BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids,
+                   const kernel::Sphere* motion, std::size_t moving_count) {
   const auto at_closing = [&](std::uint32_t id) {
     const kernel::Sphere s = spheres[id], change = motion[id];
     return kernel::Sphere{s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};

@@ -19,8 +19,8 @@ class BoxFrame {
 
   /// `motion`   of the spheres below moving_count; the frame then encloses their whole motion
   /// Domain     `ids` not empty
-  BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
-           std::size_t moving_count = 0);
+  BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids,
+           const kernel::Sphere* motion = nullptr, std::size_t moving_count = 0);
 
   /// A sphere's padded bounding box.
   struct Box {

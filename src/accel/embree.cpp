@@ -178,7 +178,7 @@ class Embree final : public Accel {
   void build_bvh(const kernel::SceneView& view, std::size_t threshold, const BuildMonitor& monitor) {
     std::vector<std::uint32_t> many = boxed(scene_, view.sphere_count);
     many.erase(many.begin(), std::lower_bound(many.begin(), many.end(), view.moving_count));
-    if (many.size() < threshold) return;
+    if (many.size() < threshold || many.size() > SphereBvh::kMaxSpheres) return;
     const double limit = kGiantRatio * median_radius(view.spheres, many);
     std::vector<std::uint32_t> giants;
     for (const std::uint32_t id : many)

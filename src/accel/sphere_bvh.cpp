@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "accel/sphere_bvh.h"
 
+#include <hwy/highway.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -33,6 +34,10 @@ constexpr std::size_t kParallelSize = 1 << 14;
 
 constexpr int kBins = 32;
 
+/// Ranges up to this size have few bins: what is done once per bin would take longer than what is done per sphere.
+constexpr std::size_t kSmallRange = 512;
+constexpr int kFewBins = 16;
+
 /// A sphere while the tree is built.
 struct Item {
   float center[3];  ///< box space
@@ -50,6 +55,29 @@ struct Bounds {
     }
   }
   void add(const Bounds& b) { add(b.lower, b.upper); }
+};
+
+float rounded_up(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? std::nextafter(f, kInfinity) : f;
+}
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Four = hn::FixedTag<float, 4>;
+constexpr Four kFour;
+
+/// Bounds and number of the centres in one bin.
+struct alignas(16) Bin {
+  float lower[4] = {kInfinity, kInfinity, kInfinity, kInfinity};
+  float upper[4] = {-kInfinity, -kInfinity, -kInfinity, -kInfinity};
+  std::size_t count = 0;
+
+  void add(hn::Vec<Four> low, hn::Vec<Four> high, std::size_t more) {
+    hn::Store(hn::Min(hn::Load(kFour, lower), low), kFour, lower);
+    hn::Store(hn::Max(hn::Load(kFour, upper), high), kFour, upper);
+    count += more;
+  }
+  void add(const Bin& b) { add(hn::Load(kFour, b.lower), hn::Load(kFour, b.upper), b.count); }
   /// Half the surface area after growth by `margin` on all sides.
   float area(float margin) const {
     const float x = upper[0] - lower[0] + 2 * margin, y = upper[1] - lower[1] + 2 * margin,
@@ -57,11 +85,6 @@ struct Bounds {
     return x * y + y * z + z * x;
   }
 };
-
-float rounded_up(double x) {
-  const auto f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? std::nextafter(f, kInfinity) : f;
-}
 
 /// Where to divide a range: the first `left` items along `axis`, which is about where their coordinate is `at`.
 struct Split {
@@ -137,58 +160,57 @@ class Builder {
 
   Split best_split(std::size_t begin, std::size_t end, std::size_t unit) const {
     const std::size_t count = end - begin, stride = std::max<std::size_t>(1, count / kSampleSize);
-    Bounds all;
-    for (std::size_t i = begin; i < end; i += stride) all.add(items_[i].center, items_[i].center);
-    float per_width[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const float width = all.upper[axis] - all.lower[axis];
-      per_width[axis] = width > 0 ? kBins * (1 - 0x1p-20F) / width : 0;
-    }
-    struct Bin {
-      Bounds bounds;
-      std::uint32_t count = 0;
-    };
-    Bin bins[3][kBins];
+    const int bin_count = count <= kSmallRange ? kFewBins : kBins;
+    // The fourth lane is an item's id, and is ignored.
+    auto low = hn::Set(kFour, kInfinity), high = hn::Set(kFour, -kInfinity);
     for (std::size_t i = begin; i < end; i += stride) {
-      const Item& item = items_[i];
-      for (int axis = 0; axis < 3; ++axis) {
-        const int b = static_cast<int>((item.center[axis] - all.lower[axis]) * per_width[axis]);
-        Bin& bin = bins[axis][std::clamp(b, 0, kBins - 1)];
-        bin.bounds.add(item.center, item.center);
-        ++bin.count;
-      }
+      const auto center = hn::LoadU(kFour, items_[i].center);
+      low = hn::Min(low, center);
+      high = hn::Max(high, center);
+    }
+    alignas(16) float lower[4], upper[4], per_width[4] = {0, 0, 0, 0};
+    hn::Store(low, kFour, lower);
+    hn::Store(high, kFour, upper);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float width = upper[axis] - lower[axis];
+      per_width[axis] = width > 0 ? static_cast<float>(bin_count) * (1 - 0x1p-20F) / width : 0;
+    }
+    Bin bins[3][kBins];
+    const auto factors = hn::Load(kFour, per_width);
+    const auto last = hn::Set(hn::RebindToSigned<Four>(), bin_count - 1);
+    for (std::size_t i = begin; i < end; i += stride) {
+      const auto center = hn::LoadU(kFour, items_[i].center);
+      alignas(16) std::int32_t at[4];
+      const auto bin_of = hn::ConvertTo(hn::RebindToSigned<Four>(), (center - low) * factors);
+      hn::Store(hn::Max(hn::Min(bin_of, last), hn::Zero(hn::RebindToSigned<Four>())), hn::RebindToSigned<Four>(), at);
+      for (int axis = 0; axis < 3; ++axis) bins[axis][at[axis]].add(center, center, 1);
     }
     const std::size_t units = (count + unit - 1) / unit, sampled = (count + stride - 1) / stride;
+    const float items_per_sample = static_cast<float>(count) / static_cast<float>(sampled);
     Split best;
     float least = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {
       if (per_width[axis] == 0) continue;
       float right_area[kBins];
-      Bounds right;
-      for (int b = kBins; b-- > 1;) {
-        right.add(bins[axis][b].bounds);
+      Bin right, left;
+      for (int b = bin_count; b-- > 1;) {
+        right.add(bins[axis][b]);
         right_area[b] = right.area(margin_);
       }
-      Bounds left;
-      std::size_t left_count = 0;
-      for (int b = 1; b < kBins; ++b) {
-        left.add(bins[axis][b - 1].bounds);
-        left_count += bins[axis][b - 1].count;
-        if (left_count == 0) continue;
-        if (left_count == sampled) break;
+      for (int b = 1; b < bin_count; ++b) {
+        left.add(bins[axis][b - 1]);
+        if (left.count == 0) continue;
+        if (left.count == sampled) break;
         // The split is moved to the next multiple of the unit, which makes it worse the further it moves.
-        const double share =
-            static_cast<double>(left_count) / static_cast<double>(sampled) * static_cast<double>(count);
-        const auto left_units = std::clamp<std::size_t>(
-            static_cast<std::size_t>(std::llround(share / static_cast<double>(unit))), 1, units - 1);
-        const std::size_t size = left_units * unit;
-        const double moved = std::abs(static_cast<double>(size) - share) / static_cast<double>(count);
+        const float wanted = static_cast<float>(left.count) * items_per_sample / static_cast<float>(unit);
+        const auto left_units = std::clamp<std::size_t>(static_cast<std::size_t>(wanted + 0.5F), 1, units - 1);
+        const float moved = std::abs(static_cast<float>(left_units) - wanted) / static_cast<float>(units);
         const float cost = (left.area(margin_) * static_cast<float>(left_units) +
                             right_area[b] * static_cast<float>(units - left_units)) *
-                           static_cast<float>(1 + moved);
+                           (1 + moved);
         if (cost < least) {
           least = cost;
-          best = {axis, all.lower[axis] + static_cast<float>(b) / per_width[axis], size};
+          best = {axis, lower[axis] + static_cast<float>(b) / per_width[axis], left_units * unit};
         }
       }
     }

@@ -187,10 +187,10 @@ void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
     for (std::size_t i = 0; i < points.centers.size(); ++i) {
       const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
       const bool inside_out = points.radii[i] < 0;
-      compiled.sphere_materials.push_back(points.colors.empty()
-                                              ? table.index(material, inside_out)
-                                              : table.colored_index(material, inside_out, p, points.colors[i],
-                                                                    points.palette[points.colors[i]]));
+      compiled.sphere_materials.push_back(
+          points.colors.empty()
+              ? table.index(material, inside_out)
+              : table.colored_index(material, inside_out, p, points.colors[i], points.palette[points.colors[i]]));
     }
   }
 }

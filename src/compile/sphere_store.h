@@ -29,7 +29,8 @@ class SphereStore {
     for (std::size_t i = 0; i < count && fits; ++i) {
       const kernel::Sphere s = at(i);
       has_radii = has_radii || s.radius != radius;
-      fits = is_single(s.x) && is_single(s.y) && is_single(s.z) && (!has_radii || (is_single(s.radius) && is_single(radius)));
+      fits = is_single(s.x) && is_single(s.y) && is_single(s.z) &&
+             (!has_radii || (is_single(s.radius) && is_single(radius)));
     }
     if (!fits) {
       plain_.reserve(begin + count);

@@ -7,12 +7,12 @@
 
 #include <fmt/core.h>
 
+#include "accel/accel.h"
 #include "base/error.h"
 #include "film/layer_film.h"
 #include "film/layer_pixel.h"
 #include "job/text.h"
 #include "kernel/pixel_sum.h"
-#include "kernel/sphere.h"
 
 namespace orrery::job {
 namespace {
@@ -21,8 +21,8 @@ namespace {
 /// clouds of one and three million spheres: peak_memory_bytes of --stats with embree minus that with list.
 constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
 
-/// A sphere and its material index.
-constexpr std::uint64_t kBytesPerSphere = sizeof(kernel::Sphere) + sizeof(std::uint32_t);
+/// A SphereBvh while it is built: 14 bytes of the finished tree, 16 that are sorted, and what finding duplicates takes.
+constexpr std::uint64_t kBvhBytesPerSphere = 32;
 
 /// A pixel's sum and the four floats of the finished image.
 constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
@@ -71,9 +71,11 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
                                         (needs.is_adaptive ? sizeof(kernel::PixelSum) + 7 * sizeof(float) : 0);
   MemoryEstimate m;
   m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * bytes_per_pixel;
-  m.spheres = needs.spheres * kBytesPerSphere;
+  m.spheres = needs.sphere_bytes;
   m.background = needs.background;
-  m.accelerator = needs.embree ? needs.spheres * kAcceleratorBytesPerSphere : 0;
+  const std::uint64_t per_sphere =
+      needs.spheres >= accel::kBvhThreshold ? kBvhBytesPerSphere : kAcceleratorBytesPerSphere;
+  m.accelerator = needs.embree ? needs.spheres * per_sphere : 0;
   return m;
 }
 
@@ -82,6 +84,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.width = compiled.width;
   needs.height = compiled.height;
   needs.spheres = compiled.spheres.size();
+  needs.sphere_bytes = compiled.spheres.bytes() + compiled.sphere_materials.size() * sizeof(std::uint32_t);
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.layer_planes = film::planes_of(layers).size();
   needs.layers = layers.any();

@@ -22,6 +22,7 @@ struct MemoryEstimate {
 struct MemoryNeeds {
   int width = 0, height = 0;       ///< px
   std::uint64_t spheres = 0;       ///< from tables and points files
+  std::uint64_t sphere_bytes = 0;  ///< of the compiled spheres and their material indices
   std::uint64_t background = 0;    ///< bytes of an image background
   std::uint64_t layer_planes = 0;  ///< besides R, G, B, A
   bool layers = false;             ///< any layers, including those without planes

@@ -10,13 +10,13 @@ namespace orrery::kernel {
 
 /// The spheres of a scene. Owns nothing.
 ///
-/// The first ones are stored as they are. The rest may be compact, if that loses nothing: centres in single precision, and
-/// a radius for all or one each.
+/// The first ones are stored as they are. The rest may be compact, if that loses nothing: centres in single precision,
+/// and a radius for all or one each.
 struct SphereArray {
   const Sphere* plain = nullptr;
   std::size_t plain_count = std::numeric_limits<std::size_t>::max();  ///< of the spheres in `plain`, the first ones
-  const float* centers = nullptr;  ///< of the others: x, y, z
-  const float* radii = nullptr;    ///< of the others; null: `radius`
+  const float* centers = nullptr;                                     ///< of the others: x, y, z
+  const float* radii = nullptr;                                       ///< of the others; null: `radius`
   double radius = 0;
 
   SphereArray() = default;

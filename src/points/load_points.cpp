@@ -165,7 +165,8 @@ class Loader {
     std::vector<Vec3d> centers = centers_of(table, rows);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
-    if (const std::vector<std::uint32_t> good = good_rows(rows, centers, radii); good.size() < rows.size()) {
+    if (!all_good(centers, radii)) {
+      const std::vector<std::uint32_t> good = good_rows(rows, centers, radii);
       if (faults_.has_errors()) return;
       rows = kept(rows, good, centers, radii);
     }
@@ -250,15 +251,23 @@ class Loader {
     return out;
   }
 
+  static bool is_good(Vec3d center, double radius) {
+    return math::is_finite(center) && std::isfinite(radius) && radius != 0;
+  }
+  static bool all_good(const std::vector<Vec3d>& centers, const std::vector<double>& radii) {
+    for (std::size_t i = 0; i < centers.size(); ++i)
+      if (!is_good(centers[i], radii[i])) return false;
+    return true;
+  }
+
   /// Returns the indices of rows with finite coordinates and radii. Reports the others, as errors unless they are to be
   /// skipped.
   std::vector<std::uint32_t> good_rows(const Rows& rows, const std::vector<Vec3d>& centers,
                                        const std::vector<double>& radii) {
     std::vector<std::uint32_t> good;
-    good.reserve(rows.size());
     std::size_t bad = 0;
     for (std::uint32_t i = 0; i < rows.size(); ++i) {
-      if (math::is_finite(centers[i]) && std::isfinite(radii[i]) && radii[i] != 0) {
+      if (is_good(centers[i], radii[i])) {
         good.push_back(i);
       } else if (!points_.skip_bad && ++bad <= scene::kMaxReported) {
         faults_.error(".file", row_name(rows[i]) + " has center " + scene::vector_text(centers[i]) + " and radius " +

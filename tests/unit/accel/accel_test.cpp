@@ -122,6 +122,61 @@ TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
   kernel::limit_isa("");
 }
 
+/// Spheres in single precision, as compile::SphereStore keeps them.
+struct Compact {
+  std::vector<Sphere> plain;  ///< the same numbers, all as they are
+  std::vector<float> centers, radii;
+
+  /// `begin`   number of spheres that stay as they are
+  Compact(const std::vector<Sphere>& spheres, std::size_t begin) : plain(spheres) {
+    for (Sphere& s : plain) {
+      for (double* x : {&s.x, &s.y, &s.z, &s.radius}) *x = static_cast<float>(*x);
+    }
+    for (std::size_t i = begin; i < plain.size(); ++i) {
+      const Sphere& s = plain[i];
+      for (const double x : {s.x, s.y, s.z}) centers.push_back(static_cast<float>(x));
+      radii.push_back(static_cast<float>(s.radius));
+    }
+  }
+  kernel::SphereArray array() const {
+    kernel::SphereArray a(plain.data());
+    a.plain_count = plain.size() - radii.size();
+    a.centers = centers.data();
+    a.radii = radii.data();
+    return a;
+  }
+};
+
+TEST(AccelAccel, CompactSpheresAreHitAsPlainOnes) {
+  for (const Scene& scene : scenes())
+    for (const Way& way : kWays) {
+      const Compact spheres(scene.spheres, scene.spheres.size() / 3);
+      kernel::SceneView plain;
+      plain.spheres = spheres.plain.data();
+      plain.sphere_count = spheres.plain.size();
+      kernel::SceneView compact = plain;
+      compact.spheres = spheres.array();
+      const auto list = make_list(plain, kernel::Precision::kExact),
+                 other = way.make(compact, kernel::Precision::kExact);
+      other->use({way.traversal, way.traversal});
+      const Scene rounded{scene.name, spheres.plain, scene.camera_distance};
+      Random random;
+      int different = 0;
+      for (int i = 0; i < 200; ++i) {
+        kernel::RayPacket a;
+        a.count = kPacketSize;
+        for (int lane = 0; lane < kPacketSize; ++lane) aim(random, rounded, a, lane);
+        reset_hits(a);
+        kernel::RayPacket b = a;
+        kernel::trace(list->tracer(), a);
+        kernel::trace(other->tracer(), b);
+        for (int lane = 0; lane < kPacketSize; ++lane)
+          different += a.hit[lane] != b.hit[lane] || (a.hit[lane] != kNoSphere && a.distance[lane] != b.distance[lane]);
+      }
+      EXPECT_EQ(different, 0) << scene.name << ", " << way.name;
+    }
+}
+
 TEST(AccelAccel, BuildReportsProgressAndCanBeStopped) {
   Random random;
   const std::vector<Sphere> spheres = scattered(random, 200'000, 100, 0.1, 0);

@@ -60,6 +60,7 @@ MemoryEstimate estimate(int width, std::uint64_t spheres, bool embree, std::uint
   needs.width = width;
   needs.height = 10;
   needs.spheres = spheres;
+  needs.sphere_bytes = 16 * spheres;
   needs.embree = embree;
   needs.layer_planes = layer_planes;
   needs.layers = layer_planes > 0;
@@ -74,6 +75,11 @@ TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
   EXPECT_GT(estimate(10, 0, true, 0, true).film, estimate(10, 0, true).film);
   EXPECT_EQ(estimate(1, 100, false).accelerator, 0u);
   EXPECT_EQ(estimate(1, 100, true).accelerator, 100 * estimate(1, 1, true).accelerator);
+  EXPECT_EQ(estimate(1, 100, true).spheres, 1600u);
+  // Many spheres take less each.
+  const double many = 1e6;
+  EXPECT_LT(static_cast<double>(estimate(1, 1'000'000, true).accelerator) / many,
+            static_cast<double>(estimate(1, 100, true).accelerator) / 100 / 3);
 }
 
 TEST(JobMemoryEstimate, GrowsWithLightGroups) {
@@ -115,7 +121,7 @@ TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {
     FAIL();
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory);
-    EXPECT_NE(std::string(error.what()).find("needs about 158.3 MiB"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("needs about 45.8 MiB"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("--memory-limit"), std::string::npos) << error.what();
   }
 }

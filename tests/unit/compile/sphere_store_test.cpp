@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compile/sphere_store.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "kernel/sphere.h"
+
+namespace orrery::compile {
+namespace {
+
+using kernel::Sphere;
+
+SphereStore stored(const std::vector<Sphere>& plain, const std::vector<Sphere>& points) {
+  SphereStore store;
+  for (const Sphere& s : plain) store.push_back(s);
+  store.append(points.size(), [&](std::size_t i) { return points[i]; });
+  return store;
+}
+
+void expect_holds(const SphereStore& store, const std::vector<Sphere>& plain, const std::vector<Sphere>& points) {
+  ASSERT_EQ(store.size(), plain.size() + points.size());
+  for (std::size_t i = 0; i < store.size(); ++i) {
+    const Sphere want = i < plain.size() ? plain[i] : points[i - plain.size()], is = store[i];
+    EXPECT_EQ(is.x, want.x) << i;
+    EXPECT_EQ(is.y, want.y) << i;
+    EXPECT_EQ(is.z, want.z) << i;
+    EXPECT_EQ(is.radius, want.radius) << i;
+  }
+}
+
+const std::vector<Sphere> kPlain = {{0.1, 0.2, 0.3, 0.4}, {1, 2, 3, 4}};
+
+TEST(CompileSphereStore, OneRadiusAndSinglePrecisionTakeTwelveBytes) {
+  const std::vector<Sphere> points = {
+      {1, -0.5, 0.25, 0.1}, {2, 3, 0x1p-140, 0.1}, {static_cast<double>(0.1F), 0, -0.0, 0.1}};
+  const SphereStore store = stored(kPlain, points);
+  expect_holds(store, kPlain, points);
+  EXPECT_EQ(store.bytes(), 2 * sizeof(Sphere) + 3 * 12) << "the common radius may be any double";
+  EXPECT_TRUE(std::signbit(store[4].z));
+}
+
+TEST(CompileSphereStore, RadiiInSinglePrecisionTakeFourBytesMore) {
+  const std::vector<Sphere> points = {{1, 2, 3, 0.5}, {4, 5, 6, 0.25}};
+  const SphereStore store = stored(kPlain, points);
+  expect_holds(store, kPlain, points);
+  EXPECT_EQ(store.bytes(), 2 * sizeof(Sphere) + 2 * 16);
+}
+
+TEST(CompileSphereStore, WhatSinglePrecisionWouldChangeStaysAsItIs) {
+  for (const std::vector<Sphere>& points : {std::vector<Sphere>{{1, 2, 3, 0.5}, {0.1, 5, 6, 0.5}},
+                                            {{1, 2, 3, 0.5}, {4, 5, 1e300, 0.5}},
+                                            {{1, 2, 3, 0.5}, {4, 5, 6, 0.1}},
+                                            {{1, 2, 3, 0.1}, {4, 5, 6, 0.5}}}) {
+    const SphereStore store = stored(kPlain, points);
+    expect_holds(store, kPlain, points);
+    EXPECT_EQ(store.bytes(), 4 * sizeof(Sphere));
+    EXPECT_TRUE(store.view().all_plain());
+  }
+}
+
+TEST(CompileSphereStore, MayBeEmpty) {
+  EXPECT_TRUE(stored({}, {}).empty());
+  expect_holds(stored({}, {{1, 2, 3, 4}}), {}, {{1, 2, 3, 4}});
+}
+
+}  // namespace
+}  // namespace orrery::compile
