@@ -35,9 +35,9 @@ std::string benchmark_text(const Benchmark& b) {
                static_cast<unsigned long long>(b.spheres), b.rays_per_path);
   base::append(out, "measured    %d x %d px, %d thread%s, %s, %s; %d rounds, median (interquartile range)\n\n", b.width,
                b.height, b.threads, b.threads == 1 ? "" : "s", b.isa.c_str(), b.accelerator.c_str(), b.rounds);
-  base::append(out, "%-16s %10s  %-24s %s\n", "", "M paths/s", "ratio to embree exact", "tracing alone");
+  base::append(out, "%-20s %10s  %-24s %s\n", "", "M paths/s", "ratio to embree exact", "tracing alone");
   for (const BenchCase& c : b.cases) {
-    base::append(out, "%-16s %10.3g  ", c.name.c_str(), c.paths_per_s.median / 1e6);
+    base::append(out, "%-20s %10.3g  ", c.name.c_str(), c.paths_per_s.median / 1e6);
     const std::string ratio = with_quartiles("%.3g", c.ratio);
     if (c.tracing) {
       base::append(out, "%-24s %.0f %%\n", ratio.c_str(), c.tracing->median * 100);
@@ -45,13 +45,13 @@ std::string benchmark_text(const Benchmark& b) {
       out += ratio + "\n";
     }
   }
-  if (!b.tracing.empty()) base::append(out, "\n%-16s %10s  %s\n", "fast, hits only", "M rays/s", "ratio to packets");
+  if (!b.tracing.empty()) base::append(out, "\n%-20s %10s  %s\n", "fast, hits only", "M rays/s", "ratio to packets");
   for (const BenchTracing& t : b.tracing)
-    base::append(out, "%-16s %10.3g  %s\n", t.name.c_str(), t.rays_per_s.median / 1e6,
+    base::append(out, "%-20s %10.3g  %s\n", t.name.c_str(), t.rays_per_s.median / 1e6,
                  with_quartiles("%.3g", t.ratio).c_str());
   if (!b.features.empty()) out += "\nembree exact with one feature added\n";
   for (const BenchCase& c : b.features)
-    base::append(out, "%-16s %10.3g  %s\n", c.name.c_str(), c.paths_per_s.median / 1e6,
+    base::append(out, "%-20s %10.3g  %s\n", c.name.c_str(), c.paths_per_s.median / 1e6,
                  with_quartiles("%.3g", c.ratio).c_str());
   for (const std::string& text : b.left_out) base::append(out, "\nleft out    %s\n", text.c_str());
   return out;

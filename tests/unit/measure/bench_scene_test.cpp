@@ -146,9 +146,9 @@ TEST(MeasureBenchReport, FormatsTextReport) {
             "scene       0123, 0 spheres, 2.50 rays per path\n"
             "measured    96 x 54 px, 1 thread, avx2, embree; 7 rounds, median (interquartile range)\n"
             "\n"
-            "                  M paths/s  ratio to embree exact    tracing alone\n"
-            "embree exact              2  1 (1 .. 1)               70 %\n"
-            "list book               0.2  0.1 (0.05 .. 0.15)\n"
+            "                      M paths/s  ratio to embree exact    tracing alone\n"
+            "embree exact                  2  1 (1 .. 1)               70 %\n"
+            "list book                   0.2  0.1 (0.05 .. 0.15)\n"
             "\n"
             "left out    something, since\n");
 }

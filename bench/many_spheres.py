@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Benchmarks many spheres: uniform clouds and dense crystals as binary PLY files in single precision.
+
+    bench/many_spheres.py build/src/orrery                       1 and 10 million, one thread
+    bench/many_spheres.py build/src/orrery --counts 100000
+    bench/many_spheres.py build/src/orrery --whole 100000000     from command to picture, all threads
+
+For each scene the first form prints closest hits per second of `orrery bench` - the accelerator of the scene, one Embree
+primitive per sphere, Embree's sphere points - and seconds of the build and peak bytes per sphere of a small render. The
+base, which is what the program takes without spheres, is subtracted. --json FILE keeps the numbers.
+"""
+import argparse
+import array
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+SCENE = """[camera]
+look_from = [{look_from}]
+look_at = [{look_at}]
+vfov = 30
+[background]
+type = "constant"
+color = [1, 1, 1]
+[render]
+sampler = "independent"
+roulette_depth = 0
+[material.white]
+type = "lambertian"
+albedo = [0.8, 0.8, 0.8]
+[[points]]
+file = "{file}"
+radius = {radius}
+material = "white"
+"""
+HEADER = """ply
+format binary_little_endian 1.0
+element vertex {count}
+property float x
+property float y
+property float z
+end_header
+"""
+CHUNK = 1 << 20
+
+
+def write(folder, name, count, chunks, radius, center, size):
+    with open(folder / (name + ".ply"), "wb") as out:
+        out.write(HEADER.format(count=count).encode())
+        for chunk in chunks:
+            out.write(chunk)
+    at = [center + size * x for x in (1.5, 1, 2)]
+    scene = folder / (name + ".toml")
+    scene.write_text(SCENE.format(look_from=", ".join(map(str, at)), look_at=", ".join([str(center)] * 3),
+                                  file=name + ".ply", radius=radius))
+    return scene
+
+
+def uniform(folder, count):
+    """Centres uniform in 1..2 on each axis: 23 random bits below the exponent of 1. The spheres fill 6.5 percent."""
+    source = random.Random(1)
+
+    def chunks():
+        for begin in range(0, count, CHUNK):
+            n = 3 * min(CHUNK, count - begin)
+            bits = int.from_bytes(source.randbytes(4 * n), "little")
+            mask = int.from_bytes(b"\xff\xff\x7f\x00" * n, "little")
+            one = int.from_bytes(b"\x00\x00\x80\x3f" * n, "little")
+            yield (bits & mask | one).to_bytes(4 * n, "little")
+
+    return write(folder, f"uniform-{count}", count, chunks(), 0.0025 * (1e6 / count) ** (1 / 3), 1.5, 1)
+
+
+def crystal(folder, count):
+    """A face-centred cubic crystal of spheres that nearly touch, each off its place by 2 percent of the cell."""
+    source = random.Random(1)
+    cells = round((count / 4) ** (1 / 3))
+
+    def chunks():
+        for x in range(cells):
+            row = array.array("f")
+            for y in range(cells):
+                for z in range(cells):
+                    for dx, dy, dz in ((0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)):
+                        row.extend((x + dx + source.gauss(0, 0.02), y + dy + source.gauss(0, 0.02),
+                                    z + dz + source.gauss(0, 0.02)))
+            yield row.tobytes()
+
+    return write(folder, f"crystal-{count}", 4 * cells**3, chunks(), 0.3464, cells / 2, cells)
+
+
+def statistics(program, scene, folder, *options):
+    stats = folder / "stats.json"
+    subprocess.run([program, "render", scene, "-o", folder / "out.png", "-q", "--stats", stats, *options], check=True)
+    return json.loads(stats.read_text())
+
+
+def base_bytes(program, folder):
+    scene = folder / "base.toml"
+    scene.write_text('[background]\ntype = "constant"\n')
+    return statistics(program, scene, folder, "--width", "64", "--height", "36", "--samples", "1")["peak_memory_bytes"]
+
+
+def measure(program, scene, folder, rounds, base):
+    bench = json.loads(subprocess.run([program, "bench", scene, "-q", "--json", "--rounds", str(rounds)], check=True,
+                                      capture_output=True, text=True).stdout)
+    stats = statistics(program, scene, folder, "--width", "64", "--height", "36", "--samples", "1")
+    hits = {t["name"]: t["rays_per_s"]["median"] for t in bench["tracing"]}
+    return {"scene": scene.stem, "spheres": stats["spheres"], "isa": bench["isa"],
+            "paths_per_second": {c["name"]: c["paths_per_s"]["median"] for c in bench["cases"]},
+            "hits_per_second": hits, "build_seconds": stats["seconds"]["build"],
+            "bytes_per_sphere": (stats["peak_memory_bytes"] - base) / stats["spheres"]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--counts", default="1000000,10000000")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--whole", type=int, metavar="COUNT")
+    parser.add_argument("--json")
+    parser.add_argument("--folder", help="where the scenes are written; default: a temporary folder")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(dir=options.folder) as name:
+        folder = pathlib.Path(name)
+        if options.whole:
+            scene = uniform(folder, options.whole)
+            out = statistics(options.program, scene, folder, "--width", "1920", "--height", "1080", "--samples", "16")
+            print(json.dumps({k: out[k] for k in ("spheres", "seconds", "peak_memory_bytes", "traversal")}, indent=1))
+            return
+        base = base_bytes(options.program, folder)
+        results = []
+        print("scene                single rays  packets  one by one  sphere points   ratio    build  bytes/sphere")
+        for count in map(int, options.counts.split(",")):
+            for make in (uniform, crystal):
+                r = measure(options.program, make(folder, count), folder, options.rounds, base)
+                hits = {k: v / 1e6 for k, v in r["hits_per_second"].items()}
+                best = max(hits["single rays"], hits["packets"])
+                print(f"{r['scene']:20} {hits['single rays']:9.2f} M {hits['packets']:6.2f} M "
+                      f"{hits.get('one by one, single', float('nan')):9.2f} M {hits['sphere points']:12.2f} M "
+                      f"{best / hits['sphere points']:7.2f} {r['build_seconds']:6.2f} s {r['bytes_per_sphere']:8.0f}", flush=True)
+                results.append(r)
+        if options.json:
+            pathlib.Path(options.json).write_text(json.dumps(results, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
