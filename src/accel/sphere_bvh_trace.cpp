@@ -66,6 +66,9 @@ HWY_INLINE hn::Vec<ChildTag> from_bytes(const std::uint8_t* bytes) {
 /// A sort key: the distance at which a ray enters a child, not negative, rounded down, and the child's index.
 constexpr std::uint32_t kIndexBits = SphereBvh::kArity - 1;
 
+/// What a distance loses to become a key: the index's bits, and the sign, since a zero may be negative.
+constexpr auto kNoKeyBits = static_cast<std::int32_t>(0x80000000u | kIndexBits);
+
 /// Stores the keys of the children that a ray enters before its limit.
 ///
 /// `except`   index of a child that is left out, or -1
@@ -94,7 +97,7 @@ HWY_INLINE int entered(const SphereBvh::Node& node, const SingleRay& ray, int ex
     const auto hits =
         hn::And(hn::RebindMask(di, begin <= end),
                 hn::AndNot(index == hn::Set(di, except), index < hn::Set(di, static_cast<int>(node.count))));
-    const auto key = hn::Or(hn::AndNot(hn::Set(di, static_cast<int>(kIndexBits)), hn::BitCast(di, begin)), index);
+    const auto key = hn::Or(hn::AndNot(hn::Set(di, kNoKeyBits), hn::BitCast(di, begin)), index);
     hn::StoreU(hn::Compress(key, hits), di, keys + count);
     count += static_cast<int>(hn::CountTrue(di, hits));
   }
