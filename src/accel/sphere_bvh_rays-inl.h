@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the traversals of a SphereBvh share. Compiled once per instruction set.
+#if defined(ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
+#undef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
+#else
+#define ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "accel/embree_rays-inl.h"
+#include "accel/sphere_bvh.h"
+#include "kernel/precision.h"
+#include "kernel/sphere_array.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::accel::HWY_NAMESPACE {
+
+/// Floats of a vector of children or of a leaf's spheres.
+using ChildTag = hn::CappedTag<float, SphereBvh::kArity>;
+constexpr int kChildLanes = static_cast<int>(hn::MaxLanes(ChildTag()));
+
+/// Components of a direction smaller than this are replaced by it: over the length of a frame that is far less than the
+/// padding, and its reciprocal is finite.
+constexpr float kSmallestDirection = 0x1p-80F;
+
+/// Inserts what a ray enters at `enter` so that the nearest is the last.
+template <class T>
+HWY_INLINE void insert(T* sorted, int begin, int& end, const T& added) {
+  int at = end++;
+  for (; at > begin && sorted[at - 1].enter < added.enter; --at) sorted[at] = sorted[at - 1];
+  sorted[at] = added;
+}
+
+/// Candidates of a ray that wait to be intersected; one leaf more must fit.
+constexpr int kMaxCandidates = 2 * static_cast<int>(SphereBvh::kArity);
+
+HWY_INLINE hn::Vec<ChildTag> from_bytes(const std::uint8_t* bytes) {
+  const ChildTag d;
+  const hn::Rebind<std::int32_t, ChildTag> di;
+  const hn::Rebind<std::uint8_t, ChildTag> d8;
+  return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, bytes)));
+}
+
+/// What a reference refers to: its upper two bits.
+enum Kind : unsigned { kNode = 0, kEnd = 1, kLeaf = 2, kKinds = 3 };
+constexpr int kIndexWidth = 30;
+constexpr std::uint32_t kIndexMask = (1u << kIndexWidth) - 1;
+constexpr std::uint32_t kEndOfStack = kEnd << kIndexWidth;
+static_assert(SphereBvh::kLeafBit == std::uint32_t{kLeaf} << kIndexWidth);
+
+/// The cache lines of nodes and leaves. Which kind a ray visits next is hard to predict, so nothing branches on it.
+class Prefetcher {
+ public:
+  explicit Prefetcher(const SphereBvh& bvh) : has_radii_(!bvh.radii.empty()) {
+    const auto at = [](const auto* p) { return reinterpret_cast<const std::uint8_t*>(p); };
+    first_[kNode] = second_[kNode] = third_[kNode] = at(bvh.nodes.data());
+    second_[kNode] += 64;
+    first_[kEnd] = second_[kEnd] = third_[kEnd] = first_[kNode];
+    first_[kLeaf] = at(bvh.leaves.data());
+    second_[kLeaf] = at(bvh.ids.data());
+    third_[kLeaf] = at(bvh.radii.data());
+  }
+  HWY_INLINE void prefetch(std::uint32_t reference) const {
+    static constexpr std::size_t kFirst[kKinds] = {sizeof(SphereBvh::Node), 0, sizeof(SphereBvh::Leaf)};
+    static constexpr std::size_t kSecond[kKinds] = {sizeof(SphereBvh::Node), 0,
+                                                    SphereBvh::kArity * sizeof(std::uint32_t)};
+    static constexpr std::size_t kThird[kKinds] = {0, 0, sizeof(SphereBvh::LeafRadii)};
+    const unsigned kind = reference >> kIndexWidth;
+    const std::size_t index = reference & kIndexMask;
+    hwy::Prefetch(first_[kind] + index * kFirst[kind]);
+    hwy::Prefetch(second_[kind] + index * kSecond[kind]);
+    if (has_radii_) hwy::Prefetch(third_[kind] + index * kThird[kind]);
+  }
+
+ private:
+  const std::uint8_t *first_[kKinds], *second_[kKinds], *third_[kKinds];
+  bool has_radii_;
+};
+
+/// Covers the rounding of squares and of their sum.
+constexpr float kGrowth = 1 + 0x1p-20F;
+
+/// Covers the rounding of a distance that is compared with others.
+constexpr float kLonger = 1 + 0x1p-18F;
+
+/// How far a sphere's centre may be from its code, and a ray from where it is computed. The factor is sqrt(3) / 2,
+/// rounded up: a centre is half a step off on each axis.
+HWY_INLINE float margin_of(const SphereBvh& bvh, const SphereBvh::Leaf& leaf) {
+  return 0.875F * leaf.step + bvh.padding;
+}
+
+/// Bounds of the radii of spheres `first` .. of a leaf.
+struct RadiusBounds {
+  hn::Vec<ChildTag> most, least;
+};
+HWY_INLINE RadiusBounds radii_of(const SphereBvh& bvh, std::uint32_t leaf, int first) {
+  const ChildTag d;
+  if (bvh.radii.empty()) {
+    const auto radius = hn::Set(d, bvh.radius);
+    return {radius, radius};
+  }
+  const SphereBvh::LeafRadii& own = bvh.radii[leaf];
+  const auto step = hn::Set(d, own.step), most = from_bytes(own.radius + first) * step;
+  return {most, most - step};
+}
+
+/// The distance from which on a hit is certain, in box space: the book's arithmetic ignores near hits.
+template <kernel::Precision kPrecision>
+HWY_INLINE float shortest_certain(const SphereBvh& bvh, const BoxFrame& frame) {
+  if (kPrecision != kernel::Precision::kBook) return 0;
+  return static_cast<float>(kernel::kBookShortestDistance * frame.scale) * kLonger + bvh.padding;
+}
+
+HWY_INLINE void prefetch_sphere(const kernel::SphereArray& spheres, std::uint32_t id) {
+  hwy::Prefetch(static_cast<const std::uint8_t*>(spheres.address(id)));
+}
+
+}  // namespace orrery::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
