@@ -63,11 +63,10 @@ std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std
     if (largest.size() > kMaxOutliers + 1) largest.pop_back();
   }
   // Take the largest set whose smallest member dwarfs the rest.
-  std::vector<std::uint32_t> outliers;
   for (std::size_t n = std::min(largest.size(), kMaxOutliers); n > 0; --n) {
     // The rest has a frame at least as large as its largest sphere.
     if (n == largest.size() || !(largest[n - 1].radius > kOutlierRatio * largest[n].radius)) continue;
-    outliers.clear();
+    std::vector<std::uint32_t> outliers;
     for (std::size_t i = 0; i < n; ++i) outliers.push_back(largest[i].id);
     std::sort(outliers.begin(), outliers.end());
     std::vector<std::uint32_t> without;
@@ -89,14 +88,23 @@ std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
 /// Spheres this many times larger than the median stay out of a SphereBvh: they would enlarge all boxes around them.
 constexpr double kGiantRatio = 16;
 
-/// The median radius of a sample.
-double median_radius(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids) {
-  const std::size_t stride = ids.size() / 4096 + 1;
+/// The radius above which a resting sphere stays out of a SphereBvh, by the median of a sample.
+///
+/// Domain     at least one sphere rests
+double giant_radius(const kernel::SceneView& view) {
+  const std::size_t stride = (view.sphere_count - view.moving_count) / 4096 + 1;
   std::vector<double> radii;
-  for (std::size_t i = 0; i < ids.size(); i += stride) radii.push_back(spheres[ids[i]].radius);
+  for (std::size_t id = view.moving_count; id < view.sphere_count; id += stride)
+    radii.push_back(view.spheres[id].radius);
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
-  return *middle;
+  return kGiantRatio * *middle;
+}
+
+/// A part of a whole's progress, from `begin` to `end`.
+BuildMonitor part_of(const BuildMonitor& whole, double begin, double end) {
+  if (!whole) return {};
+  return [&whole, begin, end](double fraction) { return whole(begin + (end - begin) * fraction); };
 }
 
 /// A sphere at Embree's time step 0 or 1.
@@ -146,12 +154,18 @@ class Embree final : public Accel {
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor,
          std::size_t bvh_threshold)
       : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view, precision)) {
+    std::vector<std::uint32_t> ids = boxed(scene_, view.sphere_count);  // not empty: an outlier dwarfs others
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
-    if (primitives >= bvh_threshold) build_bvh(view, bvh_threshold, monitor);
-    // The progress of the second part continues that of the first.
-    const double before = static_cast<double>(bvh_.count) / static_cast<double>(std::max<std::size_t>(1, primitives));
-    const BuildMonitor rest = [&](double fraction) { return !monitor || monitor(before + (1 - before) * fraction); };
-    if (primitives > 0) build(primitives, rest);
+    const auto share = [primitives](std::size_t count) {
+      return static_cast<double>(count) / static_cast<double>(primitives);
+    };
+    scene_.frame = BoxFrame(view.spheres, ids, view.motion, view.moving_count);
+    ids = take_for_bvh(view, std::move(ids), bvh_threshold);
+    if (!ids.empty()) {
+      const double end = share(ids.size());
+      bvh_ = SphereBvh(view.spheres, std::move(ids), scene_.frame, part_of(monitor, 0, end));
+    }
+    build(primitives, part_of(monitor, share(bvh_.count), 1));
   }
 
   kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }
@@ -167,39 +181,41 @@ class Embree final : public Accel {
     scene.moving_count = view.moving_count;
     scene.duplicates = duplicates(view, precision);
     scene.outliers = find_outliers(view.spheres, view.sphere_count, scene.duplicates);
-    scene.frame = BoxFrame(view.spheres, boxed(scene, view.sphere_count), view.motion, view.moving_count);
     const auto moving_outliers = std::lower_bound(scene.outliers.begin(), scene.outliers.end(), view.moving_count);
     scene.moving_primitives = static_cast<std::uint32_t>(view.moving_count) -
                               static_cast<std::uint32_t>(moving_outliers - scene.outliers.begin());
     return scene;
   }
 
-  /// Puts resting spheres of similar size into one BVH, if there are enough of them.
-  void build_bvh(const kernel::SceneView& view, std::size_t threshold, const BuildMonitor& monitor) {
-    std::vector<std::uint32_t> many = boxed(scene_, view.sphere_count);
-    many.erase(many.begin(), std::lower_bound(many.begin(), many.end(), view.moving_count));
-    if (many.size() < threshold || many.size() > SphereBvh::kMaxSpheres) return;
-    const double limit = kGiantRatio * median_radius(view.spheres, many);
+  /// Selects the resting spheres of similar size for a BVH, if there are enough of them.
+  ///
+  /// `ids`      ascending, of all spheres that are neither outliers nor duplicates
+  /// Result     empty: each sphere is a primitive
+  std::vector<std::uint32_t> take_for_bvh(const kernel::SceneView& view, std::vector<std::uint32_t> ids,
+                                          std::size_t threshold) {
+    ids.erase(ids.begin(), std::lower_bound(ids.begin(), ids.end(), view.moving_count));
+    if (ids.size() < threshold || ids.size() > SphereBvh::kMaxSpheres) return {};
+    const double limit = giant_radius(view);
     std::vector<std::uint32_t> giants;
-    for (const std::uint32_t id : many)
+    for (const std::uint32_t id : ids)
       if (view.spheres[id].radius > limit) giants.push_back(id);
-    if (many.size() - giants.size() < threshold) return;
-    std::erase_if(many, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
+    if (ids.size() - giants.size() < threshold) return {};
+    std::erase_if(ids, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
     scene_.singles = std::move(giants);
     scene_.has_bvh = true;
-    const double share =
-        static_cast<double>(many.size()) / static_cast<double>(view.sphere_count - scene_.outliers.size());
-    bvh_ = SphereBvh(view.spheres, std::move(many), scene_.frame,
-                     [&](double fraction) { return !monitor || monitor(share * fraction); });
+    return ids;
   }
 
   /// Moving spheres get a separate geometry, since the others need no second time step.
   void build(std::size_t primitives, const BuildMonitor& monitor) {
     BuildState moving{&scene_, 0}, resting{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
-    if (scene_.moving_primitives > 0) add_geometry(scene_.moving_primitives, 2, moving);
+    const auto add_spheres = [&](std::size_t count, unsigned time_steps, BuildState& state) {
+      add_geometry(count, time_steps, &state, sphere_bounds, functions_.intersect, functions_.occluded);
+    };
+    if (scene_.moving_primitives > 0) add_spheres(scene_.moving_primitives, 2, moving);
     const std::size_t rest = bvh_.empty() ? primitives - scene_.moving_primitives : scene_.singles.size();
-    if (rest > 0) add_geometry(rest, 1, resting);
-    if (!bvh_.empty()) add_bvh();
+    if (rest > 0) add_spheres(rest, 1, resting);
+    if (!bvh_.empty()) add_geometry(1, 1, &bvh_, bvh_bounds, functions_.intersect_bvh, functions_.occluded_by_bvh);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
           embree_.get(),
@@ -213,26 +229,16 @@ class Embree final : public Accel {
     scene_.scene = embree_.get();
   }
 
-  void add_geometry(std::size_t primitives, unsigned time_steps, BuildState& state) {
+  void add_geometry(std::size_t primitives, unsigned time_steps, void* data, RTCBoundsFunction bounds,
+                    RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded) {
     RTCGeometry geometry = rtcNewGeometry(embree_.device(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
     rtcSetGeometryTimeStepCount(geometry, time_steps);
-    rtcSetGeometryUserData(geometry, &state);
-    rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, functions_.intersect);
-    rtcSetGeometryOccludedFunction(geometry, functions_.occluded);
+    rtcSetGeometryUserData(geometry, data);
+    rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect);
+    rtcSetGeometryOccludedFunction(geometry, occluded);
     rtcSetGeometryMask(geometry, ~0u);  // the default differs between Embree 3 and 4
-    embree_.attach(geometry);
-  }
-
-  void add_bvh() {
-    RTCGeometry geometry = rtcNewGeometry(embree_.device(), RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, 1);
-    rtcSetGeometryUserData(geometry, &bvh_);
-    rtcSetGeometryBoundsFunction(geometry, bvh_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, functions_.intersect_bvh);
-    rtcSetGeometryOccludedFunction(geometry, functions_.occluded_by_bvh);
-    rtcSetGeometryMask(geometry, ~0u);
     embree_.attach(geometry);
   }
 
@@ -272,6 +278,14 @@ std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Preci
                                    const BuildMonitor& monitor, std::size_t bvh_threshold) {
   if (scene.sphere_count == 0) return make_list(scene, precision);  // there is nothing to build a BVH of
   return std::make_unique<Embree>(scene, precision, monitor, std::max<std::size_t>(1, bvh_threshold));
+}
+
+std::size_t spheres_in_bvh(const kernel::SceneView& scene) {
+  if (scene.sphere_count - scene.moving_count < kBvhThreshold) return 0;
+  const double limit = giant_radius(scene);
+  std::size_t count = 0;
+  for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) count += scene.spheres[id].radius <= limit;
+  return count < kBvhThreshold ? 0 : count;
 }
 
 std::string embree_version() { return RTC_VERSION_STRING; }

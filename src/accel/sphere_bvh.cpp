@@ -23,7 +23,7 @@ constexpr std::size_t kArity = SphereBvh::kArity;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Padding in units of the frame's reach. Derived in docs/decisions/0027-bvh-for-many-spheres.md: rounding moves a
-/// ray by at most 39 x 2^-24 from a sphere and by at most 19 x 2^-24 from a box.
+/// ray by at most 40 x 2^-24 relative to a sphere and by at most 19 x 2^-24 relative to a box.
 constexpr double kSpherePadding = 0x1.4p-17, kBoxPadding = 0x1p-18;
 
 /// Ranges larger than this are binned from a sample.
@@ -235,7 +235,9 @@ class Builder {
   std::atomic<bool> stopped_{false};
 };
 
-/// The largest integer code whose decoded bound is at most `bound`, or the smallest whose is at least `bound`.
+/// A code whose decoded bound is at most `bound`, and one whose is at least `bound`.
+///
+/// Domain     `bound` is between origin and what code 255 stands for
 std::uint8_t code_below(float bound, float origin, float step) {
   int code = std::clamp(static_cast<int>((bound - origin) / step), 0, 255);
   while (code > 0 && std::fma(static_cast<float>(code), step, origin) > bound) --code;
@@ -323,7 +325,6 @@ SphereBvh::SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32
 
   leaves.resize(leaf_count);
   last_leaf = static_cast<std::uint32_t>(leaf_count - 1);
-  leaves.resize(leaf_count);
   places.assign(std::size_t{*std::max_element(ids.begin(), ids.end())} + 1, kernel::kNoSphere);
   ids.resize(leaf_count * kArity, kernel::kNoSphere);
   if (own_radii) radii.resize(leaf_count);
@@ -370,8 +371,6 @@ SphereBvh::SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32
     level_begin[level++] = first = static_cast<std::uint32_t>(begin);
     below = std::move(above);
   }
-  std::fill(level_begin.begin() + static_cast<std::ptrdiff_t>(level), level_begin.end(),
-            static_cast<std::uint32_t>(nodes.size()));
   std::copy_n(below[0].lower, 3, box.lower);
   std::copy_n(below[0].upper, 3, box.upper);
 }

@@ -13,7 +13,8 @@
 namespace orrery::accel {
 
 /// A BVH over many spheres at rest, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds in 8
-/// bits relative to the parent. It takes 13 bytes per sphere.
+/// bits relative to the parent. It takes 13 bytes per sphere, or
+/// 14 if radii differ.
 ///
 /// Like Embree's boxes it only selects candidates. All bounds enclose the spheres plus the rounding errors of a
 /// single-precision ray in box space (docs/decisions/0027-bvh-for-many-spheres.md), so no hit is lost.
@@ -68,9 +69,7 @@ class SphereBvh {
             const std::function<bool(double)>& monitor = {});
 
   bool empty() const noexcept { return ids.empty(); }
-  std::uint32_t root() const noexcept {
-    return nodes.empty() ? kLeafBit : static_cast<std::uint32_t>(nodes.size() - 1);
-  }
+  std::uint32_t root() const noexcept { return static_cast<std::uint32_t>(nodes.size() - 1); }
   std::size_t bytes() const noexcept;
 
   /// The node above a sphere's leaf; kNoSphere if the sphere is not in the tree.
@@ -89,12 +88,12 @@ class SphereBvh {
   std::vector<std::uint32_t> ids;     ///< of the spheres, in the order of the leaves; kNoSphere up to a full leaf
   std::vector<std::uint32_t> places;  ///< of each sphere of the scene in `ids`; kNoSphere: it is not in the tree
   std::vector<Leaf> leaves;
-  std::vector<LeafRadii> radii;                            ///< one per leaf; empty if all spheres have `radius`
-  std::vector<Node> nodes;                                 ///< level by level, those above the leaves first
-  std::vector<Cell> cells;                                 ///< one per node
-  std::array<std::uint32_t, kMaxDepth + 1> level_begin{};  ///< indices of the first node of each level, and the end
-  std::uint32_t last_leaf = 0;                             ///< the only one that may have fewer than kArity spheres
-  float radius = 0;                                        ///< box space, rounded up
+  std::vector<LeafRadii> radii;                        ///< one per leaf; empty if all spheres have `radius`
+  std::vector<Node> nodes;                             ///< level by level, those above the leaves first
+  std::vector<Cell> cells;                             ///< one per node
+  std::array<std::uint32_t, kMaxDepth> level_begin{};  ///< index of the first node of each level
+  std::uint32_t last_leaf = 0;                         ///< the only one that may have fewer than kArity spheres
+  float radius = 0;                                    ///< box space, rounded up
   float padding = 0;    ///< of a sphere's radius for the rounding errors of a ray's distance from it, box space
   BoxFrame::Box box{};  ///< of all spheres, padded
 };

@@ -18,9 +18,10 @@ class SphereStore {
   /// Appends a sphere as it is. Not after spheres that are compact.
   void push_back(const kernel::Sphere& sphere) { plain_.push_back(sphere); }
 
-  /// Appends `count` spheres, compact if their centres, and their radii if these differ, are exact in single precision.
+  /// Appends the last `count` spheres, compact if their centres, and their radii if these differ, are exact in single
+  /// precision.
   ///
-  /// `at`  returns the sphere with an index below `count`; called up to twice for each
+  /// `at`  returns the sphere with an index below `count`; called in ascending order, up to three times from 0 on
   template <class At>
   void append(std::size_t count, At at) {
     const std::size_t begin = plain_.size();
@@ -63,8 +64,6 @@ class SphereStore {
   std::size_t bytes() const noexcept {
     return plain_.size() * sizeof(kernel::Sphere) + (centers_.size() + radii_.size()) * sizeof(float);
   }
-
-  void reserve(std::size_t count) { plain_.reserve(count); }
 
  private:
   static bool is_single(double x) { return static_cast<double>(static_cast<float>(x)) == x; }

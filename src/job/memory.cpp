@@ -73,9 +73,9 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * bytes_per_pixel;
   m.spheres = needs.sphere_bytes;
   m.background = needs.background;
-  const std::uint64_t per_sphere =
-      needs.spheres >= accel::kBvhThreshold ? kBvhBytesPerSphere : kAcceleratorBytesPerSphere;
-  m.accelerator = needs.embree ? needs.spheres * per_sphere : 0;
+  m.accelerator = needs.embree ? needs.spheres_in_bvh * kBvhBytesPerSphere +
+                                     (needs.spheres - needs.spheres_in_bvh) * kAcceleratorBytesPerSphere
+                               : 0;
   return m;
 }
 
@@ -84,6 +84,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.width = compiled.width;
   needs.height = compiled.height;
   needs.spheres = compiled.spheres.size();
+  needs.spheres_in_bvh = accel::spheres_in_bvh(compiled.view());
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.sphere_materials.size() * sizeof(std::uint32_t);
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.layer_planes = film::planes_of(layers).size();

@@ -20,15 +20,16 @@ struct MemoryEstimate {
 
 /// Properties of a render that determine its memory use.
 struct MemoryNeeds {
-  int width = 0, height = 0;       ///< px
-  std::uint64_t spheres = 0;       ///< from tables and points files
-  std::uint64_t sphere_bytes = 0;  ///< of the compiled spheres and their material indices
-  std::uint64_t background = 0;    ///< bytes of an image background
-  std::uint64_t layer_planes = 0;  ///< besides R, G, B, A
-  bool layers = false;             ///< any layers, including those without planes
-  std::uint64_t light_cells = 0;   ///< LayerRequest::light_cells()
-  bool embree = true;              ///< false: the list
-  bool is_adaptive = false;        ///< --noise or --time: a second sum and an error estimate per pixel
+  int width = 0, height = 0;         ///< px
+  std::uint64_t spheres = 0;         ///< from tables and points files
+  std::uint64_t spheres_in_bvh = 0;  ///< accel::spheres_in_bvh()
+  std::uint64_t sphere_bytes = 0;    ///< of the compiled spheres and their material indices
+  std::uint64_t background = 0;      ///< bytes of an image background
+  std::uint64_t layer_planes = 0;    ///< besides R, G, B, A
+  bool layers = false;               ///< any layers, including those without planes
+  std::uint64_t light_cells = 0;     ///< LayerRequest::light_cells()
+  bool embree = true;                ///< false: the list
+  bool is_adaptive = false;          ///< --noise or --time: a second sum and an error estimate per pixel
 };
 
 /// Estimates memory for `info`, `study` and the check before a render.

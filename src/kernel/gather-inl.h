@@ -20,6 +20,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_MAX_BYTES >= 32
+
 /// Four consecutive doubles or floats as four of T.
 template <class T, class From>
 HWY_INLINE hn::Vec<hn::FixedTag<T, 4>> load_row(const From* row) {
@@ -34,75 +35,82 @@ HWY_INLINE hn::Vec<hn::FixedTag<T, 4>> load_row(const From* row) {
   }
 }
 
+/// Rows stay in registers: loading a vector from rows that have just been stored would wait for the stores.
+template <class D, class RowOfLane>
+HWY_INLINE void transpose_rows(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
+  using T = hn::TFromD<D>;
+  const auto row = [&](std::size_t i) { return load_row<T>(row_of_lane(i)); };
+  const auto rows = [&](std::size_t i) {  // i, i + 4, ...
+    if constexpr (hn::MaxLanes(D()) == 4) {
+      return row(i);
+    } else if constexpr (hn::MaxLanes(D()) == 8) {
+      return hn::Combine(d, row(i + 4), row(i));
+    } else {
+      const hn::Half<D> half;
+      return hn::Combine(d, hn::Combine(half, row(i + 12), row(i + 8)), hn::Combine(half, row(i + 4), row(i)));
+    }
+  };
+  const auto a = rows(0), b = rows(1), c = rows(2), e = rows(3);
+  const auto ab_low = hn::InterleaveLower(d, a, b), ab_high = hn::InterleaveUpper(d, a, b);
+  const auto ce_low = hn::InterleaveLower(d, c, e), ce_high = hn::InterleaveUpper(d, c, e);
+  if constexpr (sizeof(T) == 8) {
+    out[0] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(ce_low), ab_low);
+    out[1] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(ce_high), ab_high);
+    out[2] = hn::OddEvenBlocks(ce_low, hn::SwapAdjacentBlocks(ab_low));
+    out[3] = hn::OddEvenBlocks(ce_high, hn::SwapAdjacentBlocks(ab_high));
+  } else {
+    const hn::Repartition<double, D> pairs;
+    const auto lower = [&](auto x, auto y) {
+      return hn::BitCast(d, hn::InterleaveLower(pairs, hn::BitCast(pairs, x), hn::BitCast(pairs, y)));
+    };
+    const auto upper = [&](auto x, auto y) {
+      return hn::BitCast(d, hn::InterleaveUpper(pairs, hn::BitCast(pairs, x), hn::BitCast(pairs, y)));
+    };
+    out[0] = lower(ab_low, ce_low);
+    out[1] = upper(ab_low, ce_low);
+    out[2] = lower(ab_high, ce_high);
+    out[3] = upper(ab_high, ce_high);
+  }
+}
+
+#else
+
+/// A register does not hold four doubles, so rows pass through memory.
+template <class D, class RowOfLane>
+HWY_INLINE void transpose_rows(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
+  using T = hn::TFromD<D>;
+  using From = std::remove_cv_t<std::remove_reference_t<decltype(*row_of_lane(0))>>;
+  // As many lanes as the wider type has.
+  using Wide = std::conditional_t<sizeof(T) >= sizeof(From), T, From>;
+  const hn::CappedTag<Wide, 4> wide_tag;
+  const hn::Rebind<From, decltype(wide_tag)> row_tag;
+  const hn::Rebind<T, decltype(wide_tag)> to_tag;
+  HWY_ALIGN T rows[4 * hn::MaxLanes(D())];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    for (std::size_t k = 0; k < 4; k += hn::Lanes(row_tag)) {
+      const auto part = hn::LoadU(row_tag, row_of_lane(i) + k);
+      if constexpr (sizeof(T) == sizeof(From)) {
+        hn::StoreU(part, row_tag, rows + 4 * i + k);
+      } else if constexpr (sizeof(T) > sizeof(From)) {
+        hn::StoreU(hn::PromoteTo(to_tag, part), to_tag, rows + 4 * i + k);
+      } else {
+        hn::StoreU(hn::DemoteTo(to_tag, part), to_tag, rows + 4 * i + k);
+      }
+    }
+  }
+  hn::LoadInterleaved4(d, rows, out[0], out[1], out[2], out[3]);
+}
+
 #endif
 
 /// Loads four consecutive doubles or floats per lane and transposes them into four vectors.
 template <class D, class RowOfLane>
 HWY_INLINE void gather4(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
-  using T = hn::TFromD<D>;
-  using From = std::remove_cv_t<std::remove_reference_t<decltype(*row_of_lane(0))>>;
-  constexpr std::size_t kLanes = hn::MaxLanes(D());
-  if constexpr (kLanes == 1) {
-    for (int k = 0; k < 4; ++k) out[k] = hn::Set(d, static_cast<T>(row_of_lane(0)[k]));
-#if HWY_MAX_BYTES >= 32
+  if constexpr (hn::MaxLanes(D()) == 1) {
+    for (int k = 0; k < 4; ++k) out[k] = hn::Set(d, static_cast<hn::TFromD<D>>(row_of_lane(0)[k]));
   } else {
-    // Rows stay in registers: loading a vector from rows that have just been stored would wait for the stores.
-    const auto row = [&](std::size_t i) { return load_row<T>(row_of_lane(i)); };
-    const auto rows = [&](std::size_t i) {  // i, i + 4, ...
-      if constexpr (kLanes == 4) {
-        return row(i);
-      } else if constexpr (kLanes == 8) {
-        return hn::Combine(d, row(i + 4), row(i));
-      } else {
-        const hn::Half<D> half;
-        return hn::Combine(d, hn::Combine(half, row(i + 12), row(i + 8)), hn::Combine(half, row(i + 4), row(i)));
-      }
-    };
-    const auto a = rows(0), b = rows(1), c = rows(2), e = rows(3);
-    const auto ab_low = hn::InterleaveLower(d, a, b), ab_high = hn::InterleaveUpper(d, a, b);
-    const auto ce_low = hn::InterleaveLower(d, c, e), ce_high = hn::InterleaveUpper(d, c, e);
-    if constexpr (sizeof(T) == 8) {
-      out[0] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(ce_low), ab_low);
-      out[1] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(ce_high), ab_high);
-      out[2] = hn::OddEvenBlocks(ce_low, hn::SwapAdjacentBlocks(ab_low));
-      out[3] = hn::OddEvenBlocks(ce_high, hn::SwapAdjacentBlocks(ab_high));
-    } else {
-      const hn::Repartition<double, D> pairs;
-      const auto lower = [&](auto x, auto y) {
-        return hn::BitCast(d, hn::InterleaveLower(pairs, hn::BitCast(pairs, x), hn::BitCast(pairs, y)));
-      };
-      const auto upper = [&](auto x, auto y) {
-        return hn::BitCast(d, hn::InterleaveUpper(pairs, hn::BitCast(pairs, x), hn::BitCast(pairs, y)));
-      };
-      out[0] = lower(ab_low, ce_low);
-      out[1] = upper(ab_low, ce_low);
-      out[2] = lower(ab_high, ce_high);
-      out[3] = upper(ab_high, ce_high);
-    }
+    transpose_rows(d, row_of_lane, out);
   }
-#else
-  } else {
-    // As many lanes as the wider type has.
-    using Wide = std::conditional_t<sizeof(T) >= sizeof(From), T, From>;
-    const hn::CappedTag<Wide, 4> wide_tag;
-    const hn::Rebind<From, decltype(wide_tag)> row_tag;
-    const hn::Rebind<T, decltype(wide_tag)> to_tag;
-    HWY_ALIGN T rows[4 * kLanes];
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-      for (std::size_t k = 0; k < 4; k += hn::Lanes(row_tag)) {
-        const auto part = hn::LoadU(row_tag, row_of_lane(i) + k);
-        if constexpr (sizeof(T) == sizeof(From)) {
-          hn::StoreU(part, row_tag, rows + 4 * i + k);
-        } else if constexpr (sizeof(T) > sizeof(From)) {
-          hn::StoreU(hn::PromoteTo(to_tag, part), to_tag, rows + 4 * i + k);
-        } else {
-          hn::StoreU(hn::DemoteTo(to_tag, part), to_tag, rows + 4 * i + k);
-        }
-      }
-    }
-    hn::LoadInterleaved4(d, rows, out[0], out[1], out[2], out[3]);
-  }
-#endif
 }
 
 /// Loads a sphere per lane: centre and radius.
