@@ -9,16 +9,19 @@ namespace orrery::accel {
 
 std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision) {
   const bool is_fast = precision == kernel::Precision::kFast;
-  const auto number = [is_fast](double x) { return is_fast ? static_cast<double>(static_cast<float>(x)) : x; };
+  const auto rounded = [is_fast](auto key) {
+    if (is_fast)
+      for (double& x : key) x = static_cast<double>(static_cast<float>(x));
+    return key;
+  };
   const auto place = [&](std::size_t id) {
     const kernel::Sphere s = scene.spheres[id];
-    return std::array{number(s.x), number(s.y), number(s.z), number(s.radius)};
+    return rounded(std::array{s.x, s.y, s.z, s.radius});
   };
   const auto path = [&](std::size_t id) {
     const kernel::Sphere s = scene.spheres[id];
     const kernel::Sphere change = id < scene.moving_count ? scene.motion[id] : kernel::Sphere{0, 0, 0, 0};
-    return std::array{number(s.x),      number(s.y),      number(s.z),      number(s.radius),
-                      number(change.x), number(change.y), number(change.z), number(change.radius)};
+    return rounded(std::array{s.x, s.y, s.z, s.radius, change.x, change.y, change.z, change.radius});
   };
   const std::vector<base::Repeated> found = scene.moving_count > 0 ? base::find_repeated<8>(scene.sphere_count, path)
                                                                    : base::find_repeated<4>(scene.sphere_count, place);

@@ -2,15 +2,18 @@
 #include "accel/sphere_bvh.h"
 
 #include <hwy/highway.h>
+#include <sys/mman.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -37,6 +40,9 @@ constexpr int kBins = 32;
 /// Ranges up to this size have few bins: what is done once per bin would take longer than what is done per sphere.
 constexpr std::size_t kSmallRange = 512;
 constexpr int kFewBins = 16;
+
+/// Leaves that are made before the memory of their items is released.
+constexpr std::size_t kReleasedLeaves = 1 << 16;
 
 /// A sphere while the tree is built.
 struct Item {
@@ -94,6 +100,14 @@ struct Split {
 };
 
 using Cell = SphereBvh::Cell;
+
+/// Returns memory to the operating system. The items are zero from then on.
+void release(Item* begin, Item* end) {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) / page * page,
+             last = reinterpret_cast<std::uintptr_t>(end) / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+}
 
 class Builder {
  public:
@@ -307,6 +321,7 @@ SphereBvh::SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32
   }
   const bool own_radii = smallest < largest;
   radius = rounded_up(largest * frame.scale);
+  const std::size_t id_count = std::size_t{*std::max_element(ids.begin(), ids.end())} + 1;
 
   std::vector<Item> items(count);
   tbb::parallel_for(Range(0, count, 4096), [&](const Range& range) {
@@ -318,18 +333,20 @@ SphereBvh::SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32
                   ids[i]};
     }
   });
+  std::vector<std::uint32_t>().swap(ids);  // they are in the items
   const float box_padding = rounded_up(kBoxPadding * frame.reach);
   Builder builder(items, static_cast<float>(sum / static_cast<double>(count) * frame.scale), radius + 2 * box_padding,
                   monitor);
   builder.sort();
 
-  leaves.resize(leaf_count);
+  leaves.reserve(leaf_count);
   last_leaf = static_cast<std::uint32_t>(leaf_count - 1);
-  places.assign(std::size_t{*std::max_element(ids.begin(), ids.end())} + 1, kernel::kNoSphere);
-  ids.resize(leaf_count * kArity, kernel::kNoSphere);
-  if (own_radii) radii.resize(leaf_count);
-  std::vector<Bounds> below(leaf_count);
-  tbb::parallel_for(Range(0, leaf_count, 256), [&](const Range& range) {
+  places.assign(id_count, kernel::kNoSphere);
+  ids.reserve(leaf_count * kArity);
+  if (own_radii) radii.reserve(leaf_count);
+  std::vector<Bounds> below;
+  below.reserve(leaf_count);
+  const auto make_leaves = [&](const Range& range) {
     for (std::size_t l = range.begin(); l < range.end(); ++l) {
       const std::size_t n = count_in(static_cast<std::uint32_t>(l));
       const Item* const in_leaf = &items[l * kArity];
@@ -351,7 +368,18 @@ SphereBvh::SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32
       radii[l].step = step_between(0, most);
       for (std::size_t i = 0; i < n; ++i) radii[l].radius[i] = code_above(r[i], 0, radii[l].step);
     }
-  });
+  };
+  // Leaves take the place of items, so that memory is never needed for all of both.
+  for (std::size_t begin = 0; begin < leaf_count; begin += kReleasedLeaves) {
+    const std::size_t end = std::min(leaf_count, begin + kReleasedLeaves);
+    leaves.resize(end);
+    ids.resize(end * kArity, kernel::kNoSphere);
+    if (own_radii) radii.resize(end);
+    below.resize(end);
+    tbb::parallel_for(Range(begin, end, 256), make_leaves);
+    release(&items[begin * kArity], &items[0] + std::min(count, end * kArity));
+  }
+  std::vector<Item>().swap(items);
 
   std::uint32_t first = 0;
   std::size_t level = 0;

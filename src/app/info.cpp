@@ -74,9 +74,10 @@ std::string points_text(const std::vector<PointsInfo>& points) {
 }
 
 std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
-  return static_cast<std::uint64_t>(
-      std::count_if(compiled.sphere_materials.begin(), compiled.sphere_materials.end(),
-                    [&](std::uint32_t m) { return compiled.materials[m].kind == kernel::MaterialKind::kEmitter; }));
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < compiled.spheres.size(); ++i)
+    if (compiled.materials[compiled.sphere_materials[i]].kind == kernel::MaterialKind::kEmitter) ++count;
+  return count;
 }
 
 /// Describes how the emitters are sampled: "40 emitters, light and BSDF sampling, chosen by a light tree of 1.9 KiB".

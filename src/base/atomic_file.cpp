@@ -152,24 +152,6 @@ void remove_unfinished_files() noexcept {
     if (slot.armed.load(std::memory_order_acquire)) ::unlink(slot.name);
 }
 
-void write_text_file(const std::filesystem::path& path, std::string_view text) {
-  AtomicFile file(path);
-  const int out = ::open(file.temporary().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
-  if (out < 0) io_failed(path, errno);
-  while (!text.empty()) {
-    const ssize_t written = ::write(out, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      const int error = errno;
-      ::close(out);
-      io_failed(path, error);
-    }
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (::close(out) != 0) io_failed(path, errno);
-  file.commit();
-}
-
 void check_creatable(const std::filesystem::path& path) {
   const NewFile file = create_beside(path, renamed_onto(path));
   ::unlink(file.name.c_str());

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string_view>
 
 namespace orrery::base {
 
@@ -38,11 +37,6 @@ class AtomicFile {
 /// Unlinks the temporary files of all uncommitted AtomicFiles. Safe in a signal handler; the process must end right
 /// after.
 void remove_unfinished_files() noexcept;
-
-/// Writes a text to a file by an AtomicFile.
-///
-/// Errors     those of AtomicFile
-void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 /// Checks whether a file could be created, so that failure is found before any work; leaves no trace.
 ///

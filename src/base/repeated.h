@@ -115,7 +115,7 @@ std::vector<Repeated> find_repeated(std::size_t count, KeyOf key_of) {
   if (suspects.empty()) return out;
   HashFilter suspected(suspects.size());
   for (const std::uint64_t hash : suspects) suspected.insert(hash);
-  suspects = {};
+  std::vector<std::uint64_t>().swap(suspects);
 
   struct Entry {
     std::uint64_t hash;

@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/file_set.h"
+#include "base/output_file.h"
 #include "cli/commands.h"
 #include "cli/data_options.h"
 #include "cli/messages.h"

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/output_file.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"

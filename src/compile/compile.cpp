@@ -155,24 +155,6 @@ class MaterialTable {
 
 kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }
 
-/// Spheres of all points tables, by one index.
-class PointSpheres {
- public:
-  explicit PointSpheres(const scene::Scene& scene) : scene_(scene) {}
-
-  /// Domain     i is 0 or at most one more than in the call before
-  kernel::Sphere operator()(std::size_t i) {
-    if (i == 0) table_ = 0, begin_ = 0;
-    while (i - begin_ >= scene_.points[table_].centers.size()) begin_ += scene_.points[table_++].centers.size();
-    const scene::Points& points = scene_.points[table_];
-    return sphere_of(points.centers[i - begin_], points.radii[i - begin_]);
-  }
-
- private:
-  const scene::Scene& scene_;
-  std::size_t table_ = 0, begin_ = 0;
-};
-
 void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
   const std::size_t count = scene.sphere_count();
   compiled.sphere_materials.reserve(count);
@@ -181,7 +163,7 @@ void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
     compiled.spheres.push_back(sphere_of(s.center, s.radius));
     compiled.sphere_materials.push_back(table.index(s.material, s.radius < 0));
   }
-  compiled.spheres.append(count - scene.spheres.size(), PointSpheres(scene));
+  compiled.spheres.append(scene.points);
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     const scene::Points& points = scene.points[p];
     for (std::size_t i = 0; i < points.centers.size(); ++i) {
@@ -290,7 +272,7 @@ kernel::Sampler compile_sampler(const scene::Render& render) {
 kernel::SceneView CompiledScene::view() const noexcept {
   kernel::SceneView v;
   v.spheres = spheres.view();
-  v.sphere_materials = sphere_materials.data();
+  v.sphere_materials = sphere_materials.view();
   v.materials = materials.data();
   v.sphere_count = spheres.size();
   v.emission = emission.empty() ? nullptr : emission.data();

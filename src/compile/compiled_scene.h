@@ -9,6 +9,7 @@
 
 #include "compile/environment.h"
 #include "compile/light_tree.h"
+#include "compile/packed_indices.h"
 #include "compile/pixel_filter.h"
 #include "compile/sphere_store.h"
 #include "kernel/precision.h"
@@ -33,7 +34,7 @@ struct Bounds {
 /// sphere is its id in hits.
 struct CompiledScene {
   SphereStore spheres;
-  std::vector<std::uint32_t> sphere_materials;  ///< one per sphere, index into `materials`
+  PackedIndices sphere_materials;  ///< one per sphere, index into `materials`
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
   LightTree light_tree;                    ///< of the emitting spheres; empty if lights are not sampled

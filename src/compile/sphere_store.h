@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "kernel/sphere_array.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 
@@ -18,37 +20,9 @@ class SphereStore {
   /// Appends a sphere as it is. Not after spheres that are compact.
   void push_back(const kernel::Sphere& sphere) { plain_.push_back(sphere); }
 
-  /// Appends the last `count` spheres, compact if their centres, and their radii if these differ, are exact in single
-  /// precision.
-  ///
-  /// `at`  returns the sphere with an index below `count`; called in ascending order, up to three times from 0 on
-  template <class At>
-  void append(std::size_t count, At at) {
-    const std::size_t begin = plain_.size();
-    bool fits = count > 0, has_radii = false;
-    const double radius = count > 0 ? at(0).radius : 0;
-    for (std::size_t i = 0; i < count && fits; ++i) {
-      const kernel::Sphere s = at(i);
-      has_radii = has_radii || s.radius != radius;
-      fits = is_single(s.x) && is_single(s.y) && is_single(s.z) &&
-             (!has_radii || (is_single(s.radius) && is_single(radius)));
-    }
-    if (!fits) {
-      plain_.reserve(begin + count);
-      for (std::size_t i = 0; i < count; ++i) plain_.push_back(at(i));
-      return;
-    }
-    radius_ = radius;
-    centers_.resize(3 * count);
-    if (has_radii) radii_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const kernel::Sphere s = at(i);
-      centers_[3 * i] = static_cast<float>(s.x);
-      centers_[3 * i + 1] = static_cast<float>(s.y);
-      centers_[3 * i + 2] = static_cast<float>(s.z);
-      if (has_radii) radii_[i] = static_cast<float>(s.radius);
-    }
-  }
+  /// Appends the spheres of points files, the last ones: compact if their centres, and their radii if these differ, are
+  /// exact in single precision.
+  void append(std::span<const scene::Points> points);
 
   /// Valid until this is modified.
   kernel::SphereArray view() const noexcept {
@@ -66,8 +40,6 @@ class SphereStore {
   }
 
  private:
-  static bool is_single(double x) { return static_cast<double>(static_cast<float>(x)) == x; }
-
   std::vector<kernel::Sphere> plain_;
   std::vector<float> centers_, radii_;
   double radius_ = 0;

@@ -39,7 +39,7 @@ void append_value(std::string& out, const Column& column, std::size_t row, Appen
 /// Types of PLY, which has no integers of 64 bits.
 enum class PlyOutput { kSame, kInt32, kUint32, kFloat64, kNone };
 
-PlyOutput ply_output(const TableOutput& out, const Column& column) {
+PlyOutput ply_output(const base::OutputFile& out, const Column& column) {
   if (words_of(column) != nullptr) return PlyOutput::kNone;
   const auto* const integers = std::get_if<std::vector<std::int64_t>>(&column.values);
   if (integers == nullptr) return PlyOutput::kSame;
@@ -85,7 +85,7 @@ struct NpyText {
   bool is_ascii = true;
 };
 
-NpyText npy_text(const TableOutput& out, const Column& column) {
+NpyText npy_text(const base::OutputFile& out, const Column& column) {
   NpyText text;
   for (const std::string& word : words_of(column)->words) {
     text.length = std::max(text.length, word.size());
@@ -97,7 +97,7 @@ NpyText npy_text(const TableOutput& out, const Column& column) {
   return text;
 }
 
-std::string npy_type(const TableOutput& out, const Column& column) {
+std::string npy_type(const base::OutputFile& out, const Column& column) {
   switch (column.type()) {
     case ColumnType::kFloat64: break;
     case ColumnType::kFloat32: return "<f4";
@@ -123,7 +123,7 @@ std::string python_text(const std::string& text) {
   return out + "'";
 }
 
-std::string npy_header(const TableOutput& out, const Table& table) {
+std::string npy_header(const base::OutputFile& out, const Table& table) {
   std::string literal = "{'descr': [";
   for (const Column& column : table.columns)
     literal += "(" + python_text(column.name) + ", '" + npy_type(out, column) + "'), ";
@@ -148,7 +148,7 @@ std::string npy_header(const TableOutput& out, const Table& table) {
 
 }  // namespace
 
-std::vector<std::string> write_ply_table(TableOutput& out, const Table& table) {
+std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table) {
   std::vector<std::string> left_out;
   std::vector<PlyOutput> outputs;
   std::set<std::string> used;
@@ -181,7 +181,7 @@ std::vector<std::string> write_ply_table(TableOutput& out, const Table& table) {
   return left_out;
 }
 
-void write_npy_table(TableOutput& out, const Table& table) {
+void write_npy_table(base::OutputFile& out, const Table& table) {
   std::string& bytes = out.buffer();
   bytes = npy_header(out, table);
   std::vector<NpyText> texts;

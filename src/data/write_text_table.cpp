@@ -55,7 +55,7 @@ void append_quoted(std::string& out, std::string_view text) {
 }
 
 /// Refuses texts with line ends.
-void check_csv_texts(const TableOutput& out, const Column& column, std::string_view line_ends) {
+void check_csv_texts(const base::OutputFile& out, const Column& column, std::string_view line_ends) {
   const auto* const words = std::get_if<Words>(&column.values);
   if (words == nullptr) return;
   for (const std::string& word : words->words)
@@ -141,7 +141,7 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
 
 }  // namespace
 
-void write_csv_table(TableOutput& out, const Table& table) {
+void write_csv_table(base::OutputFile& out, const Table& table) {
   constexpr std::string_view kLineEnds = "\n\r";
   std::string& text = out.buffer();
   for (const Column& column : table.columns) {
@@ -166,7 +166,7 @@ void write_csv_table(TableOutput& out, const Table& table) {
   }
 }
 
-std::vector<std::string> write_xyz_table(TableOutput& out, const Table& table) {
+std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& table) {
   std::string& text = out.buffer();
   std::vector<std::string> left_out;
   const std::vector<XyzOutput> properties = xyz_outputs(table, left_out);

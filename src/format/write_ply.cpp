@@ -11,8 +11,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/output_file.h"
 #include "scene/value_text.h"
 
 namespace orrery::format {
@@ -49,9 +49,9 @@ std::string header(const scene::Points& points, PlyReal real) {
 }  // namespace
 
 void write_ply(const scene::Points& points, const std::filesystem::path& file, PlyReal real) {
-  std::string out = header(points, real);
-  const std::size_t bytes = 4 * (real == PlyReal::kDouble ? sizeof(double) : sizeof(float)) + sizeof(std::uint32_t);
-  out.reserve(out.size() + points.centers.size() * bytes);
+  base::OutputFile output(file);
+  std::string& out = output.buffer();
+  out = header(points, real);
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
     const math::Vec3d c = points.centers[i];
     for (const double x : {c.x, c.y, c.z, points.radii[i]}) {
@@ -62,8 +62,9 @@ void write_ply(const scene::Points& points, const std::filesystem::path& file, P
       }
     }
     if (!points.materials.empty()) append_bytes(out, points.materials[i]);
+    output.flush();
   }
-  base::write_text_file(file, out);
+  output.finish();
 }
 
 bool is_own_ply(const std::filesystem::path& file) {

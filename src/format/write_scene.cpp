@@ -5,8 +5,8 @@
 #include <set>
 #include <sstream>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/output_file.h"
 #include "format/write_ply.h"
 #include "scene/animation.h"
 #include "scene/schema.h"

@@ -101,7 +101,7 @@ void add_material_matte(const scene::Scene& scene, const compile::CompiledScene&
   MatteMaker maker("CryptoMaterial");
   std::vector<std::uint32_t> ids;
   for (const std::uint32_t material : authored) ids.push_back(maker.id_of(scene.materials[material].name));
-  const std::vector<std::uint32_t>& of_sphere = compiled.sphere_materials;
+  const compile::PackedIndices& of_sphere = compiled.sphere_materials;
   maker.finish(layers, [ids, &of_sphere](std::uint32_t sphere) { return ids[of_sphere[sphere]]; });
 }
 

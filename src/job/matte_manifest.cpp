@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/atomic_file.h"
 #include "base/file_name.h"
+#include "base/output_file.h"
 #include "film/cryptomatte.h"
 #include "image/format.h"
 

@@ -21,8 +21,9 @@ namespace {
 /// clouds of one and three million spheres: peak_memory_bytes of --stats with embree minus that with list.
 constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
 
-/// A SphereBvh while it is built: 14 bytes of the finished tree, 16 that are sorted, and what finding duplicates takes.
-constexpr std::uint64_t kBvhBytesPerSphere = 32;
+/// A SphereBvh while it is built: 16 bytes that are sorted, 4 of the finished tree, which otherwise takes their place,
+/// and up to 2 of what has not been released yet.
+constexpr std::uint64_t kBvhBytesPerSphere = 22;
 
 /// A pixel's sum and the four floats of the finished image.
 constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * sizeof(float);
@@ -85,7 +86,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.height = compiled.height;
   needs.spheres = compiled.spheres.size();
   needs.spheres_in_bvh = accel::spheres_in_bvh(compiled.view());
-  needs.sphere_bytes = compiled.spheres.bytes() + compiled.sphere_materials.size() * sizeof(std::uint32_t);
+  needs.sphere_bytes = compiled.spheres.bytes() + compiled.sphere_materials.bytes();
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.layer_planes = film::planes_of(layers).size();
   needs.layers = layers.any();

@@ -65,7 +65,7 @@ std::string scene_hash(const compile::CompiledScene& compiled) {
   hash.add_bits(compiled.spheres.size());
   for (std::size_t i = 0; i < compiled.spheres.size(); ++i)
     for (const kernel::Sphere s = compiled.spheres[i]; const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
-  for (const std::uint32_t m : compiled.sphere_materials) hash.add_bits(m);
+  for (std::size_t i = 0; i < compiled.sphere_materials.size(); ++i) hash.add_bits(compiled.sphere_materials[i]);
   hash.add_bits(compiled.materials.size());
   for (const kernel::Material& m : compiled.materials) {
     add_all(hash, m.albedo);

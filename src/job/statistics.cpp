@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/atomic_file.h"
+#include "base/output_file.h"
 #include "job/text.h"
 #include "job/version.h"
 

@@ -7,6 +7,7 @@
 
 #include "kernel/camera.h"
 #include "kernel/environment.h"
+#include "kernel/index_array.h"
 #include "kernel/lights.h"
 #include "kernel/material.h"
 #include "kernel/pixel_filter.h"
@@ -50,7 +51,7 @@ inline constexpr std::uint32_t kNoRoulette = 0xffffffffu;
 /// The compiled scene as the inner loops see it. Owns nothing.
 struct SceneView {
   SphereArray spheres;
-  const std::uint32_t* sphere_materials = nullptr;  ///< one per sphere, index into `materials`
+  IndexArray sphere_materials;  ///< one per sphere, index into `materials`
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
   const Emission* emission = nullptr;  ///< one per material; null if nothing emits

@@ -23,7 +23,7 @@ class Spheres {
   /// Swaps the spheres with those of a compiled scene.
   void take_from(compile::CompiledScene& compiled) {
     std::swap(spheres_, compiled.spheres);
-    materials_.swap(compiled.sphere_materials);
+    std::swap(materials_, compiled.sphere_materials);
   }
 
   /// Lends the spheres to a compiled scene until the Loan is destroyed.
@@ -41,7 +41,7 @@ class Spheres {
 
  private:
   compile::SphereStore spheres_;
-  std::vector<std::uint32_t> materials_;
+  compile::PackedIndices materials_;
 };
 
 /// Renders the images of a study and accumulates their render times.

@@ -96,12 +96,12 @@ class OutputTable {
     add("x", coordinates(points, &math::Vec3d::x));
     add("y", coordinates(points, &math::Vec3d::y));
     add("z", coordinates(points, &math::Vec3d::z));
-    std::vector<math::Vec3d>().swap(points.centers);
+    points.centers.clear();
     if (has_radius) {
       replaced_.push_back(roles.radius);
-      add("radius", std::move(points.radii));
+      add("radius", std::vector<double>(points.radii.begin(), points.radii.end()));
     }
-    std::vector<double>().swap(points.radii);
+    points.radii.clear();
     add_colors(points);
     for (const data::ColumnInfo& column : source.info.columns)
       if (!column.is_derived) add_other(column.name);
@@ -115,7 +115,7 @@ class OutputTable {
   static std::vector<double> coordinates(const scene::Points& points, double math::Vec3d::*component) {
     std::vector<double> out;
     out.reserve(points.centers.size());
-    for (const math::Vec3d& center : points.centers) out.push_back(center.*component);
+    for (const math::Vec3d center : points.centers) out.push_back(center.*component);
     return out;
   }
 

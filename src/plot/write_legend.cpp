@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/output_file.h"
 #include "film/picture.h"
 #include "image/format.h"
 #include "image/write.h"

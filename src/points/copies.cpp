@@ -55,15 +55,15 @@ const data::Assembly* find_assembly(const data::FrameInfo& info, const std::stri
   return nullptr;
 }
 
-template <class T>
-void repeat(std::vector<T>& values, const std::vector<std::vector<std::uint32_t>>& subsets,
+template <class Array>
+void repeat(Array& values, const std::vector<std::vector<std::uint32_t>>& subsets,
             const std::vector<std::size_t>& subset_of_copy, std::size_t total) {
   if (values.empty()) return;
-  std::vector<T> out;
+  Array out;
   out.reserve(total);
   for (const std::size_t s : subset_of_copy) {
     if (s == subsets.size()) {
-      out.insert(out.end(), values.begin(), values.end());
+      for (std::size_t i = 0; i < values.size(); ++i) out.push_back(values[i]);
     } else {
       for (const std::uint32_t i : subsets[s]) out.push_back(values[i]);
     }
@@ -71,12 +71,20 @@ void repeat(std::vector<T>& values, const std::vector<std::vector<std::uint32_t>
   values = std::move(out);
 }
 
+/// Multiplies radii by a factor.
+void scale(scene::NumberArray& radii, double factor) {
+  if (radii.is_uniform() && !radii.empty())
+    radii.assign(radii.size(), radii[0] * factor);
+  else
+    for (std::size_t i = 0; i < radii.size(); ++i) radii.set(i, radii[i] * factor);
+}
+
 }  // namespace
 
-void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, std::vector<Vec3d>& centers) {
+void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, scene::PointArray& centers) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     for_each_number(*table.find(info.roles.image[axis]), rows,
-                    [&](std::size_t i, double n) { centers[i] = centers[i] + info.box->edges[axis] * n; });
+                    [&](std::size_t i, double n) { centers.set(i, centers[i] + info.box->edges[axis] * n); });
 }
 
 std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults) {
@@ -136,8 +144,8 @@ void clip(scene::Points& points, std::vector<std::uint32_t>* rows) {
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
     const Vec3d c = points.centers[i];
     if (!holds(x, c.x) || !holds(y, c.y) || !holds(z, c.z)) continue;
-    points.centers[kept] = c;
-    points.radii[kept] = points.radii[i];
+    points.centers.set(kept, c);
+    points.radii.set(kept, points.radii[i]);
     if (!points.materials.empty()) points.materials[kept] = points.materials[i];
     if (!points.colors.empty()) points.colors[kept] = points.colors[i];
     if (rows != nullptr) (*rows)[kept] = (*rows)[i];
@@ -156,8 +164,9 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
   const bool is_placed = !is_identity(placement);
   if (copies.size() == 1 && is_identity(copies[0].transform) && copies[0].chains == nullptr) {
     if (!is_placed) return;
-    for (Vec3d& c : points.centers) c = applied(placement, c);
-    for (double& r : points.radii) r *= points.transform.scale;
+    for (std::size_t i = 0; i < points.centers.size(); ++i)
+      points.centers.set(i, applied(placement, points.centers[i]));
+    scale(points.radii, points.transform.scale);
     return;
   }
   // The spheres of each set of chains; copies without chains have all spheres.
@@ -186,15 +195,14 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
   repeat(points.materials, subsets, subset_of_copy, total);
   repeat(points.colors, subsets, subset_of_copy, total);
   if (rows != nullptr) repeat(*rows, subsets, subset_of_copy, total);
-  auto center = points.centers.begin();
+  std::size_t i = 0;
   for (std::size_t c = 0; c < copies.size(); ++c) {
-    for (const auto end = center + static_cast<std::ptrdiff_t>(size_of_copy[c]); center != end; ++center) {
-      *center = applied(copies[c].transform, *center);
-      if (is_placed) *center = applied(placement, *center);
+    for (const std::size_t end = i + size_of_copy[c]; i < end; ++i) {
+      const Vec3d center = applied(copies[c].transform, points.centers[i]);
+      points.centers.set(i, is_placed ? applied(placement, center) : center);
     }
   }
-  if (is_placed)
-    for (double& r : points.radii) r *= points.transform.scale;
+  if (is_placed) scale(points.radii, points.transform.scale);
 }
 
 }  // namespace orrery::points

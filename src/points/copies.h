@@ -14,7 +14,7 @@ namespace orrery::points {
 /// Moves particles out of the periodic box: p + i a + j b + k c, with the image counts i, j, k of the file.
 ///
 /// Domain     `centers` are those of the rows
-void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, std::vector<data::Vec3d>& centers);
+void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, scene::PointArray& centers);
 
 /// One copy of all spheres, or of those in some chains.
 struct Copy {

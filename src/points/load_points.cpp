@@ -29,9 +29,22 @@ using data::Vec3d;
 /// Rows are numbered by 32 bits.
 constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
 
-/// Bytes per sphere while it is read: its numbers in the table, then as a sphere.
-constexpr std::uint64_t kBytesPerColumn = 8;
-constexpr std::uint64_t kBytesPerSphere = sizeof(Vec3d) + sizeof(double) + sizeof(std::uint16_t);
+/// Bytes of a value in a data::Table.
+std::uint64_t bytes_of(data::ColumnType type) {
+  switch (type) {
+    case data::ColumnType::kFloat64:
+    case data::ColumnType::kInt64: return 8;
+    case data::ColumnType::kFloat32:
+    case data::ColumnType::kInt32:
+    case data::ColumnType::kText: return 4;
+    case data::ColumnType::kUint16: return 2;
+    case data::ColumnType::kUint8: return 1;
+  }
+  return 8;
+}
+
+/// A scene::NumberArray stores these as floats.
+bool fits_single(data::ColumnType type) { return type == data::ColumnType::kFloat32 || bytes_of(type) < 4; }
 
 /// Loads the spheres of one points table.
 class Loader {
@@ -132,14 +145,38 @@ class Loader {
     for (const std::string& column : info_.roles.image) need(column);
   }
 
+  data::ColumnType type_of(const std::string& name) const {
+    for (const data::ColumnInfo& column : info_.columns)
+      if (column.name == name) return column.type;
+    return data::ColumnType::kFloat64;
+  }
+
+  /// Of scene data. An upper bound: numbers that need no double precision are stored as floats.
+  std::uint64_t bytes_per_sphere() const {
+    const scene::PointsTransform unchanged;
+    const scene::PointsTransform& t = points_.transform;
+    const bool moves = points_.unwrap || !points_.assembly.empty() || !(points_.replicate == Vec3d{1, 1, 1}) ||
+                       t.scale != unchanged.scale || !(t.rotate == unchanged.rotate) ||
+                       !(t.translate == unchanged.translate);
+    bool all_single = !moves;
+    for (const std::string& column : info_.roles.position) all_single = all_single && fits_single(type_of(column));
+    std::uint64_t bytes = 3 * (all_single ? sizeof(float) : sizeof(double));
+    const bool same = radius_.scale == 1 && t.scale == unchanged.scale;
+    if (radius_.kind != RadiusSource::Kind::kValue)
+      bytes += same && fits_single(type_of(radius_.column)) ? sizeof(float) : sizeof(double);
+    if (!material_.empty()) bytes += sizeof(std::uint32_t);
+    return bytes + (color_.columns.empty() ? 0 : sizeof(std::uint16_t));
+  }
+
   /// `count`   of spheres in one image of the periodic box
   void require_memory(std::uint64_t count) const {
     const Vec3d n = points_.replicate;
     const double images = n.x * n.y * n.z, spheres = static_cast<double>(count) * images;  // may exceed 64 bits
-    const std::uint64_t row_bytes = kBytesPerColumn * columns_.size();
+    std::uint64_t row_bytes = 0;
+    for (const std::string& column : columns_) row_bytes += bytes_of(type_of(column));
     const std::uint64_t copied = request_.source == nullptr ? 0 : sizeof(std::uint32_t) + row_bytes;
     const double bytes = static_cast<double>(info_.rows * row_bytes) +
-                         spheres * static_cast<double>(kBytesPerSphere + copied) +
+                         spheres * static_cast<double>(bytes_per_sphere() + copied) +
                          images * static_cast<double>(copies_.size() * sizeof(Copy));
     if (request_.memory_limit == 0 || bytes <= static_cast<double>(request_.memory_limit)) return;
     const auto whole = [](double x) { return static_cast<std::uint64_t>(std::min(x, 1e18)); };
@@ -161,8 +198,8 @@ class Loader {
       faults_.warning(table.rows == 0 ? ".file" : ".select",
                       table.rows == 0 ? "the frame has no particles"
                                       : "selects none of the " + std::to_string(table.rows) + " particles");
-    std::vector<double> radii = radii_of(table, rows, radius_, points_.radius, faults_);
-    std::vector<Vec3d> centers = centers_of(table, rows);
+    scene::NumberArray radii = radii_of(table, rows, radius_, points_.radius, faults_);
+    scene::PointArray centers = centers_of(table, rows);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
     if (!all_good(centers, radii)) {
@@ -239,22 +276,18 @@ class Loader {
       if (row != kFree) list.push_back(row);
   }
 
-  std::vector<Vec3d> centers_of(const data::Table& table, const Rows& rows) const {
-    std::vector<Vec3d> out(rows.size());
-    const auto set = [&](std::size_t axis, double Vec3d::*component) {
+  scene::PointArray centers_of(const data::Table& table, const Rows& rows) const {
+    scene::PointArray out(rows.size());
+    for (std::size_t axis = 0; axis < 3; ++axis)
       for_each_number(*table.find(info_.roles.position[axis]), rows,
-                      [&](std::size_t i, double v) { out[i].*component = v; });
-    };
-    set(0, &Vec3d::x);
-    set(1, &Vec3d::y);
-    set(2, &Vec3d::z);
+                      [&](std::size_t i, double v) { out.set(i, axis, v); });
     return out;
   }
 
   static bool is_good(Vec3d center, double radius) {
     return math::is_finite(center) && std::isfinite(radius) && radius != 0;
   }
-  static bool all_good(const std::vector<Vec3d>& centers, const std::vector<double>& radii) {
+  static bool all_good(const scene::PointArray& centers, const scene::NumberArray& radii) {
     for (std::size_t i = 0; i < centers.size(); ++i)
       if (!is_good(centers[i], radii[i])) return false;
     return true;
@@ -262,8 +295,8 @@ class Loader {
 
   /// Returns the indices of rows with finite coordinates and radii. Reports the others, as errors unless they are to be
   /// skipped.
-  std::vector<std::uint32_t> good_rows(const Rows& rows, const std::vector<Vec3d>& centers,
-                                       const std::vector<double>& radii) {
+  std::vector<std::uint32_t> good_rows(const Rows& rows, const scene::PointArray& centers,
+                                       const scene::NumberArray& radii) {
     std::vector<std::uint32_t> good;
     std::size_t bad = 0;
     for (std::uint32_t i = 0; i < rows.size(); ++i) {
@@ -291,13 +324,13 @@ class Loader {
   }
 
   /// Keeps the listed rows with their centres and radii.
-  static Rows kept(const Rows& rows, const std::vector<std::uint32_t>& good, std::vector<Vec3d>& centers,
-                   std::vector<double>& radii) {
+  static Rows kept(const Rows& rows, const std::vector<std::uint32_t>& good, scene::PointArray& centers,
+                   scene::NumberArray& radii) {
     std::vector<std::uint32_t> list;
     for (std::size_t i = 0; i < good.size(); ++i) {
       list.push_back(static_cast<std::uint32_t>(rows[good[i]]));
-      centers[i] = centers[good[i]];
-      radii[i] = radii[good[i]];
+      centers.set(i, centers[good[i]]);
+      radii.set(i, radii[good[i]]);
     }
     centers.resize(good.size());
     radii.resize(good.size());

@@ -91,13 +91,14 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
   return out;
 }
 
-std::vector<double> radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
-                             const scene::PointsRadius& radius, KeyFaults& faults) {
-  if (source.kind == RadiusSource::Kind::kValue) return std::vector<double>(rows.size(), radius.value.value_or(1));
-  std::vector<double> out(rows.size());
+scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
+                            const scene::PointsRadius& radius, KeyFaults& faults) {
+  if (source.kind == RadiusSource::Kind::kValue) return scene::NumberArray(rows.size(), radius.value.value_or(1));
+  scene::NumberArray out;
+  out.reserve(rows.size());
   const data::Column& column = *table.find(source.column);
   if (source.kind == RadiusSource::Kind::kColumn) {
-    for_each_number(column, rows, [&](std::size_t i, double v) { out[i] = v * source.scale; });
+    for_each_number(column, rows, [&](std::size_t, double v) { out.push_back(v * source.scale); });
     return out;
   }
   const Labels labels = labels_of(column, rows, kMaxLabels);
@@ -107,7 +108,7 @@ std::vector<double> radii_of(const data::Table& table, const Rows& rows, const R
     return out;
   }
   const std::vector<double> of_labels = radii_of_labels(labels, source, radius, faults);
-  for (std::size_t i = 0; i < rows.size(); ++i) out[i] = of_labels[labels.of_rows[i]];
+  for (std::size_t i = 0; i < rows.size(); ++i) out.push_back(of_labels[labels.of_rows[i]]);
   return out;
 }
 

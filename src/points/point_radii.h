@@ -24,7 +24,7 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
 /// Returns the radii of the rows. Reports elements and types without a radius.
 ///
 /// Domain     a table with the source's column
-std::vector<double> radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
-                             const scene::PointsRadius& radius, KeyFaults& faults);
+scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const RadiusSource& source,
+                            const scene::PointsRadius& radius, KeyFaults& faults);
 
 }  // namespace orrery::points

@@ -13,6 +13,8 @@
 namespace orrery::points {
 namespace {
 
+using math::Vec3d;
+
 /// Up to this number, all points are in the sample.
 constexpr std::size_t kMaxExact = 100'000;
 /// Sample size of larger sets. The quantile of the median of n values has a standard deviation of 0.5 / sqrt(n).
@@ -55,7 +57,7 @@ struct Sample {
 
 /// Returns the sample: one point of each stratum of consecutive points, chosen by a hash. A constant stride could
 /// choose one face of a lattice. Points at one place become one sample, because millions of points may be there.
-std::vector<Sample> sample_of(std::span<const Vec3d> centers, const Scale& scale) {
+std::vector<Sample> sample_of(const scene::PointArray& centers, const Scale& scale) {
   const std::size_t count = centers.size() <= kMaxExact ? centers.size() : kSamples;
   std::vector<Vec3d> places(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -193,15 +195,15 @@ double median(std::vector<Sample>& samples) {
 
 }  // namespace
 
-double median_neighbor_distance(std::span<const Vec3d> centers) {
+double median_neighbor_distance(const scene::PointArray& centers) {
   double largest = 0;
-  for (const Vec3d& p : centers) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  for (const Vec3d p : centers) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   if (largest == 0) return 0;
   const Scale scale{std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000))};
 
   std::vector<Sample> samples = sample_of(centers, scale);
   if (samples.size() == 1) {
-    for (const Vec3d& p : centers) samples[0].update(scale(p));
+    for (const Vec3d p : centers) samples[0].update(scale(p));
     return samples[0].nearest2 < kInfinity ? std::sqrt(samples[0].nearest2) / scale.factor : 0;
   }
   bound(samples.data(), samples.data() + samples.size());

@@ -49,13 +49,17 @@ std::string key_of(const Place& place) {
 
 Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, const Scene* closing) {
   const bool is_fast = scene.render.precision == Precision::kFast;
-  const auto number = [is_fast](double x) { return is_fast ? static_cast<double>(static_cast<float>(x)) : x; };
+  const auto rounded = [is_fast](auto key) {
+    if (is_fast)
+      for (double& x : key) x = static_cast<double>(static_cast<float>(x));
+    return key;
+  };
   SphereIndex spheres(scene);
   const auto place_of = [&](std::size_t id) {
     const Place at = spheres.at(id);
     const Vec3d c = at.is_table ? scene.spheres[at.index].center : scene.points[at.points].centers[at.index];
     const double r = at.is_table ? scene.spheres[at.index].radius : scene.points[at.points].radii[at.index];
-    return std::array{number(c.x), number(c.y), number(c.z), number(std::abs(r))};
+    return rounded(std::array{c.x, c.y, c.z, std::abs(r)});
   };
   const auto path_of = [&](std::size_t id) {
     const std::array<double, 4> p = place_of(id);
@@ -63,11 +67,11 @@ Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, con
     if (id >= scene.spheres.size()) return path;  // points files do not move
     const Sphere &from = scene.spheres[id], &to = closing->spheres[id];
     const Vec3d displacement = to.center - from.center;
-    path[4] = number(displacement.x);
-    path[5] = number(displacement.y);
-    path[6] = number(displacement.z);
-    path[7] = number(std::abs(to.radius) - std::abs(from.radius));
-    return path;
+    path[4] = displacement.x;
+    path[5] = displacement.y;
+    path[6] = displacement.z;
+    path[7] = std::abs(to.radius) - std::abs(from.radius);
+    return rounded(path);
   };
   const std::vector<base::Repeated> found = closing != nullptr ? base::find_repeated<8>(spheres.count(), path_of)
                                                                : base::find_repeated<4>(spheres.count(), place_of);

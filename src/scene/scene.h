@@ -13,13 +13,12 @@
 
 #include "math/vec3.h"
 #include "scene/accelerator.h"
+#include "scene/number_array.h"
 
 /// The authored scene: names, user units, nothing compiled.
 ///
 /// The member initialisers are the defaults documented in docs/scene-format.md, and their only definition.
 namespace orrery::scene {
-
-using math::Vec3d;
 
 class EnvironmentImage;
 
@@ -193,8 +192,8 @@ struct Points {
   std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
   std::string material_column = "material";          ///< indices into Scene::materials, in PLY files; empty: none
   bool skip_bad = false;                             ///< leaves out rows with coordinates that are not finite
-  std::vector<Vec3d> centers = {};
-  std::vector<double> radii = {};             ///< as many as centers
+  PointArray centers = {};
+  NumberArray radii = {};                     ///< as many as centers
   std::vector<std::uint32_t> materials = {};  ///< as many as centers, or empty: `material` for all
   std::vector<std::uint16_t> colors = {};     ///< as many as centers, index into `palette`; or empty: the material's
   std::vector<Vec3d> palette = {};            ///< colours that replace those of the material

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/atomic_file.h"
+#include "base/output_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -104,7 +104,7 @@ TEST(CompileCompile, GlassHasNoColor) {
   scene::Scene s;
   s.materials = {{"glass", scene::Dielectric{1.5, scene::Fresnel::kExact}}};
   s.points = {colored_points(0)};
-  s.points[0].radii[1] = -1;
+  s.points[0].radii.set(1, -1);
   const CompiledScene compiled = compile(s);
   EXPECT_EQ(compiled.materials.size(), 2u) << "outward and inward";
   EXPECT_EQ(compiled.sphere_materials[0], compiled.sphere_materials[2]);

@@ -16,7 +16,12 @@ using kernel::Sphere;
 SphereStore stored(const std::vector<Sphere>& plain, const std::vector<Sphere>& points) {
   SphereStore store;
   for (const Sphere& s : plain) store.push_back(s);
-  store.append(points.size(), [&](std::size_t i) { return points[i]; });
+  scene::Points set;
+  for (const Sphere& s : points) {
+    set.centers.push_back({s.x, s.y, s.z});
+    set.radii.push_back(s.radius);
+  }
+  store.append({&set, 1});
   return store;
 }
 

@@ -60,7 +60,7 @@ TEST(FormatWritePly, FloatsAreRoundedAndTakeHalfTheSpace) {
 TEST(FormatWritePly, FloatOverflowIsRefused) {
   const support::TempDir folder;
   auto points = some_points(3, false);
-  points.centers[1].z = 1e39;
+  points.centers.set(1, 2, 1e39);
   EXPECT_NO_THROW(write_ply(points, folder / "a.ply", PlyReal::kDouble));
   try {
     write_ply(points, folder / "b.ply", PlyReal::kFloat);

@@ -292,7 +292,7 @@ TEST_F(PlotPlot, KeysOfTheUserAreWritten) {
   options.points.radius.column = "mass";
   options.points.radius.scale = 0.5;
   make("b.csv", kCorners);
-  EXPECT_EQ(read().points[0].radii.at(3), 2);
+  EXPECT_EQ(read().points[0].radii[3], 2);
 }
 
 TEST_F(PlotPlot, StylesAndGround) {

@@ -45,7 +45,7 @@ TEST(PointsCopies, UnwrapMovesByTheEdgesOfATriclinicBox) {
   table.columns = {{"ix", std::vector<std::int64_t>{9, 1}},
                    {"iy", std::vector<std::int64_t>{9, -2}},
                    {"iz", std::vector<std::int64_t>{9, 3}}};
-  std::vector<Vec3d> centers = {{0.5, 0, 0}};
+  scene::PointArray centers = {{0.5, 0, 0}};
   unwrap(table, Rows(std::vector<std::uint32_t>{1}), info, centers);
   EXPECT_EQ(centers[0], (Vec3d{0.5 + 10 - 2 + 6, -40 + 9, 90}));
 }

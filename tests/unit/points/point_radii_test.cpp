@@ -10,7 +10,7 @@ namespace orrery::points {
 namespace {
 
 using Kind = RadiusSource::Kind;
-using Radii = std::vector<double>;
+using Radii = scene::NumberArray;
 
 /// A file with columns of all roles.
 data::FrameInfo atoms() {

@@ -13,6 +13,7 @@
 namespace orrery::points {
 namespace {
 
+using math::Vec3d;
 using Points = std::vector<Vec3d>;
 
 double by_definition(const Points& points) {

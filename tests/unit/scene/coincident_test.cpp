@@ -71,7 +71,7 @@ TEST(SceneCoincident, ComparesAcrossTablesAndPointsFiles) {
 TEST(SceneCoincident, CountsAllAndListsTheFirst) {
   Scene scene;
   scene.points.resize(1);
-  scene.points[0].centers.assign(200000, Vec3d{1, 2, 3});
+  scene.points[0].centers = std::vector<Vec3d>(200000, Vec3d{1, 2, 3});
   scene.points[0].radii.assign(200000, 1);
   const auto found = coincident_spheres(scene, 3);
   EXPECT_EQ(found.count, 199999u);

@@ -37,7 +37,7 @@ TEST(SceneLayers, ObjectIdsMustBeExactInAFloat) {
   s.points.resize(1);
   s.points[0].centers.resize((std::size_t{1} << 24) - 1);
   EXPECT_EQ(layer_fault(s, "object_id"), "");
-  s.points[0].centers.emplace_back();
+  s.points[0].centers.push_back({});
   EXPECT_EQ(layer_fault(s, "object_id"),
             "a float cannot represent the ids of 16777216 spheres exactly; use CryptoObject");
   EXPECT_FALSE(contains(available_layers(s), "object_id"));

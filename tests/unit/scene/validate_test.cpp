@@ -229,7 +229,7 @@ TEST(SceneValidate, OfInvalidPointsTenAreReportedAndAllCounted) {
     for (int i = 0; i < 100; ++i) points.centers.push_back({i + (&points == &scene.points[0] ? 0.0 : 1000.0), 0, 0});
     points.radii.assign(100, 1);
   }
-  for (std::size_t i = 20; i < 50; ++i) scene.points[1].radii[i] = 0;
+  for (std::size_t i = 20; i < 50; ++i) scene.points[1].radii.set(i, 0);
   const Told lines = told(scene);
   ASSERT_EQ(lines.size(), 11u);
   EXPECT_EQ(lines[0].rfind("points[1][20].radius: radius is 0", 0), 0u) << lines[0];

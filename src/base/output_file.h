@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/atomic_file.h"
+
+namespace orrery::base {
+
+/// A file that is written through a buffer and appears when it is complete.
+class OutputFile {
+ public:
+  /// Errors     those of AtomicFile
+  explicit OutputFile(const std::filesystem::path& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// The bytes to append to; flush() writes them once there are enough.
+  std::string& buffer() { return buffer_; }
+  /// Errors     base::Error(kIo)
+  void flush();
+  /// Writes the rest and commits the file.
+  ///
+  /// Errors     base::Error(kIo)
+  void finish();
+
+ private:
+  void write();
+
+  std::filesystem::path path_;
+  AtomicFile file_;
+  int descriptor_;
+  std::string buffer_;
+};
+
+/// Writes a text to a file that appears when it is complete.
+///
+/// Errors     those of OutputFile
+void write_text_file(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace orrery::base

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace orrery::kernel {
+
+/// Unsigned integers of 0, 1, 2 or 4 bytes each. Owns nothing.
+///
+/// An element is read with four bytes from its first one on: three bytes after the last element are read as well.
+struct IndexArray {
+  const unsigned char* data = nullptr;
+  std::uint32_t stride = 0;  ///< bytes; 0: all are equal, and stored in four bytes
+  std::uint32_t mask = 0;    ///< of the bits that belong to an element
+
+  IndexArray() = default;
+  IndexArray(const unsigned char* bytes, std::uint32_t bytes_each)
+      : data(bytes), stride(bytes_each), mask(bytes_each % 4 == 0 ? 0xffffffffu : (1u << 8 * bytes_each) - 1) {}
+  IndexArray(const std::uint32_t* elements)  // NOLINT(google-explicit-constructor): an array is this view
+      : IndexArray(reinterpret_cast<const unsigned char*>(elements), sizeof(std::uint32_t)) {}
+
+  std::uint32_t operator[](std::size_t i) const noexcept {
+    std::uint32_t element = 0;
+    std::memcpy(&element, data + i * stride, sizeof(element));
+    return element & mask;
+  }
+};
+
+}  // namespace orrery::kernel

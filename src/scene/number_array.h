@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <iterator>
+#include <vector>
+
+#include "math/vec3.h"
+
+namespace orrery::scene {
+
+using math::Vec3d;
+
+/// Read access to an array whose elements are returned by value.
+template <class Array, class Value>
+class ValueIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = Value;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const Value*;
+  using reference = Value;
+
+  ValueIterator(const Array& array, std::size_t at) : array_(&array), at_(at) {}
+  Value operator*() const { return (*array_)[at_]; }
+  ValueIterator& operator++() { return ++at_, *this; }
+  ValueIterator operator++(int) { return {*array_, at_++}; }
+  bool operator==(const ValueIterator& other) const { return at_ == other.at_; }
+
+ private:
+  const Array* array_;
+  std::size_t at_;
+};
+
+/// Numbers of double precision. They are stored as floats, or as a single number if all are equal, as long as that
+/// loses nothing.
+///
+/// Not thread-safe, even for writes to different elements.
+class NumberArray {
+ public:
+  using value_type = double;
+  using const_iterator = ValueIterator<NumberArray, double>;
+
+  NumberArray() = default;
+  NumberArray(std::size_t count, double value) : count_(count), value_(value) {}
+  NumberArray(std::initializer_list<double> numbers) { append(numbers); }
+  NumberArray(const std::vector<double>& numbers) { append(numbers); }  // NOLINT(google-explicit-constructor)
+
+  std::size_t size() const noexcept { return count_; }
+  bool empty() const noexcept { return count_ == 0; }
+  std::size_t bytes() const noexcept { return singles_.size() * sizeof(float) + doubles_.size() * sizeof(double); }
+
+  double operator[](std::size_t i) const noexcept {
+    switch (storage_) {
+      case Storage::kSingles: return static_cast<double>(singles_[i]);
+      case Storage::kDoubles: return doubles_[i];
+      case Storage::kOne: break;
+    }
+    return value_;
+  }
+  const_iterator begin() const { return {*this, 0}; }
+  const_iterator end() const { return {*this, count_}; }
+
+  /// All numbers are equal.
+  bool is_uniform() const noexcept { return storage_ == Storage::kOne; }
+  /// No number needs double precision.
+  bool fits_single() const noexcept { return storage_ == Storage::kSingles || (is_uniform() && is_single(value_)); }
+  /// The numbers, if they are stored as floats; otherwise null.
+  const float* singles() const noexcept { return storage_ == Storage::kSingles ? singles_.data() : nullptr; }
+
+  void set(std::size_t i, double value) {
+    if (storage_ == Storage::kSingles && is_single(value)) {
+      singles_[i] = static_cast<float>(value);
+    } else if (storage_ == Storage::kDoubles) {
+      doubles_[i] = value;
+    } else if (storage_ != Storage::kOne || !is_same(value, value_)) {
+      spread(value);
+      set(i, value);
+    }
+  }
+  void push_back(double value) {
+    if (count_ == 0 && storage_ == Storage::kOne) value_ = value;
+    if (storage_ == Storage::kSingles && is_single(value)) {
+      singles_.push_back(static_cast<float>(value));
+    } else if (storage_ == Storage::kDoubles) {
+      doubles_.push_back(value);
+    } else if (storage_ != Storage::kOne || !is_same(value, value_)) {
+      spread(value);
+      push_back(value);
+      return;
+    }
+    ++count_;
+  }
+  void assign(std::size_t count, double value) { *this = NumberArray(count, value); }
+  void clear() { *this = NumberArray(); }
+  void reserve(std::size_t count) { reserved_ = count; }
+  void resize(std::size_t count) {
+    if (storage_ == Storage::kSingles) singles_.resize(count);
+    if (storage_ == Storage::kDoubles) doubles_.resize(count);
+    if (is_uniform() && count > count_ && !is_same(value_, 0)) {
+      if (count_ == 0) {
+        value_ = 0;
+      } else {
+        spread(0);
+        return resize(count);
+      }
+    }
+    count_ = count;
+  }
+
+  friend bool operator==(const NumberArray& a, const NumberArray& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (!(a[i] == b[i])) return false;
+    return true;
+  }
+
+ private:
+  enum class Storage : std::uint8_t { kOne, kSingles, kDoubles };
+
+  static bool is_single(double x) { return static_cast<double>(static_cast<float>(x)) == x || std::isnan(x); }
+  /// Distinguishes 0 from -0.
+  static bool is_same(double a, double b) { return a == b && std::signbit(a) == std::signbit(b); }
+
+  template <class Numbers>
+  void append(const Numbers& numbers) {
+    reserve(numbers.size());
+    for (const double x : numbers) push_back(x);
+  }
+  /// Stores each number, so that there can be one with `value` beside them.
+  void spread(double value);
+
+  Storage storage_ = Storage::kOne;
+  std::size_t count_ = 0, reserved_ = 0;
+  double value_ = 0;
+  std::vector<float> singles_;
+  std::vector<double> doubles_;
+};
+
+/// Points, stored as NumberArray stores their coordinates.
+class PointArray {
+ public:
+  using value_type = Vec3d;
+  using const_iterator = ValueIterator<PointArray, Vec3d>;
+
+  PointArray() = default;
+  explicit PointArray(std::size_t count) : numbers_(3 * count, 0) {}
+  PointArray(std::initializer_list<Vec3d> points) { append(points); }
+  PointArray(const std::vector<Vec3d>& points) { append(points); }  // NOLINT(google-explicit-constructor)
+
+  std::size_t size() const noexcept { return numbers_.size() / 3; }
+  bool empty() const noexcept { return numbers_.empty(); }
+  Vec3d operator[](std::size_t i) const noexcept { return {numbers_[3 * i], numbers_[3 * i + 1], numbers_[3 * i + 2]}; }
+  const_iterator begin() const { return {*this, 0}; }
+  const_iterator end() const { return {*this, size()}; }
+  /// x, y, z of each point.
+  const NumberArray& numbers() const noexcept { return numbers_; }
+
+  void set(std::size_t i, Vec3d p) {
+    numbers_.set(3 * i, p.x);
+    numbers_.set(3 * i + 1, p.y);
+    numbers_.set(3 * i + 2, p.z);
+  }
+  /// `axis`     0, 1 or 2
+  void set(std::size_t i, std::size_t axis, double value) { numbers_.set(3 * i + axis, value); }
+  void push_back(Vec3d p) {
+    numbers_.push_back(p.x);
+    numbers_.push_back(p.y);
+    numbers_.push_back(p.z);
+  }
+  void clear() { numbers_.clear(); }
+  void reserve(std::size_t count) { numbers_.reserve(3 * count); }
+  void resize(std::size_t count) { numbers_.resize(3 * count); }
+
+  friend bool operator==(const PointArray& a, const PointArray& b) { return a.numbers_ == b.numbers_; }
+
+ private:
+  template <class Points>
+  void append(const Points& points) {
+    reserve(points.size());
+    for (const Vec3d& p : points) push_back(p);
+  }
+
+  NumberArray numbers_;
+};
+
+}  // namespace orrery::scene
