@@ -58,7 +58,7 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
     constexpr double kMaxCopies = 1000;
     for (const double n : counts)
       if (!(n >= 1 && n <= kMaxCopies && n == std::floor(n)))
-        refuse("--replicate: the numbers of copies must be whole numbers from 1 to 1000");
+        refuse("--replicate: the numbers of copies must be integers from 1 to 1000");
     points.replicate = {counts[0], counts[1], counts[2]};
   }
 }

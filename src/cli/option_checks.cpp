@@ -41,7 +41,7 @@ Check whole_number(std::uint64_t from, std::uint64_t to) {
       text = std::to_string(value);  // CLI11 would read 010 as eight
       return {};
     }
-    return fmt::format("must be a whole number from {} to {}, not `{}`", from, to, text);
+    return fmt::format("must be an integer from {} to {}, not `{}`", from, to, text);
   };
 }
 

@@ -19,7 +19,7 @@ Check one_of(std::vector<std::string> names);
 
 // The checks below that convert the value need Option::transform(); Option::check() keeps the typed text.
 
-/// Rejects everything but a whole number from..to. Removes leading zeros, which CLI11 would take for octal.
+/// Rejects everything but an integer from..to. Removes leading zeros, which CLI11 would take for octal.
 Check whole_number(std::uint64_t from, std::uint64_t to);
 
 /// The number in a text that whole_number() accepts; 0 if it is none.

@@ -35,7 +35,7 @@ ProgressStyle style_of(const RenderOptions& options) {
 
 [[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
 
-/// Parses two whole numbers with a separator.
+/// Parses two integers with a separator.
 template <class Number>
 std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char separator) {
   const std::size_t at = text.find(separator);

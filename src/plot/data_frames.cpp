@@ -41,6 +41,7 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
   info_ = file_->describe(described_ - 1);
   points::add_derived_columns(info_);
+  require_frames();
   if (!options.all_frames) return;
   if (is_sequence_)
     throw base::Error(base::ErrorKind::kUsage,
@@ -48,6 +49,16 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
                       "a range, e.g. 1-48");
   numbers_.resize(static_cast<std::size_t>(file_->frame_count()));
   std::iota(numbers_.begin(), numbers_.end(), 1);
+}
+
+/// Before anything is written, so that no film ends at the last frame of its file.
+void DataFrames::require_frames() const {
+  if (is_sequence_ || options_.points.frame || numbers_.size() < 2) return;
+  const int count = file_->frame_count(), last = *std::max_element(numbers_.begin(), numbers_.end());
+  if (count > 1 && last > count)  // a single frame is the same in all frames
+    throw base::Error(base::ErrorKind::kBadData, "--frames: there is no frame " + std::to_string(last) + "; " +
+                                                     options_.file.string() + " has " + std::to_string(count) +
+                                                     " frames");
 }
 
 std::filesystem::path DataFrames::file_of(int frame) const { return base::with_frame(options_.file.string(), frame); }

@@ -27,7 +27,8 @@ class DataFrames {
   ///
   /// `folder`   to which the file of a colour map is relative
   /// Domain     `options` outlive it
-  /// Errors     base::Error: those of data::open(); kUsage for all frames of a sequence of files
+  /// Errors     base::Error: those of data::open(); kUsage for all frames of a sequence of files; kBadData for frames
+  ///            that the file does not have
   DataFrames(const DataOptions& options, const std::filesystem::path& folder);
 
   data::Format format() const { return file_->format(); }
@@ -49,6 +50,8 @@ class DataFrames {
   LoadedFrame load(int frame, const scene::Points& keys, points::SourceRows* source = nullptr) const;
 
  private:
+  void require_frames() const;
+
   const DataOptions& options_;
   std::filesystem::path folder_;
   bool is_sequence_;

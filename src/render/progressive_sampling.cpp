@@ -11,8 +11,8 @@ namespace {
 using kernel::Sampler;
 
 /// Maximum side of a square, px: neighbouring pixels see the same spheres.
-constexpr int kLargestSide = 32;
-constexpr int kSmallestSide = 4;
+constexpr int kLargestSquare = 32;
+constexpr int kSmallestSquare = 4;
 
 /// Paths in a square: a few milliseconds of work.
 constexpr double kPathsPerSquare = 65536;
@@ -22,7 +22,7 @@ constexpr double kPathsPerSquare = 65536;
 constexpr std::uint32_t kFirstPass = 16, kGrowth = 4, kLargestPass = 4096;
 
 int side_for(std::uint32_t samples) {
-  return std::clamp(static_cast<int>(std::sqrt(kPathsPerSquare / samples)), kSmallestSide, kLargestSide);
+  return std::clamp(static_cast<int>(std::sqrt(kPathsPerSquare / samples)), kSmallestSquare, kLargestSquare);
 }
 
 }  // namespace

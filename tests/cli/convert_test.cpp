@@ -174,6 +174,7 @@ TEST_F(CliConvert, FramesAreFilesOfTheirOwn) {
   expect_error("convert a.dump -o f.csv --frames 1,3", 2, "f.csv is one name for 2 frames; add a frame pattern");
   expect_error("convert a.dump -o g.##.csv", 2, "g.##.csv has a frame pattern; select frames with --frames");
   expect_error("convert a.dump -o g.##.csv --frames 3-4", 65, "there is no frame 4; a.dump has 3 frames");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "g.03.csv")) << "nothing is written before that is known";
   // A sequence of files.
   EXPECT_EQ(run("convert f.##.csv -o g.##.csv --frames 1,3 -q").status, 0);
   EXPECT_EQ(text_of(folder_ / "g.03.csv"), text_of(folder_ / "f.03.csv"));
@@ -199,8 +200,8 @@ TEST_F(CliConvert, ErrorsLeaveNoFile) {
   expect_error("convert a.dump -o a.vtp", 2, "unknown extension `.vtp`; use .ply, .xyz, .npy or .csv");
   expect_error("convert a.dump", 2, "-o");
   expect_error("convert a.dump -o a.csv --map viridis", 2, "--map and --range need --color-by");
-  expect_error("convert a.dump -o a.csv --replicate 2,0,1", 2, "whole numbers from 1 to 1000");
-  expect_error("convert a.dump -o a.csv --replicate 1e9,1,1", 2, "whole numbers from 1 to 1000");
+  expect_error("convert a.dump -o a.csv --replicate 2,0,1", 2, "integers from 1 to 1000");
+  expect_error("convert a.dump -o a.csv --replicate 1e9,1,1", 2, "integers from 1 to 1000");
   expect_error("convert a.dump -o none/a.csv", 73, "none");
   expect_error("convert none.dump -o a.csv", 66, "none.dump");
   expect_error("convert a.dump -o a.csv --select 'typ == 1'", 65, "a.dump: error: select:");

@@ -33,7 +33,7 @@ const Case kCases[] = {
      "Try orrery render --help.\n"},
     {"render good.toml -o a.png b.png", 2, "orrery: unexpected argument `b.png`; name output files with -o\n"},
     {"render good.toml -o a.png -t many", 2,
-     "orrery: --threads: must be a whole number from 1 to 4096, not `many`\n"
+     "orrery: --threads: must be an integer from 1 to 4096, not `many`\n"
      "Try orrery render --help.\n"},
     {"render good.toml -o a.png --exposure bright", 2,
      "orrery: --exposure: must be a number from -100 to 100, not `bright`\n"
@@ -70,7 +70,7 @@ const Case kCases[] = {
      "orrery: unknown command fianl; did you mean `final`?\n"
      "Try orrery generate --help.\n"},
     {"generate final -o a.toml --grid -3", 2,
-     "orrery: --grid: must be a whole number from 0 to 1000, not `-3`\n"
+     "orrery: --grid: must be an integer from 0 to 1000, not `-3`\n"
      "Try orrery generate final --help.\n"},
     {"generate env skie -o a.exr", 2,
      "orrery: KIND: unknown value `skie`; use one of studio, sky\n"

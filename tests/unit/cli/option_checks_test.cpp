@@ -25,7 +25,7 @@ TEST(CliOptionChecks, WholeNumbersHaveLimitsAndNoTrailingText) {
   EXPECT_EQ(verdict(check, "1"), "");
   EXPECT_EQ(verdict(check, "20"), "");
   for (const char* wrong : {"0", "21", "-1", "1.5", "3x", "", " 3", "99999999999999999999999"})
-    EXPECT_EQ(verdict(check, wrong), std::string("must be a whole number from 1 to 20, not `") + wrong + "`");
+    EXPECT_EQ(verdict(check, wrong), std::string("must be an integer from 1 to 20, not `") + wrong + "`");
 }
 
 TEST(CliOptionChecks, WholeNumbersAreDecimal) {

@@ -199,8 +199,8 @@ TEST_F(PlotPlot, OneRangeAndOneViewForAllFrames) {
   const scene::Scene second = read(2), third = read(3);
   EXPECT_EQ(second.points[0].color_range->low, -3);
   EXPECT_EQ(third.points[0].color_range->high, 5);
-  EXPECT_EQ(second.points[0].centers.back().x, 1);
-  EXPECT_EQ(third.points[0].centers.back().x, 9);
+  EXPECT_EQ(second.points[0].centers[1].x, 1);
+  EXPECT_EQ(third.points[0].centers[1].x, 9);
   EXPECT_EQ(second.camera.look_at, third.camera.look_at);
   EXPECT_EQ(read(1).points[0].centers.size(), 0u) << "a frame without particles is rendered";
 }
@@ -214,7 +214,7 @@ TEST_F(PlotPlot, ChosenFramesOnly) {
   EXPECT_EQ(made.points.color_range->high, 2);
   EXPECT_EQ(made.frames, (std::vector<int>{2, 3}));
   options.frames = {2, 4};
-  EXPECT_EQ(error(), "frame 4: there is no frame 4; a.dump has 3 frames");
+  EXPECT_EQ(error(), "--frames: there is no frame 4; a.dump has 3 frames");
   options.frames = {0};
   EXPECT_EQ(error(), "there is no frame 0; a.dump has 3 frames");
   options.frames.clear();
