@@ -138,8 +138,7 @@ void AtomicFile::commit() {
   const int error = errno;
   ::close(file);
   if (synced != 0 && error != EINVAL) io_failed(path_, error);  // EINVAL: the file system does not support fsync
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) io_failed(path_, errno);
-  committed_ = true;
+  commit_unsynced();
   const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
     ::fsync(directory);  // the name itself; if that fails, the file is still complete
@@ -147,12 +146,17 @@ void AtomicFile::commit() {
   }
 }
 
+void AtomicFile::commit_unsynced() {
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) io_failed(path_, errno);
+  committed_ = true;
+}
+
 void remove_unfinished_files() noexcept {
   for (Slot& slot : slots)
     if (slot.armed.load(std::memory_order_acquire)) ::unlink(slot.name);
 }
 
-void write_text_file(const std::filesystem::path& path, std::string_view text) {
+void write_text_file(const std::filesystem::path& path, std::string_view text, bool synced) {
   AtomicFile file(path);
   const int out = ::open(file.temporary().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
   if (out < 0) io_failed(path, errno);
@@ -167,7 +171,7 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   if (::close(out) != 0) io_failed(path, errno);
-  file.commit();
+  synced ? file.commit() : file.commit_unsynced();
 }
 
 void check_creatable(const std::filesystem::path& path) {

@@ -29,6 +29,12 @@ class AtomicFile {
   /// Errors     base::Error(kIo)
   void commit();
 
+  /// Renames the temporary file without syncing it, for a file that is rewritten every second. Its readers never see an
+  /// incomplete file; after a crash of the machine it may be empty.
+  ///
+  /// Errors     base::Error(kIo)
+  void commit_unsynced();
+
  private:
   std::filesystem::path path_, target_, temporary_;
   int slot_;
@@ -41,8 +47,9 @@ void remove_unfinished_files() noexcept;
 
 /// Writes a text to a file by an AtomicFile.
 ///
+/// `synced`   false: by AtomicFile::commit_unsynced
 /// Errors     those of AtomicFile
-void write_text_file(const std::filesystem::path& path, std::string_view text);
+void write_text_file(const std::filesystem::path& path, std::string_view text, bool synced = true);
 
 /// Checks whether a file could be created, so that failure is found before any work; leaves no trace.
 ///
