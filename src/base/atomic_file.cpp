@@ -138,13 +138,17 @@ void AtomicFile::commit() {
   const int error = errno;
   ::close(file);
   if (synced != 0 && error != EINVAL) io_failed(path_, error);  // EINVAL: the file system does not support fsync
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) io_failed(path_, errno);
-  committed_ = true;
+  commit_unsynced();
   const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
     ::fsync(directory);  // the name itself; if that fails, the file is still complete
     ::close(directory);
   }
+}
+
+void AtomicFile::commit_unsynced() {
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) io_failed(path_, errno);
+  committed_ = true;
 }
 
 void remove_unfinished_files() noexcept {

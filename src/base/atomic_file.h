@@ -28,6 +28,12 @@ class AtomicFile {
   /// Errors     base::Error(kIo)
   void commit();
 
+  /// Renames the temporary file without syncing it, for a file that is rewritten every second. Its readers never see an
+  /// incomplete file; after a crash of the machine it may be empty.
+  ///
+  /// Errors     base::Error(kIo)
+  void commit_unsynced();
+
  private:
   std::filesystem::path path_, target_, temporary_;
   int slot_;

@@ -40,18 +40,18 @@ void OutputFile::write() {
   buffer_.clear();
 }
 
-void OutputFile::finish() {
+void OutputFile::finish(bool synced) {
   write();
   const int status = ::close(descriptor_);
   descriptor_ = -1;
   if (status != 0) throw Error(ErrorKind::kIo, "writing " + path_.string() + " failed: " + std::strerror(errno));
-  file_.commit();
+  synced ? file_.commit() : file_.commit_unsynced();
 }
 
-void write_text_file(const std::filesystem::path& path, std::string_view text) {
+void write_text_file(const std::filesystem::path& path, std::string_view text, bool synced) {
   OutputFile file(path);
   file.buffer() = text;
-  file.finish();
+  file.finish(synced);
 }
 
 }  // namespace orrery::base

@@ -25,8 +25,9 @@ class OutputFile {
   void flush();
   /// Writes the rest and commits the file.
   ///
+  /// `synced`   false: by AtomicFile::commit_unsynced
   /// Errors     base::Error(kIo)
-  void finish();
+  void finish(bool synced = true);
 
  private:
   void write();
@@ -39,7 +40,8 @@ class OutputFile {
 
 /// Writes a text to a file that appears when it is complete.
 ///
+/// `synced`   see OutputFile::finish
 /// Errors     those of OutputFile
-void write_text_file(const std::filesystem::path& path, std::string_view text);
+void write_text_file(const std::filesystem::path& path, std::string_view text, bool synced = true);
 
 }  // namespace orrery::base

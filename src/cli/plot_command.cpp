@@ -15,6 +15,7 @@
 #include "job/memory.h"
 #include "plot/plot.h"
 #include "plot/write_legend.h"
+#include "preview/target.h"
 
 namespace orrery::cli {
 namespace {
@@ -55,6 +56,7 @@ void check_own_outputs(const PlotArguments& arguments) {
   };
   add(arguments.save_scene, "--save-scene");
   add(arguments.legend, "--legend");
+  if (!arguments.render.preview.empty()) add(preview::parse_target(arguments.render.preview).file, "--preview");
   for (const job::ImageFile& image : arguments.render.batch.job.outputs.images) files.add_output(image.path, "-o");
 }
 

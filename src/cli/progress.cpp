@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "cli/messages.h"
 
@@ -25,8 +26,9 @@ ProgressStyle resolved(ProgressStyle style, std::FILE* to) {
 
 }  // namespace
 
-ProgressPrinter::ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat)
-    : style_(resolved(style, to)), to_(to), heartbeat_(heartbeat), state_{0, 1, 0} {
+ProgressPrinter::ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat,
+                                 BarDisplay* display)
+    : style_(resolved(style, to)), to_(to), display_(display), heartbeat_(heartbeat), state_{0, 1, 0} {
   if (style_ != ProgressStyle::kBar && style_ != ProgressStyle::kNone) beating_ = std::thread([this] { beat(); });
 }
 
@@ -38,7 +40,7 @@ void ProgressPrinter::update(const ProgressState& state) {
   if (finished_) return;
   state_ = state;
   if (style_ == ProgressStyle::kBar) {
-    print_bar();
+    print_bar(progress_bar(state_, columns_of(to_)));
   } else if (state_.percent() != last_percent_) {
     print_line();
   }
@@ -50,43 +52,50 @@ void ProgressPrinter::building(double fraction) {
   const int percent = static_cast<int>(fraction * 100);
   if (finished_ || state_.done > 0 || percent <= last_percent_) return;
   last_percent_ = percent;
-  std::fprintf(to_, "\rbuilding  %d %%\033[K", percent);
-  std::fflush(to_);
-  bar_shown_ = true;
+  print_bar("building  " + std::to_string(percent) + " %");
 }
 
 void ProgressPrinter::note(const std::string& text) {
   const std::lock_guard lock(mutex_);
-  if (bar_shown_) std::fputs("\r\033[K", to_);
-  std::fputs(text.c_str(), to_);
-  std::fflush(to_);
+  clear_bar();
+  print(text);
   log_message(text);
-  bar_shown_ = false;
 }
 
 void ProgressPrinter::finish() {
   {
     const std::lock_guard lock(mutex_);
     finished_ = true;
-    if (bar_shown_) std::fputs("\r\033[K", to_);
-    std::fflush(to_);
-    bar_shown_ = false;
+    clear_bar();
   }
   wake_.notify_all();
   if (beating_.joinable()) beating_.join();
 }
 
-void ProgressPrinter::print_bar() {
-  std::fprintf(to_, "\r%s\033[K", progress_bar(state_, columns_of(to_)).c_str());
-  std::fflush(to_);
+void ProgressPrinter::print_bar(const std::string& bar) {
   bar_shown_ = true;
+  if (display_ != nullptr) return display_->bar(bar);
+  std::fprintf(to_, "\r%s\033[K", bar.c_str());
+  std::fflush(to_);
+}
+
+void ProgressPrinter::clear_bar() {
+  if (!std::exchange(bar_shown_, false)) return;
+  if (display_ != nullptr) return display_->bar("");
+  std::fputs("\r\033[K", to_);
+  std::fflush(to_);
+}
+
+void ProgressPrinter::print(const std::string& lines) {
+  if (display_ != nullptr) return display_->note(lines);
+  std::fputs(lines.c_str(), to_);
+  std::fflush(to_);
 }
 
 void ProgressPrinter::print_line() {
   const std::string line = progress_line(style_, state_) + "\n";
-  std::fputs(line.c_str(), to_);
+  print(line);
   log_message(line);
-  std::fflush(to_);
   last_percent_ = state_.percent();
   last_line_ = std::chrono::steady_clock::now();
 }

@@ -10,9 +10,11 @@
 
 #include <fmt/core.h>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
+#include "cli/live_preview.h"
 #include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
@@ -118,7 +120,11 @@ int run_render(RenderOptions& options) {
   batch.keep_going = is_many && !options.fail_fast;
   job.hooks.cancel = &stop_on_signals();
   job.hooks.snapshot = &snapshot_request();
-  ProgressPrinter printer(style_of(options), stderr);
+  const preview::Target target = options.preview.empty() ? preview::Target() : preview::parse_target(options.preview);
+  batch.preview = target.file;
+  if (!target.file.empty()) base::check_creatable(target.file);
+  const std::unique_ptr<PreviewScreen> screen = open_screen(target);
+  ProgressPrinter printer(style_of(options), stderr, kHeartbeat, screen.get());
   BatchProgress progress(printer);
   int status = 0;
   job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };
@@ -128,6 +134,7 @@ int run_render(RenderOptions& options) {
   };
   job.hooks.on_warning = [&](const base::Diagnostic& warning) { note(base::formatted(warning)); };
   job.hooks.on_note = [&](const std::string& text) { printer.note(text + "\n"); };
+  const auto preview = start_preview(target, screen.get(), note, job.hooks);
   batch.on_begin = [&](const job::Job& one, std::size_t index, std::size_t count) {
     progress.begin(index, count);
     log_message("rendering " + farm::job_name(batch, one) + "\n");
@@ -147,6 +154,7 @@ int run_render(RenderOptions& options) {
   const std::vector<job::Job> jobs = farm::jobs_of(batch);
   if (!batch.log.empty()) open_log(batch.log);  // only now is it known not to be an input
   const farm::BatchReport report = farm::run_batch(batch, jobs);
+  if (preview) preview->end();
   printer.finish();
   if (!is_many) return status;
   const int failed = print_summary(report, options.quiet);
@@ -199,6 +207,10 @@ void add_render_options(Command& command, RenderOptions& options, bool allows_ra
                   "Progress format: auto, bar, alf, openjd, arnold, json or none; default: auto")
       ->check(one_of(progress_style_names()))
       ->type_name("STYLE");
+  command
+      .add_option("--preview", options.preview,
+                  "Show the image while it is rendered: tev, tev:HOST:PORT, terminal, or a .png file to rewrite")
+      ->type_name("WHERE");
   command.add_option("--stats", options.batch.job.outputs.statistics, "Write statistics of the render as JSON")
       ->type_name("FILE");
   command.add_option("--log", options.batch.log, "Append all messages to a log file, with timestamps")
@@ -227,6 +239,7 @@ void add_render(Command& program, Action& action) {
       "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"
       "  orrery render scene.toml -o test.png --samples 20 --set camera.vfov=30\n"
       "  orrery render scene.toml -o final.exr --noise 0.01 --time 10m\n"
+      "  orrery render scene.toml -o final.exr --preview terminal\n"
       "  orrery render shot.toml -o shot.####.exr --frames 1-240 --resume --skip-existing\n"
       "  orrery render shot.toml -o shard.2.exr --samples 100:200\n"
       "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");

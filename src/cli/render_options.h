@@ -14,7 +14,7 @@ struct RenderOptions {
   farm::Batch batch;
   SceneOptions scene;
   PictureOptions picture;
-  std::string progress = "auto", traversal = "auto", shard, frames;
+  std::string preview, progress = "auto", traversal = "auto", shard, frames;
   bool quiet = false, verbose = false, strict = false, fail_fast = false;
 };
 

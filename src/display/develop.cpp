@@ -27,6 +27,10 @@ const std::vector<float>& plane(const film::Picture& picture, const char* name) 
   return found->values;
 }
 
+float gain_of(const Settings& settings) {
+  return static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMaxStops, kMaxStops)));
+}
+
 /// Applies the gain and clamps to the range of half, since beyond it a view's curves can overflow to NaN.
 float fit(float v, float gain) {
   if (!std::isfinite(v)) return 0;
@@ -70,7 +74,7 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
   const auto channels = static_cast<std::size_t>(out.channels);
   out.values.resize(pixels * channels);
   const double largest = bits == 8 ? 255 : 65535;
-  const float gain = static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMaxStops, kMaxStops)));
+  const float gain = gain_of(settings);
   std::vector<float> rgb(std::min(pixels, kPixelsAtATime) * 3);
   for (std::size_t begin = 0; begin < pixels; begin += kPixelsAtATime) {
     const std::size_t count = std::min(kPixelsAtATime, pixels - begin);
@@ -89,6 +93,22 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
     }
   }
   return out;
+}
+
+struct PixelDeveloper::Impl {
+  View view;
+  float gain;
+};
+
+PixelDeveloper::PixelDeveloper(const Settings& settings)
+    : impl_(std::make_unique<Impl>(Impl{find_view(settings), gain_of(settings)})) {}
+PixelDeveloper::~PixelDeveloper() = default;
+
+void PixelDeveloper::operator()(float* rgb, std::size_t pixels, std::uint8_t* codes) const {
+  for (std::size_t i = 0; i < 3 * pixels; ++i) rgb[i] = fit(rgb[i], impl_->gain);
+  ocio::PackedImageDesc part(rgb, static_cast<long>(pixels), 1, 3);
+  impl_->view.processor->apply(part);
+  for (std::size_t i = 0; i < 3 * pixels; ++i) codes[i] = static_cast<std::uint8_t>(quantised(rgb[i], 255, 0.0));
 }
 
 std::string ocio_version() { return ocio::GetVersion(); }

@@ -65,6 +65,7 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   common.background_cache = std::make_shared<job::BackgroundCache>();
   base::FileSet& files = *common.files;
   if (!batch.log.empty()) files.add_output(batch.log, "--log");
+  if (!batch.preview.empty()) files.add_output(batch.preview, "--preview");
   for (const fs::path& scene : batch.scenes)
     if (!files.add_input(scene, "scene")) refuse(scene.string() + " is given twice");
   for (const fs::path& scene : batch.scenes) {

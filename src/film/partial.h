@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "film/film.h"
 #include "film/layer_pixel.h"
+#include "kernel/render_tile.h"
 
 namespace orrery::film {
 
@@ -19,6 +21,14 @@ struct RenderWork {
   RenderWork& operator+=(const RenderWork& other);
 };
 
+/// Pixels that have received samples.
+///
+/// Domain     `pixels` is relative to x, y and inside the rectangle
+struct RenderedPixels {
+  int x = 0, y = 0, width = 0, height = 0;  ///< px, a rectangle around the pixels
+  std::span<const kernel::PixelPlace> pixels = {};
+};
+
 /// An incomplete render: the content of a checkpoint or shard.
 ///
 /// All sums are integers, so that the result does not depend on how a render is split or in which order shards are
@@ -29,6 +39,10 @@ struct Partial {
 
   std::size_t pixel_count() const { return film.pixel_count(); }
   bool has_halves() const { return second.pixel_count() > 0; }
+
+  /// Writes the mean of a pixel's samples, R, G and B, of both halves if there are two; 0 without samples. These are
+  /// the bits of the finished image.
+  void mean(int x, int y, float* rgb) const;
 
   Film film;                          ///< sample sums; those of the first half in adaptive sampling
   Film second{0, 0};                  ///< sample sums of the second half in adaptive sampling; else without pixels

@@ -64,12 +64,13 @@ void require_bits(const display::Choice& display, const Job& job) {
 
 /// Loads the scene and checks it against the job's output formats.
 LoadedScene load(const Job& job, JobReport& report) {
-  SceneRequest request{job.scene, job.outputs.display, job.outputs.has_display_format()};
+  const bool writes_display_format = job.outputs.has_display_format();
+  SceneRequest request{job.scene, job.outputs.display, writes_display_format || job.hooks.develops_pixels};
   request.memory_limit = job.resources.memory_limit;
   request.background_cache = job.background_cache;
   LoadedScene loaded = load_scene(request);
   for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
-  if (request.develops) {
+  if (writes_display_format) {
     report.display = *loaded.choice;
     require_bits(report.display, job);
   }
@@ -183,7 +184,11 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   settings.layers = layers.request;
   settings.on_progress = job.hooks.on_progress;
   settings.on_build = job.hooks.on_build;
+  settings.on_pixels = job.hooks.on_pixels;
   settings.cancel = job.hooks.cancel;
+  if (job.hooks.on_start && job.merge.shards.empty())
+    job.hooks.on_start(
+        {job.scene.file.filename().string(), compiled.width, compiled.height, compiled.pixel_aspect, display});
   image::set_threads(settings.threads);
   const auto write_sums = [&](const std::filesystem::path& file, const film::Partial& partial) {
     image::write_partial(file, preview(compiled, partial),

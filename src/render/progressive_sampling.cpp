@@ -102,6 +102,7 @@ void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel&
       state_.counts[at(p)] = group.want;
       if (on_pixel) on_pixel(x0 + p.x, y0 + p.y);
     }
+    if (settings_.on_pixels) settings_.on_pixels(state_, {x0, y0, tile.width, tile.height, group.pixels});
   }
 }
 

@@ -45,6 +45,14 @@ void count_samples(const compile::CompiledScene& compiled, const Settings& setti
   statistics.fewest_samples = std::min(statistics.fewest_samples, statistics.most_samples);
 }
 
+/// Reports the pixels of an earlier run.
+void report_pixels(const Settings& settings, const film::Partial& state) {
+  const int width = state.film.width(), height = state.film.height();
+  std::vector<kernel::PixelPlace> row(static_cast<std::size_t>(width));
+  for (int x = 0; x < width; ++x) row[static_cast<std::size_t>(x)] = {x, 0};
+  for (int y = 0; y < height; ++y) settings.on_pixels(state, {0, y, width, 1, row});
+}
+
 /// The state of a render that has not begun.
 film::Partial fresh_state(const compile::CompiledScene& compiled, const Settings& settings) {
   film::Partial state(compiled.width, compiled.height);
@@ -97,6 +105,7 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
   statistics.threads = threads_of(settings);
   statistics.accelerator = accel.name();
 
+  if (from && settings.on_pixels) report_pixels(settings, *from);
   film::Partial state = from ? std::move(*from) : fresh_state(compiled, settings);
   const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
   const auto pixels = static_cast<std::uint64_t>(std::count(owned.begin(), owned.end(), true));

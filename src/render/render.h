@@ -37,6 +37,9 @@ struct Settings {
   /// Polled often, from any thread. If true, the threads wait while `on_snapshot` receives the present state.
   std::function<bool()> snapshot_is_due;
   std::function<void(const film::Partial&)> on_snapshot;
+  /// Called on the rendering threads for pixels that have received samples, and for those of an earlier run when a
+  /// resumed render begins. During the call nobody changes these pixels; others change.
+  std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
   bool keep_partial = false;  ///< also return the partial in the result
 };
 

@@ -197,5 +197,13 @@ TEST(BaseAtomicFile, TextIsWrittenByteForByte) {
   EXPECT_EQ(file_bytes(folder / "a.txt"), text);
 }
 
+TEST(BaseAtomicFile, UnsyncedFilesAreReplacedWhole) {
+  const support::TempDir folder;
+  write_text_file(folder / "a", "first", false);
+  write_text_file(folder / "a", "second", false);
+  EXPECT_EQ(support::file_bytes(folder / "a"), "second");
+  EXPECT_EQ(folder.count(), 1u);
+}
+
 }  // namespace
 }  // namespace orrery::base

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -44,6 +45,24 @@ class DisplayDevelop : public testing::Test {
  protected:
   void SetUp() override { ::unsetenv("OCIO"); }
 };
+
+TEST_F(DisplayDevelop, PixelsInGroupsAreThoseOfTheWholeImage) {
+  Settings settings = on("sRGB");
+  settings.exposure = 1.5;
+  std::vector<float> rgb;
+  film::Picture picture{50, 2, {}};
+  for (const char* name : {"R", "G", "B"}) picture.planes.push_back({name, {}});
+  for (int i = 0; i < 100; ++i)
+    for (int c = 0; c < 3; ++c) {
+      rgb.push_back(i == 7 ? kNan : i == 8 ? -kInfinity : static_cast<float>(0.004 * i * (c + 1) - 0.01));
+      picture.planes[static_cast<std::size_t>(c)].values.push_back(rgb.back());
+    }
+  const std::vector<std::uint16_t> whole = develop(picture, settings, 8).values;
+  std::vector<std::uint8_t> codes(300);
+  const PixelDeveloper developer(settings);
+  for (std::size_t i = 0; i < 100; i += 20) developer(&rgb[3 * i], 20, &codes[3 * i]);
+  EXPECT_TRUE(std::equal(whole.begin(), whole.end(), codes.begin()));
+}
 
 struct Level {
   const char* display;

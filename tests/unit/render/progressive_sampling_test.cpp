@@ -116,6 +116,54 @@ Result interrupted(const compile::CompiledScene& compiled, Settings settings, in
   }
 }
 
+/// Records the mean of each pixel when it is reported.
+struct ReportedPixels {
+  explicit ReportedPixels(const compile::CompiledScene& compiled)
+      : width(compiled.width), rgb(3 * static_cast<std::size_t>(compiled.width * compiled.height)) {}
+
+  void attach(Settings& settings) {
+    settings.on_pixels = [this](const film::Partial& state, const film::RenderedPixels& rendered) {
+      for (const kernel::PixelPlace p : rendered.pixels) {
+        EXPECT_TRUE(p.x >= 0 && p.x < rendered.width && p.y >= 0 && p.y < rendered.height);
+        const int x = rendered.x + p.x, y = rendered.y + p.y;
+        state.mean(x, y, &rgb[3 * static_cast<std::size_t>(y * width + x)]);
+      }
+    };
+  }
+  std::vector<float> of(const Result& result) const {
+    std::vector<float> out;
+    for (std::size_t i = 0; i < rgb.size(); ++i) out.push_back(result.picture.planes[i % 3].values[i / 3]);
+    return out;
+  }
+
+  int width;
+  std::vector<float> rgb;
+};
+
+TEST(RenderProgressiveSampling, ReportedPixelsAreThoseOfTheImageInTheEnd) {
+  const compile::CompiledScene compiled = world_of_everything();
+  for (Settings settings : {Settings(), with_layers(), in_rounds()}) {
+    settings.threads = 3;
+    const Result plain = render(compiled, settings);
+    ReportedPixels reported(compiled);
+    reported.attach(settings);
+    const Result result = render(compiled, settings);
+    expect_same(plain, result);
+    EXPECT_EQ(reported.rgb, reported.of(result));
+  }
+}
+
+TEST(RenderProgressiveSampling, AResumedRenderReportsTheEarlierPixels) {
+  const compile::CompiledScene compiled = world_of_everything();
+  Settings settings;
+  settings.keep_partial = true;
+  Result finished = render(compiled, settings);  // nothing is left to render
+  ReportedPixels reported(compiled);
+  reported.attach(settings);
+  const Result result = render(compiled, settings, std::move(finished.partial));
+  EXPECT_EQ(reported.rgb, reported.of(result));
+}
+
 TEST(RenderProgressiveSampling, ResumedRendersGiveTheSameBits) {
   scene::Scene scene = test::everything();
   scene.render.samples = 90;  // three passes

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/live_preview.h"
+
+#include <unistd.h>
+
+#include <utility>
+
+#include "preview/file_sink.h"
+#include "preview/terminal_sink.h"
+#include "preview/tev_sink.h"
+
+namespace orrery::cli {
+namespace {
+
+std::unique_ptr<preview::Sink> sink_of(const preview::Target& target, PreviewScreen* screen,
+                                       const preview::OnNote& note) {
+  switch (target.kind) {
+    case preview::TargetKind::kNone: break;
+    case preview::TargetKind::kTev: return std::make_unique<preview::TevSink>(target.host, target.port, note);
+    case preview::TargetKind::kTerminal: return std::make_unique<preview::TerminalSink>(screen->screen());
+    case preview::TargetKind::kFile: return std::make_unique<preview::FileSink>(target.file);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+PreviewScreen::PreviewScreen() : screen_(STDERR_FILENO) {}
+
+std::unique_ptr<PreviewScreen> open_screen(const preview::Target& target) {
+  return target.kind == preview::TargetKind::kTerminal ? std::make_unique<PreviewScreen>() : nullptr;
+}
+
+std::unique_ptr<preview::Preview> start_preview(const preview::Target& target, PreviewScreen* screen,
+                                                preview::OnNote note, job::Hooks& hooks) {
+  std::unique_ptr<preview::Sink> sink = sink_of(target, screen, note);
+  if (!sink) return nullptr;
+  auto out = std::make_unique<preview::Preview>(std::move(sink), std::move(note));
+  preview::Preview* const started = out.get();
+  hooks.on_start = [started](const job::PictureStart& picture) {
+    started->begin({picture.name, picture.width, picture.height, picture.pixel_aspect, picture.display});
+  };
+  hooks.on_pixels = [started](const film::Partial& state, const film::RenderedPixels& rendered) {
+    started->write(state, rendered);
+  };
+  hooks.develops_pixels = target.is_developed();
+  return out;
+}
+
+}  // namespace orrery::cli

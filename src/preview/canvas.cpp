@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "preview/canvas.h"
+
+#include <algorithm>
+
+namespace orrery::preview {
+namespace {
+
+std::size_t cells_of(int pixels) { return static_cast<std::size_t>((pixels + Canvas::kSide - 1) / Canvas::kSide); }
+
+}  // namespace
+
+Canvas::Canvas(int width_px, int height_px)
+    : width_(width_px),
+      height_(height_px),
+      cells_per_row_(cells_of(width_px)),
+      values_(3 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)),
+      changed_(cells_per_row_ * cells_of(height_px)) {}
+
+std::size_t Canvas::at(int x, int y) const noexcept {
+  return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+}
+
+void Canvas::write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept {
+  for (const kernel::PixelPlace p : rendered.pixels) {
+    float rgb[3];
+    state.mean(rendered.x + p.x, rendered.y + p.y, rgb);
+    std::atomic<float>* const pixel = &values_[at(rendered.x + p.x, rendered.y + p.y)];
+    for (int c = 0; c < 3; ++c) pixel[c].store(rgb[c], std::memory_order_relaxed);
+  }
+  const int right = (rendered.x + rendered.width - 1) / kSide, bottom = (rendered.y + rendered.height - 1) / kSide;
+  // A read-modify-write, unlike a store, keeps the pixels of an earlier writer visible to whoever resets the mark.
+  for (int y = rendered.y / kSide; y <= bottom; ++y)
+    for (int x = rendered.x / kSide; x <= right; ++x)
+      changed_[static_cast<std::size_t>(y) * cells_per_row_ + static_cast<std::size_t>(x)].fetch_or(
+          1, std::memory_order_release);
+}
+
+std::vector<std::size_t> Canvas::take_changed() {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < changed_.size(); ++i)
+    if (changed_[i].load(std::memory_order_relaxed) != 0 && changed_[i].exchange(0, std::memory_order_acquire) != 0)
+      out.push_back(i);
+  return out;
+}
+
+Cell Canvas::cell(std::size_t index) const noexcept {
+  const int x = static_cast<int>(index % cells_per_row_) * kSide, y = static_cast<int>(index / cells_per_row_) * kSide;
+  return {x, y, std::min(kSide, width_ - x), std::min(kSide, height_ - y)};
+}
+
+void Canvas::read(int x, int y, int count, float* rgb) const noexcept {
+  const std::atomic<float>* from = &values_[at(x, y)];
+  for (int i = 0; i < 3 * count; ++i) rgb[i] = from[i].load(std::memory_order_relaxed);
+}
+
+}  // namespace orrery::preview

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "preview/png.h"
+#include "preview/sink.h"
+
+namespace orrery::preview {
+
+/// Rewrites a PNG, uncompressed and through the display transform. Its readers never see an incomplete file.
+class FileSink : public Sink {
+ public:
+  explicit FileSink(std::filesystem::path file) : file_(std::move(file)) {}
+
+  double interval_s() const override { return 1; }
+  void begin(const PictureInfo& picture, const Canvas& canvas) override;
+
+  /// Errors     base::Error: kCannotCreate, kIo
+  void update(const std::vector<std::size_t>& cells) override;
+
+ private:
+  std::filesystem::path file_;
+  const Canvas* canvas_ = nullptr;
+  std::unique_ptr<display::PixelDeveloper> develop_;
+  Bitmap bitmap_;
+};
+
+}  // namespace orrery::preview

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "preview/preview.h"
+
+#include <pthread.h>
+#include <time.h>
+
+#include <chrono>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "preview/pacing.h"
+
+namespace orrery::preview {
+namespace {
+
+/// Time between two calls of Sink::poll.
+constexpr std::chrono::milliseconds kTick{50};
+
+/// Time of a processor clock: of this thread, or of the whole process.
+double seconds_of(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+}  // namespace
+
+Preview::Preview(std::unique_ptr<Sink> sink, OnNote on_note)
+    : sink_(std::move(sink)), on_note_(std::move(on_note)), thread_([this] { run(); }) {}
+
+Preview::~Preview() {
+  end();
+  ask(Request::kQuit);
+  thread_.join();
+}
+
+void Preview::begin(const PictureInfo& picture) {
+  end();
+  picture_ = picture;
+  canvas_ = std::make_unique<Canvas>(picture.width, picture.height);
+  ask(Request::kBegin);
+}
+
+void Preview::end() {
+  if (!canvas_) return;
+  ask(Request::kEnd);
+  canvas_.reset();
+}
+
+/// Lets the preview's thread serve a request, and waits until it has. In between, that thread owns all members.
+void Preview::ask(Request request) {
+  std::unique_lock lock(mutex_);
+  request_ = request;
+  wake_.notify_one();
+  served_.wait(lock, [this] { return request_ == Request::kNone; });
+}
+
+void Preview::run() {
+  using Clock = std::chrono::steady_clock;
+  pthread_setname_np(pthread_self(), "preview");  // for profilers
+  Clock::time_point start;
+  double processor_start = 0;
+  std::optional<Pacing> pacing;  // of the present image
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    const Request request = request_;
+    if (request == Request::kBegin) answer();  // the render does not wait for the sink
+    lock.unlock();
+    const double before = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    const auto cost = [before] { return seconds_of(CLOCK_THREAD_CPUTIME_ID) - before; };
+    if (request != Request::kNone) {
+      start = Clock::now();
+      processor_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+      serve(request);
+      pacing.reset();
+      if (request == Request::kBegin) pacing.emplace(sink_->interval_s());
+      if (pacing) pacing->spend(cost());
+    } else if (!failed_) {
+      const double now = std::chrono::duration<double>(Clock::now() - start).count();
+      const bool is_due = pacing && pacing->is_due(now, seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor_start);
+      if (is_due) refresh();
+      sink_->poll();
+      if (pacing) is_due ? pacing->updated(now, cost()) : pacing->spend(cost());
+    }
+    lock.lock();
+    if (request == Request::kEnd || request == Request::kQuit) answer();
+    if (request == Request::kQuit) return;
+    wake_.wait_for(lock, kTick, [this] { return request_ != Request::kNone; });
+  }
+}
+
+/// Domain     mutex_ is locked
+void Preview::answer() {
+  request_ = Request::kNone;
+  served_.notify_one();
+}
+
+void Preview::serve(Request request) {
+  try {
+    if (request == Request::kBegin && !failed_) sink_->begin(picture_, *canvas_);
+    if (request == Request::kEnd) refresh();
+    if (request == Request::kEnd && !failed_) sink_->finish();
+  } catch (const std::exception& error) {
+    failed_ = true;
+    on_note_(std::string("warning: the preview ended: ") + error.what() + "\n");
+  }
+}
+
+void Preview::refresh() {
+  if (failed_) return;
+  const std::vector<std::size_t> cells = canvas_->take_changed();
+  try {
+    if (!cells.empty()) sink_->update(cells);
+  } catch (const std::exception& error) {
+    failed_ = true;
+    on_note_(std::string("warning: the preview ended: ") + error.what() + "\n");
+  }
+}
+
+}  // namespace orrery::preview

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "preview/canvas.h"
+#include "preview/sink.h"
+
+namespace orrery::preview {
+
+/// Shows the images of one render after another while they are rendered, on a thread of its own.
+///
+/// The rendering threads only copy their pixels into a Canvas. Everything else happens on the preview's thread, which
+/// uses at most kShareOfTime of the render's processor time.
+class Preview {
+ public:
+  /// `on_note`  may be called until the destructor returns
+  Preview(std::unique_ptr<Sink> sink, OnNote on_note);
+  /// Ends the last image.
+  ~Preview();
+  Preview(const Preview&) = delete;
+  Preview& operator=(const Preview&) = delete;
+
+  /// Begins an image. The previous one has ended.
+  void begin(const PictureInfo& picture);
+
+  /// Takes rendered pixels. Called on the rendering threads, between begin() and end(); see Canvas::write.
+  void write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept {
+    canvas_->write(state, rendered);
+  }
+
+  /// Ends the image: shows the pixels that are still missing. Without an image, does nothing.
+  void end();
+
+ private:
+  enum class Request { kNone, kBegin, kEnd, kQuit };
+
+  void ask(Request request);
+  void run();
+  void answer();
+  void serve(Request request);
+  void refresh();
+
+  std::unique_ptr<Sink> sink_;
+  OnNote on_note_;
+  PictureInfo picture_;
+  std::unique_ptr<Canvas> canvas_;
+  bool failed_ = false;  ///< the sink has thrown
+  std::mutex mutex_;     // guards request_
+  std::condition_variable wake_, served_;
+  Request request_ = Request::kNone;
+  std::thread thread_;
+};
+
+}  // namespace orrery::preview

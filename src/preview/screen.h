@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <string>
+
+#include "preview/terminal_kind.h"
+#include "preview/tty.h"
+
+namespace orrery::preview {
+
+/// The lower end of a terminal: an image, and the line of a progress bar below it. Messages scroll above the image.
+///
+/// bar() and note() only copy the text; poll() writes it on the preview's thread, without waiting for the terminal.
+class Screen {
+ public:
+  /// Asks the terminal how it can show images.
+  ///
+  /// Errors     base::Error(kUsage) if the descriptor is no terminal, or one without colours
+  explicit Screen(int descriptor, const Environment& environment = preview::environment);
+
+  Graphics graphics() const { return graphics_; }
+
+  /// Sets the progress bar, one line without newline. Thread-safe.
+  void bar(const std::string& text);
+
+  /// Adds a message of whole lines. Thread-safe.
+  void note(const std::string& text);
+
+  /// The size of the terminal and of a cell, px.
+  struct Room {
+    int columns = 0, rows = 0;
+    int cell_width = 1, cell_height = 2;  ///< as text, the pixels that a cell shows
+
+    bool operator==(const Room&) const = default;
+  };
+  Room room() const;
+
+  /// Sets the image: the bytes that draw it, and the number of rows that it covers.
+  void show(std::string drawing, int rows);
+
+  /// True if everything that was set has been written, so that another image can be shown.
+  bool is_idle() const { return sent_ == output_.size(); }
+
+  /// Writes what has changed, as much as the terminal accepts.
+  void poll();
+
+  /// Removes the bar, and writes the rest unless the terminal hangs. Afterwards, note() writes to stderr.
+  void finish();
+
+ private:
+  void compose();
+  void send();
+
+  Tty tty_;
+  Answers answers_;
+  Graphics graphics_;
+  std::string drawing_;
+  int rows_ = 0;             ///< of the image
+  bool is_drawn_ = true;     ///< the image is on the terminal
+  int shown_rows_ = 0;       ///< of the terminal, above the cursor, that belong to the image
+  TerminalSize shown_size_;  ///< of the terminal when the image was drawn
+  std::string output_;       ///< being written
+  std::size_t sent_ = 0;     ///< bytes of output_
+  std::mutex mutex_;         // guards the members below
+  std::string bar_, notes_;
+  bool bar_changed_ = false;
+  bool is_finished_ = false;
+};
+
+}  // namespace orrery::preview

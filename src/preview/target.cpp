@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "preview/target.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "base/error.h"
+
+namespace orrery::preview {
+namespace {
+
+[[noreturn]] void refuse(const std::string& text) {
+  throw base::Error(base::ErrorKind::kUsage,
+                    "--preview: " + text + "; write tev, tev:HOST:PORT, terminal, or the name of a .png file");
+}
+
+bool is_port(const std::string& text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() && number > 0 && number < 65536;
+}
+
+/// Parses HOST, HOST:PORT or [IPV6]:PORT.
+Target tev_at(const std::string& address) {
+  Target target{TargetKind::kTev, address, kTevPort, {}};
+  std::size_t colon = address.rfind(':');
+  if (address.starts_with('[')) {
+    const std::size_t end = address.find(']');
+    if (end == std::string::npos) refuse("`" + address + "` lacks a closing bracket");
+    if (end + 1 < address.size() && address[end + 1] != ':') refuse("`" + address + "` is not an address");
+    target.host = address.substr(1, end - 1);
+    colon = end + 1 < address.size() ? end + 1 : std::string::npos;
+  } else if (std::count(address.begin(), address.end(), ':') > 1) {
+    refuse("`" + address + "` is not an address; put an IPv6 address into brackets");
+  } else {
+    target.host = address.substr(0, colon);
+  }
+  if (colon != std::string::npos) target.port = address.substr(colon + 1);
+  if (target.host.empty()) refuse("`" + address + "` has no host");
+  if (!is_port(target.port)) refuse("`" + target.port + "` is not a port from 1 to 65535");
+  return target;
+}
+
+bool is_png(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension == ".png";
+}
+
+}  // namespace
+
+Target parse_target(const std::string& text) {
+  if (text == "tev") return {TargetKind::kTev, kTevHost, kTevPort, {}};
+  if (text == "terminal") return {TargetKind::kTerminal, {}, {}, {}};
+  if (is_png(text)) return {TargetKind::kFile, {}, {}, text};
+  if (text.starts_with("tev:")) return tev_at(text.substr(4));
+  refuse("`" + text + "` is not a preview");
+}
+
+}  // namespace orrery::preview

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "preview/terminal_sink.h"
+
+#include <utility>
+
+#include "preview/fit.h"
+
+namespace orrery::preview {
+
+void TerminalSink::begin(const PictureInfo& picture, const Canvas& canvas) {
+  picture_ = picture;
+  canvas_ = &canvas;
+  has_content_ = is_pending_ = false;
+  room_ = screen_.room();
+  develop_ = std::make_unique<display::PixelDeveloper>(picture.display);
+}
+
+void TerminalSink::update(const std::vector<std::size_t>&) {
+  has_content_ = is_pending_ = true;
+  if (screen_.is_idle()) draw();
+}
+
+void TerminalSink::poll() {
+  const Screen::Room room = screen_.room();
+  if (!(room == room_) && has_content_ && screen_.is_idle()) {
+    room_ = room;
+    draw();
+  }
+  screen_.poll();
+}
+
+void TerminalSink::finish() {
+  // The last drawing replaces one that the terminal has not begun to read.
+  if (is_pending_) draw();
+  screen_.poll();
+  canvas_ = nullptr;
+  has_content_ = false;
+}
+
+void TerminalSink::draw() {
+  is_pending_ = false;
+  const Fit size = fit(picture_.width, picture_.height, picture_.pixel_aspect, room_);
+  if (size.width == 0) return;
+  std::vector<float> rgb = scaled(*canvas_, size.width, size.height);
+  Bitmap bitmap{size.width, size.height, std::vector<std::uint8_t>(rgb.size())};
+  (*develop_)(rgb.data(), rgb.size() / 3, bitmap.codes.data());
+  screen_.show(drawn(screen_.graphics(), bitmap, size.columns, size.rows), size.rows);
+}
+
+}  // namespace orrery::preview

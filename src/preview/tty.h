@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace orrery::preview {
+
+/// The size of a terminal; a pixel size of 0 is unknown.
+struct TerminalSize {
+  int columns = 80, rows = 24;
+  int width = 0, height = 0;  ///< px
+
+  bool operator==(const TerminalSize&) const = default;
+};
+
+/// The terminal of a file descriptor, written without blocking. Other processes that share the descriptor are not
+/// affected, because the terminal is opened again.
+class Tty {
+ public:
+  /// Errors     base::Error(kUsage) if the descriptor is not a terminal or cannot be opened again
+  explicit Tty(int descriptor);
+  ~Tty();
+  Tty(const Tty&) = delete;
+  Tty& operator=(const Tty&) = delete;
+
+  TerminalSize size() const;
+
+  /// True if a shell runs this process in the background, so that the terminal belongs to another one.
+  bool is_in_background() const;
+
+  /// Sends queries and returns the answers that arrive until `is_complete`, or within half a second. Without echo; the
+  /// terminal's mode is restored.
+  std::string ask(const std::string& queries, bool (*is_complete)(const std::string& answers)) const;
+
+  /// Writes as much as the terminal accepts.
+  ///
+  /// Result     number of bytes; 0 if the terminal does not read
+  std::size_t write(const char* bytes, std::size_t count) const;
+
+  /// Waits until the terminal accepts bytes or the time is over.
+  void wait(int milliseconds) const;
+
+ private:
+  int terminal_ = -1;
+};
+
+/// Restores the mode of a terminal that is being asked, and ends an escape sequence that is being written. Safe in a
+/// signal handler; the process must end right after.
+void restore_terminal() noexcept;
+
+}  // namespace orrery::preview

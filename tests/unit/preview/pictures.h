@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "preview/canvas.h"
+#include "preview/png.h"
+
+namespace orrery::preview {
+
+/// A film in which every pixel has one sample of its own value.
+inline film::Partial partial(int width, int height, double offset = 0) {
+  film::Partial state(width, height);
+  for (std::size_t i = 0; i < state.pixel_count(); ++i) {
+    kernel::PixelSum& sum = state.film.sums()[i];
+    for (int c = 0; c < 3; ++c) sum.rgb[c] = kernel::to_fixed_point(offset + 0.001 * static_cast<double>(3 * i) + c);
+    sum.weight = 1;
+  }
+  return state;
+}
+
+/// All pixels of a rectangle.
+inline std::vector<kernel::PixelPlace> all_pixels(int width, int height) {
+  std::vector<kernel::PixelPlace> out;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) out.push_back({x, y});
+  return out;
+}
+
+template <class To>
+void write_all(const film::Partial& state, To& to) {
+  const std::vector<kernel::PixelPlace> pixels = all_pixels(state.film.width(), state.film.height());
+  to.write(state, {0, 0, state.film.width(), state.film.height(), pixels});
+}
+
+/// The means of a partial, R, G, B of all pixels.
+inline std::vector<float> means(const film::Partial& state) {
+  std::vector<float> out;
+  for (int y = 0; y < state.film.height(); ++y)
+    for (int x = 0; x < state.film.width(); ++x) {
+      float rgb[3];
+      state.mean(x, y, rgb);
+      out.insert(out.end(), rgb, rgb + 3);
+    }
+  return out;
+}
+
+/// A bitmap whose channels have different gradients.
+inline Bitmap gradient(int width, int height) {
+  Bitmap bitmap{width, height, {}};
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (const int code : {x * 255 / width, y * 255 / height, (x + 2 * y) % 256})
+        bitmap.codes.push_back(static_cast<std::uint8_t>(code));
+  return bitmap;
+}
+
+}  // namespace orrery::preview

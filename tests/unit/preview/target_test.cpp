@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "preview/target.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace orrery::preview {
+namespace {
+
+TEST(PreviewTarget, TevListensOnLoopbackUnlessAHostIsGiven) {
+  const auto address = [](const std::string& text) {
+    const Target target = parse_target(text);
+    EXPECT_EQ(target.kind, TargetKind::kTev);
+    return target.host + " " + target.port;
+  };
+  EXPECT_EQ(address("tev"), "127.0.0.1 14158");
+  EXPECT_EQ(address("tev:desk"), "desk 14158");
+  EXPECT_EQ(address("tev:desk:9000"), "desk 9000");
+  EXPECT_EQ(address("tev:[::1]:9000"), "::1 9000");
+  EXPECT_EQ(address("tev:[::1]"), "::1 14158");
+}
+
+TEST(PreviewTarget, KnowsTheTerminalAndPngFiles) {
+  EXPECT_EQ(parse_target("terminal").kind, TargetKind::kTerminal);
+  EXPECT_EQ(parse_target("out/p.PNG").file, "out/p.PNG");
+  EXPECT_EQ(parse_target("tev.png").kind, TargetKind::kFile);
+  EXPECT_EQ(parse_target("tev:9000.png").kind, TargetKind::kFile);
+}
+
+TEST(PreviewTarget, RejectsEverythingElse) {
+  for (const char* text : {"", "Terminal", "p.exr", "tev:", "tev::9000", "tev:desk:", "tev:desk:0", "tev:desk:65536",
+                           "tev:desk:9x", "tev:::1", "tev:[::1", "tev:[::1]9", "tev2"}) {
+    try {
+      parse_target(text);
+      ADD_FAILURE() << text;
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kUsage) << text;
+      EXPECT_NE(std::string(error.what()).find("write tev, tev:HOST:PORT, terminal"), std::string::npos) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orrery::preview
