@@ -73,8 +73,10 @@ void write_table(const toml::table& table, const std::string& name, std::string&
   const std::vector<Entry> entries = in_order(table);
   std::string body;
   for (const Entry& e : entries)
-    if (!e.value->is_table() && !is_list_of_tables(*e.value)) body += key_text(*e.key) + " = " + value_text(*e.value) + "\n";
-  const bool has_tables = std::any_of(entries.begin(), entries.end(), [](const Entry& e) { return e.value->is_table(); });
+    if (!e.value->is_table() && !is_list_of_tables(*e.value))
+      body += key_text(*e.key) + " = " + value_text(*e.value) + "\n";
+  const bool has_tables =
+      std::any_of(entries.begin(), entries.end(), [](const Entry& e) { return e.value->is_table(); });
   if (!name.empty() && (!body.empty() || !has_tables)) out += "[" + name + "]\n";
   if (!body.empty() || !name.empty()) out += body + (body.empty() && has_tables ? "" : "\n");
   const std::string prefix = name.empty() ? "" : name + ".";

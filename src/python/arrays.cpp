@@ -23,7 +23,7 @@ std::vector<T> copied(const py::array& array) {
 
 template <class T>
 bool is_of(const py::array& array) {
-  return array.dtype().is(py::dtype::of<T>());
+  return py::array_t<T>::check_(array);
 }
 
 data::Values values_of(const py::array& array) {
@@ -77,7 +77,11 @@ py::object array_of(data::Values values) {
 
 void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent& extent) {
   const auto numbers = [&](std::size_t axis, auto take) {
-    std::visit([&](const auto& v) { if constexpr (!requires { v.words; }) take(v); }, positions.columns[axis].values);
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (!requires { v.words; }) take(v);
+        },
+        positions.columns[axis].values);
   };
   // All three axes have the type of the array.
   numbers(0, [&](const auto& x) {

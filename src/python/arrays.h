@@ -16,7 +16,8 @@ namespace orrery::python {
 /// A column of a table: its name and a one-dimensional array of numbers.
 using NamedArray = std::pair<std::string, pybind11::array>;
 
-/// Makes a table of arrays. Arrays of float64 and float32 are not copied, whatever their strides; the caller keeps them.
+/// Makes a table of arrays. Arrays of float64 and float32 are not copied, whatever their strides; the caller keeps
+/// them.
 ///
 /// Domain     one-dimensional arrays of one length, of native float64, float32, int64, int32, uint16 or uint8
 std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& columns);
@@ -30,7 +31,7 @@ pybind11::object array_of(data::Values values);
 template <class T>
 pybind11::array_t<T> view_of(const T* values, std::vector<pybind11::ssize_t> shape, const pybind11::object& owner) {
   pybind11::array_t<T> out(std::move(shape), values, owner);
-  pybind11::detail::array_proxy(out.ptr())->flags &= ~pybind11::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  out.attr("setflags")(pybind11::arg("write") = false);
   return out;
 }
 

@@ -40,8 +40,8 @@ void export_symbols() {
   if (dladdr(reinterpret_cast<const void*>(&export_symbols), &own) == 0 || own.dli_fname == nullptr ||
       dlopen(own.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) == nullptr)
     throw base::Error(base::ErrorKind::kInternal, "cannot export the symbols of orrery's Python module");
-  base::set_module_folder((std::filesystem::path(own.dli_fname).parent_path() / ORRERY_MODULES_FROM_PYTHON)
-                              .lexically_normal());
+  base::set_module_folder(
+      (std::filesystem::path(own.dli_fname).parent_path() / ORRERY_MODULES_FROM_PYTHON).lexically_normal());
 }
 
 /// The text that the program prints for an error.
@@ -173,17 +173,16 @@ void bind_scene(py::module_& m) {
                        int frame) {
         return SceneData{std::move(file), is_file, std::move(text), std::move(overrides), frame, {}};
       }))
-      .def("add_table",
-           [](SceneData& self, const std::string& name, const std::vector<NamedArray>& columns) {
-             self.tables[name] = table_of(columns);
-           })
-      .def("check",
-           [](const SceneData& self) {
-             std::vector<std::string> out;
-             for (const base::Diagnostic& warning : check(self)) out.push_back(base::formatted(warning));
-             return out;
-           },
-           ReleaseGil())
+      .def("add_table", [](SceneData& self, const std::string& name,
+                           const std::vector<NamedArray>& columns) { self.tables[name] = table_of(columns); })
+      .def(
+          "check",
+          [](const SceneData& self) {
+            std::vector<std::string> out;
+            for (const base::Diagnostic& warning : check(self)) out.push_back(base::formatted(warning));
+            return out;
+          },
+          ReleaseGil())
       .def("save", &save, ReleaseGil())
       .def("render", &render_scene);
   py::class_<plot::ViewExtent>(m, "Extent").def(py::init(&extent_of)).def("camera", &camera_of);

@@ -58,15 +58,14 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
   }
   for (const std::string& name : names)
     if (!contains(known, name))
-      throw base::Error(base::ErrorKind::kUsage, file.string() + " has no column `" + name + "`; its columns are " +
-                                                     base::joined(known));
+      throw base::Error(base::ErrorKind::kUsage,
+                        file.string() + " has no column `" + name + "`; its columns are " + base::joined(known));
   for (const std::string& source : sources)
     if (!contains(wanted, source)) wanted.push_back(source);
   out.table = opened->read(frame - 1, wanted);
   if (!sources.empty()) points::compute_speed(sources, out.table);
-  std::erase_if(out.table.columns, [&](const data::Column& column) {
-    return !names.empty() && !contains(names, column.name);
-  });
+  std::erase_if(out.table.columns,
+                [&](const data::Column& column) { return !names.empty() && !contains(names, column.name); });
   return out;
 }
 

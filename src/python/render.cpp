@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -107,6 +108,8 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
   }
   if (python_failure) std::rethrow_exception(python_failure);
   if (failure) std::rethrow_exception(failure);
+  const std::uint64_t paths = rendering.report.render.paths;
+  if (!on_progress.is_none()) on_progress(1.0, paths, paths, rendering.report.render.render_s, "");
   if (!rendering.report.target_missed.empty()) on_warning(rendering.report.target_missed);
   return Picture(std::move(rendering));
 }

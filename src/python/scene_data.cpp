@@ -48,7 +48,8 @@ job::SceneSource SceneData::source() const {
   out.overrides.assign(overrides.begin(), overrides.end());
   out.frame = frame;
   if (!tables.empty())
-    out.open_data = [own = tables, folder = file.parent_path()](const fs::path& path, const data::OpenOptions& options) {
+    out.open_data = [own = tables, folder = file.parent_path()](const fs::path& path,
+                                                                const data::OpenOptions& options) {
       for (const auto& [name, table] : own)
         if (path == folder / name) return data::open_table(name, table);
       return data::open(path, options);
@@ -82,8 +83,7 @@ void save(const SceneData& scene, const fs::path& file) {
     check_data_file(folder / table_file_name(file, name));
   }
   const auto renamed = [&](const std::string& name) {
-    return scene.tables.count(name) != 0 ? table_file_name(file, name)
-                                         : moved(name, scene.file.parent_path(), folder);
+    return scene.tables.count(name) != 0 ? table_file_name(file, name) : moved(name, scene.file.parent_path(), folder);
   };
   const std::string text = format::merged_text(scene.file, scene.text, source.overrides, renamed);
   for (const auto& [name, table] : scene.tables)

@@ -112,7 +112,8 @@ class Scene:
             keys["color"] = _color(color, rows, table)
         name = self._new_name()
         self._arrays[name] = list(table.items())
-        self._add_table("points", {"file": name, **keys})
+        # Cryptomatte names spheres after their file, which is another one in a scene that was saved.
+        self._add_table("points", {"file": name, "name": name, **keys})
 
     def check(self):
         """Reads the scene and checks everything that a render would reject. Returns the warnings."""

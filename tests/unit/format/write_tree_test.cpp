@@ -78,8 +78,8 @@ material = "m"
 color = { column = "t", map = "viridis" }
 )",
                                        {}, [](const std::string& file) { return "../" + file; });
-  for (const char* name : {"\"../a.ocio\"", "\"../b.exr\"", "\"../c.ply\"", "\"d.ply\"", "\"../d.txt\"", "\"../e.ply\"",
-                           "\"viridis\""})
+  for (const char* name :
+       {"\"../a.ocio\"", "\"../b.exr\"", "\"../c.ply\"", "\"d.ply\"", "\"../d.txt\"", "\"../e.ply\"", "\"viridis\""})
     EXPECT_NE(text.find(name), std::string::npos) << name << "\n" << text;
 }
 
