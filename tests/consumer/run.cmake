@@ -20,8 +20,7 @@ run(${WORK}/prefix/bin/orrery --version)
 # The Python package finds the modules of the program in the moved tree.
 file(GLOB python ${WORK}/prefix/lib/python3*/dist-packages)
 if(PYTHON)
-  run(${CMAKE_COMMAND} -E env PYTHONPATH=${python} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} -c
-      "import orrery; orrery.Scene().render(4, 4, samples=1).write('${WORK}/python.exr')")
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${python} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} ${SOURCE}/check_python.py ${WORK})
 endif()
 
 # Installed files do not name the build folder.

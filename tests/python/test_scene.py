@@ -64,26 +64,31 @@ class SameAsTheProgram(FolderTest):
     def test_a_scene_of_arrays_that_was_saved(self):
         random = np.random.default_rng(2)
         p = random.normal(size=(80, 3))
-        for dtype in (np.float64, np.float32):
-            for color in (None, orrery.colormap(p[:, 1], "magma", range=(-1, 1)), random.random((80, 3)), (1, 0, 0)):
-                scene = small_scene(p.astype(dtype), radius=random.random(80) / 3 + 0.1, color=color, name="cloud")
-                scene.add_points(p + 1, radius=0.1, material="gold")
-                scene.add_material("gold", orrery.Metal((0.8, 0.6, 0.2), 0.1))
-                scene.add_sphere((0, 0, -101), 100, name="ground \u00e9")
-                scene.set("output.layers", ["Z", "CryptoObject"])
-                scene.set("image.width", SIZE[0])
-                scene.set("image.height", SIZE[1])
-                scene.save("saved.toml")
-                picture = scene.render()
-                status, error = run("render", "saved.toml", "-o", "a.exr", "-q", "--type", "float")
-                self.assertEqual(status, 0, error)
-                picture.write("b.exr", type="float")
-                loaded = orrery.load("saved.toml").render()
-                for layer in picture.layers:
-                    np.testing.assert_array_equal(picture[layer], loaded[layer])
-                self.assertEqual(picture.beauty.tobytes(), loaded.beauty.tobytes())
-                status, error = run("compare", "a.exr", "b.exr", "--fail-above", "max=0")
-                self.assertEqual(status, 0, error)
+        single, double = np.float32, np.float64
+        for dtype, color in (
+            (double, None),
+            (single, orrery.colormap(p[:, 1], "magma", range=(-1, 1))),
+            (double, random.random((80, 3))),
+            (single, (1, 0, 0)),
+        ):
+            scene = small_scene(p.astype(dtype), radius=random.random(80) / 3 + 0.1, color=color, name="cloud")
+            scene.add_points(p + 1, radius=0.1, material="gold")
+            scene.add_material("gold", orrery.Metal((0.8, 0.6, 0.2), 0.1))
+            scene.add_sphere((0, 0, -101), 100, name="ground \u00e9")
+            scene.set("output.layers", ["Z", "CryptoObject"])
+            scene.set("image.width", SIZE[0])
+            scene.set("image.height", SIZE[1])
+            scene.save("saved.toml")
+            picture = scene.render()
+            status, error = run("render", "saved.toml", "-o", "a.exr", "-q", "--type", "float")
+            self.assertEqual(status, 0, error)
+            picture.write("b.exr", type="float")
+            loaded = orrery.load("saved.toml").render()
+            for layer in picture.layers:
+                np.testing.assert_array_equal(picture[layer], loaded[layer])
+            self.assertEqual(picture.beauty.tobytes(), loaded.beauty.tobytes())
+            status, error = run("compare", "a.exr", "b.exr", "--fail-above", "max=0")
+            self.assertEqual(status, 0, error)
 
     def test_errors_have_the_same_text(self):
         write("bad.toml", SCENE.replace("radius = 0.5", "radis = 0.5").replace("samples = 3", "samples = 0"))
