@@ -2,6 +2,7 @@
 #include "format/write_tree.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <sstream>
 #include <tuple>
 
