@@ -17,6 +17,26 @@ install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT r
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime RENAME copyright)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev COMPONENT development RENAME copyright)
 
+# Debian's Python searches /usr/local/lib/python3.11/dist-packages, where `cmake --install` puts the package, and
+# /usr/lib/python3/dist-packages, where Debian packages put theirs. Both are as far from libexec.
+if(ORRERY_PYTHON)
+  set(ORRERY_PYTHON_INSTALL_DIR lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/dist-packages
+      CACHE STRING "Folder of the Python package, two levels below lib")
+  get_target_property(python_package orrery_python LIBRARY_OUTPUT_DIRECTORY)
+  foreach(place IN ITEMS ${ORRERY_PYTHON_INSTALL_DIR}:python lib/python3/dist-packages:python_debian)
+    string(REGEX MATCH "^(.*):(.*)$" ignored ${place})
+    set(component COMPONENT ${CMAKE_MATCH_2})
+    if(CMAKE_MATCH_2 STREQUAL "python_debian")
+      list(APPEND component EXCLUDE_FROM_ALL)
+    endif()
+    install(TARGETS orrery_python LIBRARY DESTINATION ${CMAKE_MATCH_1}/orrery ${component})
+    install(DIRECTORY src/python/orrery DESTINATION ${CMAKE_MATCH_1} ${component}
+            FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed")
+  endforeach()
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-orrery COMPONENT python_debian RENAME copyright
+          EXCLUDE_FROM_ALL)
+endif()
+
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/orrery)
 install(EXPORT orrery NAMESPACE orrery:: FILE orreryTargets.cmake DESTINATION ${config_dir} COMPONENT development)
 configure_package_config_file(cmake/orreryConfig.cmake.in ${PROJECT_BINARY_DIR}/orreryConfig.cmake
@@ -51,4 +71,15 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 file(STRINGS tools/packages-build.txt build_packages REGEX "-dev( |$)")
 list(TRANSFORM build_packages REPLACE " .*" "")
 list(JOIN build_packages ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+if(ORRERY_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python_debian)
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_NAME python3-orrery)
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_COMPONENT_PYTHON_DEBIAN_DESCRIPTION "Path tracing of spheres from NumPy arrays: import orrery.")
+  # The extension module is for one version of Python, and uses the modules of the program's package.
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_DEPENDS
+      "orrery (= ${PROJECT_VERSION}), python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+endif()
 include(CPack)

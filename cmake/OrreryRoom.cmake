@@ -11,11 +11,20 @@ include(OrreryHeaders)
 #           internal: other rooms must not include it, and it is not installed.
 # EXPOSED   include prefixes that any header of the room may include.
 # LIBRARIES, EXPOSED_LIBRARIES   the targets that provide FOREIGN and EXPOSED.
+# DECLARED  only declares the room: it has no library of its own and is not installed.
 function(orrery_room name)
-  cmake_parse_arguments(PARSE_ARGV 1 ROOM "" "" "DEPENDS;LIBRARIES;FOREIGN;EXPOSED_LIBRARIES;EXPOSED")
+  cmake_parse_arguments(PARSE_ARGV 1 ROOM "DECLARED" "" "DEPENDS;LIBRARIES;FOREIGN;EXPOSED_LIBRARIES;EXPOSED")
   if(ROOM_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "orrery_room(${name}): unknown arguments: ${ROOM_UNPARSED_ARGUMENTS}")
   endif()
+  list(JOIN ROOM_DEPENDS " " depends)
+  list(JOIN ROOM_FOREIGN " " foreign)
+  list(JOIN ROOM_EXPOSED " " exposed)
+  set_property(GLOBAL APPEND_STRING PROPERTY ORRERY_ROOM_TABLE "${name} | ${depends} | ${foreign} | ${exposed}\n")
+  if(ROOM_DECLARED)
+    return()
+  endif()
+  set_property(GLOBAL APPEND PROPERTY ORRERY_ROOMS "${name}")
   set(folder ${CMAKE_CURRENT_SOURCE_DIR}/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.h)
@@ -50,11 +59,6 @@ function(orrery_room name)
   install(TARGETS ${target} EXPORT orrery ARCHIVE COMPONENT development)
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/orrery/${name} COMPONENT development)
 
-  set_property(GLOBAL APPEND PROPERTY ORRERY_ROOMS "${name}")
-  list(JOIN ROOM_DEPENDS " " depends)
-  list(JOIN ROOM_FOREIGN " " foreign)
-  list(JOIN ROOM_EXPOSED " " exposed)
-  set_property(GLOBAL APPEND_STRING PROPERTY ORRERY_ROOM_TABLE "${name} | ${depends} | ${foreign} | ${exposed}\n")
 endfunction()
 
 # The compiler must not fuse operations: the source has explicit fused operations where they are wanted. Images are

@@ -40,11 +40,13 @@ void summarize(const data::Words& words, ColumnSummary& out) {
   }
 }
 
-template <class T>
-void summarize(const std::vector<T>& values, ColumnSummary& out) {
+template <class Numbers>
+void summarize(const Numbers& values, ColumnSummary& out) {
+  using T = std::decay_t<decltype(values[0])>;
   using Wide = std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t>;
   std::optional<std::pair<T, T>> range;
-  for (const T value : values) {
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    const T value = values[row];
     if constexpr (std::is_floating_point_v<T>) {
       if (!std::isfinite(value)) {
         ++(std::isnan(value) ? out.nan_count : out.infinite_count);

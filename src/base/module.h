@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace orrery::base {
 
-/// Loads the module of a room, `orrery-ROOM.so` in the folder of the executable, and returns the result of its function
+/// Sets the folder of the modules; by default that of the executable. Call before the first load_module().
+void set_module_folder(std::filesystem::path folder);
+
+/// Loads the module of a room, `orrery-ROOM.so` in the folder of the modules, and returns the result of its function
 /// `orrery_ROOM_functions`: the table of the room's functions. A module stays loaded until the process ends.
 ///
 /// Errors     base::Error(kInternal): the module is missing or damaged

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
@@ -25,12 +26,35 @@ struct Words {
   std::vector<std::uint32_t> index;  ///< one per row, into `words`
 };
 
-/// The values of a column, one per row, in the type in which the file stores them. Numbers of text files are float64,
-/// or int64 if the format declares the column an integer.
-using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>,
-                            std::vector<std::int32_t>, std::vector<std::uint16_t>, std::vector<std::uint8_t>, Words>;
+/// A column of an array in memory, which the caller owns and keeps.
+template <class T>
+class ArrayView {
+ public:
+  /// `first`    address of the first value; need not be aligned
+  /// `stride`   bytes from one value to the next; may be negative or 0
+  ArrayView(const void* first, std::ptrdiff_t stride, std::size_t size)
+      : first_(static_cast<const char*>(first)), stride_(stride), size_(size) {}
 
-/// The alternatives of Values, in its order.
+  std::size_t size() const { return size_; }
+  T operator[](std::size_t row) const {
+    T value;
+    std::memcpy(&value, first_ + static_cast<std::ptrdiff_t>(row) * stride_, sizeof(T));
+    return value;
+  }
+
+ private:
+  const char* first_;
+  std::ptrdiff_t stride_;
+  std::size_t size_;
+};
+
+/// The values of a column, one per row, in the type in which the file stores them. Numbers of text files are float64,
+/// or int64 if the format declares the column an integer. Files give no views; only tables in memory have them.
+using Values =
+    std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>, std::vector<std::int32_t>,
+                 std::vector<std::uint16_t>, std::vector<std::uint8_t>, Words, ArrayView<double>, ArrayView<float>>;
+
+/// The types of the alternatives of Values, in its order up to Words.
 enum class ColumnType { kFloat64, kFloat32, kInt64, kInt32, kUint16, kUint8, kText };
 
 /// "float64", "int32", "text"
@@ -49,7 +73,11 @@ struct Column {
   std::string name;
   Values values;
 
-  ColumnType type() const { return static_cast<ColumnType>(values.index()); }
+  ColumnType type() const {
+    if (std::holds_alternative<ArrayView<double>>(values)) return ColumnType::kFloat64;
+    if (std::holds_alternative<ArrayView<float>>(values)) return ColumnType::kFloat32;
+    return static_cast<ColumnType>(values.index());
+  }
   std::size_t size() const {
     return std::visit(
         [](const auto& v) {

@@ -73,9 +73,11 @@ void* resized(Values& column, std::uint64_t rows) {
         if constexpr (requires { v.index; }) {
           v.index.resize(rows);
           return v.index.data();
-        } else {
+        } else if constexpr (requires { v.resize(rows); }) {
           v.resize(rows);
           return v.data();
+        } else {
+          return nullptr;  // readers make no views
         }
       },
       column);

@@ -148,7 +148,7 @@ class VtkFile final : public SingleFrame {
     for (std::size_t i = 0; i < targets.size(); ++i)
       std::visit(
           [&](auto& column) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(column)>, Words>) {
+            if constexpr (requires { column.resize(1); }) {
               auto& read = std::get<std::decay_t<decltype(column)>>(values[i]);
               if (column.empty()) {
                 column = std::move(read);

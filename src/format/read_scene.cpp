@@ -177,6 +177,7 @@ void read_points(Reading& reading, const toml::table& root, const std::filesyste
       request.is_sequence = points.file.string() != pattern;
       request.materials = scene.materials.size();
       request.memory_limit = options.memory_limit;
+      request.open = options.open_data;
       read_points_file(reading, root, scene_file.string(), place_of(*table.get("file")), request, points);
     }
     scene.points.push_back(std::move(points));

@@ -11,6 +11,7 @@
 
 #include "base/diagnostic.h"
 #include "format/override.h"
+#include "points/load_points.h"
 #include "scene/scene.h"
 #include "scene/validate.h"
 
@@ -39,9 +40,10 @@ using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene
 
 struct ReadOptions {
   std::shared_ptr<const std::string> text = {};  ///< of the scene; null: read the file
-  int frame = kFirstFrame;         ///< selects the values of animated keys, and the files and frames of data
-  SceneCheck also = {};            ///< called if [color] has no errors
-  std::uint64_t memory_limit = 0;  ///< bytes that the spheres of a data file may take while they are read; 0: no limit
+  int frame = kFirstFrame;          ///< selects the values of animated keys, and the files and frames of data
+  SceneCheck also = {};             ///< called if [color] has no errors
+  std::uint64_t memory_limit = 0;   ///< bytes that the spheres of a data file may take while they are read; 0: no limit
+  points::OpenData open_data = {};  ///< replaces data::open(), for data in memory
 };
 
 /// Reads and checks a scene file, and the data files that it names.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -15,7 +16,6 @@
 #include "job/check_job.h"
 #include "job/checkpoint.h"
 #include "job/disk_space.h"
-#include "job/display_writer.h"
 #include "job/job_files.h"
 #include "job/layers.h"
 #include "job/load_scene.h"
@@ -25,8 +25,10 @@
 #include "job/memory.h"
 #include "job/picture_header.h"
 #include "job/provenance.h"
+#include "job/rendering.h"
 #include "job/statistics.h"
 #include "job/text.h"
+#include "job/write_outputs.h"
 
 namespace orrery::job {
 namespace {
@@ -53,15 +55,6 @@ void warn(const Job& job, const base::Diagnostic& diagnostic) {
   if (job.hooks.on_warning) job.hooks.on_warning(diagnostic);
 }
 
-void require_bits(const display::Choice& display, const Job& job) {
-  for (const ImageFile& output : job.outputs.images) {
-    if (display.is_hdr && image::is_display_format(output.format) && image::most_bits(output.format) < 16)
-      throw base::Error(base::ErrorKind::kUsage, output.path.string() +
-                                                     " holds 8 bits per channel, too few for display " +
-                                                     display.display + "; PNG and TIFF hold 16");
-  }
-}
-
 /// Loads the scene and checks it against the job's output formats.
 LoadedScene load(const Job& job, JobReport& report) {
   const bool writes_display_format = job.outputs.has_display_format();
@@ -72,34 +65,9 @@ LoadedScene load(const Job& job, JobReport& report) {
   for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
   if (writes_display_format) {
     report.display = *loaded.choice;
-    require_bits(report.display, job);
+    require_bits(report.display, job.outputs);
   }
   return loaded;
-}
-
-void write_outputs(const Job& job, const display::Settings& display, const film::Picture& picture,
-                   const image::Header& header, const std::vector<MatteNames>& mattes, JobReport& report) {
-  DisplayWriter developed(picture, display, job.outputs.bits != 0 ? job.outputs.bits : report.display.default_bits());
-  const auto add = [&](const image::WriteReport& one) {
-    report.written.clamped += one.clamped;
-    report.written.not_finite += one.not_finite;
-  };
-  for (const auto& [output, format] : job.outputs.images) {
-    switch (format) {
-      case image::Format::kExr: {
-        image::Header own = header;
-        own.matte_attributes = matte_attributes(mattes, output);
-        write_manifests(mattes, output);  // first, so that no image refers to a missing file
-        add(image::write_exr(output, picture, own, job.outputs.exr));
-        break;
-      }
-      case image::Format::kHdr: add(image::write_hdr(output, picture)); break;
-      case image::Format::kPng:
-      case image::Format::kTiff:
-      case image::Format::kJpeg:
-      case image::Format::kPpm: developed.write(output, header.software, header.stamp); break;
-    }
-  }
 }
 
 /// The layers that an output of the job holds; others are not computed.
@@ -107,7 +75,7 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Comp
   Layers layers = choose_layers(scene, compiled);
   layers.request.deep = !job.outputs.deep.empty();
   image::check_lossless(film::planes_of(layers.request), job.outputs.exr);
-  if (job.outputs.has_exr()) return layers;
+  if (job.outputs.has_exr() || job.keep != nullptr) return layers;
   const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
   if (job.merge.shards.empty() && !scene.output.layers.empty() &&
       std::any_of(job.scene.overrides.begin(), job.scene.overrides.end(), is_explicit))
@@ -139,6 +107,25 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
     out += fmt::format("{}the noise of {} pixels cannot be judged: too few paths found light near them; allow more {}",
                        out.empty() ? "" : "; ", statistics.unjudged_pixels, ended_by_time ? "time" : "samples");
   return out;
+}
+
+/// Keeps the image in memory instead of writing files.
+void keep(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled, const Layers& layers,
+          const image::Provenance& provenance, const display::Settings& display, const base::FileSet& files,
+          film::Picture picture, const JobReport& report) {
+  Rendering& out = *job.keep;
+  out.job = job;
+  out.job.hooks = {};
+  out.job.keep = nullptr;
+  out.job.scene.open_data = {};
+  out.picture = std::move(picture);
+  out.header = picture_header(read, compiled, report, false);
+  out.reproducible_header = picture_header(read, compiled, report, true);
+  out.mattes = layers.mattes;
+  out.display = display;
+  out.provenance = provenance;
+  out.report = report;
+  out.files = files;
 }
 
 /// Read, check, compile, render or merge, develop, write.
@@ -189,28 +176,32 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   if (job.hooks.on_start && job.merge.shards.empty())
     job.hooks.on_start(
         {job.scene.file.filename().string(), compiled.width, compiled.height, compiled.pixel_aspect, display});
-  image::set_threads(settings.threads);
+  if (job.keep == nullptr) image::set_threads(settings.threads);
   const auto write_sums = [&](const std::filesystem::path& file, const film::Partial& partial) {
     image::write_partial(file, preview(compiled, partial),
                          picture_header(read, compiled, report, job.outputs.reproducible), provenance, partial);
   };
-  Checkpoint checkpoint(checkpoint_file(job.outputs.images.front().path), job.checkpoint, job.hooks, provenance,
-                        write_sums);
-  const render::Result result = job.merge.shards.empty()
-                                    ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
-                                    : merge_job(job, compiled, layers, provenance, report);
+  const std::filesystem::path checkpoint_path =
+      job.keep == nullptr ? checkpoint_file(job.outputs.images.front().path) : std::filesystem::path();
+  Checkpoint checkpoint(checkpoint_path, job.checkpoint, job.hooks, provenance, write_sums);
+  render::Result result = job.merge.shards.empty()
+                              ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
+                              : merge_job(job, compiled, layers, provenance, report);
   report.render = result.statistics;
   const double made_s = watch.lap();
   if (!job.merge.shards.empty()) report.phases.finish_s = made_s;
 
   report.target_missed = missed_target(job, result.statistics);
   count_bad_values(result.picture, report);
-  if (is_shard(job)) {
+  if (job.keep != nullptr) {
+    keep(job, read, compiled, layers, provenance, display, files, std::move(result.picture), report);
+  } else if (is_shard(job)) {
     write_sums(job.outputs.images.front().path, *result.partial);
   } else {
     image::Header header = picture_header(read, compiled, report, job.outputs.reproducible);
     header.stamp = stamp;
-    write_outputs(job, display, result.picture, header, layers.mattes, report);
+    const int bits = job.outputs.bits != 0 ? job.outputs.bits : report.display.default_bits();
+    report.written = write_outputs(job.outputs, display, bits, result.picture, header, layers.mattes);
     if (!job.outputs.deep.empty()) image::write_deep(job.outputs.deep, result.deep, result.picture, header);
   }
   checkpoint.remove();

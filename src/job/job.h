@@ -42,6 +42,8 @@ struct MergeSettings {
   bool allow_missing = false;
 };
 
+struct Rendering;
+
 /// A request to `orrery render` or `orrery merge`.
 struct Job {
   SceneSource scene;
@@ -56,6 +58,7 @@ struct Job {
   /// Files of the batch that this job belongs to; null: the job stands alone.
   std::shared_ptr<base::FileSet> files = nullptr;
   std::shared_ptr<BackgroundCache> background_cache = nullptr;  ///< shared by the jobs of a batch
+  Rendering* keep = nullptr;  ///< receives the image and all layers of the scene; no file is written
 };
 
 /// True if the scene's sample count limits adaptive sampling, because an override sets it.
@@ -72,7 +75,7 @@ inline bool is_shard(const Job& job) { return job.as_shard || job.sampling.is_pa
 /// Before rendering starts, the job checks that its files can be created and that formats, compression, display and
 /// view exist. The statistics file is also written if the job is stopped or fails after these checks.
 ///
-/// Domain     at least one output
+/// Domain     at least one output, or `keep` and none: no deep image, no checkpoint, no shard
 /// Errors     base::Error of every kind; kStopped if `cancel` stopped the job, in which case no image was written
 JobReport run_job(const Job& job);
 

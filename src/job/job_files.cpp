@@ -22,7 +22,8 @@ std::vector<OutputFile> outputs_of(const Job& job) {
   for (const ImageFile& output : job.outputs.images) out.push_back({output.path, "-o"});
   if (!job.outputs.deep.empty()) out.push_back({job.outputs.deep, "--deep"});
   if (!job.outputs.statistics.empty()) out.push_back({job.outputs.statistics, "--stats"});
-  if (job.merge.shards.empty()) out.push_back({checkpoint_file(job.outputs.images.front().path), "checkpoint"});
+  if (job.merge.shards.empty() && job.keep == nullptr)
+    out.push_back({checkpoint_file(job.outputs.images.front().path), "checkpoint"});
   return out;
 }
 

@@ -120,6 +120,7 @@ LoadedScene load_scene(const SceneRequest& request) {
   format::ReadOptions options;
   options.text = request.source.text;
   options.frame = request.source.frame;
+  options.open_data = request.source.open_data;
   options.also = check_and_load;
   options.memory_limit = request.memory_limit > 0 ? request.memory_limit : available_memory().value_or(0);
   out.read = format::read_scene(request.source.file, request.source.overrides, options);

@@ -107,7 +107,7 @@ render::Result render_job(const Job& job, const compile::CompiledScene& compiled
   report.phases.render_s = result.statistics.render_s;
   report.phases.finish_s = result.statistics.finish_s;
   if (result.completed) return result;
-  if (!result.partial)
+  if (!result.partial || job.keep != nullptr)
     stop_job(report.was_resumed ? "; " + checkpoint.file().string() + " still holds the samples of the earlier run"
                                 : "");
   checkpoint.write(*result.partial);

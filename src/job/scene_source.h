@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "format/override.h"
+#include "format/read_scene.h"
 
 namespace orrery::job {
 
@@ -16,6 +17,7 @@ struct SceneSource {
   std::vector<format::Override> overrides;  ///< "camera.vfov=30"
   int frame = 1;
   std::shared_ptr<const std::string> text = {};  ///< of the scene, if `file` is only its name; null: read the file
+  decltype(format::ReadOptions::open_data) open_data = {};  ///< see format::ReadOptions
 };
 
 }  // namespace orrery::job

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -75,9 +76,9 @@ data::Words gathered(const data::Words& all, const std::vector<std::uint32_t>& r
 }
 
 /// The numbers in the given rows.
-template <class T>
-std::vector<T> gathered(const std::vector<T>& all, const std::vector<std::uint32_t>& rows) {
-  std::vector<T> out;
+template <class Numbers>
+auto gathered(const Numbers& all, const std::vector<std::uint32_t>& rows) {
+  std::vector<std::decay_t<decltype(all[0])>> out;
   out.reserve(rows.size());
   for (const std::uint32_t row : rows) out.push_back(all[row]);
   return out;

@@ -90,16 +90,18 @@ void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& po
 }
 
 void ViewExtent::add(const scene::Points& points) {
+  for (std::size_t i = 0; i < points.centers.size(); ++i) add(points.centers[i], points.radii[i]);
+}
+
+void ViewExtent::add(Vec3d center, double radius) {
   const Vec3d axes[3] = {axes_.right, axes_.up, axes_.back};
-  for (std::size_t i = 0; i < points.centers.size(); ++i) {
-    const double r = std::abs(points.radii[i]);
-    for (int k = 0; k < 3; ++k) {
-      const double at = math::dot(points.centers[i], axes[k]);
-      low_[k] = is_empty_ ? at - r : std::min(low_[k], at - r);
-      high_[k] = is_empty_ ? at + r : std::max(high_[k], at + r);
-    }
-    is_empty_ = false;
+  const double r = std::abs(radius);
+  for (int k = 0; k < 3; ++k) {
+    const double at = math::dot(center, axes[k]);
+    low_[k] = is_empty_ ? at - r : std::min(low_[k], at - r);
+    high_[k] = is_empty_ ? at + r : std::max(high_[k], at + r);
   }
+  is_empty_ = false;
 }
 
 Vec3d ViewExtent::center() const {

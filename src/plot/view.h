@@ -34,6 +34,7 @@ class ViewExtent {
   explicit ViewExtent(const ViewAxes& axes) : axes_(axes) {}
 
   void add(const scene::Points& points);
+  void add(Vec3d center, double radius);
   bool is_empty() const { return is_empty_; }
 
   /// Returns an orthographic camera that sees all spheres, with a margin of 5 % of the image on each side.

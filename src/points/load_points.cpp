@@ -55,7 +55,7 @@ class Loader {
   std::vector<scene::SceneDiagnostic> run() {
     data::OpenOptions options;
     options.component = points_.component;
-    file_ = data::open(request_.file, options);
+    file_ = request_.open ? request_.open(request_.file, options) : data::open(request_.file, options);
     if (const std::optional<int> frame = choose_frame()) {
       info_ = file_->describe(*frame);
       add_derived_columns(info_);

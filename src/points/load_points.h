@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <vector>
 
+#include "data/data_file.h"
 #include "data/table.h"
 #include "scene/scene.h"
 #include "scene/validate.h"
@@ -19,6 +22,9 @@ struct SourceRows {
   std::vector<std::uint32_t> rows;  ///< row of each sphere; copies of a particle have the same one
 };
 
+/// Opens a data file, as data::open() does.
+using OpenData = std::function<std::unique_ptr<data::DataFile>(const std::filesystem::path&, const data::OpenOptions&)>;
+
 struct LoadRequest {
   std::filesystem::path file;      ///< the data file
   std::filesystem::path folder;    ///< of the scene file, for the file of a colour map
@@ -28,6 +34,7 @@ struct LoadRequest {
   std::size_t materials = 0;       ///< number of materials of the scene
   SourceRows* source = nullptr;    ///< if not null, receives the rows of the spheres
   std::uint64_t memory_limit = 0;  ///< bytes that the spheres may take; 0: no limit
+  OpenData open = {};              ///< replaces data::open(), for data in memory
 };
 
 /// Reads the spheres of a data file into `points`, as its keys say: selects rows, determines radii and colours, copies

@@ -21,6 +21,7 @@ endfunction()
 
 run(ignored ${CPACK} -G DEB --config ${BUILD}/CPackConfig.cmake -B ${WORK})
 file(GLOB program ${WORK}/orrery_*.deb)
+file(GLOB python ${WORK}/python3-orrery_*.deb)
 file(GLOB rooms ${WORK}/orrery-dev_*.deb)
 if(NOT program OR NOT rooms)
   message(FATAL_ERROR "cpack wrote no packages to ${WORK}")
@@ -42,4 +43,24 @@ must_match("the rooms' package" "${files}" "/liborrery_render\\.a\n" "/include/o
            "/include/orrery/kernel/intersect-inl\\.h\n" "/cmake/orrery/orreryConfig\\.cmake\n")
 if(files MATCHES "toml_tree\\.h")
   message(FATAL_ERROR "the rooms' package contains a header that includes a third-party library:\n${files}")
+endif()
+
+# The Python package, if it is built: imported from the unpacked packages, it finds the modules of the program's package.
+if(PYTHON)
+  if(NOT python)
+    message(FATAL_ERROR "cpack wrote no package python3-orrery to ${WORK}")
+  endif()
+  run(fields dpkg-deb --field ${python})
+  must_match("the Python package" "${fields}" "Package: python3-orrery\n" "Depends: [^\n]*orrery \\(= [0-9.]+\\)"
+             "Depends: [^\n]*python3-numpy" "Depends: [^\n]*libembree")
+  run(files dpkg-deb --contents ${python})
+  must_match("the Python package" "${files}" "/usr/lib/python3/dist-packages/orrery/__init__\\.py\n"
+             "/orrery/__init__\\.pyi\n" "/orrery/py\\.typed\n" "/orrery/_orrery\\.[^/]*\\.so\n"
+             "/usr/share/doc/python3-orrery/copyright\n")
+  run(ignored dpkg-deb --extract ${program} ${WORK}/root)
+  run(ignored dpkg-deb --extract ${python} ${WORK}/root)
+  set(packages ${WORK}/root/usr/lib/python3/dist-packages)
+  run(printed ${CMAKE_COMMAND} -E env PYTHONPATH=${packages} PYTHONDONTWRITEBYTECODE=1 ${PYTHON}
+      ${CMAKE_CURRENT_LIST_DIR}/check_python.py ${WORK})
+  must_match("Python's output" "${printed}" "x y z ${packages}/orrery")
 endif()

@@ -17,6 +17,12 @@ run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 run(${WORK}/prefix/bin/orrery --version)
 
+# The Python package finds the modules of the program in the moved tree.
+file(GLOB python ${WORK}/prefix/lib/python3*/dist-packages)
+if(PYTHON)
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${python} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} ${SOURCE}/check_python.py ${WORK})
+endif()
+
 # Installed files do not name the build folder.
 file(GLOB_RECURSE texts ${WORK}/prefix/*.cmake ${WORK}/prefix/*.h)
 foreach(text IN LISTS texts)

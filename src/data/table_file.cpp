@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/table_file.h"
+
+#include <utility>
+
+#include "data/customary.h"
+#include "data/faults.h"
+
+namespace orrery::data {
+namespace {
+
+class TableFile : public DataFile {
+ public:
+  TableFile(const std::filesystem::path& name, std::shared_ptr<const Table> table) : table_(std::move(table)) {
+    info_.rows = table_->rows;
+    for (const Column& column : table_->columns) info_.columns.push_back({column.name, column.type()});
+    Faults faults(name);
+    info_.roles = required_roles(info_.columns, faults);
+  }
+
+  Format format() const override { return Format::kPly; }
+  int frame_count() override { return 1; }
+  FrameInfo describe(int) override { return info_; }
+  Table read(int, const std::vector<std::string>& columns) override {
+    Table out{table_->rows, {}};
+    for (const std::string& name : columns) out.columns.push_back(*table_->find(name));
+    return out;
+  }
+
+ private:
+  std::shared_ptr<const Table> table_;
+  FrameInfo info_;
+};
+
+}  // namespace
+
+std::unique_ptr<DataFile> open_table(const std::filesystem::path& name, std::shared_ptr<const Table> table) {
+  return std::make_unique<TableFile>(name, std::move(table));
+}
+
+}  // namespace orrery::data

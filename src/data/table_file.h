@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "data/data_file.h"
+#include "data/table.h"
+
+namespace orrery::data {
+
+/// Returns a table in memory as a data file of one frame: the PLY file that write_table() makes of it, without a file.
+/// Columns that are views stay views.
+///
+/// `name`     for messages
+/// Domain     columns of numbers; all have table.rows rows and different names
+/// Errors     base::Error(kBadData): there are no columns x, y and z
+std::unique_ptr<DataFile> open_table(const std::filesystem::path& name, std::shared_ptr<const Table> table);
+
+}  // namespace orrery::data

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "base/file_set.h"
+#include "display/develop.h"
+#include "film/picture.h"
+#include "image/partial_file.h"
+#include "image/write.h"
+#include "job/job.h"
+#include "job/layers.h"
+
+namespace orrery::job {
+
+/// A rendered image in memory, and what its files need besides.
+struct Rendering {
+  Job job;                ///< the request, without hooks and data in memory
+  film::Picture picture;  ///< R, G, B, A, then the layers of the scene
+  image::Header header, reproducible_header;
+  std::vector<MatteNames> mattes;
+  display::Settings display;     ///< from the request and the scene
+  image::Provenance provenance;  ///< what the image depends on
+  JobReport report;
+  base::FileSet files;  ///< inputs of the job
+};
+
+/// Writes files of a rendering, the same files that a job with these outputs writes. Only the stamps of display formats
+/// differ if the scene has layers, which such a job does not compute.
+///
+/// `outputs`  images and how to write them; empty names of the display transform are those of the rendering
+/// Domain     no deep image and no statistics
+/// Result     values changed to fit the files
+/// Errors     base::Error: kUsage, kCannotCreate before any file is written; kIo
+image::WriteReport write_rendering(const Rendering& rendering, const Outputs& outputs);
+
+/// Resolves the display transform of a rendering.
+///
+/// `display`  empty names are those of the rendering
+/// Errors     those of display::choose()
+display::Settings display_of(const Rendering& rendering, display::Settings display);
+
+}  // namespace orrery::job

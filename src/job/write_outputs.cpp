@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/write_outputs.h"
+
+#include "base/error.h"
+#include "image/format.h"
+#include "job/display_writer.h"
+#include "job/matte_manifest.h"
+
+namespace orrery::job {
+
+void require_bits(const display::Choice& display, const Outputs& outputs) {
+  for (const ImageFile& output : outputs.images) {
+    if (display.is_hdr && image::is_display_format(output.format) && image::most_bits(output.format) < 16)
+      throw base::Error(base::ErrorKind::kUsage, output.path.string() +
+                                                     " holds 8 bits per channel, too few for display " +
+                                                     display.display + "; PNG and TIFF hold 16");
+  }
+}
+
+image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
+                                 const film::Picture& picture, const image::Header& header,
+                                 const std::vector<MatteNames>& mattes) {
+  DisplayWriter developed(picture, display, bits);
+  image::WriteReport report;
+  const auto add = [&](const image::WriteReport& one) {
+    report.clamped += one.clamped;
+    report.not_finite += one.not_finite;
+  };
+  for (const auto& [output, format] : outputs.images) {
+    switch (format) {
+      case image::Format::kExr: {
+        image::Header own = header;
+        own.matte_attributes = matte_attributes(mattes, output);
+        write_manifests(mattes, output);  // first, so that no image refers to a missing file
+        add(image::write_exr(output, picture, own, outputs.exr));
+        break;
+      }
+      case image::Format::kHdr: add(image::write_hdr(output, picture)); break;
+      case image::Format::kPng:
+      case image::Format::kTiff:
+      case image::Format::kJpeg:
+      case image::Format::kPpm: developed.write(output, header.software, header.stamp); break;
+    }
+  }
+  return report;
+}
+
+}  // namespace orrery::job

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/arrays.h"
+
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <type_traits>
+
+#include "base/error.h"
+
+namespace py = pybind11;
+
+namespace orrery::python {
+namespace {
+
+template <class T>
+std::vector<T> copied(const py::array& array) {
+  const data::ArrayView<T> view(array.data(), array.strides(0), static_cast<std::size_t>(array.shape(0)));
+  std::vector<T> out(view.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = view[i];
+  return out;
+}
+
+template <class T>
+bool is_of(const py::array& array) {
+  return py::array_t<T>::check_(array);
+}
+
+data::Values values_of(const py::array& array) {
+  const auto size = static_cast<std::size_t>(array.shape(0));
+  if (is_of<double>(array)) return data::ArrayView<double>(array.data(), array.strides(0), size);
+  if (is_of<float>(array)) return data::ArrayView<float>(array.data(), array.strides(0), size);
+  if (is_of<std::int64_t>(array)) return copied<std::int64_t>(array);
+  if (is_of<std::int32_t>(array)) return copied<std::int32_t>(array);
+  if (is_of<std::uint16_t>(array)) return copied<std::uint16_t>(array);
+  if (is_of<std::uint8_t>(array)) return copied<std::uint8_t>(array);
+  throw base::Error(base::ErrorKind::kInternal, "array of an unexpected type");
+}
+
+/// Moves a vector into an array, which owns it.
+template <class T>
+py::object moved(std::vector<T> values) {
+  auto owned = std::make_unique<std::vector<T>>(std::move(values));
+  const py::capsule owner(owned.get(), [](void* p) { delete static_cast<std::vector<T>*>(p); });
+  const std::vector<T>& kept = *owned.release();
+  return py::array_t<T>(static_cast<py::ssize_t>(kept.size()), kept.data(), owner);
+}
+
+}  // namespace
+
+std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& columns) {
+  auto out = std::make_shared<data::Table>();
+  for (const auto& [name, array] : columns) {
+    out->rows = static_cast<std::size_t>(array.shape(0));
+    out->columns.push_back({name, values_of(array)});
+  }
+  return out;
+}
+
+py::object array_of(data::Values values) {
+  return std::visit(
+      [](auto& all) -> py::object {
+        using Column = std::decay_t<decltype(all)>;
+        if constexpr (std::is_same_v<Column, data::Words>) {
+          const py::list words = py::cast(all.words);
+          py::list out(all.index.size());
+          for (std::size_t i = 0; i < all.index.size(); ++i) out[i] = words[all.index[i]];
+          return out;
+        } else if constexpr (requires { all.push_back({}); }) {
+          return moved(std::move(all));
+        } else {
+          throw base::Error(base::ErrorKind::kInternal, "files have no views");
+        }
+      },
+      values);
+}
+
+void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent& extent) {
+  const auto numbers = [&](std::size_t axis, auto take) {
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (!requires { v.words; }) take(v);
+        },
+        positions.columns[axis].values);
+  };
+  // All three axes have the type of the array.
+  numbers(0, [&](const auto& x) {
+    using Numbers = std::decay_t<decltype(x)>;
+    const auto& y = std::get<Numbers>(positions.columns[1].values);
+    const auto& z = std::get<Numbers>(positions.columns[2].values);
+    for (std::size_t i = 0; i < positions.rows; ++i)
+      extent.add({static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])}, radius);
+  });
+}
+
+}  // namespace orrery::python

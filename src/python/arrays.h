@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "data/table.h"
+#include "plot/view.h"
+
+namespace orrery::python {
+
+/// A column of a table: its name and a one-dimensional array of numbers.
+using NamedArray = std::pair<std::string, pybind11::array>;
+
+/// Makes a table of arrays. Arrays of float64 and float32 are not copied, whatever their strides; the caller keeps
+/// them.
+///
+/// Domain     one-dimensional arrays of one length, of native float64, float32, int64, int32, uint16 or uint8
+std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& columns);
+
+/// Moves a column into a one-dimensional array without a copy of the numbers; texts become a list of str.
+pybind11::object array_of(data::Values values);
+
+/// Returns an array that shows values of an object without a copy, read-only.
+///
+/// Domain     `owner` keeps the values
+template <class T>
+pybind11::array_t<T> view_of(const T* values, std::vector<pybind11::ssize_t> shape, const pybind11::object& owner) {
+  pybind11::array_t<T> out(std::move(shape), values, owner);
+  out.attr("setflags")(pybind11::arg("write") = false);
+  return out;
+}
+
+/// Adds the spheres around some points to the extent of a view.
+///
+/// Domain     three columns of numbers
+void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent& extent);
+
+}  // namespace orrery::python

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// The extension module orrery._orrery, on which the package orrery is built. Names and docstrings for users are there.
+#include <dlfcn.h>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/module.h"
+#include "job/version.h"
+#include "plot/view.h"
+#include "points/color_map.h"
+#include "python/arrays.h"
+#include "python/picture.h"
+#include "python/read_points.h"
+#include "python/render.h"
+#include "python/scene_data.h"
+
+namespace py = pybind11;
+
+namespace orrery::python {
+namespace {
+
+using ReleaseGil = py::call_guard<py::gil_scoped_release>;
+
+/// The modules of other rooms use this module's `base` and `film`, as they use the program's (docs/decisions/0021).
+void export_symbols() {
+  Dl_info own{};
+  if (dladdr(reinterpret_cast<const void*>(&export_symbols), &own) == 0 || own.dli_fname == nullptr ||
+      dlopen(own.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) == nullptr)
+    throw base::Error(base::ErrorKind::kInternal, "cannot export the symbols of orrery's Python module");
+  base::set_module_folder(
+      (std::filesystem::path(own.dli_fname).parent_path() / ORRERY_MODULES_FROM_PYTHON).lexically_normal());
+}
+
+/// The text that the program prints for an error.
+std::string text_of(const base::Error& error) {
+  std::string out;
+  for (const base::Diagnostic& diagnostic : error.diagnostics()) out += base::formatted(diagnostic);
+  return out + error.what();
+}
+
+const char* class_of(base::ErrorKind kind) {
+  switch (kind) {
+    case base::ErrorKind::kNoMemory: return "OutOfMemoryError";
+    case base::ErrorKind::kUsage: return "UsageError";
+    case base::ErrorKind::kBadData: return "SceneError";
+    case base::ErrorKind::kMissingInput: return "MissingInputError";
+    case base::ErrorKind::kCannotCreate:
+    case base::ErrorKind::kIo: return "OutputError";
+    case base::ErrorKind::kInternal:
+    case base::ErrorKind::kStopped: break;
+  }
+  return "Error";
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const base::Error& error) {
+    const py::object type = py::module_::import("orrery._errors").attr(class_of(error.kind()));
+    PyErr_SetObject(type.ptr(), py::str(text_of(error)).ptr());
+  }
+}
+
+display::Settings display_settings(const std::string& display, const std::string& view, const std::string& look,
+                                   std::optional<double> exposure) {
+  display::Settings out;
+  out.display = display;
+  out.view = view;
+  out.look = look;
+  out.exposure = exposure;
+  return out;
+}
+
+Picture render_scene(const SceneData& scene, double noise, double seconds, int threads, std::uint64_t memory_limit,
+                     const std::string& isa, const py::object& on_progress, const py::object& on_warning) {
+  job::Job job;
+  job.scene = scene.source();
+  job.sampling.noise = noise;
+  job.sampling.seconds = seconds;
+  job.resources.threads = threads;
+  job.resources.memory_limit = memory_limit;
+  job.resources.isa = isa;
+  return render(std::move(job), on_progress, on_warning);
+}
+
+void write_picture(const Picture& picture, const std::vector<std::filesystem::path>& files, int bits,
+                   const display::Settings& display, bool as_float, const std::string& compression, bool multipart,
+                   bool reproducible) {
+  job::Outputs outputs;
+  outputs.images = job::image_files(files);
+  outputs.display = display;
+  outputs.bits = bits;
+  outputs.exr.as_float = as_float;
+  if (!compression.empty()) outputs.exr.compression = compression;
+  outputs.exr.multipart = multipart;
+  outputs.reproducible = reproducible;
+  picture.write(outputs);
+}
+
+py::array srgb8(const py::object& self, const display::Settings& display) {
+  film::EncodedPicture encoded;
+  {
+    const auto& picture = self.cast<const Picture&>();
+    const py::gil_scoped_release released;
+    encoded = picture.srgb8(display);
+  }
+  py::array_t<std::uint8_t> out({encoded.height, encoded.width, encoded.channels});
+  std::uint8_t* to = out.mutable_data();
+  for (const std::uint16_t value : encoded.values) *to++ = static_cast<std::uint8_t>(value);
+  return out;
+}
+
+py::dict statistics(const Picture& picture) {
+  const job::JobReport& report = picture.report();
+  py::dict out;
+  out["spheres"] = report.spheres;
+  out["paths"] = report.render.paths;
+  out["rays"] = report.render.rays;
+  out["fewest_samples"] = report.render.fewest_samples;
+  out["most_samples"] = report.render.most_samples;
+  out["threads"] = report.render.threads;
+  out["noise"] = report.render.noise ? py::object(py::float_(*report.render.noise)) : py::none();
+  out["read_seconds"] = report.phases.read_s;
+  out["compile_seconds"] = report.phases.compile_s;
+  out["build_seconds"] = report.phases.build_s;
+  out["render_seconds"] = report.phases.render_s;
+  return out;
+}
+
+py::list list_of(math::Vec3d v) {
+  py::list out;
+  for (const double x : {v.x, v.y, v.z}) out.append(x);
+  return out;
+}
+
+/// The camera that sees an extent, as keys of [camera].
+py::dict camera_of(const plot::ViewExtent& extent, double aspect) {
+  const scene::Camera camera = extent.camera(aspect);
+  py::dict out;
+  out["projection"] = "orthographic";
+  out["width"] = camera.width.value_or(1);
+  out["look_from"] = list_of(camera.look_from);
+  out["look_at"] = list_of(camera.look_at);
+  out["up"] = list_of(camera.up);
+  return out;
+}
+
+plot::ViewExtent extent_of(const std::vector<NamedArray>& positions, double radius, const std::string& look_from,
+                           const std::string& up) {
+  plot::ViewExtent extent(plot::view_axes(look_from, up));
+  const std::shared_ptr<const data::Table> table = table_of(positions);
+  const py::gil_scoped_release released;
+  add_to_extent(*table, radius, extent);
+  return extent;
+}
+
+void bind_scene(py::module_& m) {
+  py::class_<SceneData>(m, "SceneData")
+      .def(py::init([](std::filesystem::path file, bool is_file, std::string text, std::vector<std::string> overrides,
+                       int frame) {
+        return SceneData{std::move(file), is_file, std::move(text), std::move(overrides), frame, {}};
+      }))
+      .def("add_table", [](SceneData& self, const std::string& name,
+                           const std::vector<NamedArray>& columns) { self.tables[name] = table_of(columns); })
+      .def(
+          "check",
+          [](const SceneData& self) {
+            std::vector<std::string> out;
+            for (const base::Diagnostic& warning : check(self)) out.push_back(base::formatted(warning));
+            return out;
+          },
+          ReleaseGil())
+      .def("save", &save, ReleaseGil())
+      .def("render", &render_scene);
+  py::class_<plot::ViewExtent>(m, "Extent").def(py::init(&extent_of)).def("camera", &camera_of);
+}
+
+void bind_picture(py::module_& m) {
+  py::class_<display::Settings>(m, "Display").def(py::init(&display_settings));
+  py::class_<Picture>(m, "Picture")
+      .def_property_readonly("width", &Picture::width)
+      .def_property_readonly("height", &Picture::height)
+      .def_property_readonly("layers", &Picture::layers)
+      .def("channels", &Picture::channels)
+      .def("statistics", &statistics)
+      .def("array", &Picture::array)
+      .def("srgb8", &srgb8)
+      .def("write", &write_picture, ReleaseGil());
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_orrery, m) {
+  py::register_exception_translator(&translate);
+  export_symbols();
+  bind_scene(m);
+  bind_picture(m);
+  bind_read_points(m);
+  m.def("read_scene_text", &read_scene_text, ReleaseGil());
+  m.def("color_map_names", &points::color_map_names);
+  m.def("version", &job::program_version);
+}
+
+}  // namespace orrery::python

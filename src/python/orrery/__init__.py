@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Path tracing of scenes made of spheres, from NumPy arrays.
+
+    import numpy as np, orrery
+    positions = np.random.default_rng(1).normal(size=(1000, 3))
+    scene = orrery.Scene(camera=orrery.Camera.fit(positions), background=orrery.Constant(1))
+    scene.add_points(positions, radius=0.1)
+    scene.render(640, 360, noise=0.05).write("out.png")
+
+The keys of scenes, their units and their defaults are those of scene files (docs/scene-format.md).
+"""
+
+from orrery._errors import (
+    Error,
+    MissingInputError,
+    OutOfMemoryError,
+    OutputError,
+    SceneError,
+    SceneWarning,
+    UsageError,
+)
+from orrery._keys import (
+    Camera,
+    Constant,
+    Dielectric,
+    Emitter,
+    Gradient,
+    Hemisphere,
+    Image,
+    Lambertian,
+    Metal,
+    Sky,
+)
+from orrery._orrery import color_map_names as _color_map_names
+from orrery._orrery import version as _version
+from orrery._picture import Picture
+from orrery._points import ColorMap, Points, colormap, read_points
+from orrery._scene import Progress, Scene, load
+
+__all__ = [
+    "Camera",
+    "ColorMap",
+    "Constant",
+    "Dielectric",
+    "Emitter",
+    "Error",
+    "Gradient",
+    "Hemisphere",
+    "Image",
+    "Lambertian",
+    "Metal",
+    "MissingInputError",
+    "OutOfMemoryError",
+    "OutputError",
+    "Picture",
+    "Points",
+    "Progress",
+    "Scene",
+    "SceneError",
+    "SceneWarning",
+    "Sky",
+    "UsageError",
+    "color_maps",
+    "colormap",
+    "load",
+    "read_points",
+]
+
+__version__ = _version()
+
+color_maps = tuple(_color_map_names())

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of a scene file as objects, and values of a scene file as text."""
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from orrery import _arrays
+from orrery._orrery import Extent
+
+
+def toml_text(value):
+    """Returns a value as in a scene file, on one line."""
+    if isinstance(value, Keys):
+        value = value.keys
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{toml_text(str(k))} = {toml_text(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, Iterable):
+        return "[" + ", ".join(map(toml_text, value)) + "]"
+    raise TypeError(f"a scene has no values of type {type(value).__name__}")
+
+
+def is_number(value):
+    return isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
+
+
+def _color(value):
+    """A number is a grey."""
+    return [value] * 3 if is_number(value) else value
+
+
+class Keys:
+    """A table of a scene file. Keys that are None have their defaults."""
+
+    def __init__(self, **keys):
+        self.keys = {key: value for key, value in keys.items() if value is not None}
+
+    def __repr__(self):
+        return f"{type(self).__name__}({', '.join(f'{k}={v!r}' for k, v in self.keys.items())})"
+
+
+class Camera(Keys):
+    """A camera, by the keys of [camera]: vfov in degrees, the rest in scene units.
+
+    An orthographic camera has projection="orthographic" and a width.
+    """
+
+    def __init__(self, look_from=None, look_at=None, *, vfov=None, up=None, **keys):
+        super().__init__(look_from=look_from, look_at=look_at, vfov=vfov, up=up, **keys)
+        self._extent = None
+
+    @classmethod
+    def fit(cls, positions, radius=0.0, *, look_from="iso", up="z"):
+        """Returns an orthographic camera that sees spheres of a radius around all positions, with a margin of 5 %.
+
+        positions  shape (n, 3)
+        look_from  "iso", "+x", "-x" .. "-z", or "azimuth,elevation" in degrees, as for `orrery plot`
+        up         "x", "y" or "z"
+        """
+        columns = [(axis, column) for axis, column in zip("xyz", _arrays.positions(positions).T)]
+        camera = cls()
+        camera._extent = Extent(columns, float(radius), look_from, up)
+        camera.keys = camera._extent.camera(16 / 9)
+        return camera
+
+    def keys_for(self, aspect):
+        """Returns the keys for an image of this aspect ratio; only those of a fitted camera depend on it."""
+        return self.keys if self._extent is None else self._extent.camera(aspect)
+
+
+class Constant(Keys):
+    """A background of one colour, linear; a number is a grey."""
+
+    def __init__(self, color=None, **keys):
+        super().__init__(type="constant", color=_color(color), **keys)
+
+
+class Gradient(Keys):
+    """A background between two linear colours: straight down and straight up."""
+
+    def __init__(self, bottom=None, top=None, **keys):
+        super().__init__(type="gradient", bottom=_color(bottom), top=_color(top), **keys)
+
+
+class Image(Keys):
+    """An image background: a latitude-longitude map in an EXR or HDR file, rotated in degrees, exposed in stops."""
+
+    def __init__(self, file, *, rotation=None, exposure=None, **keys):
+        super().__init__(type="image", file=file, rotation=rotation, exposure=exposure, **keys)
+
+
+class Sky(Keys):
+    """A daylight sky. Angles are in degrees; a turbidity of 1 is pure air."""
+
+    def __init__(self, sun_elevation=None, sun_azimuth=None, *, turbidity=None, **keys):
+        super().__init__(
+            type="sky", sun_elevation=sun_elevation, sun_azimuth=sun_azimuth, turbidity=turbidity, **keys
+        )
+
+
+class Lambertian(Keys):
+    """A diffuse material. Its albedo is linear; a number is a grey."""
+
+    def __init__(self, albedo=None, **keys):
+        super().__init__(type="lambertian", albedo=_color(albedo), **keys)
+
+
+class Hemisphere(Keys):
+    """The first diffuse material of the book "Ray Tracing in One Weekend"."""
+
+    def __init__(self, albedo=None, **keys):
+        super().__init__(type="hemisphere", albedo=_color(albedo), **keys)
+
+
+class Metal(Keys):
+    """A metal; its fuzz is from 0, a mirror, to 1."""
+
+    def __init__(self, albedo=None, fuzz=None, **keys):
+        super().__init__(type="metal", albedo=_color(albedo), fuzz=fuzz, **keys)
+
+
+class Dielectric(Keys):
+    """Glass or water, by its index of refraction."""
+
+    def __init__(self, ior=None, **keys):
+        super().__init__(type="dielectric", ior=ior, **keys)
+
+
+class Emitter(Keys):
+    """A light: emits the same linear radiance in all directions."""
+
+    def __init__(self, radiance=None, exposure=None, **keys):
+        super().__init__(type="emitter", radiance=_color(radiance), exposure=exposure, **keys)

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rendered images."""
+
+import os
+import tempfile
+
+from orrery import _orrery
+
+
+def _display(display, view, look, exposure):
+    return _orrery.Display(display or "", view or "", look or "", exposure)
+
+
+class Picture:
+    """A rendered image: scene-linear float32 arrays, read-only, without a copy. Rows are from the top.
+
+    picture["Z"], picture["N"], picture["CryptoObject00"] are layers of [output]; layers of one channel have the shape
+    (height, width), others (height, width, channels). picture["R"] and picture["N.X"] are single channels. An array
+    stays valid when the picture is gone.
+    """
+
+    def __init__(self, native):
+        self._native = native
+
+    def __repr__(self):
+        return f"Picture({self.width} x {self.height}{''.join(', ' + layer for layer in self.layers)})"
+
+    @property
+    def width(self):
+        """Pixels."""
+        return self._native.width
+
+    @property
+    def height(self):
+        """Pixels."""
+        return self._native.height
+
+    @property
+    def layers(self):
+        """Names of the layers besides the beauty."""
+        return tuple(self._native.layers)
+
+    @property
+    def beauty(self):
+        """Red, green, blue and alpha: shape (height, width, 4)."""
+        return self._native.array("")
+
+    @property
+    def statistics(self):
+        """What the render did: spheres, paths, rays, samples, noise, threads, and seconds of its phases."""
+        return self._native.statistics()
+
+    def __getitem__(self, name):
+        array = self._native.array(name) if name else None
+        if array is not None:
+            return array
+        layer, _, channel = name.rpartition(".")
+        channels = self._native.channels(layer)
+        if channel in channels:
+            return self._native.array(layer)[..., channels.index(channel)]
+        raise KeyError(f"no layer `{name}`; the layers are {', '.join(self.layers) or 'none: set output.layers'}")
+
+    def __contains__(self, name):
+        return name in self.layers
+
+    def write(
+        self,
+        *files,
+        bits=0,
+        type="half",
+        compression="",
+        multipart=False,
+        reproducible=False,
+        display=None,
+        view=None,
+        look=None,
+        exposure=None,
+    ):
+        """Writes image files, the same files that `orrery render` writes. The extension selects the format.
+
+        bits          per channel of PNG and TIFF: 8 or 16
+        type          of colours in an EXR: "half" or "float"
+        compression   of an EXR, e.g. "zip"
+        multipart     one part per layer in an EXR
+        reproducible  leave everything that varies between runs out of the header
+        display, view, look, exposure   display transform; by default the scene's
+        """
+        if type not in ("half", "float"):
+            raise ValueError(f'type must be "half" or "float", not {type!r}')
+        if bits not in (0, 8, 16):
+            raise ValueError(f"bits must be 8 or 16, not {bits}")
+        if not files:
+            raise TypeError("write() needs a file name")
+        settings = _display(display, view, look, exposure)
+        names = [os.fspath(file) for file in files]
+        self._native.write(names, bits, settings, type == "float", compression, multipart, reproducible)
+
+    def to_srgb8(self, *, display=None, view=None, look=None, exposure=None):
+        """Returns the image for an sRGB display: uint8, shape (height, width, 3), or 4 with a transparent background.
+
+        The values are those of a PNG. The display transform is the scene's; exposure is in stops.
+        """
+        return self._native.srgb8(_display(display, view, look, exposure))
+
+    def _repr_png_(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "picture.png")
+            self.write(file)
+            with open(file, "rb") as png:
+                return png.read()

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Data files as arrays, and colours of points."""
+
+import os
+from collections.abc import Mapping
+
+import numpy as np
+
+from orrery import _arrays
+from orrery import _orrery
+
+
+class ColorMap:
+    """Values and the colour map that shows them; see colormap()."""
+
+    def __init__(self, values, name, range, nan_color):
+        self.values = values
+        self.name = name
+        self.range = range
+        self.nan_color = nan_color
+
+    def __repr__(self):
+        return f"ColorMap({len(self.values)} values, {self.name!r}, range={self.range})"
+
+    def keys(self, column):
+        """Returns the keys of [points.color]."""
+        keys = {"column": column, "map": self.name}
+        if self.range is not None:
+            keys["range"] = self.range
+        if self.nan_color is not None:
+            keys["nan_color"] = self.nan_color
+        return keys
+
+
+def colormap(values, name="viridis", range=None, nan_color=None):
+    """Returns colours for Scene.add_points(): one value per position, shown by a colour map.
+
+    values     shape (n,)
+    name       one of orrery.color_maps, or a file, e.g. "map.txt"
+    range      values at the ends of the map; by default the minimum and the maximum
+    nan_color  linear colour of values that are NaN; by default grey
+    """
+    array = _arrays.numbers(values, "values")
+    if array.ndim != 1:
+        raise ValueError(f"values must have the shape (n,), not {array.shape}")
+    name = os.fspath(name)
+    if os.path.exists(name) and name not in _orrery.color_map_names():
+        name = os.path.abspath(name)
+    return ColorMap(array, name, None if range is None else [float(x) for x in range], nan_color)
+
+
+class Points(Mapping):
+    """The columns of a data file by name, as arrays; texts are lists. See read_points()."""
+
+    def __init__(self, columns, described):
+        self._columns = columns
+        self._described = described
+
+    def __getitem__(self, column):
+        if column not in self._columns:
+            raise KeyError(f"no column `{column}`; the columns are {', '.join(self._columns)}")
+        return self._columns[column]
+
+    def __iter__(self):
+        return iter(self._columns)
+
+    def __len__(self):
+        return len(self._columns)
+
+    def __repr__(self):
+        rows = max((len(column) for column in self._columns.values()), default=0)
+        return f"Points({rows} rows: {', '.join(self._columns)})"
+
+    @property
+    def positions(self):
+        """Positions, shape (n, 3): a new array in the type of the file."""
+        return np.stack([self[column] for column in self._described["position"]], axis=1)
+
+    @property
+    def radius(self):
+        """Radii, shape (n,); None if the file has none. Diameters are halved."""
+        column, scale = self._described["radius"], self._described["radius_scale"]
+        if column is None:
+            return None
+        return self[column] if scale == 1 else self[column] * scale
+
+    @property
+    def frames(self):
+        """Number of frames of the file."""
+        return self._described["frames"]
+
+    @property
+    def step(self):
+        """Time step or number of the frame; None if the file has none."""
+        return self._described["step"]
+
+    @property
+    def title(self):
+        """Title or comment of the file."""
+        return self._described["title"]
+
+    @property
+    def box(self):
+        """Simulation box: origin (3,), edges (3, 3) by rows, and which are periodic; None if the file has none."""
+        if self._described["box"] is None:
+            return None
+        origin, edges, periodic = self._described["box"]
+        return np.array(origin), np.array(edges), np.array(periodic)
+
+
+def read_points(file, *, frame=1, component=None, columns=None):
+    """Reads a data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK (docs/data.md).
+
+    frame      number of the frame, from 1
+    component  HDF5 snapshots: particle type
+    columns    names of the columns to read; by default all
+    """
+    return Points(*_orrery.read_points(os.fspath(file), frame, component, list(columns or [])))

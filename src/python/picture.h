@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "display/develop.h"
+#include "job/outputs.h"
+#include "job/rendering.h"
+
+namespace orrery::python {
+
+/// A rendered image. Its channels are kept interleaved by layer, as arrays show them.
+class Picture {
+ public:
+  explicit Picture(job::Rendering rendering);
+
+  int width() const { return rendering_.picture.width; }
+  int height() const { return rendering_.picture.height; }
+  const job::JobReport& report() const { return rendering_.report; }
+  std::vector<std::string> layers() const;
+  std::vector<std::string> channels(const std::string& layer) const;
+
+  /// A layer as a read-only array without a copy: (height, width) for one channel, else (height, width, channels).
+  ///
+  /// `self`     the Python object of this picture, which the array keeps alive
+  /// `layer`    empty: the beauty
+  /// Result     None if there is no such layer
+  static pybind11::object array(const pybind11::object& self, const std::string& layer);
+
+  /// Errors     those of job::write_rendering
+  void write(const job::Outputs& outputs) const;
+
+  /// Errors     those of display::develop; base::Error(kUsage) if the display is not sRGB
+  film::EncodedPicture srgb8(const display::Settings& display) const;
+
+ private:
+  struct Layer {
+    std::string name;
+    std::vector<std::size_t> planes;  ///< indices into the planes of the picture
+    std::vector<float> values;        ///< interleaved
+  };
+  const Layer* find(const std::string& name) const;
+  /// The rendering with its planes, which are otherwise empty.
+  job::Rendering with_planes() const;
+
+  job::Rendering rendering_;
+  std::vector<Layer> layers_;
+};
+
+}  // namespace orrery::python

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/read_points.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "data/data_file.h"
+#include "points/derived.h"
+#include "python/arrays.h"
+
+namespace py = pybind11;
+
+namespace orrery::python {
+namespace {
+
+struct ReadPoints {
+  data::FrameInfo info;
+  data::Table table;
+  int frames = 1;
+};
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Reads columns of a frame, and the columns that derived ones are computed from.
+///
+/// `names`    empty: all
+ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int> component,
+                const std::vector<std::string>& names) {
+  data::OpenOptions options;
+  options.component = component;
+  const std::unique_ptr<data::DataFile> opened = data::open(file, options);
+  ReadPoints out;
+  out.frames = opened->frame_count();
+  if (frame < 1 || frame > out.frames)
+    throw base::Error(base::ErrorKind::kUsage, "there is no frame " + std::to_string(frame) + "; " + file.string() +
+                                                   " has " + std::to_string(out.frames) +
+                                                   (out.frames == 1 ? " frame" : " frames"));
+  out.info = opened->describe(frame - 1);
+  points::add_derived_columns(out.info);
+  std::vector<std::string> known, wanted, sources;
+  for (const data::ColumnInfo& column : out.info.columns) {
+    known.push_back(column.name);
+    if (!names.empty() && !contains(names, column.name)) continue;
+    if (column.is_derived) sources = points::sources_of(out.info, column.name);
+    if (!column.is_derived) wanted.push_back(column.name);
+  }
+  for (const std::string& name : names)
+    if (!contains(known, name))
+      throw base::Error(base::ErrorKind::kUsage,
+                        file.string() + " has no column `" + name + "`; its columns are " + base::joined(known));
+  for (const std::string& source : sources)
+    if (!contains(wanted, source)) wanted.push_back(source);
+  out.table = opened->read(frame - 1, wanted);
+  if (!sources.empty()) points::compute_speed(sources, out.table);
+  std::erase_if(out.table.columns,
+                [&](const data::Column& column) { return !names.empty() && !contains(names, column.name); });
+  return out;
+}
+
+py::object text_or_none(const std::string& text) { return text.empty() ? py::none() : py::object(py::str(text)); }
+
+py::list numbers(math::Vec3d v) {
+  py::list out;
+  for (const double x : {v.x, v.y, v.z}) out.append(x);
+  return out;
+}
+
+py::dict described(const data::FrameInfo& info, int frames) {
+  py::dict out;
+  out["frames"] = frames;
+  out["title"] = info.title;
+  out["step"] = info.step ? py::object(py::float_(*info.step)) : py::none();
+  out["position"] = std::vector<std::string>(info.roles.position.begin(), info.roles.position.end());
+  out["radius"] = text_or_none(info.roles.radius);
+  out["radius_scale"] = info.roles.radius_scale;
+  out["box"] = py::none();
+  if (info.box) {
+    py::list edges;
+    for (const math::Vec3d edge : info.box->edges) edges.append(numbers(edge));
+    out["box"] = py::make_tuple(numbers(info.box->origin), edges, info.box->periodic);
+  }
+  return out;
+}
+
+py::tuple read_points(const std::filesystem::path& file, int frame, std::optional<int> component,
+                      const std::vector<std::string>& names) {
+  ReadPoints points;
+  {
+    const py::gil_scoped_release released;
+    points = read(file, frame, component, names);
+  }
+  py::dict columns;
+  for (data::Column& column : points.table.columns) columns[py::str(column.name)] = array_of(std::move(column.values));
+  return py::make_tuple(columns, described(points.info, points.frames));
+}
+
+}  // namespace
+
+void bind_read_points(py::module_& m) { m.def("read_points", &read_points); }
+
+}  // namespace orrery::python

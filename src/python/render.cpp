@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/render.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "job/rendering.h"
+
+namespace py = pybind11;
+
+namespace orrery::python {
+namespace {
+
+/// Interval at which the calling thread looks for signals.
+constexpr std::chrono::milliseconds kPoll{50};
+
+/// What the render has to say to the calling thread.
+class Messages {
+ public:
+  void set_progress(const render::Progress& progress) {
+    const std::scoped_lock lock(mutex_);
+    progress_ = progress;
+    changed_.notify_one();
+  }
+  void add_warning(const base::Diagnostic& warning) {
+    const std::scoped_lock lock(mutex_);
+    warnings_.push_back(base::formatted(warning));
+    changed_.notify_one();
+  }
+  void end() {
+    const std::scoped_lock lock(mutex_);
+    ended_ = true;
+    changed_.notify_one();
+  }
+  /// Waits for the next message, but not longer than kPoll. Returns true if the render has ended.
+  bool take(std::optional<render::Progress>& progress, std::vector<std::string>& warnings) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kPoll, [this] { return ended_ || progress_ || !warnings_.empty(); });
+    progress = std::exchange(progress_, {});
+    warnings = std::exchange(warnings_, {});
+    return ended_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<render::Progress> progress_;
+  std::vector<std::string> warnings_;
+  bool ended_ = false;
+};
+
+/// Passes messages on to Python. Errors of Python are thrown.
+void deliver(const std::optional<render::Progress>& progress, const std::vector<std::string>& warnings,
+             const py::object& on_progress, const py::object& on_warning) {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  for (const std::string& warning : warnings) on_warning(warning);
+  if (!progress || on_progress.is_none()) return;
+  const double total = static_cast<double>(progress->samples_total);
+  const double fraction = total > 0 ? static_cast<double>(progress->samples_done) / total : 0;
+  on_progress(fraction, progress->samples_done, progress->samples_total, progress->seconds, progress->goal);
+}
+
+}  // namespace
+
+Picture render(job::Job job, const py::object& on_progress, const py::object& on_warning) {
+  job::Rendering rendering;
+  Messages messages;
+  std::atomic<bool> cancel{false};
+  job.keep = &rendering;
+  job.hooks.cancel = &cancel;
+  job.hooks.on_progress = [&](const render::Progress& p) { messages.set_progress(p); };
+  job.hooks.on_warning = [&](const base::Diagnostic& d) { messages.add_warning(d); };
+  std::exception_ptr failure, python_failure;
+  {
+    const py::gil_scoped_release released;
+    std::thread worker([&] {
+      try {
+        job::run_job(job);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      messages.end();
+    });
+    for (bool ended = false; !ended;) {
+      std::optional<render::Progress> progress;
+      std::vector<std::string> warnings;
+      ended = messages.take(progress, warnings);
+      if (python_failure) continue;
+      const py::gil_scoped_acquire acquired;
+      try {
+        deliver(progress, warnings, on_progress, on_warning);
+      } catch (...) {
+        python_failure = std::current_exception();
+        cancel = true;
+      }
+    }
+    worker.join();
+  }
+  if (python_failure) std::rethrow_exception(python_failure);
+  if (failure) std::rethrow_exception(failure);
+  const std::uint64_t paths = rendering.report.render.paths;
+  if (!on_progress.is_none()) on_progress(1.0, paths, paths, rendering.report.render.render_s, "");
+  if (!rendering.report.target_missed.empty()) on_warning(rendering.report.target_missed);
+  return Picture(std::move(rendering));
+}
+
+}  // namespace orrery::python

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "job/job.h"
+#include "python/picture.h"
+
+namespace orrery::python {
+
+/// Renders on a thread of its own, without the GIL, while the calling thread passes on progress and warnings and looks
+/// for signals: KeyboardInterrupt, and an exception in a callback, stop the render.
+///
+/// `on_progress`  called with fraction, samples done, samples in all, seconds and goal; or None
+/// `on_warning`   called with a text
+/// Domain         the calling thread holds the GIL; the job has no outputs and no hooks
+/// Errors         those of job::run_job; those of the callbacks
+Picture render(job::Job job, const pybind11::object& on_progress, const pybind11::object& on_warning);
+
+}  // namespace orrery::python

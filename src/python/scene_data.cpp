@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/scene_data.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_set.h"
+#include "data/table_file.h"
+#include "data/write_table.h"
+#include "format/named_files.h"
+#include "format/source_text.h"
+#include "format/write_ply.h"
+#include "format/write_tree.h"
+#include "job/job_files.h"
+#include "job/load_scene.h"
+
+namespace orrery::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names a file relative to another folder. Absolute names stay.
+std::string moved(const std::string& name, const fs::path& from, const fs::path& to) {
+  if (fs::path(name).is_absolute()) return name;
+  const fs::path old_folder = fs::absolute(from).lexically_normal(), folder = fs::absolute(to).lexically_normal();
+  return old_folder == folder ? name : (old_folder / name).lexically_normal().lexically_relative(folder).string();
+}
+
+/// The data file of a table beside the scene file.
+std::string table_file_name(const fs::path& scene_file, const std::string& table) {
+  return scene_file.stem().string() + "." + table + ".ply";
+}
+
+void check_data_file(const fs::path& file) {
+  base::check_creatable(file);
+  std::error_code ignored;
+  if (fs::exists(file, ignored) && !format::is_own_ply(file))
+    throw base::Error(base::ErrorKind::kCannotCreate,
+                      "cannot create " + file.string() +
+                          ": the existing file was not written by orrery; move it, or choose another name");
+}
+
+}  // namespace
+
+job::SceneSource SceneData::source() const {
+  job::SceneSource out;
+  out.file = file;
+  out.text = std::make_shared<const std::string>(text);
+  out.overrides.assign(overrides.begin(), overrides.end());
+  out.frame = frame;
+  if (!tables.empty())
+    out.open_data = [own = tables, folder = file.parent_path()](const fs::path& path,
+                                                                const data::OpenOptions& options) {
+      for (const auto& [name, table] : own)
+        if (path == folder / name) return data::open_table(name, table);
+      return data::open(path, options);
+    };
+  return out;
+}
+
+std::string read_scene_text(const fs::path& file) {
+  std::string text = format::read_file(file, format::kLargestSceneFile);
+  static_cast<void>(format::named_files(file, {}, &text));
+  return text;
+}
+
+std::vector<base::Diagnostic> check(const SceneData& scene) {
+  job::SceneRequest request;
+  request.source = scene.source();
+  return job::load_scene(request).warnings;
+}
+
+void save(const SceneData& scene, const fs::path& file) {
+  static_cast<void>(check(scene));
+  const job::SceneSource source = scene.source();
+  const fs::path folder = file.parent_path();
+  base::FileSet files;
+  if (scene.is_file) files.add_input(scene.file, "scene");
+  job::add_named_files(source, {scene.frame}, files);
+  files.add_output(file, "save()");
+  base::check_creatable(file);
+  for (const auto& [name, table] : scene.tables) {
+    files.add_output(folder / table_file_name(file, name), "points file");
+    check_data_file(folder / table_file_name(file, name));
+  }
+  const auto renamed = [&](const std::string& name) {
+    return scene.tables.count(name) != 0 ? table_file_name(file, name) : moved(name, scene.file.parent_path(), folder);
+  };
+  const std::string text = format::merged_text(scene.file, scene.text, source.overrides, renamed);
+  for (const auto& [name, table] : scene.tables)
+    static_cast<void>(data::write_table(folder / table_file_name(file, name), *table));  // all columns are numbers
+  base::write_text_file(file, text);
+}
+
+}  // namespace orrery::python

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "data/table.h"
+#include "job/scene_source.h"
+
+namespace orrery::python {
+
+/// A scene as Python holds it: the text of a scene file, overrides, and tables of arrays in place of data files.
+struct SceneData {
+  std::filesystem::path file;  ///< of the scene
+  bool is_file = false;        ///< false: the scene was made in Python, and `file` is only its name
+  std::string text;
+  std::vector<std::string> overrides;
+  int frame = 1;
+  std::map<std::string, std::shared_ptr<const data::Table>> tables;  ///< by the name that [[points]] gives as its file
+
+  /// The scene as a job reads it. The memory of the arrays must outlive the result's use.
+  job::SceneSource source() const;
+};
+
+/// Reads the text of a scene file and checks that it is TOML.
+///
+/// Errors     base::Error: those of format::read_scene, without those of keys and data files
+std::string read_scene_text(const std::filesystem::path& file);
+
+/// Checks everything that a render would reject.
+///
+/// Result     warnings
+/// Errors     those of job::load_scene
+std::vector<base::Diagnostic> check(const SceneData& scene);
+
+/// Writes the scene as a scene file, and its arrays as PLY files beside it. Both read back to the same scene. A PLY
+/// file is replaced only if orrery wrote it.
+///
+/// Errors     those of check(); base::Error: kUsage if a file is an input of the scene; kCannotCreate; kIo
+void save(const SceneData& scene, const std::filesystem::path& file);
+
+}  // namespace orrery::python

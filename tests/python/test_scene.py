@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes: the same bits and the same errors as the program; loading, saving and settings."""
+
+import os
+import unittest
+
+import numpy as np
+import orrery
+from support import ROOT, SIZE, FolderTest, beauty, positions, run, small_scene
+
+SCENE = """[image]
+width = 40
+height = 30
+[render]
+samples = 3
+[output]
+layers = ["Z", "N", "CryptoObject"]
+[material.glass]
+type = "dielectric"
+[material.red]
+type = "lambertian"
+albedo = [0.8, 0.1, 0.1]
+[[sphere]]
+center = [0, 0, -1]
+radius = 0.5
+material = "glass"
+[[sphere]]
+center = [1, 0, -2]
+radius = 0.7
+material = "red"
+name = "ball"
+"""
+
+
+def file_bytes(name):
+    with open(name, "rb") as file:
+        return file.read()
+
+
+def write(name, text):
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+class SameAsTheProgram(FolderTest):
+    def test_files_of_a_scene_file(self):
+        write("scene.toml", SCENE)
+        for options, keys in (([], {}), (["--noise", "0.2"], {"noise": 0.2}), (["--samples", "5"], {"samples": 5})):
+            with self.subTest(options=options):
+                status, error = run("render", "scene.toml", "-o", "a.exr", "-q", "--reproducible", *options)
+                self.assertEqual(status, 0, error)
+                orrery.load("scene.toml").render(**keys).write("b.exr", reproducible=True)
+                self.assertEqual(file_bytes("a.exr"), file_bytes("b.exr"))
+
+    def test_images_of_all_formats(self):
+        write("scene.toml", SCENE.replace('layers = ["Z", "N", "CryptoObject"]', ""))
+        picture = orrery.load("scene.toml").render()
+        for name in ("a.png", "a.jpg", "a.tif", "a.hdr", "a.ppm"):
+            status, error = run("render", "scene.toml", "-o", name, "-q")
+            self.assertEqual(status, 0, error)
+            picture.write("b" + name)
+            self.assertEqual(file_bytes(name), file_bytes("b" + name), name)
+
+    def test_a_scene_of_arrays_that_was_saved(self):
+        random = np.random.default_rng(2)
+        p = random.normal(size=(80, 3))
+        single, double = np.float32, np.float64
+        for dtype, color in (
+            (double, None),
+            (single, orrery.colormap(p[:, 1], "magma", range=(-1, 1))),
+            (double, random.random((80, 3))),
+            (single, (1, 0, 0)),
+        ):
+            scene = small_scene(p.astype(dtype), radius=random.random(80) / 3 + 0.1, color=color, name="cloud")
+            scene.add_points(p + 1, radius=0.1, material="gold")
+            scene.add_material("gold", orrery.Metal((0.8, 0.6, 0.2), 0.1))
+            scene.add_sphere((0, 0, -101), 100, name="ground \u00e9")
+            scene.set("output.layers", ["Z", "CryptoObject"])
+            scene.set("image.width", SIZE[0])
+            scene.set("image.height", SIZE[1])
+            scene.save("saved.toml")
+            picture = scene.render()
+            status, error = run("render", "saved.toml", "-o", "a.exr", "-q", "--type", "float")
+            self.assertEqual(status, 0, error)
+            picture.write("b.exr", type="float")
+            loaded = orrery.load("saved.toml").render()
+            for layer in picture.layers:
+                np.testing.assert_array_equal(picture[layer], loaded[layer])
+            self.assertEqual(picture.beauty.tobytes(), loaded.beauty.tobytes())
+            status, error = run("compare", "a.exr", "b.exr", "--fail-above", "max=0")
+            self.assertEqual(status, 0, error)
+
+    def test_errors_have_the_same_text(self):
+        write("bad.toml", SCENE.replace("radius = 0.5", "radis = 0.5").replace("samples = 3", "samples = 0"))
+        write("worse.toml", "[image\n")
+        write("points.toml", SCENE + '[[points]]\nfile = "none.ply"\nmaterial = "red"\n')
+        write("scene.toml", SCENE)
+        for file, setting, kind in (
+            ("bad.toml", None, orrery.SceneError),
+            ("worse.toml", None, orrery.SceneError),
+            ("none.toml", None, orrery.MissingInputError),
+            ("points.toml", None, orrery.MissingInputError),
+            ("scene.toml", ("camera.vfov", 300), orrery.SceneError),
+            ("scene.toml", ("camera.vfow", 30), orrery.SceneError),
+            ("scene.toml", ("color.view", "none"), orrery.SceneError),
+            ("scene.toml", ("sphere[7].radius", 1), orrery.SceneError),
+        ):
+            with self.subTest(file=file, setting=setting):
+                with self.assertRaises(kind) as caught:
+                    scene = orrery.load(file)
+                    if setting:
+                        scene.set(*setting)
+                    scene.render()
+                options = ["--set", f"{setting[0]}={orrery._keys.toml_text(setting[1])}"] if setting else []
+                status, error = run("render", file, "-o", "a.exr", "-q", *options)
+                self.assertEqual(str(caught.exception), error.replace("orrery: ", "").rstrip("\n"))
+                self.assertEqual(caught.exception.exit_status, status)
+
+    def test_warnings_have_the_same_text(self):
+        write("scene.toml", SCENE + "[background]\nrotation = 5\n")
+        with self.assertWarns(orrery.SceneWarning) as caught:
+            orrery.load("scene.toml").render()
+        status, error = run("check", "scene.toml")
+        self.assertEqual(status, 0)
+        self.assertIn(str(caught.warning), error)
+        self.assertEqual(orrery.load("scene.toml").check()[0].rstrip("\n"), str(caught.warning))
+
+
+class Settings(FolderTest):
+    def test_the_last_setting_wins(self):
+        write("scene.toml", SCENE)
+        scene = orrery.load("scene.toml")
+        scene.set("image.width", 8)
+        scene.set("image.width", 16)
+        self.assertEqual(scene.render().width, 16)
+        self.assertEqual(scene.render(24).width, 24)
+        self.assertEqual(scene.render().width, 16)
+
+    def test_a_table_replaces_all_keys_of_its_name(self):
+        scene = orrery.Scene(background=orrery.Sky(30))
+        scene.set("background.turbidity", 3)
+        scene.set("background", orrery.Constant(0.25))
+        self.assertEqual(scene.check(), [])
+        picture = scene.render(8, 8, samples=1)
+        np.testing.assert_array_equal(picture.beauty[..., :3], np.float32(0.25))
+
+    def test_materials_and_backgrounds(self):
+        backgrounds = [orrery.Constant((1, 0, 0)), orrery.Gradient(0, (0, 0, 1)), orrery.Sky(20, 90, turbidity=3)]
+        materials = [
+            orrery.Lambertian(0.5),
+            orrery.Hemisphere((0.5, 0.5, 0.5)),
+            orrery.Metal(0.5, 0.1),
+            orrery.Dielectric(1.3, fresnel="exact"),
+            orrery.Emitter(2, light_group="lamp"),
+        ]
+        for background in backgrounds:
+            images = set()
+            for material in materials:
+                scene = orrery.Scene(background=background, materials={"my material": material})
+                scene.add_sphere((0, 0, -2), 1, "my material")
+                images.add(scene.render(12, 12, samples=2).beauty.tobytes())
+            self.assertGreaterEqual(len(images), 3)  # under a constant sky, what reflects half of it looks the same
+        orrery.Scene(background=orrery.Constant(1)).render(4, 4).write("map.hdr")
+        image = orrery.Scene(background=orrery.Image("map.hdr", exposure=1)).render(4, 4, samples=1)
+        np.testing.assert_allclose(image.beauty[..., :3], 2, rtol=0.01)
+
+    def test_values(self):
+        text = orrery._keys.toml_text
+        self.assertEqual(text(True), "true")
+        self.assertEqual(text(np.float32(0.5)), "0.5")
+        self.assertEqual(text(np.arange(3)), "[0, 1, 2]")
+        self.assertEqual(text({"a b": (1, 2.5)}), '{"a b" = [1, 2.5]}')
+        self.assertEqual(text('say "hi"\n'), '"say \\"hi\\"\\n"')
+        self.assertRaises(TypeError, text, object())
+        self.assertRaises(TypeError, text, 1j)
+
+    def test_limits(self):
+        scene = orrery.Scene()
+        for keys in ({"noise": 0}, {"noise": 2}, {"time": -1}, {"threads": 0}, {"memory_limit": "8G"}):
+            with self.assertRaisesRegex(ValueError, next(iter(keys))):
+                scene.render(4, 4, **keys)
+        with self.assertRaises(orrery.OutOfMemoryError):
+            scene.render(400, 400, memory_limit=1000)
+        with self.assertRaises(MemoryError):
+            scene.render(400, 400, memory_limit=1000)
+
+
+class Cameras(unittest.TestCase):
+    def covered(self, width, height, **keys):
+        p = positions() * (3, 1, 1)
+        scene = orrery.Scene(camera=orrery.Camera.fit(p, 0.3, **keys), background=orrery.Constant(1, alpha=0))
+        scene.add_points(p, radius=0.3)
+        alpha = scene.render(width, height, samples=4).beauty[..., 3] > 0
+        rows, columns = np.flatnonzero(alpha.any(axis=1)), np.flatnonzero(alpha.any(axis=0))
+        return rows[0], height - 1 - rows[-1], columns[0], width - 1 - columns[-1]
+
+    def test_a_fitted_camera_sees_everything_at_any_size(self):
+        for width, height in ((160, 90), (90, 160), (200, 40)):
+            for look_from in ("iso", "+x", "-y", "30,20"):
+                margins = self.covered(width, height, look_from=look_from)
+                self.assertGreater(min(margins), 0)
+                tight = min(min(margins[:2]) / height, min(margins[2:]) / width)
+                self.assertLess(tight, 0.12, "the spheres fill the image in one direction")
+
+    def test_bad_views(self):
+        with self.assertRaisesRegex(orrery.UsageError, "is not a view"):
+            orrery.Camera.fit(positions(), look_from="above")
+        with self.assertRaises(ValueError):
+            orrery.Camera.fit(np.zeros((3, 2)))
+
+    def test_no_positions(self):
+        orrery.Scene(camera=orrery.Camera.fit(np.zeros((0, 3)))).render(4, 4, samples=1)
+
+
+class Files(FolderTest):
+    def test_saving_keeps_files_of_other_folders(self):
+        os.mkdir("in")
+        os.mkdir("out")
+        small = orrery.Scene()
+        small.add_points(positions(), radius=0.3)
+        small.save("in/scene.toml")
+        scene = orrery.load("in/scene.toml")
+        scene.save("out/scene.toml")
+        self.assertEqual(sorted(os.listdir("out")), ["scene.toml"])
+        self.assertEqual(beauty(orrery.load("out/scene.toml")), beauty(scene))
+
+    def test_no_input_is_replaced(self):
+        scene = small_scene(positions())
+        scene.save("scene.toml")
+        loaded = orrery.load("scene.toml")
+        with self.assertRaisesRegex(orrery.UsageError, "scene.toml"):
+            loaded.save("scene.toml")
+        with self.assertRaises(orrery.UsageError):
+            loaded.save("scene.positions-1.ply")
+        os.link("scene.positions-1.ply", "link.exr")
+        with self.assertRaises(orrery.UsageError):
+            loaded.render(4, 4).write("link.exr")
+        scene.save("scene.toml")  # its own files
+
+    def test_other_files_are_not_replaced(self):
+        write("scene.positions-1.ply", "not from orrery")
+        with self.assertRaisesRegex(orrery.OutputError, "was not written by orrery"):
+            small_scene(positions()).save("scene.toml")
+        self.assertFalse(os.path.exists("scene.toml"))
+        with self.assertRaises(OSError):
+            small_scene(positions()).save("none/scene.toml")
+
+    def test_an_invalid_scene_is_not_saved(self):
+        scene = small_scene(positions(), material="gold")
+        with self.assertRaises(orrery.SceneError):
+            scene.save("scene.toml")
+        self.assertEqual(os.listdir(), [])
+
+    def test_frames(self):
+        write("scene.toml", SCENE + '[[key]]\ntarget = "sphere[1].center"\nframes = [1, 3]\n'
+                                    "values = [[1, 0, -2], [-1, 0, -2]]\n")
+        scene = orrery.load("scene.toml")
+        self.assertNotEqual(scene.render(frame=1).beauty.tobytes(), scene.render(frame=3).beauty.tobytes())
+
+    def test_scenes_of_the_project(self):
+        for name in ("book/final.toml", "glass.toml"):
+            path = os.path.join(ROOT, "scenes", name)
+            if os.path.exists(path):
+                orrery.load(path).save("scene.toml")
+                self.assertEqual(
+                    orrery.load(path).render(32, 18, samples=1).beauty.tobytes(),
+                    orrery.load("scene.toml").render(32, 18, samples=1).beauty.tobytes(),
+                )
+
+
+class ReadPoints(FolderTest):
+    def test_columns_are_arrays(self):
+        write("a.csv", "x,y,z,diameter,vx,vy,vz,element\n1,2,3,1,3,4,0,H\n4,5,6,2,0,0,0,O\n")
+        points = orrery.read_points("a.csv")
+        np.testing.assert_array_equal(points.positions, [[1, 2, 3], [4, 5, 6]])
+        np.testing.assert_array_equal(points.radius, [0.5, 1])
+        np.testing.assert_array_equal(points["speed"], [5, 0])
+        self.assertEqual(points["element"], ["H", "O"])
+        self.assertEqual((points.frames, points.box), (1, None))
+        self.assertEqual(list(orrery.read_points("a.csv", columns=["speed"])), ["speed"])
+        points["x"][0] = 7  # the array is the caller's
+        with self.assertRaises(KeyError):
+            points["mass"]
+        with self.assertRaisesRegex(ValueError, "has no column `mass`"):
+            orrery.read_points("a.csv", columns=["mass"])
+        with self.assertRaisesRegex(ValueError, "there is no frame 2"):
+            orrery.read_points("a.csv", frame=2)
+        with self.assertRaises(FileNotFoundError):
+            orrery.read_points("b.csv")
+        write("c.csv", "nothing")
+        with self.assertRaises(orrery.SceneError):
+            orrery.read_points("c.csv")
+
+    def test_types_are_those_of_the_file(self):
+        p = positions().astype(np.float32)
+        table = np.zeros(60, dtype=[("x", "f4"), ("y", "f4"), ("z", "f4"), ("id", "i8"), ("n", "u2")])
+        for axis, name in enumerate("xyz"):
+            table[name] = p[:, axis]
+        table["id"] = np.arange(60)
+        np.save("a.npy", table)
+        points = orrery.read_points("a.npy")
+        self.assertEqual(points.positions.dtype, np.float32)
+        np.testing.assert_array_equal(points.positions, p)
+        self.assertEqual((points["id"].dtype, points["n"].dtype), (np.int64, np.uint16))
+
+    def test_box(self):
+        write("a.xyz", '1\nLattice="2 0 0 0 3 0 0 0 4" Properties=species:S:1:pos:R:3\nAr 1 2 3\n')
+        origin, edges, periodic = orrery.read_points("a.xyz").box
+        np.testing.assert_array_equal(np.diag(edges), [2, 3, 4])
+        self.assertEqual((origin.shape, periodic.all()), ((3,), True))
+
+    def test_the_same_image_as_the_file(self):
+        p = np.random.default_rng(3).normal(size=(50, 3))
+        np.save("a.npy", p)
+        points = orrery.read_points("a.npy")
+        from_file = orrery.Scene(camera=orrery.Camera.fit(p, 0.3))
+        from_file._add_table("points", {"file": "a.npy", "material": "matte", "radius": 0.3})
+        from_arrays = orrery.Scene(camera=orrery.Camera.fit(p, 0.3))
+        from_arrays.add_points(points.positions, radius=0.3)
+        self.assertEqual(beauty(from_file), beauty(from_arrays))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/rendering.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "base/error.h"
+#include "support/temp_dir.h"
+
+namespace orrery::job {
+namespace {
+
+constexpr const char* kScene = R"(
+[image]
+width = 24
+height = 16
+[render]
+samples = 2
+[output]
+layers = ["Z", "CryptoObject"]
+[material.grey]
+type = "lambertian"
+albedo = [0.5, 0.5, 0.5]
+[[sphere]]
+center = [0, 0, -1]
+radius = 0.5
+material = "grey"
+)";
+
+class JobRendering : public testing::Test {
+ protected:
+  JobRendering() {
+    ::unsetenv("OCIO");
+    support::write_bytes(folder_ / "scene.toml", kScene);
+    job_.scene.file = folder_ / "scene.toml";
+    job_.keep = &rendering_;
+  }
+
+  Outputs outputs(const std::string& name) {
+    Outputs out;
+    out.images = {folder_ / name};
+    out.reproducible = true;
+    return out;
+  }
+
+  support::TempDir folder_;
+  Job job_;
+  Rendering rendering_;
+};
+
+TEST_F(JobRendering, KeepsTheImageAndWritesNothing) {
+  run_job(job_);
+  EXPECT_EQ(rendering_.picture.width, 24);
+  EXPECT_NE(rendering_.picture.find("Z"), nullptr) << "layers are kept without an EXR";
+  EXPECT_EQ(folder_.count(), 1u) << "the scene";
+}
+
+TEST_F(JobRendering, FilesAreThoseOfAJob) {
+  run_job(job_);
+  for (const char* extension : {".exr", ".hdr"}) {
+    Job direct = job_;
+    direct.keep = nullptr;
+    direct.outputs = outputs(std::string("direct") + extension);
+    run_job(direct);
+    write_rendering(rendering_, outputs(std::string("kept") + extension));
+    EXPECT_EQ(support::file_bytes(folder_ / (std::string("direct") + extension)),
+              support::file_bytes(folder_ / (std::string("kept") + extension)))
+        << extension;
+  }
+}
+
+TEST_F(JobRendering, ChecksFilesBeforeItWrites) {
+  run_job(job_);
+  Outputs twice = outputs("a.exr");
+  twice.images.emplace_back(folder_ / "a.exr");
+  EXPECT_THROW(write_rendering(rendering_, twice), base::Error);
+  Outputs bad = outputs("a.exr");
+  bad.images.emplace_back(folder_ / "missing" / "a.exr");
+  EXPECT_THROW(write_rendering(rendering_, bad), base::Error);
+  Outputs unknown = outputs("a.png");
+  unknown.display.view = "no such view";
+  EXPECT_THROW(write_rendering(rendering_, unknown), base::Error);
+  EXPECT_EQ(folder_.count(), 1u);
+}
+
+TEST_F(JobRendering, AStoppedRenderWritesNoCheckpoint) {
+  const std::atomic<bool> cancel{true};
+  job_.hooks.cancel = &cancel;
+  EXPECT_THROW(run_job(job_), base::Error);
+  EXPECT_EQ(folder_.count(), 1u);
+}
+
+}  // namespace
+}  // namespace orrery::job
