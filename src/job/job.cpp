@@ -157,7 +157,8 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
                      job.resources.disk_limit);
   require_memory(estimate_memory(memory_needs(compiled, layers.request, job.sampling.is_adaptive())),
                  job.resources.memory_limit, compiled.environment ? compiled.environment->bytes() : 0);
-  read.scene.points = {};  // keep no second copy of ten million spheres during the BVH build
+  // Keep no second copy of the spheres during the BVH build.
+  for (scene::Points& points : read.scene.points) points.release_spheres();
   report.hosts = {provenance.at("host")};
   report.width = compiled.width;
   report.height = compiled.height;

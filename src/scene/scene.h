@@ -201,6 +201,14 @@ struct Points {
   std::optional<Interval> color_range = {};   ///< of the colour map, if there is one
   std::vector<std::string> color_names = {};  ///< of the colours in `palette`, if they stand for types or elements
   std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
+
+  /// Frees the memory of the spheres. The keys stay.
+  void release_spheres() {
+    centers.clear();
+    radii.clear();
+    std::vector<std::uint32_t>().swap(materials);
+    std::vector<std::uint16_t>().swap(colors);
+  }
 };
 
 /// Contents of output files in addition to the beauty image.

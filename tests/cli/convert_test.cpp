@@ -180,6 +180,13 @@ TEST_F(CliConvert, FramesAreFilesOfTheirOwn) {
   EXPECT_EQ(text_of(folder_ / "g.03.csv"), text_of(folder_ / "f.03.csv"));
 }
 
+TEST_F(CliConvert, AnExrNamesTheColorMap) {
+  ASSERT_EQ(run("plot a.dump -o p.exr --color-by vx --map viridis --width 16 --height 9 --samples 1 -q").status, 0);
+  const std::string exr = text_of(folder_ / "p.exr");
+  EXPECT_TRUE(contains(exr, "orrery/points[0].color"));
+  EXPECT_TRUE(contains(exr, "column = \"vx\", map = \"viridis\", range = ["));
+}
+
 TEST_F(CliConvert, NoInputIsOverwritten) {
   const std::string csv = "x,y,z\n1,2,3\n";
   write("a.01.csv", csv);
