@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compile/compile.h"
+#include "denoise/denoise.h"
 #include "film/layer_film.h"
 #include "image/format.h"
 #include "job/check_job.h"
@@ -27,6 +28,8 @@
 #include "job/provenance.h"
 #include "job/statistics.h"
 #include "job/text.h"
+#include "job/version.h"
+#include "scene/layers.h"
 
 namespace orrery::job {
 namespace {
@@ -105,6 +108,7 @@ void write_outputs(const Job& job, const display::Settings& display, const film:
 Layers layers_for(const Job& job, const scene::Scene& scene, const compile::CompiledScene& compiled) {
   Layers layers = choose_layers(scene, compiled);
   layers.request.deep = !job.outputs.deep.empty();
+  layers.request.halves = layers.request.halves || job.denoise;
   image::check_lossless(film::planes_of(layers.request), job.outputs.exr);
   if (job.outputs.has_exr()) return layers;
   const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
@@ -114,6 +118,7 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Comp
   Layers none;
   none.request.coverage = layers.request.coverage;
   none.request.deep = layers.request.deep;
+  none.request.halves = job.denoise;
   return none;
 }
 
@@ -191,20 +196,28 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   };
   Checkpoint checkpoint(checkpoint_file(job.outputs.images.front().path), job.checkpoint, job.hooks, provenance,
                         write_sums);
-  const render::Result result = job.merge.shards.empty()
-                                    ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
-                                    : merge_job(job, compiled, layers, provenance, report);
+  render::Result result = job.merge.shards.empty()
+                              ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
+                              : merge_job(job, compiled, layers, provenance, report);
   report.render = result.statistics;
   const double made_s = watch.lap();
   if (!job.merge.shards.empty()) report.phases.finish_s = made_s;
 
   report.target_missed = missed_target(job, result.statistics);
+  if (job.denoise && !is_shard(job)) {
+    denoise::denoise(result.picture, settings.threads);
+    const std::vector<std::string> requested = scene::requested_layers(read.scene);
+    if (std::find(requested.begin(), requested.end(), scene::kHalvesLayer) == requested.end())
+      denoise::remove_halves(result.picture);
+    report.phases.denoise_s = watch.lap();
+  }
   count_bad_values(result.picture, report);
   if (is_shard(job)) {
     write_sums(job.outputs.images.front().path, *result.partial);
   } else {
     image::Header header = picture_header(read, compiled, report, job.outputs.reproducible);
     header.stamp = stamp;
+    if (job.denoise) header.attributes.push_back({denoise::kAttribute, "orrery " + program_version()});
     write_outputs(job, display, result.picture, header, layers.mattes, report);
     if (!job.outputs.deep.empty()) image::write_deep(job.outputs.deep, result.deep, result.picture, header);
   }
