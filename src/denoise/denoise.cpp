@@ -22,6 +22,9 @@ namespace {
 /// beauty with and without two halves.
 constexpr float kGuideTolerance = 4, kTolerance = 4, kToleranceOfImage = 2;
 
+/// Radius of the window in which guides are filtered, px. They are less noisy than the beauty.
+constexpr int kGuideRadius = 2;
+
 struct Worker {
   TileScratch scratch;
   TileWeights weights;
@@ -60,6 +63,7 @@ class Tiles {
 /// Filters the guides, which are noisy where the lens or motion blurs them and behind glass, by their own similarity.
 std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, int width, int height, Tiles& tiles) {
   WeightSource source;
+  source.radius = kGuideRadius;
   source.tolerance = kGuideTolerance;
   source.valid = &planes.valid;
   for (std::size_t g = 0; g < kGuides; ++g)
@@ -69,7 +73,7 @@ std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, int width, 
   tiles.each([&](Worker& worker, int x, int y) {
     compute_weights(source, x, y, worker.scratch, worker.weights);
     for (std::size_t g = 0; g < kGuides; ++g) {
-      apply_weights(worker.weights, planes.guides[g], x, y, worker.pixels);
+      apply_weights(worker.weights, source.radius, planes.guides[g], x, y, worker.pixels);
       tiles.each_pixel(x, y, [&](std::size_t from, std::size_t to) { out[g][to] = worker.pixels[from]; });
     }
   });
@@ -88,7 +92,8 @@ WeightSource beauty_source(const SourcePlanes& planes, const std::vector<PaddedP
     source.compared.push_back(planes.has_halves
                                   ? ComparedChannel{&planes.a[c], &planes.b[c], &planes.variance[c]}
                                   : ComparedChannel{&planes.beauty[c], &planes.beauty[c], &planes.variance[c]});
-  for (std::size_t g = 0; g < guides.size(); ++g) source.guides.push_back({&guides[g], &planes.guide_variance[g]});
+  for (const PaddedPlane& guide : guides) source.guides.push_back(&guide);
+  source.guide_variance = &planes.total_guide_variance;
   return source;
 }
 
@@ -113,9 +118,10 @@ Report filter(film::Picture& picture) {
     std::vector<TilePixels> filtered;
     for (std::size_t c = 0; c < 3; ++c) {
       const LightChannel& channel = lights.channels[c];
-      apply_weights(worker.weights, planes.beauty[c], x, y, worker.pixels);
+      apply_weights(worker.weights, source.radius, planes.beauty[c], x, y, worker.pixels);
       filtered.resize(channel.cells.size());
-      for (std::size_t i = 0; i < filtered.size(); ++i) apply_weights(worker.weights, cells[c][i], x, y, filtered[i]);
+      for (std::size_t i = 0; i < filtered.size(); ++i)
+        apply_weights(worker.weights, source.radius, cells[c][i], x, y, filtered[i]);
       worker.cells.resize(filtered.size());
       tiles.each_pixel(x, y, [&](std::size_t from, std::size_t to) {
         if (*planes.valid.at(static_cast<int>(to % static_cast<std::size_t>(width)),

@@ -95,13 +95,12 @@ HWY_INLINE void similarities(const WeightSource& source, int x0, int y0, int dx,
       float* const at = sums.data() + row * kTileWidth + column;
       V weight = bump(d, hn::Mul(hn::Load(d, at), scale));
       if (!source.guides.empty()) {
-        V guide_distance = hn::Zero(d);
-        for (const Guide& guide : source.guides) {
-          const V step = hn::Sub(hn::LoadU(d, guide.value->at(x, y)), hn::LoadU(d, guide.value->at(x + dx, y + dy)));
-          const V here = hn::LoadU(d, guide.variance->at(x, y));
-          const V there = hn::LoadU(d, guide.variance->at(x + dx, y + dy));
-          const V explained = hn::Add(here, hn::Min(here, there));
-          guide_distance = hn::Add(guide_distance, hn::Max(hn::Zero(d), hn::Sub(hn::Mul(step, step), explained)));
+        const V here = hn::LoadU(d, source.guide_variance->at(x, y));
+        const V there = hn::LoadU(d, source.guide_variance->at(x + dx, y + dy));
+        V guide_distance = hn::Neg(hn::Add(here, hn::Min(here, there)));
+        for (const PaddedPlane* guide : source.guides) {
+          const V step = hn::Sub(hn::LoadU(d, guide->at(x, y)), hn::LoadU(d, guide->at(x + dx, y + dy)));
+          guide_distance = add_product(guide_distance, step, step);
         }
         weight = hn::Mul(weight, bump(d, guide_distance));
       }

@@ -161,6 +161,17 @@ void add_guides_of_layers(SourcePlanes& out, const Planes& planes, Frame frame) 
   }
 }
 
+/// The sum of planes, border included.
+PaddedPlane sum_of(const std::vector<PaddedPlane>& planes, Frame frame) {
+  PaddedPlane out(frame.width, frame.height);
+  constexpr int kBorder = PaddedPlane::kBorder;
+  tbb::parallel_for(-kBorder, frame.height + kBorder, [&](int y) {
+    for (const PaddedPlane& plane : planes)
+      for (int x = -kBorder; x < frame.width + kBorder; ++x) *out.at(x, y) += *plane.at(x, y);
+  });
+  return out;
+}
+
 }  // namespace
 
 PaddedPlane padded(const std::vector<float>& values, int width_px, int height_px, float scale) {
@@ -210,6 +221,7 @@ SourcePlanes source_planes(const film::Picture& picture) {
     if (!planes.has("depth", "X")) out.missing.push_back("depth");
     if (has_albedo && has_normal) add_guides_of_layers(out, planes, frame);
   }
+  out.total_guide_variance = sum_of(out.guide_variance, frame);
   out.valid = PaddedPlane(frame.width, frame.height);
   tbb::parallel_for(0, frame.height, [&](int y) {
     for (int x = 0; x < frame.width; ++x) {

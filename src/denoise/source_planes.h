@@ -17,6 +17,7 @@ struct SourcePlanes {
   std::array<PaddedPlane, 3> variance;      ///< of the beauty
   std::vector<PaddedPlane> guides;          ///< kGuides, or empty
   std::vector<PaddedPlane> guide_variance;  ///< likewise
+  PaddedPlane total_guide_variance;         ///< the sum of guide_variance
   PaddedPlane valid;                        ///< 1; 0 outside of the image and where the beauty is not finite
   std::vector<std::string> missing;         ///< layers that the image lacks
 

@@ -25,10 +25,10 @@ inline constexpr float kTiny = 1e-12F;
 
 /// Calls `f(index, dx, dy)` for all neighbours.
 template <class F>
-HWY_INLINE void each_offset(F f) {
+HWY_INLINE void each_offset(int radius, F f) {
   std::size_t i = 0;
-  for (int dy = -kWindowRadius; dy <= kWindowRadius; ++dy)
-    for (int dx = -kWindowRadius; dx <= kWindowRadius; ++dx) f(i++, dx, dy);
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx) f(i++, dx, dy);
 }
 
 /// Solves M z = (1, 0, ..., 0) for a symmetric positive definite M by Cholesky factorisation.
@@ -57,12 +57,12 @@ HWY_INLINE void solve_first(D d, V (&m)[kEntries], V (&z)[kUnknowns]) {
 }
 
 /// Scales the similarities of a vector of pixels so that they add up to 1.
-HWY_INLINE void normalize(std::size_t at, TileWeights& weights) {
+HWY_INLINE void normalize(int radius, std::size_t at, TileWeights& weights) {
   const D d;
   V sum = hn::Zero(d);
-  each_offset([&](std::size_t i, int, int) { sum = hn::Add(sum, hn::Load(d, weights[i].data() + at)); });
+  each_offset(radius, [&](std::size_t i, int, int) { sum = hn::Add(sum, hn::Load(d, weights[i].data() + at)); });
   const V scale = hn::Div(hn::Set(d, 1.0F), hn::Max(sum, hn::Set(d, kTiny)));
-  each_offset([&](std::size_t i, int, int) {
+  each_offset(radius, [&](std::size_t i, int, int) {
     float* const weight = weights[i].data() + at;
     hn::Store(hn::Mul(hn::Load(d, weight), scale), d, weight);
   });
@@ -77,11 +77,11 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
   const D d;
   V center[kGuides], m[kEntries], z[kUnknowns];
   const auto relative = [&](std::size_t guide, int dx, int dy) {
-    return hn::Sub(hn::LoadU(d, source.guides[guide].value->at(x + dx, y + dy)), center[guide]);
+    return hn::Sub(hn::LoadU(d, source.guides[guide]->at(x + dx, y + dy)), center[guide]);
   };
-  for (std::size_t g = 0; g < kGuides; ++g) center[g] = hn::LoadU(d, source.guides[g].value->at(x, y));
+  for (std::size_t g = 0; g < kGuides; ++g) center[g] = hn::LoadU(d, source.guides[g]->at(x, y));
   for (V& v : m) v = hn::Zero(d);
-  each_offset([&](std::size_t i, int dx, int dy) {
+  each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
     const V similarity = hn::Load(d, weights[i].data() + at);
     V guides[kGuides];
     for (std::size_t g = 0; g < kGuides; ++g) guides[g] = relative(g, dx, dy);
@@ -104,7 +104,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
   V fit[3], mean[3];
   for (std::size_t c = 0; c < 3; ++c) fit[c] = mean[c] = hn::Zero(d);
   HWY_ALIGN float means[kOffsets][kMaxLanes];
-  each_offset([&](std::size_t i, int dx, int dy) {
+  each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
     float* const weight = weights[i].data() + at;
     V factor = z[0];
     for (std::size_t g = 0; g < kGuides; ++g) factor = add_product(factor, z[g + 1], relative(g, dx, dy));
@@ -127,7 +127,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
   }
   fraction = hn::Max(fraction, hn::Zero(d));
   if (hn::AllTrue(d, hn::Ge(fraction, one))) return;
-  each_offset([&](std::size_t i, int, int) {
+  each_offset(source.radius, [&](std::size_t i, int, int) {
     float* const weight = weights[i].data() + at;
     const V of_mean = hn::Load(d, means[i]), of_fit = hn::Load(d, weight);
     const V blend = add_product(of_mean, fraction, hn::Sub(of_fit, of_mean));
@@ -136,11 +136,11 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
 }
 
 void compute_tile_weights(const WeightSource& source, int x, int y, TileScratch& scratch, TileWeights& out) {
-  out.resize(kOffsets);
+  out.resize(static_cast<std::size_t>((2 * source.radius + 1) * (2 * source.radius + 1)));
   scratch.distances.resize(kDistanceStride * kHaloHeight);
   scratch.columns.resize(kDistanceStride);
   const bool has_halves = source.compared.front().a != source.compared.front().b;
-  each_offset([&](std::size_t i, int dx, int dy) {
+  each_offset(source.radius, [&](std::size_t i, int dx, int dy) {
     (has_halves ? pixel_distances<true> : pixel_distances<false>)(source, x, y, dx, dy, scratch.distances.data());
     patch_sums(scratch.distances.data(), scratch.columns.data(), out[i]);
     similarities(source, x, y, dx, dy, out[i]);
@@ -149,7 +149,7 @@ void compute_tile_weights(const WeightSource& source, int x, int y, TileScratch&
     for (int column = 0; column < kTileWidth; column += static_cast<int>(hn::Lanes(D()))) {
       const auto at = static_cast<std::size_t>(row * kTileWidth + column);
       if (source.guides.empty()) {
-        normalize(at, out);
+        normalize(source.radius, at, out);
       } else {
         regress(source, x + column, y + row, at, out);
       }
@@ -157,13 +157,14 @@ void compute_tile_weights(const WeightSource& source, int x, int y, TileScratch&
   }
 }
 
-void apply_tile_weights(const TileWeights& weights, const PaddedPlane& plane, int x, int y, TilePixels& out) {
+void apply_tile_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y,
+                        TilePixels& out) {
   const D d;
   for (int row = 0; row < kTileHeight; ++row) {
     for (int column = 0; column < kTileWidth; column += static_cast<int>(hn::Lanes(d))) {
       const auto at = static_cast<std::size_t>(row * kTileWidth + column);
       V sum = hn::Zero(d);
-      each_offset([&](std::size_t i, int dx, int dy) {
+      each_offset(radius, [&](std::size_t i, int dx, int dy) {
         const V value = hn::LoadU(d, plane.at(x + column + dx, y + row + dy));
         sum = add_product(sum, hn::Load(d, weights[i].data() + at), value);
       });

@@ -20,8 +20,8 @@ void compute_weights(const WeightSource& source, int x, int y, TileScratch& scra
   ORRERY_BEST(compute_tile_weights)(source, x, y, scratch, out);
 }
 
-void apply_weights(const TileWeights& weights, const PaddedPlane& plane, int x, int y, TilePixels& out) {
-  ORRERY_BEST(apply_tile_weights)(weights, plane, x, y, out);
+void apply_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y, TilePixels& out) {
+  ORRERY_BEST(apply_tile_weights)(weights, radius, plane, x, y, out);
 }
 
 }  // namespace orrery::denoise

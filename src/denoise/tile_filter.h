@@ -20,18 +20,16 @@ struct ComparedChannel {
   const PaddedPlane* variance = nullptr;
 };
 
-/// A guide of the regression, scaled so that pixels that differ by 1 have nothing in common.
-struct Guide {
-  const PaddedPlane* value = nullptr;
-  const PaddedPlane* variance = nullptr;
-};
-
 /// What the weights of a tile are computed from.
 struct WeightSource {
   std::vector<ComparedChannel> compared;
+  int radius = kWindowRadius;  ///< of the window of neighbours, at most kWindowRadius, px
   float tolerance = 1;  ///< squared difference of patches, in variances, from which on they have nothing in common
   const PaddedPlane* valid = nullptr;  ///< 1, or 0 for pixels to ignore; 0 outside of the image
-  std::vector<Guide> guides;           ///< kGuides; empty: weighted means instead of a regression
+  /// kGuides planes, scaled so that pixels that differ by 1 have nothing in common. Empty: weighted means instead of a
+  /// regression.
+  std::vector<const PaddedPlane*> guides;
+  const PaddedPlane* guide_variance = nullptr;  ///< sum of the variances of all guides
   /// Image that the weights are for. A regression that would make it negative is blended with the weighted mean.
   std::array<const PaddedPlane*, 3> target = {};
 };
@@ -53,12 +51,14 @@ struct TileScratch {
 /// weights are those of a linear regression on the guides over the neighbours.
 ///
 /// `x`, `y`   upper left pixel of the tile, multiples of its size
-/// `out`      resized to kOffsets
+/// `out`      resized to the number of neighbours
 /// Precision  the same bits with every instruction set
 /// Reference  buades2005, rousselle2012, bitterli2016
 void compute_weights(const WeightSource& source, int x, int y, TileScratch& scratch, TileWeights& out);
 
 /// Applies the weights of a tile to a plane.
-void apply_weights(const TileWeights& weights, const PaddedPlane& plane, int x, int y, TilePixels& out);
+///
+/// `radius`   of the source of the weights
+void apply_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y, TilePixels& out);
 
 }  // namespace orrery::denoise
