@@ -8,7 +8,7 @@ error      factor by which --denoise divides the mean squared display error at 3
            mean, on the scenes of trade.py and four lit ones; against a reference of 2,048 samples
 converged  the same at 4,096 samples, against 16,384
 time       seconds of --denoise at 64 samples on the final scene at 1920 x 1080, as a fraction of the render
-flicker    mean squared difference of consecutive frames to that of the reference, over 12 frames of a turntable:
+flicker    mean squared difference of consecutive frames to that of the reference, over 12 frames of a moving camera:
            denoised at 32 samples, relative to 128 samples without
 All by default.
 """
