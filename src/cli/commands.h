@@ -27,6 +27,7 @@ void add_study(Command& program, Action& action);
 void add_generate(Command& program, Action& action);
 void add_convert(Command& program, Action& action);
 void add_develop(Command& program, Action& action);
+void add_denoise(Command& program, Action& action);
 void add_bake(Command& program, Action& action);
 
 }  // namespace orrery::cli

@@ -40,6 +40,7 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
   out += fmt::format("{} spheres, {}, {}, traversal {}, {} threads, {} rays; scene {}\n", report.spheres, r.accelerator,
                      r.isa, r.traversal, r.threads, r.rays, report.scene_hash);
   const job::Phases& p = report.phases;
+  if (p.denoise_s > 0) out += fmt::format("denoise {:.3f} s\n", p.denoise_s);
   out +=
       fmt::format("read {:.3f} s, compile {:.3f} s, build {:.3f} s, render {:.3f} s, finish {:.3f} s, write {:.3f} s\n",
                   p.read_s, p.compile_s, p.build_s, p.render_s, p.finish_s, p.write_s);

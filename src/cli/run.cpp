@@ -52,6 +52,7 @@ void add_commands(Command& program, Action& action) {
   add_convert(program, action);
   program.heading("Colour");
   add_develop(program, action);
+  add_denoise(program, action);
   add_bake(program, action);
 }
 

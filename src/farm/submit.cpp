@@ -45,6 +45,7 @@ Commands commands_of(const Submission& submission) {
   if (is_split) {
     out.render.insert(out.render.end(), {"-o", fmt::format("{}%d.{}.shard.exr", prefix, Commands::kShard), "--shard",
                                          fmt::format("{}/{}", Commands::kShard, submission.shards)});
+    if (job.denoise) out.render.push_back("--denoise");
     out.merge = {submission.program, "merge"};
     for (int i = 1; i <= submission.shards; ++i)
       out.merge.push_back(fmt::format("{}{}.{}.shard.exr", prefix, Commands::kFrame, i));

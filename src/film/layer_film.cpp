@@ -109,6 +109,25 @@ void each_light_channel(const LayerRequest& r, const LayerPixel& p, const kernel
   }
 }
 
+/// Calls `f(layer, channel, kind, value)` for every channel of the two halves. They are data, so that they are stored
+/// in single precision: their difference is what matters.
+template <class F>
+void each_half_channel(const LayerPixel& p, F f) {
+  static const HalfSums none;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const HalfSums& half = p.halves.empty() ? none : p.halves[i];
+    const std::string name = i == 0 ? "half_a" : "half_b";
+    const auto channels = [&](const std::string& layer, const char* letters, const Int128(&sum)[3],
+                              std::int64_t weight) {
+      for (int k = 0; k < 3; ++k) f(layer, letters[k], PlaneKind::kData, static_cast<float>(mean(sum[k], weight)));
+    };
+    channels(name, "RGB", half.light, half.lit);
+    channels(name + ".albedo", "RGB", half.albedo, half.weight);
+    channels(name + ".normal", "XYZ", half.normal, half.weight);
+    f(name + ".inverse_depth", 'X', PlaneKind::kData, static_cast<float>(mean(half.inverse_depth, half.weight)));
+  }
+}
+
 /// Calls `f(layer, channel, kind, value)` for every requested channel, in file order.
 template <class F>
 void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::PixelSum& beauty,
@@ -135,6 +154,7 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Pixe
     f("material_id", 'X', kData, hit ? static_cast<float>(r.material_numbers[view.sphere_materials[p.sphere]]) : 0.0F);
   if (r.guide_albedo) means("denoise.albedo", "RGB", kLight, p.guide_albedo);
   if (r.guide_normal) means("denoise.normal", "XYZ", kVector, p.guide_normal);
+  if (r.halves) each_half_channel(p, f);
   for (const Matte& matte : r.mattes) {
     const std::vector<RankedCoverage> shares = ranked(matte, p);
     // A layer of four channels holds two ranks: id, coverage, id, coverage.

@@ -74,10 +74,22 @@ Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
   return hit;
 }
 
+void add_to_half(HalfSums& half, const PathRecord& path, double distance, std::int64_t weight) {
+  half.weight += weight;
+  add3(half.albedo, path.guide_albedo, weight);
+  add3(half.normal, path.guide_normal, weight);
+  // A camera inside a surface sees it at any small distance.
+  constexpr double kLargestInverse = 0x1p30;
+  if (distance > 0) half.inverse_depth += kernel::to_fixed_point(std::min(1 / distance, kLargestInverse)) * weight;
+  if (!is_good(path.light)) return;
+  half.lit += weight;
+  add3(half.light, path.light, weight);
+}
+
 }  // namespace
 
 void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene, const PathRecord& path,
-                     std::int64_t path_weight) {
+                     std::int64_t path_weight, std::size_t half) {
   weight += path_weight;
   if (is_good(path.light)) {
     lit += path_weight;
@@ -95,7 +107,11 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   if (request.guide_normal) add3(guide_normal, path.guide_normal, path_weight);
   const bool hits = path.sphere != kernel::kNoSphere;
   Hit hit{};
-  if (hits && (request.nearest() || request.deep)) hit = locate(scene, path);
+  if (hits && (request.nearest() || request.deep || request.halves)) hit = locate(scene, path);
+  if (request.halves) {
+    halves.resize(2);
+    add_to_half(halves[half], path, hit.distance, path_weight);
+  }
   if (request.deep || (hits && !request.mattes.empty())) {
     SphereCoverage& share = share_of(shares, path.sphere);
     share.weight += path_weight;
@@ -146,6 +162,17 @@ void LayerPixel::add(const LayerPixel& other) {
   add_all(albedo, other.albedo);
   add_all(guide_albedo, other.guide_albedo);
   add_all(guide_normal, other.guide_normal);
+  halves.resize(std::max(halves.size(), other.halves.size()));
+  for (std::size_t i = 0; i < other.halves.size(); ++i) {
+    HalfSums& to = halves[i];
+    const HalfSums& from = other.halves[i];
+    add_all(to.light, from.light);
+    add_all(to.albedo, from.albedo);
+    add_all(to.normal, from.normal);
+    to.inverse_depth += from.inverse_depth;
+    to.weight += from.weight;
+    to.lit += from.lit;
+  }
   weight += other.weight;
   lit += other.lit;
   paths += other.paths;

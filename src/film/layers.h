@@ -48,6 +48,7 @@ struct LayerRequest {
   bool light_groups = false;
   bool variance = false, samples = false, object_id = false, material_id = false;
   bool guide_albedo = false, guide_normal = false;
+  bool halves = false;                          ///< beauty and guides of two halves of the samples, for denoising
   bool coverage = false;                        ///< A is the fraction of the pixel that spheres cover, not 1
   bool deep = false;                            ///< also render a deep image
   int matte_ranks = 6;                          ///< maximum number of ids per pixel in a matte
@@ -76,6 +77,7 @@ enum class LayerSource {
   kSums,     ///< sums over first hits
   kPaths,    ///< number and radiance of the paths
   kGuide,    ///< sums over the first hits that are not delta distributions
+  kHalves,   ///< radiance and guides of each half of the samples
 };
 
 /// A layer, except the Cryptomattes.
@@ -104,6 +106,7 @@ inline constexpr LayerType kLayerTypes[] = {
     {"material_id", &LayerRequest::material_id, LayerSource::kNearest},
     {"denoise.albedo", &LayerRequest::guide_albedo, LayerSource::kGuide},
     {"denoise.normal", &LayerRequest::guide_normal, LayerSource::kGuide},
+    {"halves", &LayerRequest::halves, LayerSource::kHalves},
 };
 
 namespace detail {
@@ -119,9 +122,9 @@ constexpr bool requests(const LayerRequest& request, LayerSource source) {
 inline bool LayerRequest::lights() const { return detail::requests(*this, LayerSource::kLight); }
 inline bool LayerRequest::nearest() const { return detail::requests(*this, LayerSource::kNearest); }
 inline bool LayerRequest::paths_light() const {
-  return lights() || detail::requests(*this, LayerSource::kPaths) || deep;
+  return lights() || detail::requests(*this, LayerSource::kPaths) || deep || halves;
 }
-inline bool LayerRequest::guides() const { return detail::requests(*this, LayerSource::kGuide); }
+inline bool LayerRequest::guides() const { return detail::requests(*this, LayerSource::kGuide) || halves; }
 inline bool LayerRequest::any() const {
   return paths_light() || nearest() || guides() || detail::requests(*this, LayerSource::kSums) || coverage ||
          !mattes.empty();

@@ -14,7 +14,7 @@ namespace {
 
 using kernel::Int128;
 
-constexpr std::uint32_t kFormat = 3;
+constexpr std::uint32_t kFormat = 4;
 
 enum Flag : std::uint32_t { kHasHalves = 1, kHasGoals = 2, kHasLayers = 4, kAllFlags = 7 };
 
@@ -244,6 +244,57 @@ void read_light(Reader& in, std::vector<LayerPixel>& layers) {
           layers, [=](auto& p) -> auto& { return p.light[i][k]; });
 }
 
+/// Reads or writes the sums of both halves of all pixels.
+template <class Io, class Layers>
+void each_half_number(Io& io, Layers& layers) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      io.numbers(
+          layers, [=](auto& p) -> auto& { return p.halves[i].light[k]; });
+      io.numbers(
+          layers, [=](auto& p) -> auto& { return p.halves[i].albedo[k]; });
+      io.numbers(
+          layers, [=](auto& p) -> auto& { return p.halves[i].normal[k]; });
+    }
+    io.numbers(
+        layers, [=](auto& p) -> auto& { return p.halves[i].inverse_depth; });
+    io.numbers(
+        layers, [=](auto& p) -> auto& { return p.halves[i].weight; });
+    io.numbers(
+        layers, [=](auto& p) -> auto& { return p.halves[i].lit; });
+  }
+}
+
+bool has_half_sums(const std::vector<LayerPixel>& layers) {
+  return std::any_of(layers.begin(), layers.end(), [](const LayerPixel& p) { return !p.halves.empty(); });
+}
+
+void write_halves(Writer& out, const std::vector<LayerPixel>& layers) {
+  const bool any = has_half_sums(layers);
+  out.number(std::uint32_t{any});
+  if (!any) return;
+  struct Halves {
+    std::vector<HalfSums> halves;
+  };
+  std::vector<Halves> padded(layers.size());  // a pixel without samples has no sums
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    padded[i].halves = layers[i].halves;
+    padded[i].halves.resize(2);
+  }
+  each_half_number(out, padded);
+}
+
+void read_halves(Reader& in, std::vector<LayerPixel>& layers) {
+  std::uint32_t any = 0;
+  in.number(any);
+  if (any > 1) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
+  if (any == 0) return;
+  // Each plane has two words at least: a damaged flag fails here, before allocation.
+  in.need(std::size_t{2} * 12 * 2 * 4);
+  for (LayerPixel& p : layers) p.halves.resize(2);
+  each_half_number(in, layers);
+}
+
 void write_shares(Writer& out, const Partial& partial) {
   std::vector<std::uint32_t> counts;
   std::vector<SphereCoverage> shares;
@@ -288,6 +339,7 @@ std::vector<std::uint32_t> to_words(const Partial& partial) {
   each_effort(out, partial.work);
   each_pixel_number(out, partial);
   if (!partial.layers.empty()) write_light(out, partial.layers);
+  if (!partial.layers.empty()) write_halves(out, partial.layers);
   if (!partial.layers.empty()) write_shares(out, partial);
   return words;
 }
@@ -309,6 +361,7 @@ Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int he
   each_effort(in, partial.work);
   each_pixel_number(in, partial);
   if (!partial.layers.empty()) read_light(in, partial.layers);
+  if (!partial.layers.empty()) read_halves(in, partial.layers);
   if (!partial.layers.empty()) read_shares(in, partial);
   return partial;
 }

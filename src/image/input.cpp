@@ -27,18 +27,18 @@ const char* library_name(Format format) {
   return "";
 }
 
+}  // namespace
+
+void fail_to_read(const std::filesystem::path& file, const std::string& reason) {
+  throw base::Error(base::ErrorKind::kBadData, "cannot read image " + file.string() + ": " + reason);
+}
+
 void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
   const auto too_large = [](int side) { return side < 1 || side > kLargestSide; };
   if (too_large(spec.width) || too_large(spec.height) || too_large(spec.full_width) || too_large(spec.full_height))
     fail_to_read(file, "its header says " + std::to_string(spec.full_width) + " x " + std::to_string(spec.full_height) +
                            " pixels; a side must be 1 to " + std::to_string(kLargestSide));
   if (spec.deep) fail_to_read(file, "its pixels are deep; flatten them first");
-}
-
-}  // namespace
-
-void fail_to_read(const std::filesystem::path& file, const std::string& reason) {
-  throw base::Error(base::ErrorKind::kBadData, "cannot read image " + file.string() + ": " + reason);
 }
 
 int Input::row_step() const { return spec.tile_width == 0 ? kRowsAtATime : spec.tile_height; }

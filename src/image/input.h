@@ -12,6 +12,11 @@ namespace orrery::image {
 /// Throws the error of an image that cannot be read: base::Error(kBadData).
 [[noreturn]] void fail_to_read(const std::filesystem::path& file, const std::string& reason);
 
+/// Checks the size in the header of an image or part.
+///
+/// Errors     base::Error(kBadData) if it is out of range or the pixels are deep
+void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec);
+
 /// An open image file: the first part of a multi-part EXR.
 struct Input {
   std::unique_ptr<OIIO::ImageInput> in;

@@ -25,7 +25,7 @@ using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-constexpr const char* kPrefix = "orrery/partial/";
+constexpr const char* kPrefix = kPartialPrefix;
 constexpr const char* kSumsName = "orrery.sums";
 
 /// Maximum number of words in a row of the part with the sums.

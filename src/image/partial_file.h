@@ -11,6 +11,9 @@
 
 namespace orrery::image {
 
+/// Prefix of the attributes by which shards and checkpoints differ from images.
+inline constexpr const char* kPartialPrefix = "orrery/partial/";
+
 /// Origin of a checkpoint or shard as name-value pairs, e.g. "sceneHash" = "0123456789abcdef".
 using Provenance = std::map<std::string, std::string>;
 

@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compile/compile.h"
+#include "denoise/denoise.h"
 #include "film/layer_film.h"
 #include "image/format.h"
 #include "job/check_job.h"
@@ -28,7 +29,9 @@
 #include "job/rendering.h"
 #include "job/statistics.h"
 #include "job/text.h"
+#include "job/version.h"
 #include "job/write_outputs.h"
+#include "scene/layers.h"
 
 namespace orrery::job {
 namespace {
@@ -74,6 +77,7 @@ LoadedScene load(const Job& job, JobReport& report) {
 Layers layers_for(const Job& job, const scene::Scene& scene, const compile::CompiledScene& compiled) {
   Layers layers = choose_layers(scene, compiled);
   layers.request.deep = !job.outputs.deep.empty();
+  layers.request.halves = layers.request.halves || job.denoise;
   image::check_lossless(film::planes_of(layers.request), job.outputs.exr);
   if (job.outputs.has_exr() || job.keep != nullptr) return layers;
   const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
@@ -83,6 +87,7 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Comp
   Layers none;
   none.request.coverage = layers.request.coverage;
   none.request.deep = layers.request.deep;
+  none.request.halves = job.denoise;
   return none;
 }
 
@@ -193,6 +198,13 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   if (!job.merge.shards.empty()) report.phases.finish_s = made_s;
 
   report.target_missed = missed_target(job, result.statistics);
+  if (job.denoise && !is_shard(job)) {
+    denoise::denoise(result.picture, settings.threads);
+    const std::vector<std::string> requested = scene::requested_layers(read.scene);
+    if (std::find(requested.begin(), requested.end(), scene::kHalvesLayer) == requested.end())
+      denoise::remove_halves(result.picture);
+    report.phases.denoise_s = watch.lap();
+  }
   count_bad_values(result.picture, report);
   if (job.keep != nullptr) {
     keep(job, read, compiled, layers, provenance, display, files, std::move(result.picture), report);
@@ -201,6 +213,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   } else {
     image::Header header = picture_header(read, compiled, report, job.outputs.reproducible);
     header.stamp = stamp;
+    if (job.denoise) header.attributes.push_back({denoise::kAttribute, "orrery " + program_version()});
     const int bits = job.outputs.bits != 0 ? job.outputs.bits : report.display.default_bits();
     report.written = write_outputs(job.outputs, display, bits, result.picture, header, layers.mattes);
     if (!job.outputs.deep.empty()) image::write_deep(job.outputs.deep, result.deep, result.picture, header);

@@ -54,6 +54,7 @@ struct Job {
   MergeSettings merge;
   Hooks hooks;
   bool as_shard = false;       ///< write a shard even if it has all samples of all pixels
+  bool denoise = false;        ///< filter the images; a shard instead keeps the halves of its samples for that
   bool skip_existing = false;  ///< do nothing if all files exist, are intact, and come from this job
   /// Files of the batch that this job belongs to; null: the job stands alone.
   std::shared_ptr<base::FileSet> files = nullptr;

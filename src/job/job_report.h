@@ -17,7 +17,8 @@ namespace orrery::job {
 /// Seconds by phase.
 struct Phases {
   double read_s = 0, compile_s = 0, build_s = 0, render_s = 0;
-  double finish_s = 0;  ///< from sums to the finished image and its layers; of a merge also reading the shards
+  double denoise_s = 0;  ///< with Job::denoise
+  double finish_s = 0;   ///< from sums to the finished image and its layers; of a merge also reading the shards
   double write_s = 0;
 };
 

@@ -71,6 +71,10 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   if (!layers.request.any()) merged.partial.layers.clear();
   if (merged.partial.layers.empty() && layers.request.any())
     throw base::Error(base::ErrorKind::kBadData, "the shards were rendered without the requested layers");
+  const auto has_halves = [](const film::LayerPixel& pixel) { return !pixel.halves.empty(); };
+  if (job.denoise && std::none_of(merged.partial.layers.begin(), merged.partial.layers.end(), has_halves))
+    throw base::Error(base::ErrorKind::kBadData,
+                      "the shards have no halves to denoise from; render them with --denoise or --layers halves");
   render::Result result = render::finished(compiled, layers.request, std::move(merged.partial));
   result.statistics = statistics;
   return result;

@@ -35,7 +35,9 @@ constexpr std::uint64_t kBytesPerLayerPlane = 2 * sizeof(float);
 std::uint64_t bytes_of_sums(const MemoryNeeds& needs) {
   if (!needs.layers) return 0;
   constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
-  return sizeof(film::LayerPixel) + (needs.light_cells > 0 ? needs.light_cells * kBytesPerCell + kHeapBytes : 0);
+  const std::uint64_t halves = needs.halves ? 2 * sizeof(film::HalfSums) + kHeapBytes : 0;
+  return sizeof(film::LayerPixel) + halves +
+         (needs.light_cells > 0 ? needs.light_cells * kBytesPerCell + kHeapBytes : 0);
 }
 
 /// The number after `key` in a file of "key number unit" lines. An empty key reads a file of one number.
@@ -90,6 +92,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.layer_planes = film::planes_of(layers).size();
   needs.layers = layers.any();
+  needs.halves = layers.halves;
   needs.light_cells = layers.light_cells();
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
   needs.is_adaptive = is_adaptive;

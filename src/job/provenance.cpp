@@ -60,6 +60,7 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
   all += fmt::format("{:.17g} s, frame {}, {} bits, float {:d}, multipart {:d}, reproducible {:d}, exposure {:.17g}\n",
                      job.sampling.seconds, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
                      job.outputs.exr.multipart, job.outputs.reproducible, display.exposure.value_or(0));
+  if (job.denoise) all += "denoised\n";
   for (const std::string& word : {job.outputs.exr.compression, display.config, display.display, display.view,
                                   display.look, display.working_space})
     all += word + "\n";

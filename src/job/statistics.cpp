@@ -61,6 +61,7 @@ std::string statistics_json(const JobReport& report, const Outcome& outcome) {
                 {"build", report.phases.build_s},
                 {"render", report.phases.render_s},
                 {"finish", report.phases.finish_s},
+                {"denoise", report.phases.denoise_s},
                 {"write", report.phases.write_s}}},
               {"peak_memory_bytes", peak_memory()},
               {"bad_samples", r.bad_samples},

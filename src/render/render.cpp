@@ -114,7 +114,7 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
   accel.use(traversals);
   statistics.traversal = name_of(traversals);
   TilePool pool(statistics.threads);
-  const TileRenderer render_tile(compiled, accel, settings.layers);
+  const TileRenderer render_tile(compiled, accel, settings.layers, settings.sampling.is_adaptive());
   const bool completed = settings.sampling.is_adaptive()
                              ? render_adaptively(compiled, settings, render_tile, pool, progress, state, statistics)
                              : render_progressively(compiled, settings, render_tile, pool, progress, state, statistics);

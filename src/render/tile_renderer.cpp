@@ -44,8 +44,13 @@ void LightEventBuffer::grow(kernel::LightEvents& events) {
 }
 
 TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel,
-                           const film::LayerRequest& request)
-    : view_(compiled.view()), tracer_(accel.tracer()), request_(request), width_(compiled.width) {
+                           const film::LayerRequest& request, bool is_adaptive)
+    : view_(compiled.view()),
+      tracer_(accel.tracer()),
+      request_(request),
+      width_(compiled.width),
+      samples_(compiled.samples),
+      is_adaptive_(is_adaptive) {
   const bool layers = request.any();
   if (request.coverage) view_.background_visible = false;
   if (compiled.precision == compile::Precision::kFast) {
@@ -80,6 +85,12 @@ void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
   worker.counts.target = counts.target;
 }
 
+std::size_t TileRenderer::half_of(std::uint32_t sample) const {
+  // Each half of a low-discrepancy sequence is a sequence of its own.
+  const std::uint32_t first = std::max(1U, static_cast<std::uint32_t>(samples_) / 2);
+  return sample >= (is_adaptive_ ? kernel::Sampler::kSecondHalf : first) ? 1 : 0;
+}
+
 void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const {
   const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   const auto samples_at_a_time = std::max(1u, kMaxRecords / static_cast<std::uint32_t>(pixels));
@@ -107,7 +118,7 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, fi
       film::LayerPixel& pixel = layers[place_in_picture(at)];
       const kernel::PathRecord* record = part.records + within * samples;
       for (std::uint32_t s = begin; s < part.sample_end; ++s)
-        pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1));
+        pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1), half_of(s));
     }
     if (part.events == nullptr) continue;
     for (const kernel::LightEvent* event = worker.events.begin(); event != worker.events.next; ++event) {

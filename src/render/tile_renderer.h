@@ -36,8 +36,10 @@ struct TileWorker {
 /// Renders tiles in the scene's precision and adds their paths to the layers, if there are any.
 class TileRenderer {
  public:
+  /// `is_adaptive`  samples from Sampler::kSecondHalf on are the second half
   /// Domain     all arguments outlive this
-  TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const film::LayerRequest& request);
+  TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const film::LayerRequest& request,
+               bool is_adaptive = false);
 
   /// Renders one tile.
   ///
@@ -46,12 +48,15 @@ class TileRenderer {
 
  private:
   void trace(const kernel::Tile& tile, TileWorker& worker) const;
+  /// The half of the samples, 0 or 1, that a sample belongs to.
+  std::size_t half_of(std::uint32_t sample) const;
   void trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const;
 
   kernel::SceneView view_;
   kernel::Tracer tracer_;
   const film::LayerRequest& request_;
-  int width_;
+  int width_, samples_;
+  bool is_adaptive_;
   kernel::RenderTile render_ = nullptr;
   kernel::RenderTileFast render_fast_ = nullptr;  ///< used if not null
 };

@@ -71,7 +71,7 @@ std::string light_group_fault(const std::string& name) {
   if (name.size() > kLongestLightGroup)
     return "has " + std::to_string(name.size()) + " characters; the maximum is " + std::to_string(kLongestLightGroup);
   // The beauty's part of a multi-part file, and its channels.
-  static const std::vector<std::string> reserved = {"rgba", "R", "G", "B", "A"};
+  static const std::vector<std::string> reserved = {"rgba", "R", "G", "B", "A", "half_a", "half_b"};
   bool is_layer = contains(reserved, name) || name.starts_with("Crypto");
   for (const std::string& layer : layer_names()) is_layer = is_layer || name == layer.substr(0, layer.find('.'));
   for (const char* lobe : kLobes) is_layer = is_layer || name == lobe;
@@ -108,6 +108,7 @@ std::vector<std::string> requested_layers(const Scene& scene) {
   const std::vector<std::string>& requested = scene.output.layers;
   if (!contains(requested, kAllLayers)) return requested;
   std::vector<std::string> out = available_layers(scene);
+  std::erase(out, kHalvesLayer);
   for (const std::string& name : requested)
     if (name != kAllLayers && !contains(out, name)) out.push_back(name);
   return out;

@@ -11,6 +11,9 @@ namespace orrery::scene {
 /// Name in [output] that selects every layer of available_layers().
 inline constexpr const char* kAllLayers = "all";
 
+/// Name in [output] of the layer for denoising, which kAllLayers does not include.
+inline constexpr const char* kHalvesLayer = "halves";
+
 /// Light group of emitters and backgrounds that name none. May also be named explicitly.
 inline constexpr const char* kDefaultLightGroup = "default";
 

@@ -210,33 +210,36 @@ Table render_table() {
 }
 
 Table output_table() {
-  return {"output",
-          {choices<S>(
-              "layers",
-              {"Z",
-               "depth",
-               "N",
-               "P",
-               "albedo",
-               "diffuse",
-               "specular",
-               "transmission",
-               "background",
-               "emission",
-               "light_groups",
-               "variance",
-               "samples",
-               "object_id",
-               "material_id",
-               "denoise.albedo",
-               "denoise.normal",
-               "CryptoObject",
-               "CryptoMaterial",
-               "CryptoGroup",
-               kAllLayers},
-              {"", "Layers of EXR files in addition to the beauty image. `all`: every layer that the scene can have",
-               "One layer adds 10-20 % render time, all layers 40 %. Larger files"},
-              [](S& s) -> std::vector<std::string>& { return s.output.layers; })}};
+  return {
+      "output",
+      {choices<S>("layers",
+                  {"Z",
+                   "depth",
+                   "N",
+                   "P",
+                   "albedo",
+                   "diffuse",
+                   "specular",
+                   "transmission",
+                   "background",
+                   "emission",
+                   "light_groups",
+                   "variance",
+                   "samples",
+                   "object_id",
+                   "material_id",
+                   "denoise.albedo",
+                   "denoise.normal",
+                   kHalvesLayer,
+                   "CryptoObject",
+                   "CryptoMaterial",
+                   "CryptoGroup",
+                   kAllLayers},
+                  {"",
+                   "Layers of EXR files in addition to the beauty image. `all`: every layer that the scene can have, "
+                   "except `halves`",
+                   "One layer adds 10-20 % render time, all layers 40 %. Larger files"},
+                  [](S& s) -> std::vector<std::string>& { return s.output.layers; })}};
 }
 
 std::vector<MaterialType> make_material_types() {

@@ -14,7 +14,7 @@ struct Case {
 const Case kCases[] = {
     {"", 2,
      "orrery: no command given; use one of render, plot, merge, submit, check, info, compare, bench, study, generate, "
-     "convert, develop, bake\n"
+     "convert, develop, denoise, bake\n"
      "Try orrery --help.\n"},
     {"rendr good.toml", 2,
      "orrery: unknown command rendr; did you mean `render`?\n"

@@ -5,6 +5,7 @@
 #include "image/partial_file.h"
 #include "image/read.h"
 #include "image/read_map.h"
+#include "image/rewrite.h"
 #include "image/verify.h"
 #include "image/write.h"
 
@@ -18,6 +19,7 @@ struct Functions {
   decltype(&image::read) read;
   decltype(&image::read_map_header) read_map_header;
   decltype(&image::read_map) read_map;
+  decltype(&image::rewrite_exr) rewrite_exr;
   decltype(&image::write_exr) write_exr;
   decltype(&image::write_deep) write_deep;
   decltype(&image::write_hdr) write_hdr;

@@ -44,6 +44,11 @@ void read_map(const std::filesystem::path& file, const std::function<void(int ro
   module().read_map(file, take);
 }
 
+WriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
+                        const EditPlanes& edit) {
+  return module().rewrite_exr(input, output, edit);
+}
+
 WriteReport write_exr(const std::filesystem::path& file, const film::Picture& picture, const Header& header,
                       const ExrOptions& options) {
   return module().write_exr(file, picture, header, options);

@@ -492,5 +492,36 @@ TEST_F(FilmLayerFilm, LayersHaveTheirChannelNamesAndKinds) {
             "vector, ");
 }
 
+TEST_F(FilmLayerFilm, HalvesAreMeansOfTheirOwnPaths) {
+  request_.halves = true;
+  kernel::PathRecord path = path_to(0, 1);
+  path.guide_albedo[1] = 0.5F;
+  path.guide_normal[2] = 1;
+  pixel_.add(request_, view_, path, 1, 0);
+  pixel_.add(request_, view_, path_to(0, 2), 1, 0);
+  pixel_.add(request_, view_, path_to(1, 5), 1, 1);
+  pixel_.add(request_, view_, kernel::PathRecord{}, 1, 1);
+  const Picture p = picture();
+  EXPECT_EQ(value(p, "half_a.R"), 1.5F);
+  EXPECT_EQ(value(p, "half_b.G"), 2.5F);
+  EXPECT_EQ(value(p, "half_a.albedo.G"), 0.25F);
+  EXPECT_EQ(value(p, "half_a.normal.Z"), 0.5F);
+  EXPECT_EQ(value(p, "half_b.normal.Z"), 0);
+  EXPECT_FLOAT_EQ(value(p, "half_a.inverse_depth.X"), 0.25F);
+  EXPECT_FLOAT_EQ(value(p, "half_b.inverse_depth.X"), 0.125F / 2) << "a miss counts as 0";
+}
+
+TEST_F(FilmLayerFilm, MergedPixelsAddTheirHalves) {
+  request_.halves = true;
+  LayerPixel first;
+  first.add(request_, view_, path_to(0, 1), 1, 0);
+  pixel_.add(request_, view_, path_to(0, 3), 1, 1);
+  pixel_.add(request_, view_, path_to(0, 2), 1, 0);
+  pixel_.add(first);
+  const Picture p = picture();
+  EXPECT_EQ(value(p, "half_a.R"), 1.5F);
+  EXPECT_EQ(value(p, "half_b.R"), 3);
+}
+
 }  // namespace
 }  // namespace orrery::film

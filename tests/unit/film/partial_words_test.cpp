@@ -35,6 +35,16 @@ Partial full_partial(bool halves, bool goals, bool layers, std::size_t light_gro
          {&l.squares, &l.negative_light, &l.negative_squares, &l.normal, &l.albedo, &l.guide_albedo, &l.guide_normal})
       for (auto& v : *vector) v = large();
     for (auto* v : {&l.weight, &l.lit, &l.paths, &l.covered}) *v = number();
+    if (light_groups != 1) {
+      l.halves.resize(2);
+      for (HalfSums& half : l.halves) {
+        for (auto* vector : {&half.light, &half.albedo, &half.normal})
+          for (auto& v : *vector) v = large();
+        half.inverse_depth = large();
+        half.weight = number();
+        half.lit = number();
+      }
+    }
     l.depth = static_cast<double>(number());
     l.z = 1 / l.depth;
     for (double& v : l.position) v = static_cast<double>(number());

@@ -113,7 +113,7 @@ TEST(FormatOverrides, MessagesNameTheShortOption) {
             "                      ^\n"
             "--layers: error: output.layers[1] is \"Q\"; must be one of Z, depth, N, P, albedo, diffuse, specular, "
             "transmission, background, emission, light_groups, variance, samples, object_id, material_id, "
-            "denoise.albedo, denoise.normal, "
+            "denoise.albedo, denoise.normal, halves, "
             "CryptoObject, CryptoMaterial, CryptoGroup, all\n"
             "    --layers Z,Q,N\n"
             "               ^\n");
@@ -133,6 +133,7 @@ TEST(FormatOverrides, ListsOfWordsNeedNoQuotes) {
       told("output.layers=[Z,,N]"),
       "--set: error: output.layers[1] is \"\"; must be one of Z, depth, N, P, albedo, diffuse, specular, transmission, "
       "background, emission, light_groups, variance, samples, object_id, material_id, denoise.albedo, denoise.normal, "
+      "halves, "
       "CryptoObject, "
       "CryptoMaterial, CryptoGroup, all");
   EXPECT_EQ(told("camera.up=[0,1,x]"), "--set: error: camera.up[2] must be a number, not a string");

@@ -444,5 +444,31 @@ TEST(RenderWindow, PixelAspectStretchesPixels) {
   EXPECT_NEAR(length(compiled.camera.right) / length(compiled.camera.down), 2, 1e-12);
 }
 
+/// Both halves have samples of their own, and their mean is the beauty.
+TEST(RenderLayers, HalvesAverageToTheBeauty) {
+  scene::Scene s = test::everything();
+  s.image = {32, 18};
+  s.render.samples = 16;
+  film::LayerRequest request;
+  request.halves = true;
+  const compile::CompiledScene compiled = compile::compile(s);
+  for (const bool is_adaptive : {false, true}) {
+    Settings settings;
+    settings.layers = request;
+    if (is_adaptive) settings.sampling.noise = 0.2;
+    const Result with = render(compiled, settings);
+    settings.layers = {};
+    EXPECT_EQ(render(compiled, settings).picture.planes[1].values, with.picture.planes[1].values)
+        << "the layer does not change the beauty";
+    int different = 0;
+    for (std::size_t i = 0; i < with.picture.planes[0].values.size(); ++i) {
+      const float a = plane(with, "half_a.G")[i], b = plane(with, "half_b.G")[i];
+      EXPECT_NEAR((a + b) / 2, plane(with, "G")[i], 1e-5F + 1e-4F * std::abs(a - b));
+      different += a != b ? 1 : 0;
+    }
+    EXPECT_GT(different, 100);
+  }
+}
+
 }  // namespace
 }  // namespace orrery::render

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/denoise_file.h"
+
+#include <string>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_set.h"
+#include "image/format.h"
+#include "image/rewrite.h"
+#include "job/machine.h"
+#include "job/version.h"
+
+namespace orrery::app {
+
+DenoisedFile denoise_file(const Denoising& denoising) {
+  for (const std::filesystem::path& file : {denoising.input, denoising.output})
+    if (image::format_of(file) != image::Format::kExr)
+      throw base::Error(base::ErrorKind::kUsage,
+                        file.string() + " is not an EXR file; denoising needs scene-linear EXR");
+  base::FileSet files;
+  files.add_input(denoising.input, "image");
+  files.add_output(denoising.output, "-o");
+  base::check_creatable(denoising.output);
+  const int threads = denoising.threads > 0 ? denoising.threads : job::default_threads();
+  image::set_threads(threads);
+  DenoisedFile out;
+  const auto edit = [&](film::Picture& picture) {
+    for (const char* channel : {"R", "G", "B"})
+      if (picture.find(channel) == nullptr)
+        throw base::Error(base::ErrorKind::kBadData,
+                          denoising.input.string() + " has no half or float channel " + channel);
+    out.report = denoise::denoise(picture, threads);
+    return std::vector<image::Attribute>{{denoise::kAttribute, "orrery " + job::program_version()}};
+  };
+  out.clamped = image::rewrite_exr(denoising.input, denoising.output, edit).clamped;
+  return out;
+}
+
+}  // namespace orrery::app

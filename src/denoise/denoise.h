@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "film/picture.h"
+
+namespace orrery::denoise {
+
+/// Header attribute of a denoised image: the program that did it.
+inline constexpr const char* kAttribute = "orrery/denoised";
+
+/// What denoise() did.
+struct Report {
+  std::vector<std::string> layers;   ///< light layers that were filtered with the beauty
+  std::vector<std::string> missing;  ///< layers that the image lacks; each would improve the result
+  bool has_guides = false;           ///< albedo and normal guided the filter
+  std::uint64_t bad_pixels = 0;      ///< pixels whose beauty is not finite or too large; left as they were
+};
+
+/// Filters the noise of an image's beauty, and applies the same weights to its light layers (lobe AOVs, light groups
+/// and the lobes of the groups). If they added up to the beauty, they do so again, bit for bit in single precision.
+/// Other planes are unchanged.
+///
+/// The weights come from the layer `halves`, or, as far as the image lacks it, from the guides `denoise.albedo`,
+/// `denoise.normal` and `depth`, from `variance` and from the beauty itself.
+///
+/// `threads`  number of threads; 0: all that the process may use
+/// Result     the same bits on any number of threads and with any instruction set
+/// Errors     base::Error(kBadData) if the image has no R, G and B
+/// Reference  rousselle2012, bitterli2016
+Report denoise(film::Picture& picture, int threads = 0);
+
+/// Removes the planes of the layer `halves`.
+void remove_halves(film::Picture& picture);
+
+}  // namespace orrery::denoise

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace orrery::denoise {
+
+/// A pixel's neighbours are up to this far away in x and in y, px.
+inline constexpr int kWindowRadius = 5;
+inline constexpr int kOffsets = (2 * kWindowRadius + 1) * (2 * kWindowRadius + 1);
+/// Radius of the patches that are compared, px.
+inline constexpr int kPatchRadius = 1;
+
+/// Size of the tiles that are filtered at a time, px. The weights of a tile, kOffsets floats per pixel, stay in the L2
+/// cache.
+inline constexpr int kTileWidth = 64, kTileHeight = 16;
+
+/// Maximum number of float lanes of an instruction set: rows of a tile are read and written in whole vectors.
+inline constexpr int kMaxLanes = 16;
+
+/// A plane with a border, so that filters need no test for the image's edge.
+class PaddedPlane {
+ public:
+  static constexpr int kBorder = kWindowRadius + kPatchRadius;
+
+  PaddedPlane() = default;
+  /// A plane of zeros.
+  PaddedPlane(int width_px, int height_px)
+      : stride_(whole(width_px, kTileWidth) + 2 * kBorder + kMaxLanes),
+        values_(static_cast<std::size_t>(stride_ * (whole(height_px, kTileHeight) + 2 * kBorder))) {}
+
+  /// Pointer to a pixel; x and y can be up to kBorder outside of the tiles that cover the image.
+  float* at(int x, int y) { return values_.data() + (y + kBorder) * stride_ + x + kBorder; }
+  const float* at(int x, int y) const { return values_.data() + (y + kBorder) * stride_ + x + kBorder; }
+
+ private:
+  static std::ptrdiff_t whole(int length, int step) { return (std::ptrdiff_t{length} + step - 1) / step * step; }
+
+  std::ptrdiff_t stride_ = 0;
+  std::vector<float> values_;
+};
+
+}  // namespace orrery::denoise

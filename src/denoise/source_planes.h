@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "denoise/tile_filter.h"
+#include "film/picture.h"
+
+namespace orrery::denoise {
+
+/// The planes of an image that guide its filter.
+struct SourcePlanes {
+  bool has_halves = false;                  ///< `a` and `b` are independent
+  std::array<PaddedPlane, 3> beauty, a, b;  ///< the beauty, and that of two halves of the samples
+  std::array<PaddedPlane, 3> variance;      ///< of the beauty
+  std::vector<PaddedPlane> guides;          ///< kGuides, or empty
+  std::vector<PaddedPlane> guide_variance;  ///< likewise
+  PaddedPlane total_guide_variance;         ///< the sum of guide_variance
+  PaddedPlane valid;                        ///< 1; 0 outside of the image and where the beauty is not finite
+  std::vector<std::string> missing;         ///< layers that the image lacks
+
+  std::array<const PaddedPlane*, 3> target() const { return {&beauty[0], &beauty[1], &beauty[2]}; }
+};
+
+/// Prepares the planes of an image with a beauty R, G, B: halves, guides and variance as far as the image has them.
+/// Values that are not finite are replaced by 0.
+SourcePlanes source_planes(const film::Picture& picture);
+
+/// Copies values into a plane and repeats those at the edge in its border. Values that are not finite or too large
+/// become 0.
+PaddedPlane padded(const std::vector<float>& values, int width_px, int height_px, float scale = 1);
+
+}  // namespace orrery::denoise

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "denoise/padded_plane.h"
+
+namespace orrery::denoise {
+
+/// Number of guides: albedo, normal, inverse depth.
+inline constexpr std::size_t kGuides = 7;
+
+/// A channel by which patches are compared: two independent estimates of it, and the variance of their mean. Without
+/// independent estimates `a` and `b` are the same plane.
+struct ComparedChannel {
+  const PaddedPlane* a = nullptr;
+  const PaddedPlane* b = nullptr;
+  const PaddedPlane* variance = nullptr;
+};
+
+/// What the weights of a tile are computed from.
+struct WeightSource {
+  std::vector<ComparedChannel> compared;
+  int radius = kWindowRadius;  ///< of the window of neighbours, at most kWindowRadius, px
+  float tolerance = 1;  ///< squared difference of patches, in variances, from which on they have nothing in common
+  const PaddedPlane* valid = nullptr;  ///< 1, or 0 for pixels to ignore; 0 outside of the image
+  /// kGuides planes, scaled so that pixels that differ by 1 have nothing in common. Empty: weighted means instead of a
+  /// regression.
+  std::vector<const PaddedPlane*> guides;
+  const PaddedPlane* guide_variance = nullptr;  ///< sum of the variances of all guides
+  /// Image that the weights are for. A regression that would make it negative is blended with the weighted mean.
+  std::array<const PaddedPlane*, 3> target = {};
+};
+
+/// A value for each pixel of a tile, in rows of kTileWidth.
+struct alignas(kMaxLanes * sizeof(float)) TilePixels
+    : std::array<float, static_cast<std::size_t>(kTileWidth) * kTileHeight> {};
+
+/// The weight of each neighbour of each pixel of a tile, by offset. A pixel's weights add up to 1, or are all 0 if it
+/// has no valid neighbour.
+using TileWeights = std::vector<TilePixels>;
+
+/// Buffers of a thread.
+struct TileScratch {
+  std::vector<float> distances, columns;
+};
+
+/// Computes weights by non-local means: neighbours weigh as much as the patches around them are alike. With guides, the
+/// weights are those of a linear regression on the guides over the neighbours.
+///
+/// `x`, `y`   upper left pixel of the tile, multiples of its size
+/// `out`      resized to the number of neighbours
+/// Precision  the same bits with every instruction set
+/// Reference  buades2005, rousselle2012, bitterli2016
+void compute_weights(const WeightSource& source, int x, int y, TileScratch& scratch, TileWeights& out);
+
+/// Applies the weights of a tile to a plane.
+///
+/// `radius`   of the source of the weights
+void apply_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y, TilePixels& out);
+
+}  // namespace orrery::denoise

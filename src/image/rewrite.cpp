@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/rewrite.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <new>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "image/exr_spec.h"
+#include "image/format.h"
+#include "image/input.h"
+#include "image/partial_file.h"
+#include "image/whole_file.h"
+
+namespace orrery::image {
+namespace {
+
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+/// A part of the input with its undecoded values, pixel by pixel.
+struct NativePart {
+  ImageSpec spec;
+  std::vector<unsigned char> bytes;
+};
+
+/// Where a plane is stored.
+struct Place {
+  std::size_t part;
+  int channel;
+};
+
+std::size_t pixels_of(const ImageSpec& spec) {
+  return static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+}
+
+TypeDesc type_of(const ImageSpec& spec, int channel) { return spec.channelformat(channel); }
+
+std::size_t offset_of(const ImageSpec& spec, int channel) {
+  std::size_t offset = 0;
+  for (int c = 0; c < channel; ++c) offset += type_of(spec, c).size();
+  return offset;
+}
+
+/// Decodes a part in its own types. Memory grows with the decoded rows, so that a damaged header cannot exhaust it.
+NativePart read_part(const std::filesystem::path& file, const Input& input, int part) {
+  NativePart out{input.in->spec(part), {}};
+  const ImageSpec& spec = out.spec;
+  const std::size_t row_bytes = spec.pixel_bytes(true) * static_cast<std::size_t>(spec.width);
+  constexpr int kRowsAtATime = 64;
+  const int step = spec.tile_width == 0 ? kRowsAtATime : spec.tile_height, last = spec.y + spec.height;
+  for (int y = spec.y; y < last; y += step) {
+    const int end = std::min(y + step, last);
+    const std::size_t at = out.bytes.size();
+    out.bytes.resize(at + row_bytes * static_cast<std::size_t>(end - y));
+    const bool good = spec.tile_width == 0 ? input.in->read_scanlines(part, 0, y, end, 0, 0, spec.nchannels,
+                                                                      TypeDesc::UNKNOWN, &out.bytes[at])
+                                           : input.in->read_tiles(part, 0, spec.x, spec.x + spec.width, y, end, 0, 1, 0,
+                                                                  spec.nchannels, TypeDesc::UNKNOWN, &out.bytes[at]);
+    if (!good) fail_to_read(file, input.complaint());
+  }
+  return out;
+}
+
+std::vector<NativePart> read_parts(const std::filesystem::path& file) {
+  const Input input = open_input(file);
+  std::vector<NativePart> parts;
+  for (int part = 0; input.in->seek_subimage(part, 0); ++part) {
+    check_spec(file, input.in->spec());
+    for (const OIIO::ParamValue& attribute : input.in->spec().extra_attribs)
+      if (std::string(attribute.name()).starts_with(kPartialPrefix))
+        fail_to_read(file, "it is a shard or a checkpoint; merge the shards first");
+    parts.push_back(read_part(file, input, part));
+  }
+  input.in->geterror();  // of the part after the last
+  return parts;
+}
+
+std::vector<float> values_of(const NativePart& part, int channel) {
+  std::vector<float> out(pixels_of(part.spec));
+  const auto stride = static_cast<OIIO::stride_t>(part.spec.pixel_bytes(true));
+  OIIO::convert_image(1, part.spec.width, part.spec.height, 1, part.bytes.data() + offset_of(part.spec, channel),
+                      type_of(part.spec, channel), stride, OIIO::AutoStride, OIIO::AutoStride, out.data(),
+                      TypeDesc::FLOAT, OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride);
+  return out;
+}
+
+void set_values(NativePart& part, int channel, std::vector<float>& values, WriteReport& report) {
+  if (type_of(part.spec, channel) == TypeDesc::HALF) {
+    for (float& v : values) {
+      if (!std::isfinite(v) || std::abs(v) <= film::kLargestHalf) continue;
+      v = std::clamp(v, -film::kLargestHalf, film::kLargestHalf);
+      ++report.clamped;
+    }
+  }
+  const auto stride = static_cast<OIIO::stride_t>(part.spec.pixel_bytes(true));
+  OIIO::convert_image(1, part.spec.width, part.spec.height, 1, values.data(), TypeDesc::FLOAT, OIIO::AutoStride,
+                      OIIO::AutoStride, OIIO::AutoStride, part.bytes.data() + offset_of(part.spec, channel),
+                      type_of(part.spec, channel), stride, OIIO::AutoStride, OIIO::AutoStride);
+}
+
+/// The planes of the parts, and where each is stored.
+std::pair<film::Picture, std::vector<Place>> planes_of_parts(const std::vector<NativePart>& parts) {
+  const ImageSpec& first = parts.front().spec;
+  film::Picture picture;
+  picture.width = first.width;
+  picture.height = first.height;
+  std::vector<Place> places;
+  std::set<std::string> names;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const ImageSpec& spec = parts[p].spec;
+    if (spec.x != first.x || spec.y != first.y || spec.width != first.width || spec.height != first.height) continue;
+    for (int c = 0; c < spec.nchannels; ++c) {
+      const TypeDesc type = type_of(spec, c);
+      if (type != TypeDesc::HALF && type != TypeDesc::FLOAT) continue;
+      std::string name = spec.channelnames[static_cast<std::size_t>(c)];
+      if (names.count(name) > 0) name = std::string(spec.get_string_attribute("oiio:subimagename")) + "." + name;
+      if (!names.insert(name).second) continue;
+      picture.planes.push_back({name, values_of(parts[p], c)});
+      places.push_back({p, c});
+    }
+  }
+  return {std::move(picture), std::move(places)};
+}
+
+}  // namespace
+
+WriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
+                        const EditPlanes& edit) {
+  for (const std::filesystem::path& file : {input, output})
+    if (format_of(file) != Format::kExr)
+      throw base::Error(base::ErrorKind::kUsage, file.string() + " is not an EXR file");
+  std::vector<NativePart> parts;
+  std::pair<film::Picture, std::vector<Place>> planes;
+  try {
+    parts = read_parts(input);
+    planes = planes_of_parts(parts);
+  } catch (const std::bad_alloc&) {
+    fail_to_read(input, "there is not enough memory for its pixels");
+  } catch (const std::length_error&) {
+    fail_to_read(input, "there is not enough memory for its pixels");
+  }
+  auto& [picture, places] = planes;
+  const std::vector<Attribute> attributes = edit(picture);
+  WriteReport report;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    set_values(parts[places[i].part], places[i].channel, picture.planes[i].values, report);
+  std::vector<WholePart> whole;
+  for (NativePart& part : parts) {
+    part.spec.erase_attribute(kStampName);
+    if (part.spec.get_string_attribute("DateTime").empty()) leave_out_date(part.spec);
+    add_attributes(part.spec, attributes);
+    whole.push_back({part.spec, part.bytes.data()});
+  }
+  write_whole(output, "openexr", TypeDesc::UNKNOWN, whole);
+  return report;
+}
+
+}  // namespace orrery::image

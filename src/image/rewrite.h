@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "film/picture.h"
+#include "image/write.h"
+
+namespace orrery::image {
+
+/// Changes the values of planes, whose number, names and sizes stay as they are.
+///
+/// Result     attributes to add to the file
+using EditPlanes = std::function<std::vector<Attribute>(film::Picture& planes)>;
+
+/// Copies an EXR with changed pixels. Parts, windows, channels, pixel types, compression and attributes are kept,
+/// except the stamp, which no longer describes the pixels. Integer channels are copied.
+///
+/// The planes are the floating-point channels of all parts that have the data window of the first, by name. A channel
+/// whose name an earlier part has is named PART.CHANNEL.
+///
+/// Result     the number of values that were clamped to the range of half
+/// Errors     base::Error: kUsage if a file is not an EXR, kMissingInput, kBadData if the input is damaged, deep, or a
+///            shard or checkpoint, kCannotCreate, kIo; those of `edit`. An existing output is then unchanged
+WriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
+                        const EditPlanes& edit);
+
+}  // namespace orrery::image

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// `orrery denoise` and --denoise: they agree, and whatever the program does to get an image does not matter.
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+class CliDenoise : public ProgramTest {
+ protected:
+  std::string bytes(const char* file) const { return text_of(folder_ / file); }
+};
+
+TEST_F(CliDenoise, ThreadsAndInstructionSetDoNotMatter) {
+  const std::string render = "render good.toml -q --reproducible --denoise --samples 8 -o ";
+  ASSERT_EQ(run(render + "a.exr -t 1").status, 0);
+  ASSERT_EQ(run(render + "a.ppm -o with.exr -t 1").status, 0);
+  ASSERT_EQ(run(render + "b.exr -t 2 --isa avx2").status, 0);
+  ASSERT_EQ(run(render + "c.ppm").status, 0) << "a display format alone";
+  ASSERT_EQ(run("render good.toml -q --reproducible --samples 8 -o noisy.exr -o noisy.ppm").status, 0);
+  EXPECT_TRUE(bytes("a.exr") == bytes("b.exr"));
+  EXPECT_TRUE(bytes("a.ppm") == bytes("c.ppm"));
+  EXPECT_FALSE(bytes("a.ppm") == bytes("noisy.ppm"));
+  EXPECT_NE(bytes("a.exr").find("orrery/denoised"), std::string::npos);
+  EXPECT_EQ(bytes("a.exr").find("half_a"), std::string::npos) << "nobody requested the layer";
+}
+
+TEST_F(CliDenoise, AFileGivesTheSameImageAsARender) {
+  ASSERT_EQ(run("render good.toml -q --type float --samples 8 --layers halves,diffuse -o noisy.exr").status, 0);
+  const Outcome denoised = run("denoise noisy.exr -o a.exr");
+  ASSERT_EQ(denoised.status, 0);
+  EXPECT_EQ(denoised.err, "wrote a.exr: beauty and 2 light layers\n");
+  ASSERT_EQ(run("render good.toml -q --type float --samples 8 --layers halves,diffuse --denoise -o b.exr").status, 0);
+  EXPECT_NE(run("compare a.exr b.exr").out.find("differing   0 of"), std::string::npos);
+}
+
+TEST_F(CliDenoise, ShardsAreDenoisedWhenMerged) {
+  const std::string render = "render good.toml -q --reproducible --denoise --samples 8 -o ";
+  ASSERT_EQ(run(render + "whole.exr").status, 0);
+  ASSERT_EQ(run(render + "1.exr --shard 1/2").status, 0);
+  ASSERT_EQ(run(render + "2.exr --shard 2/2").status, 0);
+  ASSERT_EQ(run("merge 1.exr 2.exr -q --reproducible --denoise -o merged.exr").status, 0);
+  EXPECT_NE(run("compare whole.exr merged.exr").out.find("differing   0 of"), std::string::npos);
+  EXPECT_EQ(run("denoise 1.exr -o a.exr").status, 65) << "a shard is no image";
+  ASSERT_EQ(run("render good.toml -q --samples 8 --shard 1/2 -o 3.exr").status, 0);
+  ASSERT_EQ(run("render good.toml -q --samples 8 --shard 2/2 -o 4.exr").status, 0);
+  EXPECT_EQ(run("merge 3.exr 4.exr --denoise -o no.ppm").status, 65);
+  EXPECT_EQ(run("merge 3.exr 4.exr --denoise -o no.exr").status, 65);
+}
+
+TEST_F(CliDenoise, SkipExistingKnowsWhetherAnImageIsDenoised) {
+  const std::string render = "render good.toml --samples 8 --skip-existing -o a.exr";
+  ASSERT_EQ(run(render).status, 0);
+  EXPECT_EQ(run(render + " --denoise").err.find("skipped"), std::string::npos);
+  EXPECT_NE(run(render + " --denoise").err.find("skipped"), std::string::npos);
+}
+
+TEST_F(CliDenoise, MissingLayersAreNamedAndBadInputIsRejected) {
+  ASSERT_EQ(run("render good.toml -q --samples 8 -o plain.exr").status, 0);
+  const Outcome plain = run("denoise plain.exr -o a.exr");
+  EXPECT_EQ(plain.status, 0);
+  EXPECT_NE(plain.err.find("lacks the layers halves, variance, denoise.albedo, denoise.normal, depth:"),
+            std::string::npos)
+      << plain.err;
+  EXPECT_EQ(run("denoise plain.exr -o plain.exr").status, 2);
+  EXPECT_EQ(run("denoise plain.exr -o a.png").status, 2);
+  EXPECT_EQ(run("denoise missing.exr -o a.exr").status, 66);
+  EXPECT_EQ(run("denoise plain.exr -o missing/a.exr").status, 73);
+  write("noise.exr", std::string(5000, 'x'));
+  EXPECT_EQ(run("denoise noise.exr -o b.exr").status, 65);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "b.exr"));
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "denoise/denoise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "base/error.h"
+#include "math/dispatch.h"
+
+namespace orrery::denoise {
+namespace {
+
+constexpr int kWidth = 150, kHeight = 50;
+constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
+
+/// Two surfaces of equal colour and different normal, lit differently, that meet in column kEdge.
+constexpr int kEdge = 75;
+float true_light(std::size_t pixel) { return static_cast<int>(pixel % kWidth) < kEdge ? 0.5F : 0.6F; }
+
+/// A noisy image of them with the layer `halves`.
+///
+/// `noise`    standard deviation of a half
+film::Picture noisy(float noise, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(0, 1);
+  film::Picture picture{kWidth, kHeight, {}};
+  const auto plane = [&](const std::string& name, auto at) {
+    film::Plane out{name, std::vector<float>(kPixels)};
+    for (std::size_t i = 0; i < kPixels; ++i) out.values[i] = at(i);
+    picture.planes.push_back(std::move(out));
+  };
+  for (const char* half : {"half_a", "half_b"}) {
+    for (const char* end : {".R", ".G", ".B"})
+      plane(std::string(half) + end,
+            [&](std::size_t i) { return std::max(0.0F, true_light(i) + noise * normal(random)); });
+    for (const char* end : {".albedo.R", ".albedo.G", ".albedo.B"})
+      plane(std::string(half) + end, [](std::size_t) { return 0.5F; });
+    for (const char* end : {".normal.X", ".normal.Y", ".normal.Z"})
+      plane(std::string(half) + end, [&](std::size_t i) {
+        return static_cast<int>(i % kWidth) < kEdge ? (end[8] == 'X' ? 1.0F : 0.0F) : (end[8] == 'Y' ? 1.0F : 0.0F);
+      });
+    plane(std::string(half) + ".inverse_depth.X", [](std::size_t) { return 0.1F; });
+  }
+  for (const char* name : {"R", "G", "B"}) {
+    const std::vector<float> a = picture.find(std::string("half_a.") + name)->values;
+    const std::vector<float> b = picture.find(std::string("half_b.") + name)->values;
+    plane(name, [&](std::size_t i) { return (a[i] + b[i]) / 2; });
+  }
+  plane("A", [](std::size_t i) { return static_cast<float>(i % 3); });
+  return picture;
+}
+
+const std::vector<float>& values(const film::Picture& picture, const std::string& name) {
+  return picture.find(name)->values;
+}
+
+double mean_squared_error(const film::Picture& picture) {
+  double sum = 0;
+  for (const char* name : {"R", "G", "B"})
+    for (std::size_t i = 0; i < kPixels; ++i)
+      sum += std::pow(static_cast<double>(values(picture, name)[i]) - static_cast<double>(true_light(i)), 2);
+  return sum / 3 / kPixels;
+}
+
+TEST(DenoiseDenoise, RemovesNoiseAndKeepsAnEdgeBetweenNormals) {
+  film::Picture picture = noisy(0.1F);
+  const double before = mean_squared_error(picture);
+  EXPECT_TRUE(denoise(picture).missing.empty());
+  EXPECT_LT(mean_squared_error(picture), before / 15);
+  double left = 0, right = 0;  // beside the edge, where a blur would be closest to the mean
+  for (std::size_t y = 0; y < kHeight; ++y) {
+    left += static_cast<double>(values(picture, "G")[y * kWidth + kEdge - 1]) / kHeight;
+    right += static_cast<double>(values(picture, "G")[y * kWidth + kEdge]) / kHeight;
+  }
+  EXPECT_NEAR(left, 0.5, 0.01);
+  EXPECT_NEAR(right, 0.6, 0.01);
+}
+
+TEST(DenoiseDenoise, LeavesAnImageWithoutNoiseAlone) {
+  film::Picture picture = noisy(0);
+  const film::Picture before = picture;
+  denoise(picture);
+  for (const char* name : {"R", "G", "B"})
+    for (std::size_t i = 0; i < kPixels; ++i) EXPECT_NEAR(values(picture, name)[i], values(before, name)[i], 1e-6F);
+}
+
+TEST(DenoiseDenoise, KeepsEnergyAndOtherPlanes) {
+  film::Picture picture = noisy(0.2F);
+  const film::Picture before = picture;
+  denoise(picture);
+  double was = 0, is = 0;
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    was += static_cast<double>(values(before, "R")[i]);
+    is += static_cast<double>(values(picture, "R")[i]);
+  }
+  EXPECT_NEAR(is / was, 1, 2e-3);
+  EXPECT_EQ(values(picture, "A"), values(before, "A"));
+  EXPECT_EQ(values(picture, "half_a.R"), values(before, "half_a.R"));
+  ASSERT_EQ(picture.planes.size(), before.planes.size());
+}
+
+TEST(DenoiseDenoise, IsTheSameForAllThreadsAndInstructionSets) {
+  film::Picture one = noisy(0.1F), two = one;
+  denoise(one, 1);
+  denoise(two, 2);
+  math::TargetChoice& choice = math::target_choice();
+  for (const char* name : {"R", "G", "B"}) EXPECT_EQ(values(one, name), values(two, name));
+  for (std::int64_t rest = choice.available(); rest != 0; rest &= rest - 1) {
+    choice.limit(rest & -rest);
+    film::Picture other = noisy(0.1F);
+    denoise(other);
+    for (const char* name : {"R", "G", "B"}) EXPECT_EQ(values(one, name), values(other, name)) << (rest & -rest);
+  }
+  choice.limit(choice.available());
+}
+
+/// Adds layers that divide the beauty, in single precision, with noise of their own.
+void add_light_layers(film::Picture& picture) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> part(0, 8);
+  for (const char letter : {'R', 'G', 'B'}) {
+    const std::vector<float> beauty = values(picture, std::string(1, letter));
+    film::Plane key_diffuse{std::string("key_diffuse_direct.") + letter, beauty},
+        key = {std::string("key.") + letter, beauty};
+    film::Plane rim_diffuse{std::string("rim_diffuse_direct.") + letter, beauty},
+        rim = {std::string("rim.") + letter, beauty};
+    film::Plane rim_specular{std::string("rim_specular_direct.") + letter, beauty};
+    film::Plane diffuse{std::string("diffuse_direct.") + letter, beauty},
+        specular{std::string("specular_direct.") + letter, beauty};
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      const float last_bit = std::ldexp(1.0F, std::ilogb(beauty[i]) - 23);
+      const float units = beauty[i] / last_bit;
+      const float first = std::floor(units * static_cast<float>(part(random)) / 16),
+                  second = std::floor((units - first) / 3);
+      key_diffuse.values[i] = key.values[i] = first * last_bit;
+      rim_diffuse.values[i] = second * last_bit;
+      rim_specular.values[i] = specular.values[i] = (units - first - second) * last_bit;
+      rim.values[i] = (units - first) * last_bit;
+      diffuse.values[i] = (first + second) * last_bit;
+    }
+    for (film::Plane* plane : {&diffuse, &specular, &key, &key_diffuse, &rim, &rim_diffuse, &rim_specular})
+      picture.planes.push_back(std::move(*plane));
+  }
+}
+
+TEST(DenoiseDenoise, LightLayersStillAddUpToTheBeauty) {
+  film::Picture picture = noisy(0.2F);
+  film::Picture beauty_alone = picture;
+  add_light_layers(picture);
+  const film::Picture before = picture;
+  EXPECT_EQ(denoise(picture).layers.size(), 7U);
+  denoise(beauty_alone);
+  for (const std::string end : {".R", ".G", ".B"}) {
+    const std::vector<float>& beauty = values(picture, end.substr(1));
+    EXPECT_EQ(beauty, values(beauty_alone, end.substr(1))) << "the weights are those of the beauty alone";
+    const auto expect_sum = [&](const std::vector<float>& whole, const std::vector<std::string>& layers) {
+      for (std::size_t i = 0; i < kPixels; ++i) {
+        float up = 0, down = 0;
+        for (std::size_t k = 0; k < layers.size(); ++k) {
+          up += values(picture, layers[k] + end)[i];
+          down += values(picture, layers[layers.size() - 1 - k] + end)[i];
+          ASSERT_GE(values(picture, layers[k] + end)[i], 0);
+        }
+        ASSERT_EQ(up, whole[i]) << layers[0] << " " << i;
+        ASSERT_EQ(down, whole[i]);
+      }
+    };
+    expect_sum(beauty, {"diffuse_direct", "specular_direct"});
+    expect_sum(beauty, {"key", "rim"});
+    expect_sum(beauty, {"key_diffuse_direct", "rim_diffuse_direct", "rim_specular_direct"});
+    expect_sum(values(picture, "rim" + end), {"rim_diffuse_direct", "rim_specular_direct"});
+    expect_sum(values(picture, "diffuse_direct" + end), {"key_diffuse_direct", "rim_diffuse_direct"});
+    double variation = 0, variation_before = 0;
+    for (std::size_t i = 1; i < kPixels; ++i) {
+      variation += std::abs(static_cast<double>(values(picture, "key" + end)[i] - values(picture, "key" + end)[i - 1]));
+      variation_before +=
+          std::abs(static_cast<double>(values(before, "key" + end)[i] - values(before, "key" + end)[i - 1]));
+    }
+    EXPECT_LT(variation, variation_before / 3) << "layers are filtered too";
+  }
+}
+
+TEST(DenoiseDenoise, LayersThatAreNotTheWholeLightAreFilteredToo) {
+  film::Picture picture = noisy(0.2F);
+  film::Picture partial = picture;
+  add_light_layers(picture);
+  for (const std::string end : {".R", ".G", ".B"}) partial.planes.push_back(*picture.find("specular_direct" + end));
+  denoise(picture);
+  denoise(partial);
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    EXPECT_NEAR(values(partial, "specular_direct.R")[i], values(picture, "specular_direct.R")[i], 1e-5F);
+    ASSERT_LE(values(partial, "specular_direct.R")[i], values(partial, "R")[i]);
+  }
+}
+
+TEST(DenoiseDenoise, BadPixelsStayAloneAndDoNotSpread) {
+  film::Picture picture = noisy(0.1F);
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+  const std::size_t bad[] = {0, 20 * kWidth + 40, 49 * kWidth + 149, 3 * kWidth + 3};
+  const float as[] = {kNan, kInfinity, -kInfinity, 3e38F};
+  for (int k = 0; k < 4; ++k)
+    for (const char* name : {"R", "half_a.R", "half_a.albedo.G", "half_b.normal.X", "half_a.inverse_depth.X"})
+      for (film::Plane& plane : picture.planes)
+        if (plane.name == name) plane.values[bad[k]] = as[k];
+  EXPECT_EQ(denoise(picture).bad_pixels, 4U);
+  for (const char* name : {"R", "G", "B"})
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      if (std::find(std::begin(bad), std::end(bad), i) != std::end(bad)) continue;
+      EXPECT_NEAR(values(picture, name)[i], true_light(i), 0.15F) << name << i;
+    }
+  EXPECT_TRUE(std::isnan(values(picture, "R")[0]));
+}
+
+TEST(DenoiseDenoise, TheBeautyAloneIsFilteredAndNamesWhatIsMissing) {
+  film::Picture picture = noisy(0.1F);
+  remove_halves(picture);
+  EXPECT_EQ(picture.planes.size(), 4U);
+  const double before = mean_squared_error(picture);
+  const Report report = denoise(picture);
+  EXPECT_EQ(report.missing,
+            (std::vector<std::string>{"halves", "variance", "denoise.albedo", "denoise.normal", "depth"}));
+  EXPECT_FALSE(report.has_guides);
+  EXPECT_LT(mean_squared_error(picture), before / 3);
+}
+
+TEST(DenoiseDenoise, GuidesWithoutHalvesAreUsed) {
+  film::Picture picture = noisy(0.1F);
+  for (film::Plane& plane : picture.planes) {
+    if (plane.name.starts_with("half_a.albedo")) plane.name = "denoise.albedo." + plane.name.substr(14);
+    if (plane.name.starts_with("half_a.normal")) plane.name = "denoise.normal." + plane.name.substr(14);
+  }
+  remove_halves(picture);
+  const double before = mean_squared_error(picture);
+  const Report report = denoise(picture);
+  EXPECT_TRUE(report.has_guides);
+  EXPECT_EQ(report.missing, (std::vector<std::string>{"halves", "variance", "depth"}));
+  EXPECT_LT(mean_squared_error(picture), before / 5);
+}
+
+TEST(DenoiseDenoise, RadianceOfAnyScaleIsFilteredAlike) {
+  film::Picture normal = noisy(0.1F), tiny = normal;
+  constexpr float kScale = 0x1p-30F;  // a power of two, so that no rounding differs
+  for (film::Plane& plane : tiny.planes)
+    if (plane.name.size() <= 8 && plane.name != "A")
+      for (float& v : plane.values) v *= kScale;
+  denoise(normal);
+  denoise(tiny);
+  for (std::size_t i = 0; i < kPixels; ++i) EXPECT_NEAR(values(tiny, "R")[i] / kScale, values(normal, "R")[i], 1e-5F);
+}
+
+TEST(DenoiseDenoise, SmallImagesAndMissingChannels) {
+  film::Picture dot{1, 1, {{"R", {1}}, {"G", {2}}, {"B", {3}}}};
+  denoise(dot);
+  EXPECT_FLOAT_EQ(values(dot, "B")[0], 3);
+  dot.planes.pop_back();
+  EXPECT_THROW(denoise(dot), base::Error);
+}
+
+}  // namespace
+}  // namespace orrery::denoise
