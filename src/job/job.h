@@ -15,6 +15,7 @@
 #include "job/hooks.h"
 #include "job/job_report.h"
 #include "job/load_background.h"
+#include "job/load_textures.h"
 #include "job/outputs.h"
 #include "job/scene_source.h"
 #include "render/sampling_limits.h"
@@ -56,6 +57,7 @@ struct Job {
   /// Files of the batch that this job belongs to; null: the job stands alone.
   std::shared_ptr<base::FileSet> files = nullptr;
   std::shared_ptr<BackgroundCache> background_cache = nullptr;  ///< shared by the jobs of a batch
+  std::shared_ptr<TextureCache> texture_cache = nullptr;        ///< shared by the jobs of a batch
 };
 
 /// True if the scene's sample count limits adaptive sampling, because an override sets it.
