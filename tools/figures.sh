@@ -31,6 +31,7 @@ figure "hit or miss, hit point and distance against 113 and 320 bits" numeric/nu
 figure "the book's formula must fail the same test" numeric/numeric 'Extremes.BookFormulaFails'
 figure "grey furnace, radii 1e-12 .. 1e12: no self-intersection" numeric/numeric 'ExtremeScenes.GreySphereNeverHitsItself'
 figure "contacts at gaps of 1e-13 radii or more" numeric/numeric 'Extremes.RaysAcrossNarrowGapsHit'
+figure "points of textures, exact and fast" unit_kernel 'KernelTexture.CellsOfCheckers*:KernelTexture.LanesAndPrecisionsAgree'
 figure "white furnaces" numeric/numeric 'ExtremeScenes.*-*GreySphereNeverHitsItself'
 figure "Embree against the list: ids and distances" unit_accel 'AccelAccel.EmbreeAndListFindTheSameHits'
 figure "scenes scaled by 2^-60 .. 2^48: the same bits" unit_render 'RenderRender.SceneScaleChangesNoBits'

@@ -18,6 +18,7 @@
 #include "render/traversals.h"
 #include "scene/layers.h"
 #include "scene/schema.h"
+#include "scene/textures.h"
 
 namespace orrery::app {
 namespace {
@@ -37,15 +38,36 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
           feature("lambertian", of(kernel::MaterialKind::kLambertian), "not used by any sphere"),
           feature("hemisphere", of(kernel::MaterialKind::kHemisphere), "not used by any sphere"),
           feature("metal", of(kernel::MaterialKind::kMetal), "not used by any sphere"),
-          feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no metal has fuzz above 0"),
+          feature("fuzz", some([](const kernel::Material& m) { return m.fuzz > 0; }), "no material has fuzz above 0"),
           feature("dielectric", of(kernel::MaterialKind::kDielectric), "no glass: no Fresnel term, no refraction"),
           feature("gradient sky", compiled.features.sky, "no gradient: independent of direction"),
           feature("image background", compiled.environment != nullptr, "no image: no texture lookups"),
+          feature("textures", !compiled.textures.textures().empty(), "all materials are constant"),
           feature("motion blur", compiled.features.motion, "nothing moves while the shutter is open",
                   "camera or spheres move while the shutter is open"),
           feature("lights", compiled.features.lit, "no emitters: no shadow rays"),
           feature("layers", has_layers, "none requested: paths are not recorded"),
           feature("light paths", compiled.shading == kernel::Shading::kPath, "render.shading uses the first hit only")};
+}
+
+/// Describes the textures of a scene.
+std::vector<TextureInfo> texture_infos(const scene::Scene& scene, const std::vector<job::LoadedTexture>& loaded) {
+  std::vector<TextureInfo> out;
+  std::size_t next = 0;
+  for (const scene::NamedTexture& named : scene::textures(scene)) {
+    TextureInfo info;
+    info.key = named.key;
+    info.type = scene::texture_types(named.use)[static_cast<std::size_t>(named.texture->type)].name;
+    if (named.texture->type == scene::TextureType::kImage) {
+      const job::LoadedMap& map = loaded.at(next++).map;
+      info.file = named.texture->file.string();
+      info.width = map.width;
+      info.height = map.height;
+      info.color_space = map.color_space;
+    }
+    out.push_back(info);
+  }
+  return out;
 }
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
@@ -154,6 +176,12 @@ SceneInfo scene_info(const job::SceneRequest& request) {
     info.background_file = is_sky ? "sky" : read.scene.background.file.string();
     info.background = std::move(loaded.background);
   }
+  needs.textures = 0;
+  for (const job::LoadedTexture& texture : loaded.textures) {
+    if (!texture.is_shared) needs.textures += texture.map.bytes;
+    if (!texture.map.image) info.scene_hash.clear();
+  }
+  info.textures = texture_infos(read.scene, loaded.textures);
   info.memory = job::estimate_memory(needs);
   info.warnings = std::move(loaded.warnings);
   for (const std::string& advice : precision_advice(compiled)) {
@@ -188,6 +216,13 @@ std::string info_text(const SceneInfo& info) {
   if (info.background)
     base::append(out, "background  %s: %d x %d, %s\n", info.background_file.c_str(), info.background->width,
                  info.background->height, info.background->color_space.c_str());
+  for (const TextureInfo& texture : info.textures) {
+    base::append(out, "texture     %s: %s", texture.key.c_str(), texture.type.c_str());
+    if (texture.width > 0)
+      base::append(out, ", %s: %d x %d, %s", texture.file.c_str(), texture.width, texture.height,
+                   texture.color_space.empty() ? "data" : texture.color_space.c_str());
+    out += '\n';
+  }
   if (info.emitters > 0) base::append(out, "lights      %s\n", info.lights.c_str());
   base::append(out, "layers      %s; available: %s\n", info.layers.empty() ? "none" : base::joined(info.layers).c_str(),
                base::joined(info.available_layers).c_str());
@@ -222,7 +257,13 @@ std::string settings_text(const SceneInfo& info) {
 std::string info_json(const SceneInfo& info) {
   using nlohmann::json;
   json features = json::array(), settings = json::array(), materials = json::object(), warnings = json::array();
-  json points = json::array();
+  json points = json::array(), textures = json::array();
+  for (const TextureInfo& t : info.textures) {
+    textures.push_back({{"key", t.key}, {"type", t.type}});
+    if (t.width > 0)
+      textures.back().update(
+          {{"file", t.file}, {"width", t.width}, {"height", t.height}, {"color_space", t.color_space}});
+  }
   for (const PointsInfo& p : info.points)
     points.push_back(
         {{"file", p.file}, {"spheres", p.spheres}, {"unused", p.unused}, {"unused_colors", has_colors(p.unused)}});
@@ -258,8 +299,10 @@ std::string info_json(const SceneInfo& info) {
                {{"film", info.memory.film},
                 {"spheres", info.memory.spheres},
                 {"accelerator", info.memory.accelerator},
-                {"background", info.memory.background}}},
+                {"background", info.memory.background},
+                {"textures", info.memory.textures}}},
               {"background", nullptr},
+              {"textures", textures},
               {"settings", settings},
               {"warnings", warnings}};
   if (info.background)

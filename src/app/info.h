@@ -28,6 +28,15 @@ struct PointsInfo {
   std::vector<std::string> unused;  ///< vertex properties that are not used
 };
 
+/// A texture of a scene.
+struct TextureInfo {
+  std::string key;            ///< "material.earth.albedo"
+  std::string type;           ///< "checker"
+  std::string file;           ///< of an image, as in the scene, with the frame number
+  int width = 0, height = 0;  ///< texels of an image
+  std::string color_space;    ///< of an image; empty: data
+};
+
 /// Properties of a scene that are known before rendering.
 struct SceneInfo {
   std::string scene_hash;
@@ -47,6 +56,7 @@ struct SceneInfo {
   job::MemoryEstimate memory;
   std::optional<job::LoadedBackground> background;  ///< of an image background
   std::string background_file;
+  std::vector<TextureInfo> textures;
   struct Setting {
     std::string key, value, origin;
   };

@@ -18,6 +18,7 @@ namespace {
 struct GenerateOptions {
   generate::FinalScene final_scene;
   generate::Cloud cloud;
+  std::uint64_t planet_seed = 1;
   std::string environment;
   int width = generate::kEnvironmentWidth;
   scene::Background sky;
@@ -41,7 +42,12 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
       .add_option("--grid", options->final_scene.grid, "Cells from the centre to the edge; default: 11, as in the book")
       ->transform(whole_number(0, generate::kLargestFinalGrid))
       ->type_name("N");
-  command.footer("Example:\n  orrery generate final -o final.toml --seed 7");
+  command.add_flag("--moving", options->final_scene.moving,
+                   "As in The Next Week: a checkered ground, and small spheres that move while the shutter is open");
+  command.footer(
+      "Examples:\n"
+      "  orrery generate final -o final.toml --seed 7\n"
+      "  orrery generate final --moving -o bouncing.toml");
   command.callback([options, &action] {
     action = [options] {
       end_on_signals();
@@ -140,20 +146,45 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options,
   });
 }
 
+void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
+  Command& command = *generate.add_subcommand("planet", "A map of a planet for textures: continents, ice and clouds");
+  command.add_option("-o,--output", options->output, "EXR file to write")->required()->type_name("FILE");
+  command.add_option("--seed", options->planet_seed, "Random seed; default: 1")
+      ->transform(whole_number(0, kMaxSeed))
+      ->type_name("N");
+  command
+      .add_option(
+          "--width", options->width,
+          "Pixels, a multiple of 4; the height is half of it; default: " + std::to_string(generate::kEnvironmentWidth))
+      ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment))
+      ->type_name("PX");
+  command.footer("Example:\n  orrery generate planet -o planet.exr --width 2048");
+  command.callback([options, &action] {
+    action = [options] {
+      end_on_signals();
+      generate::generate_planet(options->planet_seed, options->width, options->output);
+      return 0;
+    };
+  });
+}
+
 }  // namespace
 
 void add_generate(Command& program, Action& action) {
   const auto options = std::make_shared<GenerateOptions>();
-  Command& command = *program.add_subcommand("generate", "Generate a scene file, or an image to light scenes with");
+  Command& command =
+      *program.add_subcommand("generate", "Generate a scene file, an image to light scenes with, or a texture");
   command.require_subcommand();
   add_final(command, options, action);
   add_cloud(command, options, action);
   add_env(command, options, action);
+  add_planet(command, options, action);
   command.footer(
       "Examples:\n"
       "  orrery generate final -o final.toml --seed 7\n"
       "  orrery generate cloud -o cloud.toml --count 1000000\n"
-      "  orrery generate env studio -o studio.exr");
+      "  orrery generate env studio -o studio.exr\n"
+      "  orrery generate planet -o planet.exr");
 }
 
 }  // namespace orrery::cli

@@ -92,6 +92,7 @@ class FrameChecks {
  public:
   explicit FrameChecks(job::SceneRequest request) : request_(std::move(request)) {
     request_.background_cache = std::make_shared<job::BackgroundCache>();
+    request_.texture_cache = std::make_shared<job::TextureCache>();
   }
 
   /// Result     the exit status

@@ -60,6 +60,7 @@ kernel::Material compile_model(const scene::Dielectric& m) {
   out.eta[1] = m.ior;
   out.r0[0] = normal_reflectance(out.eta[0]);
   out.r0[1] = normal_reflectance(out.eta[1]);
+  out.fuzz = m.fuzz;
   switch (m.fresnel) {
     case scene::Fresnel::kSchlick: out.fresnel = kernel::FresnelKind::kSchlick; break;
     case scene::Fresnel::kExact: out.fresnel = kernel::FresnelKind::kExact; break;
@@ -96,6 +97,36 @@ kernel::Emission emission_of(const scene::MaterialModel& model, CompiledScene& c
   return out;
 }
 
+/// Compiles the textures of a material, and sets the constants that they replace to their means.
+void set_textures(const scene::MaterialModel& model, CompiledScene& compiled, kernel::Material& material,
+                  kernel::Emission& emission) {
+  TextureStore& store = compiled.textures;
+  kernel::MaterialTextures out;
+  std::visit(
+      [&](const auto& m) {
+        if constexpr (requires { m.albedo_texture; })
+          if (m.albedo_texture) {
+            out.albedo = store.add(*m.albedo_texture);
+            set(material.albedo, mean_of(*m.albedo_texture));
+          }
+        if constexpr (requires { m.fuzz_texture; })
+          if (m.fuzz_texture) {
+            out.fuzz = store.add(*m.fuzz_texture);
+            material.fuzz = mean_of(*m.fuzz_texture).x;
+          }
+        if constexpr (requires { m.radiance_texture; })
+          if (m.radiance_texture) {
+            const double factor = stops_to_factor(m.exposure);
+            out.radiance = store.add(*m.radiance_texture, {factor, factor, factor});
+            set(emission.radiance, mean_of(*m.radiance_texture) * factor);
+          }
+      },
+      model);
+  store.add_material(out);
+  if (!store.textures().empty() || (material.kind == kernel::MaterialKind::kDielectric && material.fuzz > 0))
+    compiled.features.extended = true;
+}
+
 /// Returns the material for a sphere whose normal points inward: its inside and outside are exchanged.
 kernel::Material turned_inside_out(kernel::Material m) {
   std::swap(m.eta[0], m.eta[1]);
@@ -119,13 +150,18 @@ class MaterialTable {
     if (!is_new) return at->second;
     kernel::Material m = out_.materials[plain];
     kernel::Emission e = out_.emission[plain];
+    kernel::MaterialTextures textures = out_.textures.material(plain);
     if (m.kind == kernel::MaterialKind::kEmitter) {
       for (int k = 0; k < 3; ++k) e.radiance[k] *= k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z;
+      if (textures.radiance != kernel::MaterialTextures::kNone)
+        textures.radiance = out_.textures.add_scaled(textures.radiance, rgb);
     } else {
       set(m.albedo, rgb);
+      textures.albedo = kernel::MaterialTextures::kNone;
     }
     out_.materials.push_back(m);
     out_.emission.push_back(e);
+    out_.textures.add_material(textures);
     return at->second;
   }
 
@@ -138,8 +174,10 @@ class MaterialTable {
     if (inside_out && m.kind != kernel::MaterialKind::kDielectric) return at = index(authored, false);
     if (inside_out) m = turned_inside_out(m);
     at = static_cast<std::uint32_t>(out_.materials.size());
+    kernel::Emission emission = emission_of(scene_.materials[authored].model, out_);
+    set_textures(scene_.materials[authored].model, out_, m, emission);
     out_.materials.push_back(m);
-    out_.emission.push_back(emission_of(scene_.materials[authored].model, out_));
+    out_.emission.push_back(emission);
     if (m.kind == kernel::MaterialKind::kHemisphere) out_.features.hemisphere = true;
     return at;
   }
@@ -276,6 +314,10 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.materials = materials.data();
   v.sphere_count = spheres.size();
   v.emission = emission.empty() ? nullptr : emission.data();
+  if (!textures.textures().empty()) {
+    v.textures = textures.textures().data();
+    v.material_textures = textures.materials().data();
+  }
   v.lights = light_tree.view();
   v.direct_lighting = direct_lighting;
   v.motion = motion.data();

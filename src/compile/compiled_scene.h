@@ -12,6 +12,7 @@
 #include "compile/packed_indices.h"
 #include "compile/pixel_filter.h"
 #include "compile/sphere_store.h"
+#include "compile/textures.h"
 #include "kernel/precision.h"
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
@@ -37,7 +38,8 @@ struct CompiledScene {
   PackedIndices sphere_materials;  ///< one per sphere, index into `materials`
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
-  LightTree light_tree;                    ///< of the emitting spheres; empty if lights are not sampled
+  TextureStore textures;
+  LightTree light_tree;  ///< of the emitting spheres; empty if lights are not sampled
   kernel::DirectLighting direct_lighting = kernel::DirectLighting::kMis;
   std::vector<std::string> light_groups;  ///< names, by Emission::group; the first is the default group's, ""
   std::vector<kernel::Sphere> motion;  ///< of the first motion.size() spheres, see kernel::SceneView; empty: none moves

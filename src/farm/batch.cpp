@@ -63,6 +63,7 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   std::vector<job::Job> jobs;
   common.files = std::make_shared<base::FileSet>();
   common.background_cache = std::make_shared<job::BackgroundCache>();
+  common.texture_cache = std::make_shared<job::TextureCache>();
   base::FileSet& files = *common.files;
   if (!batch.log.empty()) files.add_output(batch.log, "--log");
   if (!batch.preview.empty()) files.add_output(batch.preview, "--preview");

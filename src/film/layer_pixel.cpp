@@ -122,7 +122,14 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   if (!hits) return;
 
   covered += path_weight;
-  if (request.albedo) add3(albedo, scene.materials[scene.sphere_materials[path.sphere]].albedo, path_weight);
+  if (request.albedo) {
+    const double* const constant = scene.materials[scene.sphere_materials[path.sphere]].albedo;
+    if (scene.features.extended) {
+      add3(albedo, path.albedo, path_weight);
+    } else {
+      add3(albedo, constant, path_weight);
+    }
+  }
   if (request.normal) {
     // Decided per ray, since the lens can straddle the surface.
     double along = 0;

@@ -17,6 +17,12 @@ NamedFiles named_files(const std::filesystem::path& scene_file, const std::vecto
   NamedFiles out;
   out.ocio_config = root["color"]["config"].value_or(std::string());
   out.background = root["background"]["file"].value_or(std::string());
+  if (const toml::table* materials = root["material"].as_table())
+    for (const auto& [name, node] : *materials)
+      if (const toml::table* material = node.as_table())
+        for (const auto& [key, value] : *material)
+          if (const toml::table* texture = value.as_table())
+            if (const auto file = (*texture)["file"].value<std::string>()) out.textures.push_back(*file);
   if (const toml::array* points = root["points"].as_array())
     for (const toml::node& node : *points)
       if (const toml::table* table = node.as_table())

@@ -13,6 +13,7 @@ namespace orrery::format {
 struct NamedFiles {
   std::vector<std::string> points;
   std::string background;
+  std::vector<std::string> textures;
   std::string ocio_config;
 };
 

@@ -2,9 +2,11 @@
 #include "format/read_materials.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <tuple>
 
+#include "base/frames.h"
 #include "format/overrides.h"
 
 namespace orrery::format {
@@ -46,7 +48,47 @@ const scene::MaterialType* read_type(Reading& reading, const toml::table& table,
   return nullptr;
 }
 
-void read_material(Reading& reading, const toml::table& table, scene::Material& material) {
+/// Reads a texture, the value of a material's key; null, and an error is reported, if its type is missing or unknown.
+scene::TextureSlot read_texture(Reading& reading, const toml::table& table, const std::string& full_name, int frame,
+                                const std::vector<scene::TextureTypeKeys>& types) {
+  std::vector<std::string> names, all_keys = {"texture"};
+  for (const scene::TextureTypeKeys& type : types) {
+    names.push_back(type.name);
+    for (const auto& key : type.keys) all_keys.push_back(key.name);
+  }
+  const toml::node* node = table.get("texture");
+  if (node == nullptr) {
+    reading.error(place_of(table), full_name + " needs `texture`", "one of " + base::joined(names));
+    report_unknown_keys(reading, table, full_name, all_keys);
+    return nullptr;
+  }
+  const auto name = read_value(reading, *node, full_name + ".texture", scene::ValueType::kChoice, {}, names);
+  if (!name) return nullptr;
+  for (const scene::TextureTypeKeys& type : types) {
+    if (type.name != std::get<std::string>(*name)) continue;
+    const auto texture = std::make_shared<scene::Texture>();
+    texture->type = type.type;
+    read_keys(reading, table, full_name, type.keys, {"texture"}, *texture);
+    texture->file = base::with_frame(texture->file.string(), frame);
+    return texture;
+  }
+  return nullptr;
+}
+
+/// Reads the keys whose values are tables as textures. Their names are added to `also`.
+void read_textures(Reading& reading, const toml::table& table, const std::string& full_name, int frame,
+                   const scene::MaterialType& type, std::vector<std::string>& also, scene::MaterialModel& model) {
+  for (const scene::TexturedKey& key : type.textured) {
+    const toml::node* node = table.get(key.name);
+    if (node == nullptr || !node->is_table()) continue;
+    key.at(model) =
+        read_texture(reading, *node->as_table(), full_name + "." + key.name, frame, scene::texture_types(key.use));
+    for (const auto& [word, value] : *node->as_table()) also.push_back(key.name + "." + std::string(word.str()));
+    also.push_back(key.name + ".texture");
+  }
+}
+
+void read_material(Reading& reading, const toml::table& table, int frame, scene::Material& material) {
   const std::string full_name = "material." + material.name;
   const scene::MaterialType* type = read_type(reading, table, full_name);
   if (type == nullptr) return report_keys_of_no_type(reading, table, full_name);
@@ -60,12 +102,13 @@ void read_material(Reading& reading, const toml::table& table, scene::Material& 
     also.push_back(word);
   }
   material.model = type->model;
+  read_textures(reading, table, full_name, frame, *type, also, material.model);
   read_keys(reading, table, full_name, type->keys, also, material.model);
 }
 
 }  // namespace
 
-void read_materials(Reading& reading, const toml::table& root, std::vector<scene::Material>& materials) {
+void read_materials(Reading& reading, const toml::table& root, int frame, std::vector<scene::Material>& materials) {
   const toml::node* node = root.get("material");
   if (node == nullptr) return;
   const toml::table* all = node->as_table();
@@ -94,7 +137,7 @@ void read_materials(Reading& reading, const toml::table& root, std::vector<scene
     // An invalid material is added, too: spheres may use its name without further errors.
     materials.push_back({name, scene::Lambertian{}});
     if (const toml::table* table = entry.value->as_table()) {
-      read_material(reading, *table, materials.back());
+      read_material(reading, *table, frame, materials.back());
     } else {
       reading.error(place_of(*entry.value), "material." + name + " must be a table", "write [material." + name + "]");
     }

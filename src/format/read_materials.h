@@ -11,6 +11,8 @@ namespace orrery::format {
 /// Reads the [material.NAME] tables in the order of the file, which defines the material indices of points files.
 /// Materials that only overrides define follow. An invalid material keeps its name and index, so that spheres that use
 /// it cause no further errors.
-void read_materials(Reading& reading, const toml::table& root, std::vector<scene::Material>& materials);
+///
+/// `frame`    replaces frame patterns in names of texture files
+void read_materials(Reading& reading, const toml::table& root, int frame, std::vector<scene::Material>& materials);
 
 }  // namespace orrery::format

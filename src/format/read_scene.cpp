@@ -264,7 +264,7 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<Overr
   report_unknown_tables(reading, root);
   read_single_tables(reading, root, result.scene);
   result.scene.background.file = base::with_frame(result.scene.background.file.string(), frame);
-  read_materials(reading, root, result.scene.materials);
+  read_materials(reading, root, frame, result.scene.materials);
   MaterialIndex index;
   for (const scene::Material& material : result.scene.materials)
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));

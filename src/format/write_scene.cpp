@@ -44,6 +44,26 @@ void add_tables(std::string& out, const scene::Scene& scene) {
   }
 }
 
+/// Returns a texture as an inline table.
+std::string texture_text(const scene::Texture& texture, scene::TextureUse use) {
+  const scene::TextureTypeKeys& type = scene::texture_types(use)[static_cast<std::size_t>(texture.type)];
+  std::string out = "{ texture = " + string_text(type.name);
+  for (const auto& key : type.keys)
+    if (key.required || key.text(texture) != key.text(scene::Texture{}))
+      out += ", " + key.name + " = " + key.text(texture);
+  return out + " }";
+}
+
+/// Returns the value of a material's key: a texture or a constant; empty if it is the default.
+std::string value_text(const scene::MaterialType& type, const scene::Key<scene::MaterialModel>& key,
+                       const scene::MaterialModel& model) {
+  for (const scene::TexturedKey& textured : type.textured)
+    if (textured.name == key.name)
+      if (const scene::TextureSlot texture = textured.get(model)) return texture_text(*texture, textured.use);
+  const bool is_default = !key.required && key.text(model) == key.text(type.model);
+  return is_default ? "" : key.text(model);
+}
+
 /// Writes one line per material: a scene may have as many materials as spheres.
 void add_materials(std::string& out, const std::vector<scene::Material>& materials) {
   if (materials.empty()) return;
@@ -56,8 +76,8 @@ void add_materials(std::string& out, const std::vector<scene::Material>& materia
     out += (is_bare_key(material.name) ? material.name : string_text(material.name)) +
            " = { type = " + string_text(type.name);
     for (const auto& key : type.keys)
-      if (key.required || key.text(material.model) != key.text(type.model))
-        out += ", " + key.name + " = " + key.text(material.model);
+      if (const std::string value = value_text(type, key, material.model); !value.empty())
+        out += ", " + key.name + " = " + value;
     out += " }\n";
   }
   out += '\n';

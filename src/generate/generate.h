@@ -22,6 +22,8 @@ inline constexpr std::uint32_t kFinalPaletteSize = 1024;
 struct FinalScene {
   std::uint64_t seed = 1;
   int grid = 11;  ///< cells from the centre to the edge: (2 grid)^2 small spheres, less those near the large metal one
+  /// As in *The Next Week*: the ground is a checker, and the small diffuse spheres rise while the shutter is open.
+  bool moving = false;
 };
 
 /// Returns the scene: three large spheres among many small ones on a huge ground sphere. Of the small spheres, 80 % are
@@ -31,7 +33,7 @@ struct FinalScene {
 /// Units      scene units, degrees
 /// Result     `spheres`: the ground, the small ones, the three large ones; the small ones are in `points[0]` instead if
 ///            `grid` exceeds kLargestWrittenGrid
-/// Errors     base::Error(kUsage) for a grid outside 0..kLargestFinalGrid
+/// Errors     base::Error(kUsage) for a grid outside 0..kLargestFinalGrid, or above kLargestWrittenGrid if `moving`
 /// Reference  shirley2024, "A Final Render"
 scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::path& points_file = "final.ply");
 
@@ -82,5 +84,13 @@ film::Picture make_studio(int width = kEnvironmentWidth);
 /// `sky`      the members that type = "sky" uses
 /// Errors     base::Error(kUsage) for a width as for make_studio, and for members out of range
 film::Picture make_sky(const scene::Background& sky, int width = kEnvironmentWidth);
+
+/// Returns a latitude-longitude map of a planet's reflectance, with continents, ice and clouds, for use as a texture:
+/// +x at the centre, +z halfway to the left edge.
+///
+/// Units      lin_rec709, 0..1
+/// Result     planes R, G, B; the same seed gives the same bits on every machine
+/// Errors     base::Error(kUsage) for a width as for make_studio
+film::Picture make_planet(std::uint64_t seed = 1, int width = kEnvironmentWidth);
 
 }  // namespace orrery::generate

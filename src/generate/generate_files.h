@@ -17,12 +17,13 @@ namespace orrery::generate {
 void generate_final(const FinalScene& options, const std::filesystem::path& file);
 void generate_cloud(const Cloud& options, const std::filesystem::path& file);
 
-/// Writes a generated environment to an EXR file with float channels. Its attribute `orrery/command` is the command
-/// that reproduces the file.
+/// Writes a generated environment to an EXR file with float channels, or a planet with half channels. Its attribute
+/// `orrery/command` is the command that reproduces the file.
 ///
 /// Errors     base::Error: kUsage for options out of range and for a `file` that is not an EXR; kCannotCreate, before
 ///            anything is generated; kIo
 void generate_studio(int width, const std::filesystem::path& file);
+void generate_planet(std::uint64_t seed, int width, const std::filesystem::path& file);
 void generate_sky(const scene::Background& sky, int width, const std::filesystem::path& file);
 
 }  // namespace orrery::generate

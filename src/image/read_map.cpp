@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <fstream>
 #include <vector>
 
 #include "base/error.h"
@@ -31,18 +32,36 @@ Channels channels_of(const std::filesystem::path& file, const OIIO::ImageSpec& s
   fail_to_read(file, "it has no channels R, G and B; it has " + base::joined(names));
 }
 
-bool is_scene_linear(const std::filesystem::path& file) {
+/// The format by the file's extension; none if that is unknown.
+std::optional<Format> known_format(const std::filesystem::path& file) {
   try {
-    return !is_display_format(format_of(file));
+    return format_of(file);
   } catch (const base::Error&) {
-    return false;  // an unknown extension
+    return {};
   }
 }
 
-Input open_map(const std::filesystem::path& file) {
+/// libjpeg fills what a truncated file lacks with grey. In such a file, no end marker follows the last scan.
+bool is_truncated_jpeg(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  bool in_scan = false, is_closed = false;
+  for (int before = 0, now = in.get(); now != std::ifstream::traits_type::eof(); before = now, now = in.get()) {
+    if (before != 0xFF) continue;
+    if (now == 0xDA) in_scan = true, is_closed = false;
+    if (now == 0xD9 && in_scan) is_closed = true;
+  }
+  return !is_closed;
+}
+
+Input open_map(const std::filesystem::path& file, MapFormats formats) {
   base::require_readable(file);
-  if (!is_scene_linear(file)) fail_to_read(file, "an environment map must be an exr or hdr file");
-  return open_input(file);
+  const std::optional<Format> format = known_format(file);
+  if (formats == MapFormats::kSceneLinear && (!format || is_display_format(*format)))
+    fail_to_read(file, "an environment map must be an exr or hdr file");
+  if (!format) fail_to_read(file, "a texture must be an exr, hdr, png, tiff, jpeg or ppm file");
+  Input input = open_input(file);
+  if (*format == Format::kJpeg && is_truncated_jpeg(file)) fail_to_read(file, "the file is truncated");
+  return input;
 }
 
 /// The names by which OpenImageIO says that it assumes a scene-linear file, which declares nothing.
@@ -54,22 +73,25 @@ bool is_assumed(const std::string& color_space) {
 
 }  // namespace
 
-MapHeader read_map_header(const std::filesystem::path& file) {
-  const Input input = open_map(file);
+MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats) {
+  const Input input = open_map(file, formats);
   const OIIO::ImageSpec& spec = input.spec;
   channels_of(file, spec);
   MapHeader out{spec.full_width, spec.full_height};
   out.color_interop_id = std::string(spec.get_string_attribute("colorInteropID"));
   out.color_space = std::string(spec.get_string_attribute("oiio:ColorSpace"));
-  if (is_assumed(out.color_space)) out.color_space.clear();
+  out.is_encoded = is_display_format(*known_format(file)) && spec.format != TypeDesc::FLOAT;
+  // For integers OpenImageIO's name is that of an assumption, too.
+  if (out.is_encoded || is_assumed(out.color_space)) out.color_space.clear();
   std::array<float, 8> chromaticities;
   if (spec.getattribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), chromaticities.data()))
     out.chromaticities = chromaticities;
   return out;
 }
 
-void read_map(const std::filesystem::path& file, const std::function<void(int row, float* rgb)>& take) {
-  const Input input = open_map(file);
+void read_map(const std::filesystem::path& file, const std::function<void(int row, float* rgb)>& take,
+              MapFormats formats) {
+  const Input input = open_map(file, formats);
   const OIIO::ImageSpec& spec = input.spec;
   const Channels channels = channels_of(file, spec);
   const auto [first, last] = std::minmax_element(channels.begin(), channels.end());

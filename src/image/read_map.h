@@ -9,25 +9,33 @@
 
 namespace orrery::image {
 
-/// What the header of an environment map says.
+/// Which formats of maps are accepted.
+enum class MapFormats {
+  kSceneLinear,  ///< EXR and HDR: environment maps
+  kAll,          ///< all formats that are written: textures
+};
+
+/// What the header of a latitude-longitude map says.
 struct MapHeader {
   int width = 0, height = 0;                             ///< px, of the display window
   std::string color_interop_id = {};                     ///< "lin_ap1_scene"; empty: not declared
   std::optional<std::array<float, 8>> chromaticities{};  ///< x, y of red, green, blue, white
   std::string color_space = {};                          ///< as OpenImageIO's tools declare it; empty: not declared
+  bool is_encoded = false;                               ///< of a display format: values are not scene-linear
 };
 
-/// Reads the header of an EXR or HDR file, without its pixels.
+/// Reads the header of an image file, without its pixels.
 ///
 /// Errors     base::Error: kMissingInput if the file cannot be opened, kBadData if it is of another format, damaged or
 ///            too large, or has neither the channels R, G and B nor a single channel
-MapHeader read_map_header(const std::filesystem::path& file);
+MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats = MapFormats::kSceneLinear);
 
-/// Reads R, G and B of an EXR or HDR file row by row, from the top, without keeping them.
+/// Reads R, G and B of an image file row by row, from the top, without keeping them. Integers are scaled to 0..1.
 ///
 /// `take`     called for each row of the display window with its width * 3 values, which it may modify. Rows and
 ///            columns that the data window lacks are zero. A single channel is used for all three.
 /// Errors     as read_map_header; kBadData if the file is truncated
-void read_map(const std::filesystem::path& file, const std::function<void(int row, float* rgb)>& take);
+void read_map(const std::filesystem::path& file, const std::function<void(int row, float* rgb)>& take,
+              MapFormats formats = MapFormats::kSceneLinear);
 
 }  // namespace orrery::image

@@ -64,6 +64,7 @@ LoadedScene load(const Job& job, JobReport& report) {
   SceneRequest request{job.scene, job.outputs.display, writes_display_format || job.hooks.develops_pixels};
   request.memory_limit = job.resources.memory_limit;
   request.background_cache = job.background_cache;
+  request.texture_cache = job.texture_cache;
   LoadedScene loaded = load_scene(request);
   for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
   if (writes_display_format) {

@@ -6,6 +6,7 @@
 #include "format/named_files.h"
 #include "job/checkpoint.h"
 #include "job/working_space.h"
+#include "scene/textures.h"
 
 namespace orrery::job {
 namespace {
@@ -14,6 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPointsRole = "points file";
 constexpr const char* kBackgroundRole = "background image";
+constexpr const char* kTextureRole = "texture";
 
 }  // namespace
 
@@ -49,6 +51,7 @@ void add_named_files(const SceneSource& scene, const std::vector<int>& frames, b
   };
   for (const std::string& name : named.points) add(name, kPointsRole);
   if (!named.background.empty()) add(named.background, kBackgroundRole);
+  for (const std::string& name : named.textures) add(name, kTextureRole);
 }
 
 void add_scene_files(const fs::path& scene_file, const scene::Scene& scene, base::FileSet& files) {
@@ -56,6 +59,8 @@ void add_scene_files(const fs::path& scene_file, const scene::Scene& scene, base
   for (const scene::Points& points : scene.points) files.add_input(scene_file.parent_path() / points.file, kPointsRole);
   if (!scene.background.file.empty())
     files.add_input(scene_file.parent_path() / scene.background.file, kBackgroundRole);
+  for (const scene::NamedTexture& texture : scene::image_textures(scene))
+    files.add_input(scene_file.parent_path() / texture.texture->file, kTextureRole);
 }
 
 void add_ocio_configs(const std::string& config, base::FileSet& files) {

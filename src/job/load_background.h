@@ -4,24 +4,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "scene/environment_image.h"
+#include "job/load_map.h"
 #include "scene/scene.h"
-#include "scene/validate.h"
 
 namespace orrery::job {
 
-/// An image background that was read, and what was found out about its file; or a sky.
-struct LoadedBackground {
-  int width = 0, height = 0;  ///< texels
-  std::string color_space;    ///< of the file or of the sky
-  std::uint64_t bytes = 0;    ///< estimated memory of the texels and of the tables to sample them
-  std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
-  std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
-};
+/// An image background that was read, or a sky.
+using LoadedBackground = LoadedMap;
 
 /// The last background that was read, for the frames of a sequence. A file that has changed since is read again.
 struct BackgroundCache {
@@ -38,11 +29,7 @@ struct BackgroundRequest {
   std::shared_ptr<BackgroundCache> cache = nullptr;
 };
 
-/// Reads the image of scene.background and converts it to the working space. The file is in the space that it declares
-/// (colorInteropID, chromaticities, or the name that OpenImageIO's tools write), else in that of
-/// background.color_space, else in that of color.space.
-///
-/// NaN, infinite and negative values become 0 and are counted in a warning.
+/// Reads the image of scene.background and converts it to the working space; see load_map.
 ///
 /// Domain     the background is an image
 /// Errors     those of the file and of colour spaces become diagnostics; base::Error(kNoMemory) if the image does not

@@ -106,16 +106,24 @@ LoadedScene load_scene(const SceneRequest& request) {
   const auto check_and_load = [&](const scene::Scene& scene) {
     std::vector<scene::SceneDiagnostic> diagnostics = check(scene);
     if (!diagnostics.empty()) return diagnostics;
+    out.textures = load_textures(request.source.file, settings_of(request, scene.color).config, request.memory_limit,
+                                 request.skips_large_background, request.texture_cache.get(), scene);
+    for (const LoadedTexture& texture : out.textures)
+      diagnostics.insert(diagnostics.end(), texture.map.diagnostics.begin(), texture.map.diagnostics.end());
+    const auto with = [&](const std::vector<scene::SceneDiagnostic>& more) {
+      diagnostics.insert(diagnostics.end(), more.begin(), more.end());
+      return diagnostics;
+    };
     if (scene.background.type == scene::BackgroundType::kSky) {
       out.background = load_sky(settings_of(request, scene.color).config, scene);
-      return out.background->diagnostics;
+      return with(out.background->diagnostics);
     }
     if (!has_image(scene.background)) return diagnostics;
     const BackgroundRequest background{request.source.file.parent_path() / scene.background.file,
                                        settings_of(request, scene.color).config, request.memory_limit,
                                        request.skips_large_background, request.background_cache};
     out.background = load_background(background, scene);
-    return out.background->diagnostics;
+    return with(out.background->diagnostics);
   };
   format::ReadOptions options;
   options.text = request.source.text;
@@ -127,6 +135,7 @@ LoadedScene load_scene(const SceneRequest& request) {
   out.choice = check.take();
   scene::Scene& scene = out.read.scene;
   if (out.background) scene.background.image = out.background->image;
+  set_textures(out.textures, scene);
   out.display = settings_of(request, scene.color);
   out.warnings = std::move(out.read.warnings);
   if (out.choice)

@@ -11,6 +11,7 @@
 #include "display/develop.h"
 #include "format/read_scene.h"
 #include "job/load_background.h"
+#include "job/load_textures.h"
 #include "job/scene_source.h"
 
 namespace orrery::job {
@@ -20,9 +21,10 @@ struct SceneRequest {
   SceneSource source;
   display::Settings display;            ///< from the command line; the scene's [color] replaces empty values
   bool develops = false;                ///< true if display formats will be written
-  std::uint64_t memory_limit = 0;       ///< bytes that an image background may take; 0: the free memory
-  bool skips_large_background = false;  ///< see BackgroundRequest::skips_large
+  std::uint64_t memory_limit = 0;       ///< bytes that an image may take; 0: the free memory
+  bool skips_large_background = false;  ///< see BackgroundRequest::skips_large; holds for textures, too
   std::shared_ptr<BackgroundCache> background_cache = nullptr;
+  std::shared_ptr<TextureCache> texture_cache = nullptr;
 };
 
 struct LoadedScene {
@@ -30,11 +32,12 @@ struct LoadedScene {
   display::Settings display;                   ///< from the command line and the scene
   std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
   std::optional<LoadedBackground> background;  ///< of an image background or sky; the scene has its image
+  std::vector<LoadedTexture> textures;         ///< image textures; the scene has their images
   std::vector<base::Diagnostic> warnings;
 };
 
-/// Reads a scene with its image background or sky, checks everything that a render would reject, and converts its
-/// colours to the working space. All commands load scenes here, so that they accept the same scenes.
+/// Reads a scene with its textures and its image background or sky, checks everything that a render would reject, and
+/// converts its colours to the working space. All commands load scenes here, so that they accept the same scenes.
 ///
 /// Names in [color] are always looked up. A default config is loaded only if `develops`.
 ///

@@ -76,6 +76,7 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   m.film = static_cast<std::uint64_t>(needs.width) * static_cast<std::uint64_t>(needs.height) * bytes_per_pixel;
   m.spheres = needs.sphere_bytes;
   m.background = needs.background;
+  m.textures = needs.textures;
   m.accelerator = needs.embree ? needs.spheres_in_bvh * kBvhBytesPerSphere +
                                      (needs.spheres - needs.spheres_in_bvh) * kAcceleratorBytesPerSphere
                                : 0;
@@ -90,6 +91,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.spheres_in_bvh = accel::spheres_in_bvh(compiled.view());
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.sphere_materials.bytes();
   if (compiled.environment) needs.background = compiled.environment->bytes();
+  needs.textures = compiled.textures.bytes();
   needs.layer_planes = film::planes_of(layers).size();
   needs.layers = layers.any();
   needs.halves = layers.halves;
@@ -122,6 +124,7 @@ std::string text_of(const MemoryEstimate& m) {
   std::string out = fmt::format("film {}, spheres {}, accelerator {}", base::bytes_text(m.film),
                                 base::bytes_text(m.spheres), base::bytes_text(m.accelerator));
   if (m.background > 0) out += ", background " + base::bytes_text(m.background);
+  if (m.textures > 0) out += ", textures " + base::bytes_text(m.textures);
   return out;
 }
 

@@ -58,6 +58,22 @@ void add_lights(Hash& hash, const compile::CompiledScene& compiled) {
   if (compiled.environment) add_map(hash, compiled.environment->view());
 }
 
+/// Scenes without textures keep the hash that they had before there were textures.
+void add_textures(Hash& hash, const compile::TextureStore& store) {
+  if (store.textures().empty()) return;
+  for (const kernel::MaterialTextures& m : store.materials()) {
+    hash.add_bits(std::uint64_t{m.albedo} << 32 | m.fuzz);
+    hash.add_bits(m.radiance);
+  }
+  for (const kernel::Texture& t : store.textures()) {
+    hash.add_bits(static_cast<std::uint64_t>(t.kind) << 32 | t.seed);
+    hash.add(t.scale);
+    add_all(hash, t.low);
+    add_all(hash, t.high);
+    if (t.image != nullptr) add_map(hash, *t.image);
+  }
+}
+
 }  // namespace
 
 std::string scene_hash(const compile::CompiledScene& compiled) {
@@ -93,6 +109,7 @@ std::string scene_hash(const compile::CompiledScene& compiled) {
     hash.add_bits(v);
   for (const double v : compiled.filter.above) hash.add(v);
   add_lights(hash, compiled);
+  add_textures(hash, compiled.textures);
   return hash.text();
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "display/color_space.h"
+#include "scene/textures.h"
 
 namespace orrery::job {
 namespace {
@@ -69,6 +70,12 @@ int to_working_space(const std::string& ocio, scene::Scene& scene) {
     for (std::size_t i = 0; i < points.palette.size(); ++i)
       (i < points.palette_rec709 ? rec709 : authored).push_back({&points.palette[i], 1});
   }
+  scene::modify_textures(scene, [&](scene::Texture& texture, scene::TextureUse use) {
+    if (use == scene::TextureUse::kNumber || texture.type == scene::TextureType::kImage) return;
+    const double maximum = use == scene::TextureUse::kRadiance ? std::numeric_limits<double>::max() : 1;
+    authored.push_back({&texture.low, maximum});
+    authored.push_back({&texture.high, maximum});
+  });
   const std::string& working = scene.color.working_space();
   return convert(ocio, scene.color.space, working, authored) + convert(ocio, "lin_rec709", working, rec709);
 }

@@ -19,6 +19,7 @@
 #include "kernel/record-inl.h"
 #include "kernel/scatter-inl.h"
 #include "kernel/surface-inl.h"
+#include "kernel/surface_texture-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -154,7 +155,7 @@ struct LightSample {
 };
 
 /// Chooses an emitter for each vertex and samples a point that is visible from it.
-template <class D, bool kMoves, class V = hn::Vec<D>>
+template <class D, bool kMoves, bool kExtended, class V = hn::Vec<D>>
 HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vertex<D>& at, V u, V v, V choice, V fresh,
                                          const hn::TFromD<D>* times) {
   const V one = hn::Set(d, hn::TFromD<D>(1));
@@ -163,7 +164,11 @@ HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vert
   const auto to = to_center(at, light.center);
   const auto cone = subtended_cone(d, to, light.radius);
   const auto point = sample_visible_sphere(d, to, cone, u, v);
-  const auto source = emitted(d, scene, chosen.spheres, hn::FirstN(d, hn::Lanes(d)));
+  auto source = emitted(d, scene, chosen.spheres, hn::FirstN(d, hn::Lanes(d)));
+  if constexpr (kExtended)
+    if (scene.textures != nullptr)
+      source.radiance = textured_radiance(d, scene, chosen.spheres,
+                                          {light.center, point.normal * light.radius, point.normal}, source.radiance);
   return {point.direction,
           mul_add(point.normal, light.radius, to),
           one,
@@ -194,19 +199,21 @@ HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment,
 /// Samples the environment or an emitter at each vertex.
 ///
 /// Not inlined, like the other large functions of lit loops: all loops of a lane type share one copy.
-template <class D, bool kMoves, class V = hn::Vec<D>>
+template <class D, bool kMoves, bool kExtended, class V = hn::Vec<D>>
 HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random,
                                          const hn::TFromD<D>* times) {
   using T = hn::TFromD<D>;
   const double share = environment_share(scene);
   if (share == 1) return sample_background(d, *scene.environment, random.v[0], random.v[1]);
   if (share == 0)
-    return sample_emitter<D, kMoves>(d, scene, at, random.v[0], random.v[1], random.v[2], random.v[3], times);
+    return sample_emitter<D, kMoves, kExtended>(d, scene, at, random.v[0], random.v[1], random.v[2], random.v[3],
+                                                times);
   const V to_background = hn::Set(d, static_cast<T>(share)), to_emitter = hn::Set(d, static_cast<T>(1 - share));
   const auto is_background = random.v[2] < to_background;
   const V rest = hn::IfThenElseZero(hn::Not(is_background), (random.v[2] - to_background) / to_emitter);
   const auto sky = sample_background(d, *scene.environment, random.v[0], random.v[1]);
-  const auto lamp = sample_emitter<D, kMoves>(d, scene, at, random.v[0], random.v[1], rest, random.v[3], times);
+  const auto lamp =
+      sample_emitter<D, kMoves, kExtended>(d, scene, at, random.v[0], random.v[1], rest, random.v[3], times);
   const auto ids = hn::RebindMask(IdTag<D>(), is_background);
   return {select(is_background, sky.direction, lamp.direction),
           select(is_background, sky.reach, lamp.reach),
@@ -233,7 +240,7 @@ HWY_INLINE void connect(D d, const SceneView& scene, const Surface<D>& surface, 
   const auto unit = normalized(d, surface.offset);
   const Vertex<D> at{origin, sum_error(center, surface.offset, origin),
                      select(surface.from_outside, unit, negated(unit))};
-  const auto sample = sample_light<D, kLoop.moves>(d, scene, at, random, times);
+  const auto sample = sample_light<D, kLoop.moves, kLoop.extended>(d, scene, at, random, times);
   const V pdf = pdf_bsdf(d, scene.features, surface, sample.direction);
   const V factor = light_sample_factor(d, scene.direct_lighting, pdf * sample.inverse_pdf / sample.probability);
   lanes = hn::And(lanes, hn::And(sample.probability > zero, factor > zero));

@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
 template <Precision kPrecision, bool kRecords>
-constexpr Loop kLit{kPrecision, kRecords, true, true};
+constexpr Loop kLit{kPrecision, kRecords, true, true, false};
 
 template <Precision kPrecision>
 RenderTile instance(bool records) {

@@ -12,7 +12,7 @@ enum class FresnelKind : std::uint32_t { kSchlick, kExact, kNone };
 /// A compiled material, with everything that does not depend on the ray. `kind` decides which members are used.
 struct Material {
   double albedo[3] = {1, 1, 1};  ///< scene-linear reflectance; 1 for a dielectric
-  double fuzz = 0;               ///< metal: radius of the sphere around the tip of the unit mirror direction
+  double fuzz = 0;               ///< metal, dielectric: radius of the sphere around the tip of the unit direction
   double eta[2] = {
       1, 1};  ///< dielectric: index on the ray's side / index beyond; [0] for rays from outside, [1] from inside
   double r0[2] = {0, 0};  ///< dielectric: reflectance at normal incidence, Schlick's constant, sides as in eta

@@ -29,6 +29,7 @@ struct PathRecord {
   float guide_albedo[3] = {0, 0, 0};  ///< of the first surface that is not delta, times the throughput before it
   float guide_normal[3] = {0, 0, 0};  ///< its normal, unit, against the ray; world space
   std::uint32_t sphere = kNoSphere;   ///< first hit; kNoSphere: the background
+  float albedo[3] = {0, 0, 0};        ///< at the first hit; only in scenes with features.extended
   double time = 0;                    ///< 0..1 within the shutter
 };
 

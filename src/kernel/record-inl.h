@@ -61,6 +61,14 @@ class Recorder {
     });
   }
 
+  /// Records the albedo at the first hits.
+  HWY_INLINE void albedo(D d, hn::Mask<D> hit, const Vec3<V>& albedo) {
+    Stored color(d, albedo);
+    each(d, hit, [&](PathRecord& r, int i) {
+      for (int k = 0; k < 3; ++k) r.albedo[k] = static_cast<float>(color.v[k][i]);
+    });
+  }
+
   /// Writes light events for radiance that paths gained.
   ///
   /// `groups`   light groups of the sources

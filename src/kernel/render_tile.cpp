@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/render_tile.h"
 
+#include "kernel/extended_tile.h"
 #include "kernel/lit_tile.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -51,19 +52,23 @@ HWY_EXPORT(render_fast_instance);
 HWY_EXPORT(record_fast_instance);
 
 RenderTile render_tile_function(const Features& features, Precision precision) {
+  if (features.extended) return extended_tile_function(false, precision);
   if (features.lit) return lit_tile_function(false, precision);
   return ORRERY_BEST(render_instance)(features.motion, precision);
 }
 RenderTileFast render_tile_fast_function(const Features& features) {
+  if (features.extended) return extended_tile_fast_function(false);
   if (features.lit) return lit_tile_fast_function(false);
   return ORRERY_BEST(render_fast_instance)(features.motion);
 }
 
 RenderTile record_tile_function(const Features& features, Precision precision) {
+  if (features.extended) return extended_tile_function(true, precision);
   if (features.lit) return lit_tile_function(true, precision);
   return ORRERY_BEST(record_instance)(features.motion, precision);
 }
 RenderTileFast record_tile_fast_function(const Features& features) {
+  if (features.extended) return extended_tile_fast_function(true);
   if (features.lit) return lit_tile_fast_function(true);
   return ORRERY_BEST(record_fast_instance)(features.motion);
 }

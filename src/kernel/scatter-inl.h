@@ -112,10 +112,17 @@ HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leavin
                         hn::IfThenElseZero(is_kind(d, at.fresnel, FresnelKind::kSchlick), schlick));
 }
 
-/// Samples a smooth dielectric: reflects if u is below the reflectance, else refracts. Snell's law is in the form with
-/// cos^2, which does not cancel near an index ratio of one.
+/// The direction that a smooth dielectric refracts to, and whether and how much it reflects.
+template <class D>
+struct Refraction {
+  Vec3<hn::Vec<D>> direction;  ///< unit
+  hn::Vec<D> reflectance;      ///< where reflection is not total
+  hn::Mask<D> is_total;
+};
+
+/// Snell's law is in the form with cos^2, which does not cancel near an index ratio of one.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vec3<V> sample_dielectric(D d, const Surface<D>& at, V u) {
+HWY_INLINE Refraction<D> refraction(D d, const Surface<D>& at) {
   using T = hn::TFromD<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, T(1));
   const V cos_arriving = hn::Min(hn::Neg(dot(at.direction, at.normal)), one);
@@ -123,13 +130,41 @@ HWY_INLINE Vec3<V> sample_dielectric(D d, const Surface<D>& at, V u) {
   const V leaving2 = hn::MulAdd((one - at.eta) * (one + at.eta), one - cos2, cos2);
   const V cos_leaving = hn::Sqrt(hn::Max(leaving2, zero));
   const auto w = normalized(d, at.direction * at.eta + at.normal * (at.eta * cos_arriving - cos_leaving));
-  const auto refracted = select(at.other_side(d, w), w, negated(at.normal));
-  const auto reflects = hn::Or(leaving2 < zero, u < reflectance(d, at, cos_arriving, cos_leaving));
-  return select(reflects, mirrored(d, at), refracted);
+  return {select(at.other_side(d, w), w, negated(at.normal)), reflectance(d, at, cos_arriving, cos_leaving),
+          leaving2 < zero};
+}
+
+/// Samples a smooth dielectric: reflects if u is below the reflectance, else refracts.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> sample_dielectric(D d, const Surface<D>& at, V u) {
+  const auto glass = refraction(d, at);
+  const auto reflects = hn::Or(glass.is_total, u < glass.reflectance);
+  return select(reflects, mirrored(d, at), glass.direction);
+}
+
+/// Samples a rough dielectric: the direction of a smooth one, perturbed as that of a fuzzy metal. Directions on the
+/// wrong side of the surface are absorbed.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE BsdfSample<D> sample_rough_dielectric(D d, const Surface<D>& at, V u, V v) {
+  using T = hn::TFromD<D>;
+  const V one = hn::Set(d, T(1));
+  const auto glass = refraction(d, at);
+  const V share = hn::IfThenElse(glass.is_total, one, glass.reflectance);
+  const auto reflects = u < share;
+  // The part of u that has not been used, uniform in 0..1 again.
+  const V rest = hn::IfThenElse(reflects, u, u - share) / hn::IfThenElse(reflects, share, one - share);
+  const auto axis = select(reflects, mirrored(d, at), glass.direction);
+  const auto w = normalized(d, mul_add(sample_unit_sphere(d, hn::Min(rest, one), v), at.fuzz, axis));
+  const auto sharp = at.fuzz == hn::Zero(d);
+  const auto same_side = at.same_side(d, w), other_side = at.other_side(d, w);
+  const auto stays = hn::Or(hn::And(reflects, same_side), hn::AndNot(reflects, other_side));
+  return {select(sharp, axis, w), hn::Or(sharp, stays)};
 }
 
 /// Samples every lane's BSDF with the first two random numbers of its vertex.
-template <class D, class V = hn::Vec<D>>
+///
+/// `kExtended`  dielectrics may be rough
+template <bool kExtended = false, class D, class V = hn::Vec<D>>
 HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surface<D>& at, const Four<V>& random) {
   BsdfSample<D> out{at.normal, hn::FirstN(d, hn::Lanes(d))};
   const Vec3<V> on_sphere = sample_unit_sphere(d, random.v[0], random.v[1]);
@@ -144,7 +179,15 @@ HWY_INLINE BsdfSample<D> sample_bsdf(D d, const Features& features, const Surfac
     out.alive = hn::Or(hn::AndNot(metal, out.alive), hn::And(metal, sampled.alive));
   }
   const auto glass = among(MaterialKind::kDielectric);
-  if (!hn::AllFalse(d, glass)) out.direction = select(glass, sample_dielectric(d, at, random.v[0]), out.direction);
+  if (!hn::AllFalse(d, glass)) {
+    if constexpr (kExtended) {
+      const auto sampled = sample_rough_dielectric(d, at, random.v[0], random.v[1]);
+      out.direction = select(glass, sampled.direction, out.direction);
+      out.alive = hn::Or(hn::AndNot(glass, out.alive), hn::And(glass, sampled.alive));
+    } else {
+      out.direction = select(glass, sample_dielectric(d, at, random.v[0]), out.direction);
+    }
+  }
   return out;
 }
 
@@ -170,7 +213,8 @@ HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
 }
 
 /// The density with which sample_bsdf chooses a direction, per steradian. The directions of delta materials (sharp
-/// metal, dielectric) have none: zero. A fuzzy metal's density integrates to the fraction that is not absorbed.
+/// metal, dielectric) have none: zero. A rough dielectric counts as delta, so it is sampled by its BSDF alone. A fuzzy
+/// metal's density integrates to the fraction that is not absorbed.
 ///
 /// Space      w unit
 template <class D, class V = hn::Vec<D>>

@@ -13,6 +13,7 @@
 #include "kernel/pixel_filter.h"
 #include "kernel/sampler.h"
 #include "kernel/sphere_array.h"
+#include "kernel/texture.h"
 
 namespace orrery::kernel {
 
@@ -39,6 +40,7 @@ struct Features {
   bool sky = false;         ///< the background depends on the direction
   bool motion = false;      ///< camera or spheres move while the shutter is open
   bool lit = false;         ///< something emits, or is sampled: paths gain radiance at their vertices
+  bool extended = false;    ///< textures or rough glass
 };
 
 /// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
@@ -55,7 +57,10 @@ struct SceneView {
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
   const Emission* emission = nullptr;  ///< one per material; null if nothing emits
-  Lights lights;                       ///< the emitters that light sampling chooses from
+  /// Textures, and one entry per material; null if there are none. The constants that textures replace are their means.
+  const Texture* textures = nullptr;
+  const MaterialTextures* material_textures = nullptr;
+  Lights lights;  ///< the emitters that light sampling chooses from
   DirectLighting direct_lighting = DirectLighting::kMis;
   /// Changes of centre and radius of the first spheres until the shutter closes. The others do not move.
   const Sphere* motion = nullptr;

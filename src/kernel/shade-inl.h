@@ -19,6 +19,7 @@
 #include "kernel/render_tile.h"
 #include "kernel/scatter-inl.h"
 #include "kernel/surface-inl.h"
+#include "kernel/surface_texture-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -209,6 +210,10 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
             hn::And(hn::And(source.radiance.x == zero, source.radiance.y == zero), source.radiance.z == zero);
         const auto shines = hn::AndNot(dark, hit);
         if (!hn::AllFalse(d, shines)) {
+          if constexpr (kLoop.extended)
+            if (scene.textures != nullptr)
+              source.radiance = textured_radiance<D, kPrecision, kMoves>(
+                  d, scene, ray, hits, shines, hn::Load(d, packet.distance + v), packet.time + v, source.radiance);
           if (depth > 0)
             source.radiance = source.radiance * emitter_weight<D, kMoves>(d, scene, ray, hits, packet.time + v,
                                                                           hn::Load(d, carried.pdf + v));
@@ -218,13 +223,18 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     }
     const bool ends = scene.shading == Shading::kPath && depth + 1 >= scene.max_depth;
     if (ends && !(kRecords && depth == 0)) continue;
-    const auto at =
+    auto at =
         reach_surface<D, kPrecision, kMoves>(d, scene, ray, hits, hn::Load(d, packet.distance + v), packet.time + v);
+    if constexpr (kLoop.extended)
+      if (scene.textures != nullptr)
+        apply_textures<D, kPrecision>(d, scene, ray, hits, hit, hn::Load(d, packet.distance + v), at);
     const Vec3<hn::Vec<D>> tinted = throughput * at.albedo;
     if constexpr (kRecords) {
-      if (depth == 0)
+      if (depth == 0) {
         record.first_hit(d, hit, hits, at.surface.offset, ray.direction,
                          kMoves && scene.features.motion ? packet.time + v : nullptr);
+        if constexpr (kLoop.extended) record.albedo(d, hit, at.albedo);
+      }
       if (tile.record_guides)
         record.guide(d, hn::AndNot(is_delta(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
       if (ends) continue;
@@ -237,7 +247,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     }
     const bool plays_roulette = depth + 1 >= scene.roulette_depth;
     const auto random = random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, plays_roulette);
-    const auto scattered = sample_bsdf(d, scene.features, at.surface, random);
+    const auto scattered = sample_bsdf<kLoop.extended>(d, scene.features, at.surface, random);
     throughput = tinted;
     auto goes_on = hn::And(hit, scattered.alive);
     [[maybe_unused]] hn::Mask<D> has_pdf;

@@ -20,9 +20,10 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// What an instance of the path loop is compiled for.
 struct Loop {
   Precision precision = Precision::kExact;
-  bool records = false;  ///< fills the tile's records
-  bool moves = false;    ///< camera or spheres move; in lit loops, they may
-  bool lit = false;      ///< paths gain radiance at their vertices, not only where they leave the scene
+  bool records = false;   ///< fills the tile's records
+  bool moves = false;     ///< camera or spheres move; in lit loops, they may
+  bool lit = false;       ///< paths gain radiance at their vertices, not only where they leave the scene
+  bool extended = false;  ///< materials may have textures, and glass may be rough
 };
 
 /// Scene data of a vector of hits.

@@ -54,7 +54,8 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
       {"thin lens", &kernel::Features::lens},
       {"hemisphere", &kernel::Features::hemisphere},
       {"gradient sky", &kernel::Features::sky},
-      {"lights", &kernel::Features::lit}};
+      {"lights", &kernel::Features::lit},
+      {"textures", &kernel::Features::extended}};
   return known;
 }
 

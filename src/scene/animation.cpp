@@ -51,6 +51,8 @@ std::optional<Animated> animated_material(const Scene& scene, const std::string&
     if (scene.materials[i].name != name) continue;
     const auto* key = find_key(type_of(scene.materials[i]).keys, key_name);
     if (key == nullptr) return {};
+    for (const TexturedKey& textured : type_of(scene.materials[i]).textured)
+      if (textured.name == key_name && textured.get(scene.materials[i].model)) return {};
     return Animated{key->type, key->range, [key, i](Scene& s, const Value& v) { key->set(s.materials[i].model, v); }};
   }
   return {};

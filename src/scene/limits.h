@@ -46,6 +46,9 @@ inline constexpr double kLowestTurbidity = 1, kHighestTurbidity = 10;
 /// Maximum pixel filter width, px: a wider filter is a blur.
 inline constexpr double kWidestFilter = 32;
 
+/// Range of a texture's scale: products with the largest coordinate are finite in single precision.
+inline constexpr double kSmallestScale = 1e-18, kLargestScale = 1e18;
+
 /// Maximum path depth, rays: with more, a render would not end in practice.
 inline constexpr int kDeepestPath = 10000;
 

@@ -77,6 +77,22 @@ std::string material_section() {
   return out;
 }
 
+const char* const kNumberNote =
+    "If the key is a number, such as `fuzz`, so are `even`, `odd`, `low` and `high`. If it is `radiance`, their range "
+    "is "
+    "that of `radiance`.\n";
+
+std::string texture_section() {
+  std::string out = "### Textures\n\n| `texture` | description |\n|---|---|\n";
+  for (const TextureTypeKeys& type : texture_types(TextureUse::kReflectance))
+    out += "| `\"" + type.name + "\"` | " + type.doc + " |\n";
+  for (const TextureTypeKeys& type : texture_types(TextureUse::kReflectance)) {
+    out += "\nOther keys of `texture = \"" + type.name + "\"`:\n\n" + header();
+    for (const auto& key : type.keys) out += row(key, Texture{});
+  }
+  return out + "\n" + kNumberNote;
+}
+
 }  // namespace
 
 std::string reference_markdown() {
@@ -87,7 +103,7 @@ std::string reference_markdown() {
     for (const auto& key : table.keys) out += row(key, defaults);
     out += '\n';
   }
-  out += material_section() + "\n### [[sphere]]\n\n" + header();
+  out += material_section() + "\n" + texture_section() + "\n### [[sphere]]\n\n" + header();
   for (const auto& key : sphere_keys()) out += row(key, Sphere{});
   out += material_row() + "\n### [[points]]\n\n" + header();
   for (const auto& key : points_keys()) out += row(key, Points{});

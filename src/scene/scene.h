@@ -14,13 +14,12 @@
 #include "math/vec3.h"
 #include "scene/accelerator.h"
 #include "scene/number_array.h"
+#include "scene/texture.h"
 
 /// The authored scene: names, user units, nothing compiled.
 ///
 /// The member initialisers are the defaults documented in docs/scene-format.md, and their only definition.
 namespace orrery::scene {
-
-class EnvironmentImage;
 
 /// A rectangle of pixels.
 struct Window {
@@ -101,19 +100,25 @@ struct Render {
 
 struct Lambertian {
   Vec3d albedo{0.5, 0.5, 0.5};
+  TextureSlot albedo_texture = {};
 };
 /// The book's first diffuse material: directions uniform over the hemisphere, weighted by the albedo alone.
 struct Hemisphere {
   Vec3d albedo{0.5, 0.5, 0.5};
+  TextureSlot albedo_texture = {};
 };
 struct Metal {
   Vec3d albedo{0.5, 0.5, 0.5};
   double fuzz = 0;  ///< 0..1, radius of the sphere around the tip of the unit mirror direction
+  TextureSlot albedo_texture = {};
+  TextureSlot fuzz_texture = {};
 };
 enum class Fresnel { kSchlick, kExact, kNone };
 struct Dielectric {
   double ior = 1.5;
   Fresnel fresnel = Fresnel::kSchlick;
+  double fuzz = 0;  ///< 0..1, radius of the sphere around the tip of the unit direction of clear glass
+  TextureSlot fuzz_texture = {};
 };
 
 /// Emits the same radiance in all directions, on both sides, and reflects nothing.
@@ -121,6 +126,7 @@ struct Emitter {
   Vec3d radiance{1, 1, 1};
   double exposure = 0;           ///< stops
   std::string light_group = {};  ///< empty: the default group
+  TextureSlot radiance_texture = {};
 };
 
 using MaterialModel = std::variant<Lambertian, Hemisphere, Metal, Dielectric, Emitter>;

@@ -60,12 +60,35 @@ struct Table {
 };
 const std::vector<Table>& tables();
 
+/// What a texture stands for, which decides the type and range of its values.
+enum class TextureUse { kReflectance, kRadiance, kNumber };
+
+/// A type of texture: the keys that a material's key has in addition to `texture` if its value is a texture.
+struct TextureTypeKeys {
+  std::string name;
+  std::string doc;
+  TextureType type;
+  std::vector<Key<Texture>> keys;
+};
+const std::vector<TextureTypeKeys>& texture_types(TextureUse use);
+
+/// A key of a material whose value may be a texture.
+struct TexturedKey {
+  std::string name;
+  TextureUse use;
+  std::function<TextureSlot&(MaterialModel&)> at;
+
+  /// The texture; null if the key has a constant.
+  TextureSlot get(const MaterialModel& model) const { return at(const_cast<MaterialModel&>(model)); }
+};
+
 /// A type of material: the keys that [material.NAME] has in addition to `type`.
 struct MaterialType {
   std::string name;
   std::string doc;
   MaterialModel model;  ///< default values
   std::vector<Key<MaterialModel>> keys;
+  std::vector<TexturedKey> textured = {};  ///< those of the keys that may be textures
 };
 const std::vector<MaterialType>& material_types();
 

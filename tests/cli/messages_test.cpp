@@ -64,7 +64,7 @@ const Case kCases[] = {
     {"--version > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
     {"check good.toml > /dev/full", 74, "orrery: writing to standard output failed: No space left on device\n"},
     {"generate", 2,
-     "orrery: no command given; use one of final, cloud, env\n"
+     "orrery: no command given; use one of final, cloud, env, planet\n"
      "Try orrery generate --help.\n"},
     {"generate fianl -o a.toml", 2,
      "orrery: unknown command fianl; did you mean `final`?\n"
@@ -79,7 +79,7 @@ const Case kCases[] = {
     {"generate env sky -o a.exr --turbidity 0.5", 2,
      "orrery: --turbidity: must be a number from 1 to 10, not `0.5`\n"
      "Try orrery generate env --help.\n"},
-    {"generate env sky -o a.hdr", 2, "orrery: a.hdr: environments are written as EXR; name it, e.g. a.exr\n"},
+    {"generate env sky -o a.hdr", 2, "orrery: a.hdr: the image is written as EXR; name it, e.g. a.exr\n"},
     {"develop a.png -o b.png", 2, "orrery: a.png is already display-encoded; the input must be exr or hdr\n"},
     {"develop none.exr -o b.png", 66, "orrery: cannot open none.exr: No such file or directory\n"},
     {"compare none.exr none.exr", 66, "orrery: cannot open none.exr: No such file or directory\n"},

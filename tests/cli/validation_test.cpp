@@ -83,6 +83,12 @@ const Broken kBroken[] = {
      ": 2 errors"},
     {"AnImageBackgroundWithoutAFile", "[background]\ntype = \"image\"\n", "", 65,
      "error: background.file: type \"image\" needs an EXR or HDR file"},
+    {"AMissingTexture", "[material.m]\ntype = \"lambertian\"\nalbedo = { texture = \"image\", file = \"none.png\" }\n",
+     "", 66, ":16:38: error: material.m.albedo.file: cannot open none.png: No such file"},
+    {"ATruncatedTexture", "[material.m]\ntype = \"lambertian\"\nalbedo = { texture = \"image\", file = \"cut.exr\" }\n",
+     "", 65, ":16:38: error: material.m.albedo.file: cannot read image cut.exr: "},
+    {"ATextureOfAnUnknownType", "[material.m]\ntype = \"lambertian\"\nalbedo = { texture = \"wood\" }\n", "", 65,
+     ":16:22: error: material.m.albedo.texture is \"wood\"; must be one of checker, noise"},
     {"AMissingBackground", "[background]\ntype = \"image\"\nfile = \"none.exr\"\n", "", 66,
      ":16:8: error: background.file: cannot open none.exr: No such file"},
     {"APipeAsBackground", "[background]\ntype = \"image\"\nfile = \"pipe\"\n", "", 66,
@@ -316,6 +322,18 @@ TEST_F(CliValidation, ABackgroundImageIsNotOverwritten) {
     const Outcome r = run(std::string("render a.toml -q -o sky.exr") + frames);
     EXPECT_EQ(r.status, 2);
     EXPECT_TRUE(contains(r.err, "would overwrite sky.exr (background image)")) << r.err;
+  }
+  EXPECT_EQ(text_of(folder_ / "sky.exr"), before);
+}
+
+TEST_F(CliValidation, ATextureIsNotOverwritten) {
+  write("a.toml", std::string(kGoodScene) +
+                      "[material.m]\ntype = \"lambertian\"\nalbedo = { texture = \"image\", file = \"sky.exr\" }\n");
+  const std::string before = text_of(folder_ / "sky.exr");
+  for (const char* frames : {"", " --frames 1"}) {
+    const Outcome r = run(std::string("render a.toml -q -o sky.exr") + frames);
+    EXPECT_EQ(r.status, 2);
+    EXPECT_TRUE(contains(r.err, "would overwrite sky.exr (texture)")) << r.err;
   }
   EXPECT_EQ(text_of(folder_ / "sky.exr"), before);
 }

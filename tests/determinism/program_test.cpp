@@ -122,7 +122,8 @@ TEST_P(DeterminismProgram, OptionsThatMatterChangeTheImage) {
 
 INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                          testing::Values(StoredImage{"everything.toml", 0x3fa6a00f7e524967u},
-                                         StoredImage{"lights.toml", 0x9cffa6d0bed79097u}),
+                                         StoredImage{"lights.toml", 0x9cffa6d0bed79097u},
+                                         StoredImage{"textures.toml", 0xf986224e4a21d9f2u}),
                          [](const auto& instance) {
                            const std::string name = instance.param.scene;
                            return name.substr(0, name.find('.'));

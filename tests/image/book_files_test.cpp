@@ -49,9 +49,15 @@ TEST(ImageBookFiles, EverySceneNamesItsSectionOfTheBook) {
     EXPECT_EQ(text_of(file).rfind("# Ray Tracing in One Weekend, \"", 0), 0u) << file;
 }
 
+TEST(ImageBookFiles, EverySceneOfTheNextWeekNamesItsSectionOfTheBook) {
+  for (const fs::path& file : scene_files(kScenes / "next-week"))
+    EXPECT_EQ(text_of(file).rfind("# Ray Tracing: The Next Week, ", 0), 0u) << file;
+}
+
 TEST(ImageBookFiles, EverySceneNamesItsRenderCommand) {
-  for (const fs::path& file : scene_files(kScenes / "book"))
-    EXPECT_NE(text_of(file).find("orrery render " + file.filename().string() + " -o "), std::string::npos) << file;
+  for (const char* folder : {"book", "next-week"})
+    for (const fs::path& file : scene_files(kScenes / folder))
+      EXPECT_NE(text_of(file).find("orrery render " + file.filename().string() + " -o "), std::string::npos) << file;
 }
 
 TEST(ImageBookFiles, EverySceneIsShownInTheReadme) {
@@ -71,6 +77,23 @@ TEST(ImageBookFiles, FinalSceneMatchesGenerate) {
   EXPECT_TRUE(text_of(folder / "final.toml") == text_of(kScenes / "book/final.toml"))
       << "regenerate it: orrery generate final -o scenes/book/final.toml";
   fs::remove_all(folder);
+}
+
+TEST(ImageBookFiles, BouncingSpheresMatchGenerate) {
+  const fs::path folder = fs::path(testing::TempDir()) / "orrery-next-week-files", name = "01-bouncing-spheres.toml";
+  fs::create_directories(folder);
+  generate::FinalScene options;
+  options.moving = true;
+  generate::generate_final(options, folder / name);
+  EXPECT_TRUE(text_of(folder / name) == text_of(kScenes / "next-week" / name))
+      << "regenerate it: orrery generate final --moving -o scenes/next-week/01-bouncing-spheres.toml";
+  fs::remove_all(folder);
+}
+
+TEST(ImageBookFiles, EverySceneOfTheNextWeekIsInTheReadme) {
+  const std::string readme = text_of(kScenes / "README.md");
+  for (const fs::path& file : scene_files(kScenes / "next-week"))
+    EXPECT_NE(readme.find("(next-week/" + file.filename().string() + ")"), std::string::npos) << file;
 }
 
 }  // namespace

@@ -67,7 +67,8 @@ k::Surface<D> surface(D d, const Interaction& interaction) {
 }
 
 /// Fills x, y, z and alive with samples first .. first + as many as there is room for, a multiple of 16.
-void sample(const Interaction& interaction, std::uint32_t first, Directions& out) {
+template <bool kExtended>
+void sample_all(const Interaction& interaction, std::uint32_t first, Directions& out) {
   const hn::ScalableTag<double> d;
   using D = std::remove_const_t<decltype(d)>;
   const k::IdTag<D> du;
@@ -77,13 +78,20 @@ void sample(const Interaction& interaction, std::uint32_t first, Directions& out
     const auto name = hn::Iota(du, first + i);
     const auto u = k::random_at_vertex(d, {kernel::SamplerKind::kIndependent, 3}, hn::ShiftRight<8>(name),
                                        hn::And(name, hn::Set(du, 255)), 1, false);
-    const auto sampled = k::sample_bsdf(d, kAllFeatures, at, u);
+    const auto sampled = k::sample_bsdf<kExtended>(d, kAllFeatures, at, u);
     hn::StoreU(sampled.direction.x, d, &out.x[i]);
     hn::StoreU(sampled.direction.y, d, &out.y[i]);
     hn::StoreU(sampled.direction.z, d, &out.z[i]);
     hn::Store(hn::IfThenElseZero(sampled.alive, hn::Set(d, 1.0)), d, alive);
     for (std::size_t l = 0; l < hn::Lanes(d); ++l) out.alive[i + l] = alive[l] != 0;
   }
+}
+
+void sample(const Interaction& interaction, std::uint32_t first, Directions& out) {
+  sample_all<false>(interaction, first, out);
+}
+void sample_extended(const Interaction& interaction, std::uint32_t first, Directions& out) {
+  sample_all<true>(interaction, first, out);
 }
 
 /// Fills pdf and value, in lanes of T.
@@ -120,6 +128,7 @@ namespace orrery::test {
 namespace {
 
 HWY_EXPORT(sample);
+HWY_EXPORT(sample_extended);
 HWY_EXPORT(judge_double);
 HWY_EXPORT(judge_float);
 
@@ -287,6 +296,57 @@ TEST(StatisticalBsdf, DeltaMaterialsHaveNoDensity) {
     EXPECT_EQ(at.pdf, std::vector<double>(16, 0.0));
     EXPECT_EQ(at.value, std::vector<double>(16, 0.0));
   }
+}
+
+/// Means, over samples, of the cosine to an axis in the plane z = 0, its square, and the two components across it.
+struct Moments {
+  double count = 0, sums[4] = {};
+
+  void add(double axis_x, double axis_y, double x, double y, double z) {
+    const double c = x * axis_x + y * axis_y;
+    const double values[4] = {c, c * c, x * axis_y - y * axis_x, z};
+    ++count;
+    for (int k = 0; k < 4; ++k) sums[k] += values[k];
+  }
+};
+
+/// The lobes of rough glass have the shape of a fuzzy metal's, which the tests above verify.
+TEST(StatisticalBsdf, RoughGlassIsFuzzyAroundTheReflectedAndTheRefractedDirection) {
+  constexpr double kFuzz = 0.3, kCosine = 0.6, kSine = 0.8;
+  constexpr std::uint32_t kBatch = 1 << 14, kBatches = 64;
+  Directions batch(kBatch);
+  Moments metal, reflected, refracted;
+  const double across = kSine / 1.5, down = -std::sqrt(1 - across * across);
+  for (std::uint32_t n = 0; n < kBatches; ++n) {
+    ORRERY_BEST(sample)({MaterialKind::kMetal, kFuzz, kCosine}, n * kBatch, batch);
+    for (std::uint32_t i = 0; i < kBatch; ++i) metal.add(kSine, kCosine, batch.x[i], batch.y[i], batch.z[i]);
+    ORRERY_BEST(sample_extended)({MaterialKind::kDielectric, kFuzz, kCosine}, (kBatches + n) * kBatch, batch);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      ASSERT_TRUE(batch.alive[i]) << "both cones are clear of the surface";
+      if (batch.y[i] > 0) {
+        reflected.add(kSine, kCosine, batch.x[i], batch.y[i], batch.z[i]);
+      } else {
+        refracted.add(across, down, batch.x[i], batch.y[i], batch.z[i]);
+      }
+    }
+  }
+  const double total = double{kBatch} * kBatches, share = 0.04 + 0.96 * std::pow(1 - kCosine, 5);
+  EXPECT_NEAR(reflected.count / total, share, 4.5 * std::sqrt(share * (1 - share) / total));
+  for (const Moments& lobe : {reflected, refracted}) {
+    for (int k = 0; k < 4; ++k)
+      EXPECT_NEAR(lobe.sums[k] / lobe.count, metal.sums[k] / metal.count, 4.5 * kFuzz / std::sqrt(lobe.count)) << k;
+  }
+}
+
+TEST(StatisticalBsdf, RoughGlassAbsorbsWhatLeavesOnTheWrongSide) {
+  Directions batch(1 << 14);
+  ORRERY_BEST(sample_extended)({MaterialKind::kDielectric, 0.9, 0.3}, 0, batch);
+  int absorbed = 0;
+  for (std::size_t i = 0; i < batch.x.size(); ++i) absorbed += batch.alive[i] ? 0 : 1;
+  EXPECT_GT(absorbed, 500);
+  EXPECT_LT(absorbed, 8000);
+  ORRERY_BEST(sample_extended)({MaterialKind::kDielectric, 0, 0.3}, 0, batch);
+  EXPECT_EQ(std::count(batch.alive.begin(), batch.alive.end(), false), 0);
 }
 
 }  // namespace

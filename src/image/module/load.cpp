@@ -38,10 +38,13 @@ std::string oiio_version() { return module().oiio_version(); }
 
 film::Picture read(const std::filesystem::path& file) { return module().read(file); }
 
-MapHeader read_map_header(const std::filesystem::path& file) { return module().read_map_header(file); }
+MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats) {
+  return module().read_map_header(file, formats);
+}
 
-void read_map(const std::filesystem::path& file, const std::function<void(int row, float* rgb)>& take) {
-  module().read_map(file, take);
+void read_map(const std::filesystem::path& file, const std::function<void(int row, float* rgb)>& take,
+              MapFormats formats) {
+  module().read_map(file, take, formats);
 }
 
 WriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,

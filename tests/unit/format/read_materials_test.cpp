@@ -39,7 +39,8 @@ TEST(FormatReadMaterials, AKeyOfAnotherTypeNamesThatType) {
   EXPECT_EQ(
       files.diagnostics("[material.a]\ntype = \"lambertian\"\nalbedo = [1, 1, 1]\nfuzz = 0.5\n[material.b]\n"
                         "type = \"dielectric\"\nalbedo = [1, 1, 1]\n"),
-      "scene.toml:4:1: error: unknown key `fuzz` in material.a of type lambertian; `fuzz` belongs to metal\n"
+      "scene.toml:4:1: error: unknown key `fuzz` in material.a of type lambertian; `fuzz` belongs to metal, "
+      "dielectric\n"
       "    fuzz = 0.5\n"
       "    ^~~~\n"
       "scene.toml:7:1: error: unknown key `albedo` in material.b of type dielectric; `albedo` belongs to lambertian, "
@@ -85,6 +86,69 @@ TEST(FormatReadMaterials, AcceptsAnyNameAndUnusedMaterials) {
       names_of(files.read("[material.\"dark gold\"]\ntype = \"dielectric\"\n[material.\"\"]\ntype = \"dielectric\"\n")
                    .scene),
       (Names{"dark gold", ""}));
+}
+
+const scene::Texture& albedo_texture(const scene::Scene& scene) {
+  return *std::get<scene::Lambertian>(scene.materials.at(0).model).albedo_texture;
+}
+
+TEST(FormatReadMaterials, TexturesHaveTheirKeys) {
+  SceneFiles files;
+  const scene::Scene checker =
+      files
+          .read(
+              "[material.a]\ntype = \"lambertian\"\nalbedo = { texture = \"checker\", scale = 0.5, "
+              "even = [0.1, 0.2, 0.3], odd = [1, 0, 1] }\n")
+          .scene;
+  EXPECT_EQ(albedo_texture(checker).type, scene::TextureType::kChecker);
+  EXPECT_EQ(albedo_texture(checker).scale, 0.5);
+  EXPECT_EQ(albedo_texture(checker).low, (math::Vec3d{0.1, 0.2, 0.3}));
+  EXPECT_EQ(albedo_texture(checker).high, (math::Vec3d{1, 0, 1}));
+  const scene::Scene image = files
+                                 .read(
+                                     "[material.a.albedo]\ntexture = \"image\"\nfile = \"p.####.png\"\nrotation = 90\n"
+                                     "[material.a]\ntype = \"lambertian\"\n")
+                                 .scene;
+  EXPECT_EQ(albedo_texture(image).file, "p.0001.png");
+  EXPECT_EQ(albedo_texture(image).rotation, 90);
+  const scene::Scene fuzz = files
+                                .read(
+                                    "[material.a]\ntype = \"metal\"\nalbedo = [1, 1, 1]\n"
+                                    "fuzz = { texture = \"marble\", low = 0.1, high = 0.4, seed = 7 }\n")
+                                .scene;
+  const scene::Texture& marble = *std::get<scene::Metal>(fuzz.materials[0].model).fuzz_texture;
+  EXPECT_EQ(marble.low, (math::Vec3d{0.1, 0.1, 0.1}));
+  EXPECT_EQ(marble.seed, 7u);
+}
+
+TEST(FormatReadMaterials, AnOverrideChangesOrReplacesATexture) {
+  SceneFiles files;
+  const std::string text = "[material.a]\ntype = \"lambertian\"\nalbedo = { texture = \"noise\", scale = 4 }\n";
+  EXPECT_EQ(albedo_texture(files.read(text, {"material.a.albedo.scale=8"}).scene).scale, 8);
+  const scene::Scene plain = files.read(text, {"material.a.albedo=[1, 0, 0]"}).scene;
+  EXPECT_EQ(std::get<scene::Lambertian>(plain.materials[0].model).albedo_texture, nullptr);
+}
+
+TEST(FormatReadMaterials, MistakesInTexturesAreReportedOnce) {
+  SceneFiles files;
+  const std::string line = "albedo = { texture = \"checker\", scale = -1, evn = [0, 0, 0], odd = 0.5 }\n";
+  EXPECT_EQ(files.diagnostics("[material.a]\ntype = \"lambertian\"\n" + line),
+            "scene.toml:3:10: error: material.a.albedo needs `even`\n    " + line +
+                "             ^~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~\n"
+                "scene.toml:3:41: error: material.a.albedo.scale is -1; must be in 1e-18..1e+18\n    " +
+                line +
+                "                                            ^~\n"
+                "scene.toml:3:45: error: unknown key `evn` in material.a.albedo; did you mean `even`?\n    " +
+                line +
+                "                                                ^~~\n"
+                "scene.toml:3:68: error: material.a.albedo.odd must be three numbers like [0, 1, 0], not a "
+                "floating-point number\n    " +
+                line + "                                                                       ^~~\n");
+  EXPECT_EQ(files.diagnostics("[material.a]\ntype = \"lambertian\"\nalbedo = { scale = 1 }\n"),
+            "scene.toml:3:10: error: material.a.albedo needs `texture`; one of checker, noise, turbulence, marble, "
+            "image\n"
+            "    albedo = { scale = 1 }\n"
+            "             ^~~~~~~~~~~~~\n");
 }
 
 }  // namespace

@@ -4,15 +4,29 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "scene/schema.h"
+#include "scene/textures.h"
 #include "support/scene_files.h"
 
 namespace orrery::format {
 namespace {
 
 using support::SceneFiles;
+
+scene::TextureSlot texture(scene::TextureType type) {
+  scene::Texture out;
+  out.type = type;
+  out.scale = 1.0 / 3;
+  out.seed = 4000000000u;
+  out.low = {0.1, 0.1, 0.1};
+  out.high = {2.0 / 3, 2.0 / 3, 2.0 / 3};
+  out.file = "a \"b\".png";
+  out.rotation = -90;
+  return std::make_shared<const scene::Texture>(out);
+}
 
 /// A scene without default values, with numbers of many decimals.
 scene::Scene odd_scene() {
@@ -22,10 +36,14 @@ scene::Scene odd_scene() {
   s.background = {scene::BackgroundType::kConstant, {0.1, 0.2, 0.3}, {4, 5, 6}, {7, 8, 9}};
   s.render = {3, 4, 4000000000u, scene::Precision::kBook, scene::Shading::kFlat, scene::Accelerator::kList};
   s.color.space = "a \"b\" \\ \xC3\xBC\n";
-  s.materials = {{"z", scene::Lambertian{{0.1, 0.2, 1.0 / 3}}},
-                 {"dark gold", scene::Metal{{0.4, 0.5, 0.6}, 1.0 / 7}},
-                 {"", scene::Dielectric{1e-6, scene::Fresnel::kExact}},
-                 {"a.b", scene::Hemisphere{{0, 0.5, 1}}}};
+  s.materials = {
+      {"z", scene::Lambertian{{0.1, 0.2, 1.0 / 3}}},
+      {"dark gold", scene::Metal{{0.4, 0.5, 0.6}, 1.0 / 7}},
+      {"", scene::Dielectric{1e-6, scene::Fresnel::kExact}},
+      {"a.b", scene::Hemisphere{{0, 0.5, 1}}},
+      {"checkered", scene::Lambertian{{0.5, 0.5, 0.5}, texture(scene::TextureType::kChecker)}},
+      {"map",
+       scene::Metal{{0.5, 0.5, 0.5}, 0, texture(scene::TextureType::kImage), texture(scene::TextureType::kMarble)}}};
   s.spheres = {{{1, -2.5, 1e-300}, -1.0 / 3, 1, "left \"one\""}, {{1e18, 0, -0.0}, 1e-30, 3, ""}};
   return s;
 }
@@ -42,6 +60,15 @@ TEST(FormatWriteScene, ReadsBackToTheSameScene) {
     ASSERT_EQ(read.materials[i].model.index(), s.materials[i].model.index());
     for (const auto& key : scene::material_types()[s.materials[i].model.index()].keys)
       EXPECT_EQ(key.text(read.materials[i].model), key.text(s.materials[i].model)) << key.name;
+  }
+  const auto written = scene::textures(s), again = scene::textures(read);
+  ASSERT_EQ(again.size(), written.size());
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    EXPECT_EQ(again[i].key, written[i].key);
+    ASSERT_EQ(again[i].texture->type, written[i].texture->type);
+    const auto& types = scene::texture_types(written[i].use);
+    for (const auto& key : types[static_cast<std::size_t>(written[i].texture->type)].keys)
+      EXPECT_EQ(key.text(*again[i].texture), key.text(*written[i].texture)) << key.name;
   }
   ASSERT_EQ(read.spheres.size(), s.spheres.size());
   for (std::size_t i = 0; i < s.spheres.size(); ++i) {

@@ -69,7 +69,8 @@ TEST_F(MeasureBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
 }
 
 TEST_F(MeasureBenchScene, MeasuresTheFeaturesThatTheSceneLacks) {
-  EXPECT_EQ(names(bench_scene(request()).features), (std::vector<std::string>{"thin lens", "hemisphere", "lights"}));
+  EXPECT_EQ(names(bench_scene(request()).features),
+            (std::vector<std::string>{"thin lens", "hemisphere", "lights", "textures"}));
 }
 
 TEST_F(MeasureBenchScene, RequiredFeaturesAreThoseOfTheScene) {

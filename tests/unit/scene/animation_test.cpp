@@ -47,7 +47,7 @@ TEST(SceneAnimation, FindsTargetsByName) {
   for (const char* name :
        {"", ".", "camera", "camera.", "camera.nothing", "image.width", "render.samples", "sphere[8].radius",
         "sphere[-1].radius", "sphere[0]", "sphere[0.center", "sphere.no.radius", "sphere[0].name",
-        "material.glass.fuzz", "material.glass.fresnel", "material[0].albedo", "points[0].radius"})
+        "material.glass.albedo", "material.glass.fresnel", "material[0].albedo", "points[0].radius"})
     EXPECT_FALSE(find_animated(scene, name)) << name;
   for (const std::string& name : animated_names(scene)) EXPECT_TRUE(find_animated(scene, name)) << name;
 }

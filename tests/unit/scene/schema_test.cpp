@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -81,6 +82,41 @@ TEST(SceneSchema, EachMaterialKeySetsItsOwnMember) {
 TEST(SceneSchema, MaterialTypesAreInVariantOrder) {
   ASSERT_EQ(material_types().size(), std::variant_size_v<MaterialModel>);
   for (std::size_t i = 0; i < material_types().size(); ++i) EXPECT_EQ(material_types()[i].model.index(), i);
+}
+
+TEST(SceneSchema, TextureTypesAreInTheOrderOfTheirEnumeration) {
+  for (const TextureUse use : {TextureUse::kReflectance, TextureUse::kRadiance, TextureUse::kNumber}) {
+    const auto& types = texture_types(use);
+    ASSERT_EQ(types.size(), 5u);
+    for (std::size_t i = 0; i < types.size(); ++i) EXPECT_EQ(static_cast<std::size_t>(types[i].type), i);
+  }
+}
+
+TEST(SceneSchema, EachTextureKeySetsItsOwnMember) {
+  for (const TextureUse use : {TextureUse::kReflectance, TextureUse::kRadiance, TextureUse::kNumber}) {
+    for (const TextureTypeKeys& type : texture_types(use)) {
+      for (const auto& key : type.keys) {
+        Texture texture;
+        key.set(texture, other_value(key));
+        for (const auto& other : type.keys)
+          EXPECT_EQ(other.text(texture) == other.text(Texture{}), &other != &key) << type.name << "." << key.name;
+      }
+    }
+  }
+}
+
+TEST(SceneSchema, TexturedKeysAreKeysOfTheirType) {
+  for (const MaterialType& type : material_types()) {
+    for (const TexturedKey& textured : type.textured) {
+      const auto is_it = [&](const auto& key) { return key.name == textured.name; };
+      EXPECT_TRUE(std::any_of(type.keys.begin(), type.keys.end(), is_it)) << type.name << "." << textured.name;
+      MaterialModel model = type.model;
+      EXPECT_EQ(textured.get(model), nullptr);
+      textured.at(model) = std::make_shared<const Texture>();
+      for (const TexturedKey& other : type.textured)
+        EXPECT_EQ(other.get(model) != nullptr, &other == &textured) << type.name << "." << textured.name;
+    }
+  }
 }
 
 TEST(SceneSchema, DefaultsAreInsideTheirOwnRange) {

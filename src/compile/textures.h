@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "kernel/texture.h"
+#include "math/vec3.h"
+#include "scene/environment_image.h"
+#include "scene/texture.h"
+
+namespace orrery::compile {
+
+/// The textures of a compiled scene, and the images that they share. Copies share the images.
+class TextureStore {
+ public:
+  /// Adds a texture whose values are multiplied by `factor`.
+  ///
+  /// Result     its index; kernel::MaterialTextures::kNone for an image that is not loaded
+  std::uint32_t add(const scene::Texture& texture, math::Vec3d factor = {1, 1, 1});
+  /// Adds a copy of a texture whose values are multiplied by `factor`.
+  std::uint32_t add_scaled(std::uint32_t index, math::Vec3d factor);
+
+  /// Sets the textures of the next material.
+  void add_material(const kernel::MaterialTextures& textures) { materials_.push_back(textures); }
+  const kernel::MaterialTextures& material(std::size_t index) const { return materials_[index]; }
+
+  const std::vector<kernel::Texture>& textures() const noexcept { return textures_; }
+  /// One entry per material.
+  const std::vector<kernel::MaterialTextures>& materials() const noexcept { return materials_; }
+
+  /// The memory of the images.
+  std::uint64_t bytes() const noexcept;
+
+ private:
+  /// A loaded image as the kernel sees it, turned.
+  struct Image {
+    std::shared_ptr<const scene::EnvironmentImage> texels;
+    kernel::Environment view;
+  };
+
+  std::vector<kernel::Texture> textures_;
+  std::vector<kernel::MaterialTextures> materials_;
+  std::vector<std::shared_ptr<const Image>> images_;
+};
+
+/// The mean of a texture, by which its material is sampled: of an image over the sphere, of other textures halfway
+/// between their two values.
+math::Vec3d mean_of(const scene::Texture& texture);
+
+}  // namespace orrery::compile

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/load_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "display/color_space.h"
+#include "image/read_map.h"
+#include "job/memory.h"
+#include "job/text.h"
+
+namespace orrery::job {
+namespace {
+
+/// The colour space of integers that declare none.
+constexpr const char* kEncodedSpace = "srgb_texture";
+
+/// White may come out of a conversion brighter by this factor.
+constexpr float kSlack = 1 + 1e-5F;
+
+/// Values of texels that were replaced.
+struct Replaced {
+  std::uint64_t nan = 0, infinite = 0, negative = 0, out_of_range = 0;
+};
+
+class Loader {
+ public:
+  explicit Loader(const MapRequest& request) : request_(request) {}
+
+  LoadedMap load() {
+    try {
+      const image::MapHeader header = image::read_map_header(request_.file, request_.formats);
+      out_.width = header.width;
+      out_.height = header.height;
+      out_.bytes = compile::environment_bytes(header.width, header.height, request_.sampling);
+      if (header.width != 2 * header.height)
+        warn(request_.file_key, fmt::format("{} x {} texels; a latitude-longitude map is twice as wide as high",
+                                            header.width, header.height));
+      const display::PixelConversion convert = conversion(header);
+      if (has_errors() || !fits()) return std::move(out_);
+      read(header, convert);
+    } catch (const base::Error& error) {
+      if (error.kind() != base::ErrorKind::kMissingInput && error.kind() != base::ErrorKind::kBadData) throw;
+      fail(request_.file_key, error);
+    } catch (const std::bad_alloc&) {
+      throw base::Error(base::ErrorKind::kNoMemory, "there is not enough memory for " + request_.file.string());
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void warn(const std::string& key, std::string text) {
+    out_.diagnostics.push_back({base::Severity::kWarning, key, std::move(text)});
+  }
+  void fail(const std::string& key, const base::Error& error) {
+    const bool is_missing = error.kind() == base::ErrorKind::kMissingInput;
+    out_.diagnostics.push_back({base::Severity::kError, key, error.what(),
+                                is_missing ? base::ErrorKind::kMissingInput : base::ErrorKind::kBadData});
+  }
+  bool has_errors() const {
+    return std::any_of(out_.diagnostics.begin(), out_.diagnostics.end(),
+                       [](const auto& d) { return d.severity == base::Severity::kError; });
+  }
+
+  /// The space that the file declares; empty if it declares none.
+  std::string declared_space(const image::MapHeader& header) {
+    if (!header.color_interop_id.empty()) return header.color_interop_id;
+    if (header.chromaticities) {
+      if (const display::KnownSpace* known = display::known_space(*header.chromaticities)) return known->interop_id;
+      warn(request_.file_key, "its chromaticities are those of no known colour space and are ignored");
+    }
+    return header.color_space;
+  }
+
+  display::PixelConversion conversion(const image::MapHeader& header) {
+    if (!request_.is_color) return {};
+    const std::string& working = request_.working_space;
+    const std::string& chosen = request_.color_space;
+    const std::string declared = declared_space(header);
+    if (!declared.empty()) {
+      try {
+        out_.color_space = declared;
+        display::PixelConversion convert = display::pixel_conversion(request_.ocio_config, declared, working);
+        const display::KnownSpace* const known = display::known_space(declared);
+        if (!chosen.empty() && chosen != declared && (known == nullptr || known != display::known_space(chosen)))
+          warn(request_.space_key, fmt::format("is ignored: {} declares the colour space `{}`", name(), declared));
+        return convert;
+      } catch (const base::Error& error) {
+        if (error.kind() != base::ErrorKind::kUsage) throw;
+        warn(request_.file_key, fmt::format("declares a colour space that cannot be used: {}", error.what()));
+      }
+    }
+    out_.color_space = !chosen.empty() ? chosen : header.is_encoded ? kEncodedSpace : request_.default_space;
+    try {
+      return display::pixel_conversion(request_.ocio_config, out_.color_space, working);
+    } catch (const base::Error& error) {
+      fail(chosen.empty() ? request_.file_key : request_.space_key, error);
+      return {};
+    }
+  }
+
+  std::string name() const { return request_.file.filename().string(); }
+
+  bool fits() {
+    const std::uint64_t allowed =
+        request_.memory_limit > 0 ? request_.memory_limit : available_memory().value_or(out_.bytes);
+    if (out_.bytes <= allowed) return true;
+    const std::string text = fmt::format(
+        "an image of {} x {} texels needs about {}, and {}", out_.width, out_.height, bytes_text(out_.bytes),
+        request_.memory_limit > 0 ? "--memory-limit allows " + bytes_text(allowed) : bytes_text(allowed) + " is free");
+    if (!request_.skips_large) throw base::Error(base::ErrorKind::kNoMemory, request_.file.string() + ": " + text);
+    warn(request_.file_key, text + "; its pixels were not read");
+    return false;
+  }
+
+  void read(const image::MapHeader& header, const display::PixelConversion& convert) {
+    const auto image = std::make_shared<scene::EnvironmentImage>(header.width, header.height);
+    const std::size_t values = 3 * static_cast<std::size_t>(header.width);
+    const auto take = [&](int y, float* rgb) {
+      for (std::size_t i = 0; i < values; ++i) {
+        if (rgb[i] >= 0 && std::isfinite(rgb[i])) continue;
+        ++(std::isnan(rgb[i]) ? replaced_.nan : std::isinf(rgb[i]) ? replaced_.infinite : replaced_.negative);
+        rgb[i] = 0;
+      }
+      if (convert) convert(rgb, values / 3);
+      float* const row = image->row(y);
+      for (std::size_t i = 0; i < values; ++i) {
+        const bool is_good = rgb[i] >= 0 && std::isfinite(rgb[i]);
+        if (!is_good || rgb[i] > request_.largest * kSlack) ++replaced_.out_of_range;
+        row[i] = is_good ? std::min(rgb[i], request_.largest) : 0.0F;
+      }
+    };
+    image::read_map(request_.file, take, request_.formats);
+    out_.image = image;
+    if (replaced_.nan + replaced_.infinite + replaced_.negative > 0)
+      warn(request_.file_key, fmt::format("{} values are NaN, {} infinite and {} negative; they count as 0",
+                                          replaced_.nan, replaced_.infinite, replaced_.negative));
+    if (replaced_.out_of_range > 0)
+      warn(request_.file_key, fmt::format("{} values are out of range{} and were clamped", replaced_.out_of_range,
+                                          request_.is_color ? " in " + request_.working_space : ""));
+  }
+
+  const MapRequest& request_;
+  Replaced replaced_;
+  LoadedMap out_;
+};
+
+}  // namespace
+
+LoadedMap load_map(const MapRequest& request) { return Loader(request).load(); }
+
+}  // namespace orrery::job

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compile/environment.h"
+#include "image/read_map.h"
+#include "scene/environment_image.h"
+#include "scene/validate.h"
+
+namespace orrery::job {
+
+/// A latitude-longitude map to read: an image background or a texture.
+struct MapRequest {
+  std::filesystem::path file;
+  std::string file_key, space_key;  ///< keys of the scene, for diagnostics
+  image::MapFormats formats = image::MapFormats::kSceneLinear;
+  std::string color_space;                            ///< that the scene gives the file; empty: none
+  std::string default_space;                          ///< of scene-linear files
+  std::string working_space;                          ///< of the result
+  bool is_color = true;                               ///< false: data, which are not converted
+  float largest = std::numeric_limits<float>::max();  ///< values above are clamped
+  std::string ocio_config;                            ///< in the form of display::Settings
+  compile::EnvironmentSampling sampling = compile::EnvironmentSampling::kNone;
+  std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
+  bool skips_large = false;        ///< an image that does not fit into memory is a warning and is not read
+};
+
+/// An image that was read, and what was found out about its file.
+struct LoadedMap {
+  int width = 0, height = 0;  ///< texels
+  std::string color_space;    ///< of the file; empty for data
+  std::uint64_t bytes = 0;    ///< estimated memory of the texels and of the tables to sample them
+  std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
+  std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
+};
+
+/// Reads a map and converts it to the working space. The file is in the space that it declares (colorInteropID,
+/// chromaticities, or the name that OpenImageIO's tools write), else in that of `color_space`, else in sRGB for
+/// integers and in `default_space` for scene-linear files.
+///
+/// NaN, infinite and negative values become 0, values above `largest` that, and they are counted in a warning.
+///
+/// Errors     those of the file and of colour spaces become diagnostics; base::Error(kNoMemory) if the image does not
+///            fit into memory, before its pixels are read
+LoadedMap load_map(const MapRequest& request);
+
+}  // namespace orrery::job

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "job/load_map.h"
+#include "scene/scene.h"
+
+namespace orrery::job {
+
+/// An image texture that was read.
+struct LoadedTexture {
+  std::string key;  ///< "material.earth.albedo"
+  LoadedMap map;
+  bool is_shared = false;  ///< an earlier texture has the same image
+};
+
+/// The images of the last scene that was loaded, for the frames of a sequence. A file that has changed since is read
+/// again.
+struct TextureCache {
+  std::map<std::string, LoadedMap> maps;  ///< by file, its time, and the conversion
+};
+
+/// Reads the files of all image textures, each once, and converts them to the working space. Reflectances and numbers
+/// are clamped to 0..1. The memory limit holds for all of them together.
+///
+/// `scene_file`   names of textures are relative to its folder
+/// `ocio_config`  in the form of display::Settings
+/// `cache`        null: none
+/// Result         in the order of scene::image_textures
+/// Errors         as load_map
+std::vector<LoadedTexture> load_textures(const std::filesystem::path& scene_file, const std::string& ocio_config,
+                                         std::uint64_t memory_limit, bool skips_large, TextureCache* cache,
+                                         const scene::Scene& scene);
+
+/// Gives the textures of a scene the images that load_textures has read.
+void set_textures(const std::vector<LoadedTexture>& loaded, scene::Scene& scene);
+
+}  // namespace orrery::job

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/extended_tile.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/extended_tile.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// After foreach_target:
+#include <hwy/highway.h>
+
+#include "kernel/render_tile-inl.h"
+#include "math/dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+template <Precision kPrecision, bool kRecords>
+constexpr Loop kExtended{kPrecision, kRecords, true, true, true};
+
+template <Precision kPrecision>
+RenderTile instance(bool records) {
+  using D = hn::ScalableTag<double>;
+  return records ? render_tile<D, kExtended<kPrecision, true>, PathStream>
+                 : render_tile<D, kExtended<kPrecision, false>, PathStream>;
+}
+
+RenderTile extended_instance(bool records, Precision precision) {
+  return precision == Precision::kBook ? instance<Precision::kBook>(records) : instance<Precision::kExact>(records);
+}
+RenderTileFast extended_fast_instance(bool records) {
+  using D = hn::ScalableTag<float>;
+  return records ? render_tile<D, kExtended<Precision::kFast, true>, PathStreamFast>
+                 : render_tile<D, kExtended<Precision::kFast, false>, PathStreamFast>;
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orrery::kernel {
+
+HWY_EXPORT(extended_instance);
+HWY_EXPORT(extended_fast_instance);
+
+RenderTile extended_tile_function(bool records, Precision precision) {
+  return ORRERY_BEST(extended_instance)(records, precision);
+}
+RenderTileFast extended_tile_fast_function(bool records) { return ORRERY_BEST(extended_fast_instance)(records); }
+
+}  // namespace orrery::kernel
+#endif

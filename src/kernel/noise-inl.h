@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gradient noise. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_NOISE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_NOISE_INL_H_
+#undef ORRERY_KERNEL_NOISE_INL_H_
+#else
+#define ORRERY_KERNEL_NOISE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kernel/gather-inl.h"
+#include "kernel/random-inl.h"
+#include "kernel/texture.h"
+#include "math/vec3-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): one room's lanes in another's text
+
+/// The lattice repeats after this many cells along each axis.
+inline constexpr std::uint32_t kLatticePeriod = 0x80000000u;
+
+/// A position in the noise's lattice, by axis. Doubling it is exact, so every octave is as accurate as the first.
+template <class D>
+struct LatticePoint {
+  hn::Vec<hn::RebindToUnsigned<D>> cell[3];  ///< modulo kLatticePeriod
+  hn::Vec<D> part[3];                        ///< 0..1 within the cell
+};
+
+/// A whole number modulo kLatticePeriod.
+///
+/// Result     some cell for NaN and infinity
+template <class D>
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> lattice_cell(D d, hn::Vec<D> whole) {
+  using T = hn::TFromD<D>;
+  const hn::RebindToUnsigned<D> du;
+  const auto periods = whole * hn::Set(d, static_cast<T>(1.0 / kLatticePeriod));
+  const auto period = hn::Set(d, static_cast<T>(kLatticePeriod));
+  const auto mask = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kLatticePeriod - 1));
+  if constexpr (sizeof(T) == 8) {
+    const auto rest = hn::NegMulAdd(hn::Floor(periods), period, whole);
+    return hn::And(hn::BitCast(du, rest + hn::Set(d, 0x1p52)), mask);  // the low bits of 2^52 + n are n
+  } else {
+    // Towards zero: floats do not hold 2^31 - 1.
+    const hn::RebindToSigned<D> di;
+    const auto rest = hn::NegMulAdd(hn::Trunc(periods), period, whole);
+    return hn::And(hn::BitCast(du, hn::ConvertTo(di, rest)), mask);
+  }
+}
+
+/// The lattice position of frequency (base + rest). Both products keep their precision, however far `base` is.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LatticePoint<D> lattice_point(D d, const Vec3<V>& base, const Vec3<V>& rest, V frequency) {
+  LatticePoint<D> out;
+  const hn::RebindToUnsigned<D> du;
+  const auto mask = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kLatticePeriod - 1));
+  const auto along = [&](int axis, V from, V to) {
+    const V product = from * frequency;
+    const V lost = hn::MulSub(from, frequency, product);
+    const V whole = hn::Floor(product);
+    const V beyond = hn::MulAdd(to, frequency, (product - whole) + lost);
+    const V more = hn::Floor(beyond);
+    out.cell[axis] = hn::And(lattice_cell(d, whole) + lattice_cell(d, more), mask);
+    out.part[axis] = beyond - more;
+  };
+  along(0, base.x, rest.x);
+  along(1, base.y, rest.y);
+  along(2, base.z, rest.z);
+  return out;
+}
+
+template <class D>
+HWY_INLINE void double_frequency(D d, LatticePoint<D>& at) {
+  const hn::RebindToUnsigned<D> du;
+  const auto mask = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kLatticePeriod - 1));
+  for (int k = 0; k < 3; ++k) {
+    const auto twice = at.part[k] + at.part[k];
+    const auto more = hn::Floor(twice);
+    at.cell[k] = hn::And(at.cell[k] + at.cell[k] + lattice_cell(d, more), mask);
+    at.part[k] = twice - more;
+  }
+}
+
+/// Scrambles 32-bit numbers: a change of any bit changes about half of the bits of the result.
+///
+/// Result     in 64-bit lanes, the high halves are zero
+template <class DU, class V = hn::Vec<DU>>
+HWY_INLINE V scrambled(DU du, V x) {
+  const auto low = [&](V v) {
+    return sizeof(hn::TFromD<DU>) == 8 ? hn::And(v, hn::Set(du, static_cast<hn::TFromD<DU>>(0xffffffffu))) : v;
+  };
+  // The finalizer of MurmurHash3.
+  x = hn::Xor(x, hn::ShiftRight<16>(x));
+  x = low(multiply_wide(du, x, 0x85EBCA6Bu).low);
+  x = hn::Xor(x, hn::ShiftRight<13>(x));
+  x = low(multiply_wide(du, x, 0xC2B2AE35u).low);
+  return hn::Xor(x, hn::ShiftRight<16>(x));
+}
+
+/// Perlin's gradient noise with the book's cubic interpolation: zero at lattice points, and smooth.
+///
+/// Result     between -0.87 and 0.87 (sqrt(3)/2)
+/// Reference  perlin1985; shirley2024b, "Perlin Noise"
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE V gradient_noise(D d, const Texture& texture, const LatticePoint<D>& at) {
+  using T = hn::TFromD<D>;
+  using Id = hn::TFromD<hn::RebindToUnsigned<D>>;
+  const hn::RebindToUnsigned<D> du;
+  const V one = hn::Set(d, T(1)), two = hn::Set(d, T(2)), three = hn::Set(d, T(3));
+  const auto mask = hn::Set(du, static_cast<Id>(kLatticePeriod - 1)), step = hn::Set(du, Id{1});
+  V weight[3][2];
+  for (int k = 0; k < 3; ++k) {
+    weight[k][1] = at.part[k] * at.part[k] * hn::NegMulAdd(two, at.part[k], three);
+    weight[k][0] = one - weight[k][1];
+  }
+  const auto corner = [&](int axis, unsigned side) {
+    return side == 0 ? at.cell[axis] : hn::And(at.cell[axis] + step, mask);
+  };
+  const auto from_corner = [&](int axis, unsigned side) { return side == 0 ? at.part[axis] : at.part[axis] - one; };
+  V sum = hn::Zero(d);
+  HWY_ALIGN Id row[hn::MaxLanes(D())];
+  for (unsigned z = 0; z < 2; ++z) {
+    const auto hash_z = scrambled(du, hn::Xor(corner(2, z), hn::Set(du, static_cast<Id>(texture.seed))));
+    for (unsigned y = 0; y < 2; ++y) {
+      const auto hash_yz = scrambled(du, hn::Xor(hash_z, corner(1, y)));
+      const V weight_yz = weight[2][z] * weight[1][y];
+      for (unsigned x = 0; x < 2; ++x) {
+        const auto hash = scrambled(du, hn::Xor(hash_yz, corner(0, x)));
+        hn::Store(hn::And(hash, hn::Set(du, static_cast<Id>(kGradients - 1))), du, row);
+        V gradient[4];
+        gather4(
+            d, [&](std::size_t i) { return texture.gradients + 4 * static_cast<std::size_t>(row[i]); }, gradient);
+        const V slope = hn::MulAdd(gradient[2], from_corner(2, z),
+                                   hn::MulAdd(gradient[1], from_corner(1, y), gradient[0] * from_corner(0, x)));
+        sum = hn::MulAdd(weight_yz * weight[0][x], slope, sum);
+      }
+    }
+  }
+  return sum;
+}
+
+/// The magnitude of a sum of octaves of noise, each with twice the frequency and half the weight of the one before.
+///
+/// Result     below 1.72
+/// Reference  shirley2024b, "Introducing Turbulence"
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V turbulence(D d, const Texture& texture, LatticePoint<D> at) {
+  using T = hn::TFromD<D>;
+  V sum = hn::Zero(d);
+  T weight = 1;
+  for (int octave = 0; octave < kOctaves; ++octave) {
+    sum = hn::MulAdd(gradient_noise(d, texture, at), hn::Set(d, weight), sum);
+    weight *= static_cast<T>(0.5);
+    double_frequency(d, at);
+  }
+  return hn::Abs(sum);
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

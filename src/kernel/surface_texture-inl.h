@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures of materials at hits and at light samples. Compiled once per instruction set.
+#if defined(ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_
+#undef ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_
+#else
+#define ORRERY_KERNEL_SURFACE_TEXTURE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kernel/surface-inl.h"
+#include "kernel/texture-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orrery::kernel::HWY_NAMESPACE {
+
+/// The textures of spheres' materials, by lane.
+template <class D>
+struct TextureIndices {
+  static constexpr std::size_t kMax = hn::MaxLanes(D());
+  std::uint32_t albedo[kMax], fuzz[kMax], radiance[kMax];
+  bool has_albedo = false, has_fuzz = false, has_radiance = false;
+
+  /// Domain     scene.textures is not null
+  HWY_INLINE TextureIndices(D d, const SceneView& scene, hn::Vec<IdTag<D>> spheres, hn::Mask<D> lanes) {
+    using T = hn::TFromD<D>;
+    HWY_ALIGN hn::TFromD<IdTag<D>> id[kMax];
+    HWY_ALIGN T is_set[kMax];
+    hn::Store(spheres, IdTag<D>(), id);
+    hn::Store(hn::IfThenElseZero(lanes, hn::Set(d, T(1))), d, is_set);
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      const MaterialTextures of =
+          is_set[i] != T(0) ? scene.material_textures[scene.sphere_materials[id[i]]] : MaterialTextures{};
+      albedo[i] = of.albedo;
+      fuzz[i] = of.fuzz;
+      radiance[i] = of.radiance;
+      has_albedo = has_albedo || of.albedo != MaterialTextures::kNone;
+      has_fuzz = has_fuzz || of.fuzz != MaterialTextures::kNone;
+      has_radiance = has_radiance || of.radiance != MaterialTextures::kNone;
+    }
+  }
+};
+
+/// Replaces albedo and fuzz at hits by those of textures.
+///
+/// `hit`      lanes with a hit
+template <class D, Precision kPrecision, class V = hn::Vec<D>>
+HWY_NOINLINE void apply_textures(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+                                 hn::Mask<D> hit, V distance, Lookup<D>& at) {
+  const TextureIndices<D> index(d, scene, hits, hit);
+  if (!index.has_albedo && !index.has_fuzz) return;
+  Surface<D>& surface = at.surface;
+  const auto outward = select(surface.from_outside, surface.normal, negated(surface.normal));
+  const auto point = texture_point<D, kPrecision>(d, ray, at.sphere, surface.offset, outward, distance);
+  if (index.has_albedo) at.albedo = replaced_by_textures(d, scene.textures, index.albedo, point, at.albedo);
+  if (index.has_fuzz)
+    surface.fuzz =
+        replaced_by_textures(d, scene.textures, index.fuzz, point, {surface.fuzz, surface.fuzz, surface.fuzz}).x;
+}
+
+/// The radiance of emitters, with textures, at sampled points.
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, hn::Vec<IdTag<D>> spheres,
+                                       const TexturePoint<D>& point, const Vec3<V>& radiance) {
+  const TextureIndices<D> index(d, scene, spheres, hn::FirstN(d, hn::Lanes(d)));
+  if (!index.has_radiance) return radiance;
+  return replaced_by_textures(d, scene.textures, index.radiance, point, radiance);
+}
+
+/// The radiance of emitters, with textures, at hits.
+///
+/// `lanes`    hits of emitters
+/// `times`    of the rays; read only where kMoves
+template <class D, Precision kPrecision, bool kMoves, class V = hn::Vec<D>>
+HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
+                                       hn::Mask<D> lanes, V distance, const hn::TFromD<D>* times,
+                                       const Vec3<V>& radiance) {
+  const TextureIndices<D> index(d, scene, hits, lanes);
+  if (!index.has_radiance) return radiance;
+  const auto sphere = load_spheres<D, kMoves>(d, scene, hits, times);
+  const auto at = hit_point<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, hits == ray.self), distance);
+  const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, distance);
+  return replaced_by_textures(d, scene.textures, index.radiance, point, radiance);
+}
+
+}  // namespace orrery::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

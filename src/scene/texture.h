@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "math/vec3.h"
+
+namespace orrery::scene {
+
+class EnvironmentImage;
+
+enum class TextureType { kChecker, kNoise, kTurbulence, kMarble, kImage };
+
+/// A texture of a material. Where it stands for a number, such as `fuzz`, all components of a colour are equal.
+struct Texture {
+  TextureType type = TextureType::kChecker;
+  double scale = 1;           ///< checker: edge of a cell, scene units; noise: lattice cells per scene unit
+  math::Vec3d low{0, 0, 0};   ///< checker: even cells; noise: at 0
+  math::Vec3d high{1, 1, 1};  ///< checker: odd cells; noise: at 1
+  std::uint32_t seed = 1;     ///< noise
+  // Image.
+  std::filesystem::path file = {};                     ///< latitude-longitude map, relative to the scene file
+  std::string color_space = {};                        ///< empty: by the file's attribute or format
+  double rotation = 0;                                 ///< degrees about +y
+  std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`; null until loaded
+};
+
+/// A texture that replaces a constant of a material; null: the constant. Shared by copies of the scene, and never
+/// modified.
+using TextureSlot = std::shared_ptr<const Texture>;
+
+}  // namespace orrery::scene

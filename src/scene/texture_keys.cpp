@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of textures.
+#include <limits>
+
+#include "scene/key_builders.h"
+#include "scene/limits.h"
+#include "scene/schema.h"
+
+namespace orrery::scene {
+namespace {
+
+using Keys = std::vector<Key<Texture>>;
+
+/// A value of a texture: a colour or, in the first component, a number.
+Key<Texture> value(TextureUse use, const char* name, const char* doc, Vec3d Texture::*member) {
+  if (use == TextureUse::kNumber) {
+    Key<Texture> key =
+        number<Texture>(name, {0, 1}, {"", doc}, [member](Texture& t) -> double& { return (t.*member).x; });
+    key.set = [member](Texture& t, const Value& v) {
+      const double x = std::get<double>(v);
+      t.*member = {x, x, x};
+    };
+    return key;
+  }
+  const Range range = use == TextureUse::kRadiance ? Range{0, kBrightestBackground} : Range{0, 1};
+  return vector<Texture>(name, range, {"scene-linear", doc}, [member](Texture& t) -> Vec3d& { return t.*member; });
+}
+
+Keys noise_keys(TextureUse use, const char* scale) {
+  return {number<Texture>("scale", {kSmallestScale, kLargestScale}, {"per scene unit", scale},
+                          [](Texture& t) -> double& { return t.scale; }),
+          integer<Texture>("seed", {0, std::numeric_limits<std::uint32_t>::max()}, {"", "Seed of the noise"},
+                           [](Texture& t) -> std::uint32_t& { return t.seed; }),
+          value(use, "low", "Value where the noise is 0", &Texture::low),
+          value(use, "high", "Value where the noise is 1", &Texture::high)};
+}
+
+std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
+  const char* const spectrum = "Number of cells of the noise per scene unit";
+  return {
+      {"checker",
+       "Cubes in world space of two alternating colours; a corner of a cube is at the origin",
+       TextureType::kChecker,
+       {number<Texture>("scale", {kSmallestScale, kLargestScale}, {"scene units", "Edge of a cube"},
+                        [](Texture& t) -> double& { return t.scale; }),
+        required(value(use, "even", "Value of the cube at 0..`scale` in x, y and z, and of every other cube",
+                       &Texture::low)),
+        required(value(use, "odd", "Value of the cubes that share a face with those", &Texture::high))}},
+      {"noise", "Perlin noise in world space, smooth", TextureType::kNoise, noise_keys(use, spectrum)},
+      {"turbulence", "The magnitude of a sum of seven octaves of noise, at most 1", TextureType::kTurbulence,
+       noise_keys(use, spectrum)},
+      {"marble", "A wave along z that turbulence distorts", TextureType::kMarble,
+       noise_keys(use, "Angular frequency of the wave, radians per scene unit. The turbulence has one cell per unit")},
+      {"image",
+       "A latitude-longitude map around the sphere",
+       TextureType::kImage,
+       {required(text<Texture>(
+            "file",
+            {"",
+             "Image file, relative to the scene file: EXR, HDR, PNG, JPEG, TIFF, ... with +y at the top, +x at the "
+             "centre and +z halfway to the left edge. May contain a frame pattern such as `####`",
+             "12 bytes per texel"},
+            [](Texture& t) -> std::filesystem::path& { return t.file; })),
+        text<Texture>("color_space",
+                      {"",
+                       "Colour space of `file`, if the file does not declare one. Default: `srgb_texture` for 8-bit "
+                       "and 16-bit integers, else `color.space`. Not used for numbers"},
+                      [](Texture& t) -> std::string& { return t.color_space; }),
+        number<Texture>("rotation", {-kLargestRotation, kLargestRotation},
+                        {"degrees", "Rotation about +y; 90 turns +z to +x"},
+                        [](Texture& t) -> double& { return t.rotation; })}}};
+}
+
+}  // namespace
+
+const std::vector<TextureTypeKeys>& texture_types(TextureUse use) {
+  static const std::vector<TextureTypeKeys> all[] = {make_texture_types(TextureUse::kReflectance),
+                                                     make_texture_types(TextureUse::kRadiance),
+                                                     make_texture_types(TextureUse::kNumber)};
+  return all[static_cast<std::size_t>(use)];
+}
+
+}  // namespace orrery::scene

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/schema.h"
+
+namespace orrery::scene {
+
+/// A texture of a scene and the key that it is the value of.
+struct NamedTexture {
+  std::string key;  ///< "material.earth.albedo"
+  TextureUse use;
+  const Texture* texture;  ///< valid until the scene's material is modified
+};
+
+/// All textures of a scene, in the order of its materials.
+std::vector<NamedTexture> textures(const Scene& scene);
+
+/// Those whose type is image.
+std::vector<NamedTexture> image_textures(const Scene& scene);
+
+/// Replaces every texture of a scene by what `modify` makes of a copy.
+void modify_textures(Scene& scene, const std::function<void(Texture& texture, TextureUse use)>& modify);
+
+}  // namespace orrery::scene

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/load_textures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "film/picture.h"
+#include "image/write.h"
+#include "support/exr_file.h"
+#include "support/temp_dir.h"
+
+namespace orrery::job {
+namespace {
+
+using support::ExrFile;
+
+class JobLoadTextures : public testing::Test {
+ protected:
+  void SetUp() override { ::unsetenv("OCIO"); }
+
+  /// Adds a material whose albedo is this file.
+  void add(const std::string& name, const std::string& color_space = {}) {
+    scene_.materials.push_back(
+        {"m" + std::to_string(scene_.materials.size()), scene::Lambertian{{1, 1, 1}, map(name, color_space)}});
+  }
+  static scene::TextureSlot map(const std::string& name, const std::string& color_space = {}) {
+    scene::Texture texture;
+    texture.type = scene::TextureType::kImage;
+    texture.file = name;
+    texture.color_space = color_space;
+    return std::make_shared<const scene::Texture>(texture);
+  }
+  /// Writes an image of one colour with encoded values.
+  void write_flat(const std::string& name, float value) {
+    film::EncodedPicture picture;
+    picture.width = 64;
+    picture.height = 32;
+    picture.values.assign(3 * 64 * 32, static_cast<std::uint16_t>(std::lround(value * 255)));
+    for (std::size_t i = 0; i < picture.values.size(); i += 7) ++picture.values[i];  // does not compress to nothing
+    image::write_encoded(folder_ / name, picture, "test");
+  }
+  void truncate(const std::string& name, std::uintmax_t bytes) { std::filesystem::resize_file(folder_ / name, bytes); }
+  std::vector<LoadedTexture> load(TextureCache* cache = nullptr, std::uint64_t limit = 0) {
+    return load_textures(folder_ / "scene.toml", "", limit, false, cache, scene_);
+  }
+  static std::string text(const LoadedTexture& texture) {
+    std::string out;
+    for (const scene::SceneDiagnostic& d : texture.map.diagnostics) out += d.key + ": " + d.text + "\n";
+    return out;
+  }
+
+  support::TempDir folder_;
+  scene::Scene scene_;
+};
+
+TEST_F(JobLoadTextures, EncodedFilesAreSrgbUnlessTheSceneSaysOtherwise) {
+  write_flat("a.png", 0.5F);
+  add("a.png");
+  add("a.png", "raw");
+  const auto loaded = load();
+  ASSERT_EQ(loaded.size(), 2u);
+  EXPECT_EQ(text(loaded[0]), "");
+  ASSERT_NE(loaded[0].map.image, nullptr);
+  EXPECT_NEAR(loaded[0].map.image->row(3)[4], 0.2140, 0.003) << "sRGB 0.5";
+  EXPECT_EQ(loaded[0].map.color_space, "srgb_texture");
+}
+
+TEST_F(JobLoadTextures, NumbersAreNotConverted) {
+  write_flat("a.png", 0.5F);
+  scene_.materials.push_back({"m", scene::Metal{{1, 1, 1}, 0, nullptr, map("a.png")}});
+  const auto loaded = load();
+  ASSERT_EQ(loaded.size(), 1u);
+  ASSERT_NE(loaded[0].map.image, nullptr);
+  EXPECT_NEAR(loaded[0].map.image->row(3)[4], 0.5, 0.003);
+}
+
+TEST_F(JobLoadTextures, ReflectancesAboveOneAreClampedAndReported) {
+  support::write_bytes(folder_ / "a.exr", ExrFile{2, 1, {0.5F, 2, 0.5F, 1, 1, 3}}.bytes());
+  add("a.exr");
+  const auto loaded = load();
+  EXPECT_EQ(text(loaded[0]), "material.m0.albedo.file: 2 values are out of range in lin_rec709 and were clamped\n");
+  EXPECT_EQ(loaded[0].map.image->row(0)[1], 1);
+  scene::Emitter lamp;
+  lamp.radiance_texture = map("a.exr");
+  scene_.materials = {{"lamp", lamp}};
+  EXPECT_EQ(load()[0].map.image->row(0)[5], 3) << "radiance may exceed 1";
+}
+
+TEST_F(JobLoadTextures, AFileThatIsMissingIsAnError) {
+  add("none.png");
+  const auto loaded = load();
+  ASSERT_EQ(loaded[0].map.diagnostics.size(), 1u);
+  EXPECT_EQ(loaded[0].map.diagnostics[0].kind, base::ErrorKind::kMissingInput);
+  EXPECT_NE(text(loaded[0]).find("material.m0.albedo.file: "), std::string::npos);
+  EXPECT_NE(text(loaded[0]).find("No such file"), std::string::npos);
+}
+
+TEST_F(JobLoadTextures, ATruncatedFileIsAnErrorInEveryFormat) {
+  for (const std::string name : {"a.png", "a.jpg", "a.tif", "a.ppm"}) {
+    write_flat(name, 0.7F);
+    const auto size = std::filesystem::file_size(folder_ / name);
+    scene_.materials.clear();
+    add(name);
+    EXPECT_EQ(text(load()[0]), "") << name;
+    truncate(name, size - size / 4);
+    const auto loaded = load();
+    EXPECT_EQ(loaded[0].map.image, nullptr) << name;
+    EXPECT_NE(text(loaded[0]).find(name), std::string::npos) << name << ": " << text(loaded[0]);
+  }
+}
+
+TEST_F(JobLoadTextures, AnUnknownFormatIsAnError) {
+  support::write_bytes(folder_ / "a.webp", "RIFF");
+  add("a.webp");
+  EXPECT_NE(text(load()[0]).find("a texture must be an exr, hdr, png, tiff, jpeg or ppm file"), std::string::npos);
+}
+
+TEST_F(JobLoadTextures, AFileIsReadOnceForAllItsUses) {
+  write_flat("a.png", 0.5F);
+  add("a.png");
+  add("a.png");
+  TextureCache cache;
+  const auto loaded = load(&cache);
+  EXPECT_EQ(loaded[0].map.image, loaded[1].map.image);
+  EXPECT_TRUE(loaded[1].is_shared);
+  EXPECT_EQ(load(&cache)[0].map.image, loaded[0].map.image) << "by the next frame, too";
+}
+
+TEST_F(JobLoadTextures, TheMemoryLimitHoldsForAllOfThem) {
+  write_flat("a.png", 0.5F);
+  write_flat("b.png", 0.5F);
+  add("a.png");
+  EXPECT_NO_THROW(load(nullptr, 64 * 32 * 12));
+  add("b.png");
+  EXPECT_THROW(load(nullptr, 64 * 32 * 12 * 3 / 2), base::Error);
+}
+
+TEST_F(JobLoadTextures, TheSceneGetsTheImages) {
+  write_flat("a.png", 0.5F);
+  add("a.png");
+  const auto loaded = load();
+  set_textures(loaded, scene_);
+  EXPECT_EQ(std::get<scene::Lambertian>(scene_.materials[0].model).albedo_texture->image, loaded[0].map.image);
+}
+
+}  // namespace
+}  // namespace orrery::job
