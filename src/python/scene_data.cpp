@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "python/scene_data.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
+#include "base/output_file.h"
 #include "data/table_file.h"
 #include "data/write_table.h"
 #include "format/named_files.h"
