@@ -214,7 +214,7 @@ TEST_F(PlotPlot, ChosenFramesOnly) {
   EXPECT_EQ(made.points.color_range->high, 2);
   EXPECT_EQ(made.frames, (std::vector<int>{2, 3}));
   options.frames = {2, 4};
-  EXPECT_EQ(error(), "--frames: there is no frame 4; " + (folder / "a.dump").string() + " has 3 frames");
+  EXPECT_EQ(error(), "--frames: there is no frame 4; " + (folder_ / "a.dump").string() + " has 3 frames");
   options.frames = {0};
   EXPECT_EQ(error(), "there is no frame 0; a.dump has 3 frames");
   options.frames.clear();
