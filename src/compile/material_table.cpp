@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compile/material_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "compile/textures.h"
+#include "scene/layers.h"
+
+namespace orrery::compile {
+namespace {
+
+using math::Vec3d;
+
+/// Returns R0 of Schlick's approximation, the reflectance at normal incidence, for a ratio of refractive indices.
+double normal_reflectance(double eta) {
+  const double r = (1 - eta) / (1 + eta);
+  return r * r;
+}
+
+kernel::Material compile_model(const scene::Lambertian& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kLambertian;
+  set(out.albedo, m.albedo);
+  return out;
+}
+kernel::Material compile_model(const scene::Hemisphere& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kHemisphere;
+  set(out.albedo, m.albedo);
+  return out;
+}
+kernel::Material compile_model(const scene::Metal& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kMetal;
+  set(out.albedo, m.albedo);
+  out.fuzz = m.fuzz;
+  return out;
+}
+kernel::Material compile_model(const scene::Dielectric& m) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kDielectric;
+  out.eta[0] = 1 / m.ior;
+  out.eta[1] = m.ior;
+  out.r0[0] = normal_reflectance(out.eta[0]);
+  out.r0[1] = normal_reflectance(out.eta[1]);
+  out.fuzz = m.fuzz;
+  switch (m.fresnel) {
+    case scene::Fresnel::kSchlick: out.fresnel = kernel::FresnelKind::kSchlick; break;
+    case scene::Fresnel::kExact: out.fresnel = kernel::FresnelKind::kExact; break;
+    case scene::Fresnel::kNone: out.fresnel = kernel::FresnelKind::kNone; break;
+  }
+  return out;
+}
+
+kernel::Material compile_model(const scene::Emitter&) {
+  kernel::Material out;
+  out.kind = kernel::MaterialKind::kEmitter;
+  set(out.albedo, {0, 0, 0});
+  return out;
+}
+
+kernel::Emission emission_of(const scene::MaterialModel& model, CompiledScene& compiled) {
+  const auto* emitter = std::get_if<scene::Emitter>(&model);
+  if (emitter == nullptr) return {};
+  kernel::Emission out;
+  set(out.radiance, emitter->radiance * stops_to_factor(emitter->exposure));
+  out.group = light_group(compiled, emitter->light_group);
+  return out;
+}
+
+/// Compiles the textures of a material, and sets the constants that they replace to their means.
+void set_textures(const scene::MaterialModel& model, CompiledScene& compiled, kernel::Material& material,
+                  kernel::Emission& emission) {
+  TextureStore& store = compiled.textures;
+  kernel::MaterialTextures out;
+  std::visit(
+      [&](const auto& m) {
+        if constexpr (requires { m.albedo_texture; })
+          if (m.albedo_texture) {
+            out.albedo = store.add(*m.albedo_texture);
+            set(material.albedo, mean_of(*m.albedo_texture));
+          }
+        if constexpr (requires { m.fuzz_texture; })
+          if (m.fuzz_texture) {
+            out.fuzz = store.add(*m.fuzz_texture);
+            material.fuzz = mean_of(*m.fuzz_texture).x;
+          }
+        if constexpr (requires { m.radiance_texture; })
+          if (m.radiance_texture) {
+            const double factor = stops_to_factor(m.exposure);
+            out.radiance = store.add(*m.radiance_texture, {factor, factor, factor});
+            set(emission.radiance, mean_of(*m.radiance_texture) * factor);
+          }
+      },
+      model);
+  store.add_material(out);
+  if (!store.textures().empty() || (material.kind == kernel::MaterialKind::kDielectric && material.fuzz > 0))
+    compiled.features.extended = true;
+}
+
+/// Returns the material for a sphere whose normal points inward: its inside and outside are exchanged.
+kernel::Material turned_inside_out(kernel::Material m) {
+  std::swap(m.eta[0], m.eta[1]);
+  std::swap(m.r0[0], m.r0[1]);
+  return m;
+}
+
+}  // namespace
+
+double stops_to_factor(double stops) { return static_cast<double>(std::exp2(static_cast<long double>(stops))); }
+
+std::uint16_t light_group(CompiledScene& compiled, const std::string& name) {
+  if (name == scene::kDefaultLightGroup) return 0;
+  std::vector<std::string>& names = compiled.light_groups;
+  const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  if (index == names.size()) names.push_back(name);
+  return static_cast<std::uint16_t>(index);
+}
+
+std::uint32_t MaterialTable::index(std::uint32_t authored, bool inside_out) {
+  std::uint32_t& at = compiled_[authored][inside_out ? 1 : 0];
+  if (at != kNone) return at;
+  kernel::Material m =
+      std::visit([](const auto& model) { return compile_model(model); }, scene_.materials[authored].model);
+  // Only dielectrics have two different sides; other materials are the same from both.
+  if (inside_out && m.kind != kernel::MaterialKind::kDielectric) return at = index(authored, false);
+  if (inside_out) m = turned_inside_out(m);
+  at = static_cast<std::uint32_t>(out_.materials.size());
+  kernel::Emission emission = emission_of(scene_.materials[authored].model, out_);
+  set_textures(scene_.materials[authored].model, out_, m, emission);
+  out_.materials.push_back(m);
+  out_.emission.push_back(emission);
+  if (m.kind == kernel::MaterialKind::kHemisphere) out_.features.hemisphere = true;
+  return at;
+}
+
+std::uint32_t MaterialTable::colored_index(std::uint32_t authored, bool inside_out, std::size_t points,
+                                           std::uint16_t color, Vec3d rgb) {
+  const std::uint32_t plain = index(authored, inside_out);
+  if (out_.materials[plain].kind == kernel::MaterialKind::kDielectric) return plain;  // has no colour
+  const std::uint64_t key = (std::uint64_t{plain} << 32 | points << 16) | color;
+  const auto [at, is_new] = colored_.try_emplace(key, static_cast<std::uint32_t>(out_.materials.size()));
+  if (!is_new) return at->second;
+  kernel::Material m = out_.materials[plain];
+  kernel::Emission e = out_.emission[plain];
+  kernel::MaterialTextures textures = out_.textures.material(plain);
+  if (m.kind == kernel::MaterialKind::kEmitter) {
+    for (int k = 0; k < 3; ++k) e.radiance[k] *= k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z;
+    if (textures.radiance != kernel::MaterialTextures::kNone)
+      textures.radiance = out_.textures.add_scaled(textures.radiance, rgb);
+  } else {
+    set(m.albedo, rgb);
+    textures.albedo = kernel::MaterialTextures::kNone;
+  }
+  out_.materials.push_back(m);
+  out_.emission.push_back(e);
+  out_.textures.add_material(textures);
+  return at->second;
+}
+
+}  // namespace orrery::compile

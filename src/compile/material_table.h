@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "compile/compiled_scene.h"
+#include "math/vec3.h"
+#include "scene/scene.h"
+
+namespace orrery::compile {
+
+inline void set(double (&to)[3], math::Vec3d from) {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
+}
+
+/// Returns 2^stops.
+///
+/// Precision  rounded from long double, so that it does not depend on the math library
+double stops_to_factor(double stops);
+
+/// Returns the number of a light group, and adds the group if it is new.
+std::uint16_t light_group(CompiledScene& compiled, const std::string& name);
+
+/// Compiles materials on first use, so that unused ones are left out.
+class MaterialTable {
+ public:
+  /// Domain     `scene` and `compiled` outlive it
+  MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
+      : scene_(scene), out_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}
+
+  /// Returns the index of a material for spheres whose normals point outward or inward.
+  std::uint32_t index(std::uint32_t authored, bool inside_out);
+
+  /// Returns the index of a material whose colour is replaced by one of a palette.
+  ///
+  /// `points`   index of the points table that the palette belongs to
+  std::uint32_t colored_index(std::uint32_t authored, bool inside_out, std::size_t points, std::uint16_t color,
+                              math::Vec3d rgb);
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  const scene::Scene& scene_;
+  CompiledScene& out_;
+  std::vector<std::array<std::uint32_t, 2>> compiled_;
+  std::unordered_map<std::uint64_t, std::uint32_t> colored_;  ///< by plain material, points table and colour
+};
+
+}  // namespace orrery::compile
