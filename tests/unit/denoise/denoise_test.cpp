@@ -155,7 +155,7 @@ TEST(DenoiseDenoise, LightLayersStillAddUpToTheBeauty) {
   EXPECT_EQ(denoise(picture).layers.size(), 7U);
   denoise(beauty_alone);
   for (const std::string end : {".R", ".G", ".B"}) {
-    const std::vector<float>& beauty = values(picture, end.substr(1));
+    const std::vector<float> beauty = values(picture, end.substr(1));
     EXPECT_EQ(beauty, values(beauty_alone, end.substr(1))) << "the weights are those of the beauty alone";
     const auto expect_sum = [&](const std::vector<float>& whole, const std::vector<std::string>& layers) {
       for (std::size_t i = 0; i < kPixels; ++i) {
