@@ -210,6 +210,7 @@ void add_render_options(Command& command, RenderOptions& options, bool allows_ra
   command
       .add_option("--preview", options.preview,
                   "Show the image while it is rendered: tev, tev:HOST:PORT, terminal, or a .png file to rewrite")
+      ->check([](std::string& text) { return std::string(text.empty() ? "must not be empty" : ""); })
       ->type_name("WHERE");
   command.add_option("--stats", options.batch.job.outputs.statistics, "Write statistics of the render as JSON")
       ->type_name("FILE");

@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -103,6 +104,11 @@ Report filter(film::Picture& picture) {
   const LightLayers lights = find_light_layers(picture);
   const bool is_complete = are_complete(picture, lights);
   Report report{lights.names, planes.missing, !planes.guides.empty(), 0};
+  std::array<bool, 3> is_positive{};  // no value is negative; NaN counts as none
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<float>& beauty = picture.planes[lights.channels[c].beauty].values;
+    is_positive[c] = std::none_of(beauty.begin(), beauty.end(), [](float v) { return v < 0; });
+  }
   Tiles tiles(width, height);
   const std::vector<PaddedPlane> guides =
       planes.guides.empty() ? std::vector<PaddedPlane>() : filtered_guides(planes, width, height, tiles);
@@ -127,7 +133,8 @@ Report filter(film::Picture& picture) {
         if (*planes.valid.at(static_cast<int>(to % static_cast<std::size_t>(width)),
                              static_cast<int>(to / static_cast<std::size_t>(width))) == 0)
           return;
-        const float beauty = worker.pixels[from];
+        // The regression may overshoot below zero.
+        const float beauty = is_positive[c] ? std::max(worker.pixels[from], 0.0F) : worker.pixels[from];
         picture.planes[channel.beauty].values[to] = beauty;
         if (filtered.empty()) return;
         for (std::size_t i = 0; i < filtered.size(); ++i) worker.cells[i] = static_cast<double>(filtered[i][from]);

@@ -76,33 +76,28 @@ LightLayers find_light_layers(const film::Picture& picture) {
 }
 
 void round_to_sum(std::vector<double>& cells, float beauty, bool is_complete) {
-  const auto whole = static_cast<double>(beauty);
+  const double sign = beauty < 0 ? -1 : 1, whole = sign * static_cast<double>(beauty);
   if (whole == 0 || !std::isfinite(whole) || cells.empty()) {
     std::fill(cells.begin(), cells.end(), 0.0);
     return;
   }
-  if (whole > 0) {
-    double sum = 0;
-    for (double& cell : cells) sum += cell = std::max(cell, 0.0);
-    // Light that the regression took below zero in one layer is missing in the others.
-    if (sum > whole || (is_complete && sum > 0))
-      for (double& cell : cells) cell *= whole / sum;
-    if (sum == 0 && is_complete) cells.front() = whole;
-  } else if (is_complete) {
-    double sum = 0;
-    for (const double cell : cells) sum += cell;
-    cells.back() += whole - sum;
-  }
+  // Light that the regression took below zero in one layer is missing in the others. Without cells of the other sign
+  // no sum exceeds the beauty, whose last bit therefore suffices for all of them.
+  double sum = 0;
+  for (double& cell : cells) sum += cell = std::max(sign * cell, 0.0);
+  if (sum > whole || (is_complete && sum > 0))
+    for (double& cell : cells) cell *= whole / sum;
+  if (sum == 0 && is_complete) cells.front() = whole;
   const double last_bit = std::ldexp(1.0, std::ilogb(whole) - 23), units = whole / last_bit;
   const auto is_lit = [](double cell) { return cell != 0; };
   const auto last = std::find_if(cells.rbegin(), cells.rend(), is_lit);
-  double sum = 0, so_far = 0;
+  double so_far = 0;
+  sum = 0;
   for (double& cell : cells) {
     sum += cell;
-    double next = std::nearbyint(sum / last_bit);
-    if (whole > 0) next = std::clamp(next, so_far, units);
+    double next = std::clamp(std::nearbyint(sum / last_bit), so_far, units);
     if (is_complete && last != cells.rend() && &cell >= &*last) next = units;
-    cell = (next - so_far) * last_bit;
+    cell = sign * (next - so_far) * last_bit;
     so_far = next;
   }
 }

@@ -105,6 +105,11 @@ void rename(toml::node_view<toml::node> file, const Renamed& renamed) {
 void rename_files(toml::table& root, const Renamed& renamed) {
   rename(root["color"]["config"], renamed);
   rename(root["background"]["file"], renamed);
+  if (toml::table* const materials = root["material"].as_table())
+    for (auto&& [name, node] : *materials)
+      if (toml::table* const material = node.as_table())
+        for (auto&& [key, value] : *material)
+          if (toml::table* const texture = value.as_table()) rename((*texture)["file"], renamed);
   toml::array* const points = root["points"].as_array();
   for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
     rename(root["points"][i]["file"], renamed);

@@ -55,7 +55,12 @@ bool read_end(OIIO::ImageInput& in, int part, const OIIO::ImageSpec& spec) {
     OIIO::DeepData row;
     return in.read_native_deep_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, row);
   }
-  std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
+  const int begin = spec.tile_width == 0 ? end - 1 : end - 1 - (spec.height - 1) % spec.tile_height;
+  std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels) *
+                         static_cast<std::size_t>(end - begin));
+  if (spec.tile_width != 0)
+    return in.read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, 0, spec.nchannels,
+                         OIIO::TypeDesc::FLOAT, row.data());
   return in.read_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data());
 }
 

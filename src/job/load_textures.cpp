@@ -52,6 +52,12 @@ std::vector<LoadedTexture> load_textures(const fs::path& scene_file, const std::
   std::map<std::string, LoadedMap> maps;
   std::uint64_t bytes = 0;
   for (const scene::NamedTexture& named : scene::image_textures(scene)) {
+    if (named.texture->file.empty()) {
+      out.push_back({named.key, {}, true});
+      out.back().map.diagnostics.push_back(
+          {base::Severity::kError, named.key + ".file", "texture \"image\" needs an image file"});
+      continue;
+    }
     MapRequest request = request_of(named, scene_file.parent_path(), ocio_config, scene);
     const std::string name = name_of(request);
     if (const auto same = maps.find(name); same != maps.end()) {

@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "base/error.h"
+#include "base/frames.h"
 
 namespace orrery::preview {
 namespace {
@@ -53,6 +54,9 @@ bool is_png(const std::filesystem::path& file) {
 Target parse_target(const std::string& text) {
   if (text == "tev") return {TargetKind::kTev, kTevHost, kTevPort, {}};
   if (text == "terminal") return {TargetKind::kTerminal, {}, {}, {}};
+  if (base::has_frame_pattern(text))
+    throw base::Error(base::ErrorKind::kUsage,
+                      "--preview: " + text + " has a frame pattern; all frames share one preview, so write one name");
   if (is_png(text)) return {TargetKind::kFile, {}, {}, text};
   if (text.starts_with("tev:")) return tev_at(text.substr(4));
   refuse("`" + text + "` is not a preview");

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 /// Names a file relative to another folder. Absolute names stay.
 std::string moved(const std::string& name, const fs::path& from, const fs::path& to) {
   if (fs::path(name).is_absolute()) return name;
-  const fs::path old_folder = fs::absolute(from).lexically_normal(), folder = fs::absolute(to).lexically_normal();
+  const auto absolute = [](const fs::path& folder) { return fs::absolute(folder / "").lexically_normal(); };
+  const fs::path old_folder = absolute(from.empty() ? "." : from), folder = absolute(to.empty() ? "." : to);
   return old_folder == folder ? name : (old_folder / name).lexically_normal().lexically_relative(folder).string();
 }
 

@@ -54,6 +54,18 @@ TEST_F(CliDenoise, SkipExistingKnowsWhetherAnImageIsDenoised) {
   EXPECT_NE(run(render + " --denoise").err.find("skipped"), std::string::npos);
 }
 
+TEST_F(CliDenoise, FilesInTilesAreRewrittenInTiles) {
+  ASSERT_EQ(
+      run("render good.toml -q --samples 8 --layers halves -o rows.exr --type float --width 70 --height 37").status, 0);
+  ASSERT_EQ(std::system(("oiiotool '" + (folder_ / "rows.exr").string() + "' --tile 16 16 -o '" +
+                         (folder_ / "tiles.exr").string() + "'")
+                            .c_str()),
+            0);
+  ASSERT_EQ(run("denoise rows.exr -o a.exr -q").status, 0);
+  EXPECT_EQ(run("denoise tiles.exr -o b.exr -q").status, 0);
+  EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0").status, 0);
+}
+
 TEST_F(CliDenoise, MissingLayersAreNamedAndBadInputIsRejected) {
   ASSERT_EQ(run("render good.toml -q --samples 8 -o plain.exr").status, 0);
   const Outcome plain = run("denoise plain.exr -o a.exr");

@@ -28,6 +28,16 @@ TEST(PreviewTarget, KnowsTheTerminalAndPngFiles) {
   EXPECT_EQ(parse_target("tev:9000.png").kind, TargetKind::kFile);
 }
 
+TEST(PreviewTarget, AFrameIsNoPreview) {
+  try {
+    parse_target("p.##.png");
+    ADD_FAILURE();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
+    EXPECT_NE(std::string(error.what()).find("frame pattern"), std::string::npos);
+  }
+}
+
 TEST(PreviewTarget, RejectsEverythingElse) {
   for (const char* text : {"", "Terminal", "p.exr", "tev:", "tev::9000", "tev:desk:", "tev:desk:0", "tev:desk:65536",
                            "tev:desk:9x", "tev:::1", "tev:[::1", "tev:[::1]9", "tev2"}) {
