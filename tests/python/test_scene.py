@@ -224,6 +224,19 @@ class Files(FolderTest):
         self.assertEqual(sorted(os.listdir("out")), ["scene.toml"])
         self.assertEqual(beauty(orrery.load("out/scene.toml")), beauty(scene))
 
+    def test_textures_and_data_files_move_with_the_scene(self):
+        with open("points.csv", "w") as file:
+            file.write("x,y,z\n0,0,-2\n")
+        small_scene(positions()).render(8, 4, samples=1).write("map.png")
+        with open("here.toml", "w") as file:
+            file.write(SCENE + '[material.map]\ntype = "lambertian"\nalbedo = { texture = "image", file = "map.png" }\n'
+                               '[[points]]\nfile = "points.csv"\nradius = 1\nmaterial = "map"\n')
+        os.makedirs("there")
+        scene = orrery.load("here.toml")  # a name without a folder
+        scene.save("there/scene.toml")
+        moved = orrery.load("there/scene.toml")
+        self.assertTrue(np.array_equal(moved.render(*SIZE).beauty, scene.render(*SIZE).beauty))
+
     def test_no_input_is_replaced(self):
         scene = small_scene(positions())
         scene.save("scene.toml")
