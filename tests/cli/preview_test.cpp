@@ -108,6 +108,7 @@ TEST_F(CliPreview, ViewersThatHangLeaveOrAreMissingAreNoError) {
 }
 
 TEST_F(CliPreview, RejectsBadRequestsBeforeAnyFileIsTouched) {
+  ::setenv("TERM", "xterm", 1);  // services have none, which would be the first complaint
   const std::string before = text_of(folder_ / "good.toml");
   write("cloud.csv", "x,y,z\n0,0,0\n");
   for (const auto& [arguments, status, text] : std::vector<std::tuple<std::string, int, std::string>>{
@@ -139,6 +140,7 @@ TEST_F(CliPreview, PlotHasAPreview) {
 }
 
 TEST_F(CliPreview, TerminalsShowTheImageAsTheyCan) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   const std::vector<const char*> words = {"render", "good.toml", "-o", "a.png", "--preview", "terminal"};
   struct Case {
     const char* answers;
@@ -160,6 +162,7 @@ TEST_F(CliPreview, TerminalsShowTheImageAsTheyCan) {
 }
 
 TEST_F(CliPreview, TerminalsWithoutColoursAreRefused) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   const std::vector<const char*> words = {"render", "good.toml", "-o", "a.png", "--preview", "terminal"};
   for (const std::vector<std::string>& variables :
        std::vector<std::vector<std::string>>{{"TERM=dumb"}, {"TERM=xterm", "NO_COLOR=1"}}) {
@@ -171,6 +174,7 @@ TEST_F(CliPreview, TerminalsWithoutColoursAreRefused) {
 }
 
 TEST_F(CliPreview, SignalsLeaveTheTerminalUsable) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   // Interrupted while the terminal has not answered, and while the image is drawn and the window is resized.
   for (const char* wait_for : {"\033[c", "\0338"}) {
     const bool is_drawn = std::string(wait_for) == "\0338";
@@ -198,6 +202,7 @@ TEST_F(CliPreview, SignalsLeaveTheTerminalUsable) {
 }
 
 TEST_F(CliPreview, ASecondSignalRestoresTheTerminal) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal;  // does not answer, so that the signals arrive while echo is off
   const termios before = terminal.mode();
   bool sent = false;
@@ -212,6 +217,7 @@ TEST_F(CliPreview, ASecondSignalRestoresTheTerminal) {
 }
 
 TEST_F(CliPreview, ATerminalThatDoesNotReadStopsNoRender) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal("\033[?62;4c");
   bool is_stopped = false;
   const std::vector<const char*> words = {"render",   "good.toml", "-o",        "a.png", "-q",        "--width", "640",

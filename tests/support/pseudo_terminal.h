@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <termios.h>
@@ -14,6 +15,19 @@
 #include <utility>
 
 namespace orrery::test {
+
+/// False where the system has no pseudo-terminals, as in a root without /dev/pts.
+inline bool has_pseudo_terminals() {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  if (master < 0) return false;
+  const bool is_usable = grantpt(master) == 0 && unlockpt(master) == 0 && access(ptsname(master), R_OK | W_OK) == 0;
+  close(master);
+  return is_usable;
+}
+
+/// Skips a test that needs a PseudoTerminal where there is none.
+#define ORRERY_NEEDS_PSEUDO_TERMINAL() \
+  if (!orrery::test::has_pseudo_terminals()) GTEST_SKIP() << "there are no pseudo-terminals"
 
 /// A pseudo-terminal, and what a terminal emulator does at its other end: it collects the output and answers queries.
 class PseudoTerminal {

@@ -65,6 +65,7 @@ TEST(PreviewPreview, AFileThatCannotBeWrittenIsOneWarning) {
 }
 
 TEST(PreviewPreview, TheTerminalShowsTheDevelopedImageInTheEnd) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   test::PseudoTerminal terminal;
   const film::Partial state = partial(20, 10);
   std::string notes;

@@ -17,6 +17,7 @@ using test::TerminalReader;
 std::string color_terminal(const char* name) { return std::string(name) == "TERM" ? "xterm-256color" : ""; }
 
 TEST(PreviewScreen, AsksWithoutEchoAndRestoresTheMode) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal("\033_Gi=31;OK\033\\\033[6;18;9t\033[?62;4c");
   const termios before = terminal.mode();
   {
@@ -32,6 +33,7 @@ TEST(PreviewScreen, AsksWithoutEchoAndRestoresTheMode) {
 }
 
 TEST(PreviewScreen, ATerminalThatDoesNotAnswerGetsHalfBlocks) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal;
   const termios before = terminal.mode();
   const Screen screen(terminal.slave(), color_terminal);
@@ -41,6 +43,7 @@ TEST(PreviewScreen, ATerminalThatDoesNotAnswerGetsHalfBlocks) {
 }
 
 TEST(PreviewScreen, MessagesScrollAboveTheImage) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal("\033[?62c");
   {
     const TerminalReader reader(terminal);
@@ -66,6 +69,7 @@ TEST(PreviewScreen, MessagesScrollAboveTheImage) {
 }
 
 TEST(PreviewScreen, AResizedTerminalGetsANewImageBelow) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal("\033[?62c");
   {
     const TerminalReader reader(terminal);
@@ -84,6 +88,7 @@ TEST(PreviewScreen, AResizedTerminalGetsANewImageBelow) {
 }
 
 TEST(PreviewScreen, ATerminalThatDoesNotReadDelaysNothingForLong) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal;
   Screen screen(terminal.slave(), color_terminal);
   screen.show(std::string(1 << 20, 'x'), 3);
@@ -93,6 +98,7 @@ TEST(PreviewScreen, ATerminalThatDoesNotReadDelaysNothingForLong) {
 }
 
 TEST(PreviewScreen, RefusesWhatIsNoColourTerminal) {
+  ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal;
   const auto message = [](int descriptor, const Environment& environment) -> std::string {
     try {
