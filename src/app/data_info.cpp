@@ -17,19 +17,6 @@ namespace {
 /// Memory of a small machine.
 constexpr std::uint64_t kUnknownMemory = std::uint64_t{4} << 30;
 
-std::uint64_t bytes_per_value(data::ColumnType type) {
-  switch (type) {
-    case data::ColumnType::kFloat64:
-    case data::ColumnType::kInt64: return 8;
-    case data::ColumnType::kFloat32:
-    case data::ColumnType::kInt32:
-    case data::ColumnType::kText: return 4;
-    case data::ColumnType::kUint16: return 2;
-    case data::ColumnType::kUint8: return 1;
-  }
-  return 8;
-}
-
 void summarize(const data::Words& words, ColumnSummary& out) {
   std::vector<std::uint8_t> occurs(words.words.size());
   for (const std::uint32_t index : words.index) {

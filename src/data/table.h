@@ -63,6 +63,12 @@ constexpr const char* type_name(ColumnType type) {
   return kNames[static_cast<std::size_t>(type)];
 }
 
+/// Bytes of a value in a table; of a text, those of its index.
+constexpr std::uint64_t bytes_per_value(ColumnType type) {
+  constexpr std::uint64_t kBytes[] = {8, 4, 8, 4, 2, 1, 4};
+  return kBytes[static_cast<std::size_t>(type)];
+}
+
 struct ColumnInfo {
   std::string name;
   ColumnType type = ColumnType::kFloat64;

@@ -23,9 +23,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// Whether points are in odd cells of a checker whose cells are cubes with a corner at the world's origin.
 ///
 /// Precision  exact up to the rounding of base + rest within a cell. Where a cell is smaller than the spacing of
-/// numbers
-///            at the point, the point's coordinate is a number of cells that rounding has decided; for quotients of
-///            2^53 and more (double) this is an even number
+///            numbers at the point, rounding decides the cell; quotients of 2^53 and more (double) count as even
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> is_odd_cell(D d, const TexturePoint<D>& at, V size) {
   using T = hn::TFromD<D>;

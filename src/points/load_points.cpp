@@ -29,22 +29,10 @@ using data::Vec3d;
 /// Rows are numbered by 32 bits.
 constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
 
-/// Bytes of a value in a data::Table.
-std::uint64_t bytes_of(data::ColumnType type) {
-  switch (type) {
-    case data::ColumnType::kFloat64:
-    case data::ColumnType::kInt64: return 8;
-    case data::ColumnType::kFloat32:
-    case data::ColumnType::kInt32:
-    case data::ColumnType::kText: return 4;
-    case data::ColumnType::kUint16: return 2;
-    case data::ColumnType::kUint8: return 1;
-  }
-  return 8;
-}
-
 /// A scene::NumberArray stores these as floats.
-bool fits_single(data::ColumnType type) { return type == data::ColumnType::kFloat32 || bytes_of(type) < 4; }
+bool fits_single(data::ColumnType type) {
+  return type == data::ColumnType::kFloat32 || data::bytes_per_value(type) < 4;
+}
 
 /// Loads the spheres of one points table.
 class Loader {
@@ -173,7 +161,7 @@ class Loader {
     const Vec3d n = points_.replicate;
     const double images = n.x * n.y * n.z, spheres = static_cast<double>(count) * images;  // may exceed 64 bits
     std::uint64_t row_bytes = 0;
-    for (const std::string& column : columns_) row_bytes += bytes_of(type_of(column));
+    for (const std::string& column : columns_) row_bytes += data::bytes_per_value(type_of(column));
     const std::uint64_t copied = request_.source == nullptr ? 0 : sizeof(std::uint32_t) + row_bytes;
     const double bytes = static_cast<double>(info_.rows * row_bytes) +
                          spheres * static_cast<double>(bytes_per_sphere() + copied) +

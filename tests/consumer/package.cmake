@@ -57,9 +57,9 @@ if(PYTHON)
   must_match("the Python package" "${files}" "/usr/lib/python3/dist-packages/orrery/__init__\\.py\n"
              "/orrery/__init__\\.pyi\n" "/orrery/py\\.typed\n" "/orrery/_orrery\\.[^/]*\\.so\n"
              "/usr/share/doc/python3-orrery/copyright\n")
-  run(ignored dpkg-deb --extract ${program} ${WORK}/root)
-  run(ignored dpkg-deb --extract ${python} ${WORK}/root)
-  set(packages ${WORK}/root/usr/lib/python3/dist-packages)
+  run(ignored dpkg-deb --extract ${program} ${WORK}/unpacked)
+  run(ignored dpkg-deb --extract ${python} ${WORK}/unpacked)
+  set(packages ${WORK}/unpacked/usr/lib/python3/dist-packages)
   run(printed ${CMAKE_COMMAND} -E env PYTHONPATH=${packages} PYTHONDONTWRITEBYTECODE=1 ${PYTHON}
       ${CMAKE_CURRENT_LIST_DIR}/check_python.py ${WORK})
   must_match("Python's output" "${printed}" "x y z ${packages}/orrery")

@@ -26,14 +26,14 @@ namespace orrery::kernel {
 #ifndef ORRERY_UNIT_KERNEL_TEXTURE_TEST_CASE_
 #define ORRERY_UNIT_KERNEL_TEXTURE_TEST_CASE_
 /// A ray at a sphere, and the colour of the texture at the hit.
-struct Look {
+struct TextureLook {
   double origin[3] = {}, direction[3] = {};
   Sphere sphere{};
   double rgb[3] = {};
   double distance = -1;  ///< -1: the ray misses
 };
 /// A point given as a sum, and the colour of the texture there.
-struct Point {
+struct SolidPoint {
   double base[3] = {}, rest[3] = {}, outward[3] = {};
   double rgb[3] = {};
 };
@@ -49,10 +49,10 @@ Vec3<hn::Vec<D>> set_all(D d, const double (&v)[3]) {
 }
 
 template <class D, Precision kPrecision>
-void look_all(D d, const Texture& texture, std::vector<Look>& looks) {
+void look_all(D d, const Texture& texture, std::vector<TextureLook>& looks) {
   using T = hn::TFromD<D>;
   const auto zero = hn::Zero(d);
-  for (Look& look : looks) {
+  for (TextureLook& look : looks) {
     Rays<D> ray;
     ray.origin = set_all(d, look.origin);
     ray.origin_low = ray.offset = {zero, zero, zero};
@@ -73,8 +73,8 @@ void look_all(D d, const Texture& texture, std::vector<Look>& looks) {
   }
 }
 template <class D>
-void evaluate_all(D d, const Texture& texture, std::vector<Point>& points) {
-  for (Point& p : points) {
+void evaluate_all(D d, const Texture& texture, std::vector<SolidPoint>& points) {
+  for (SolidPoint& p : points) {
     const TexturePoint<D> at{set_all(d, p.base), set_all(d, p.rest), set_all(d, p.outward)};
     const auto color = texture_color(d, texture, at);
     p.rgb[0] = static_cast<double>(hn::GetLane(color.x));
@@ -84,15 +84,15 @@ void evaluate_all(D d, const Texture& texture, std::vector<Point>& points) {
 }
 
 using Wide = hn::ScalableTag<double>;
-void look_exact(const Texture& t, std::vector<Look>& v) { look_all<Wide, Precision::kExact>(Wide(), t, v); }
-void look_book(const Texture& t, std::vector<Look>& v) { look_all<Wide, Precision::kBook>(Wide(), t, v); }
-void look_fast(const Texture& t, std::vector<Look>& v) {
+void look_exact(const Texture& t, std::vector<TextureLook>& v) { look_all<Wide, Precision::kExact>(Wide(), t, v); }
+void look_book(const Texture& t, std::vector<TextureLook>& v) { look_all<Wide, Precision::kBook>(Wide(), t, v); }
+void look_fast(const Texture& t, std::vector<TextureLook>& v) {
   using Narrow = hn::ScalableTag<float>;
   look_all<Narrow, Precision::kFast>(Narrow(), t, v);
 }
-void evaluate_double(const Texture& t, std::vector<Point>& v) { evaluate_all(Wide(), t, v); }
-void evaluate_float(const Texture& t, std::vector<Point>& v) { evaluate_all(hn::ScalableTag<float>(), t, v); }
-void evaluate_one(const Texture& t, std::vector<Point>& v) { evaluate_all(hn::FixedTag<double, 1>(), t, v); }
+void evaluate_double(const Texture& t, std::vector<SolidPoint>& v) { evaluate_all(Wide(), t, v); }
+void evaluate_float(const Texture& t, std::vector<SolidPoint>& v) { evaluate_all(hn::ScalableTag<float>(), t, v); }
+void evaluate_one(const Texture& t, std::vector<SolidPoint>& v) { evaluate_all(hn::FixedTag<double, 1>(), t, v); }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -142,7 +142,7 @@ Texture noise(TextureKind kind, double scale, std::uint32_t seed = 1) {
 }
 
 double value_at(const Texture& texture, double x, double y, double z, double base = 0) {
-  std::vector<Point> one(1);
+  std::vector<SolidPoint> one(1);
   one[0].base[0] = one[0].base[1] = one[0].base[2] = base;
   one[0].rest[0] = x;
   one[0].rest[1] = y;
@@ -173,7 +173,7 @@ TEST(KernelTexture, CheckersNeedNoIntegers) {
   // Neither overflows to a colour of its own.
   for (const double scale : {1e-18, 1e18})
     for (const double x : {-1e18, 1e18}) {
-      std::vector<Point> one(1);
+      std::vector<SolidPoint> one(1);
       one[0].base[0] = x;
       ORRERY_BEST(evaluate_float)(checker(scale), one);
       EXPECT_TRUE(one[0].rgb[0] == 0 || one[0].rgb[0] == 1);
@@ -182,7 +182,7 @@ TEST(KernelTexture, CheckersNeedNoIntegers) {
 
 /// A random look at a sphere of this radius from a height of up to 1.1 `away`; its centre is at random, about `place`
 /// from the origin.
-Look random_look(std::mt19937_64& random, double radius, double away, double place) {
+TextureLook random_look(std::mt19937_64& random, double radius, double away, double place) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(0, 1);
   const auto unit = [&](double(&v)[3]) {
@@ -190,7 +190,7 @@ Look random_look(std::mt19937_64& random, double radius, double away, double pla
     const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     for (double& c : v) c /= length;
   };
-  Look out;
+  TextureLook out;
   double up[3], aside[3];
   unit(up);
   unit(aside);
@@ -214,7 +214,7 @@ struct Cells {
   double nearest_face;  ///< the smallest distance to a face, cells
   bool is_odd;
 };
-Cells expected_cells(const Look& look, double scale) {
+Cells expected_cells(const TextureLook& look, double scale) {
   const double center[3] = {look.sphere.x, look.sphere.y, look.sphere.z};
   QuadReal b = 0.0, c = 0.0, a = 0.0;
   for (int k = 0; k < 3; ++k) {
@@ -240,12 +240,12 @@ Cells expected_cells(const Look& look, double scale) {
 
 /// The largest distance from a face, in scene units, of hits in the wrong cell; relative to `unit(look)`.
 template <class Unit>
-double worst_cell(std::vector<Look> looks, double scale, void (*look_at)(const Texture&, std::vector<Look>&), Unit unit,
-                  std::size_t& counted) {
+double worst_cell(std::vector<TextureLook> looks, double scale,
+                  void (*look_at)(const Texture&, std::vector<TextureLook>&), Unit unit, std::size_t& counted) {
   look_at(checker(scale), looks);
   double worst = 0;
   counted = 0;
-  for (const Look& look : looks) {
+  for (const TextureLook& look : looks) {
     if (look.distance < 0) continue;
     ++counted;
     const Cells wanted = expected_cells(look, scale);
@@ -255,7 +255,7 @@ double worst_cell(std::vector<Look> looks, double scale, void (*look_at)(const T
 }
 
 /// Distance to the hit, plus the origin's largest coordinate: what a double's spacing depends on.
-double reach(const Look& look) {
+double reach(const TextureLook& look) {
   return look.distance + std::max({std::abs(look.origin[0]), std::abs(look.origin[1]), std::abs(look.origin[2])});
 }
 
@@ -275,10 +275,10 @@ TEST(KernelTexture, CellsOfCheckersAtAllRadii) {
   with_every_isa([](const std::string& isa) {
     std::mt19937_64 random{5};
     for (const double radius : {1e-12, 1e-6, 1.0, 1e3, 1e6, 1e12}) {
-      std::vector<Look> looks;
+      std::vector<TextureLook> looks;
       for (int i = 0; i < 4000; ++i) looks.push_back(random_look(random, radius, 3 * radius, 10 * radius));
       std::size_t counted = 0;
-      const auto of_radius = [&](const Look&) { return radius; };
+      const auto of_radius = [&](const TextureLook&) { return radius; };
       EXPECT_EQ(worst_cell(looks, radius / 20, ORRERY_BEST(look_exact), of_radius, counted), 0) << radius;
       EXPECT_GT(counted, 2000U);
       const double exact = worst_cell(looks, radius * 1e-12, ORRERY_BEST(look_exact), of_radius, counted);
@@ -296,9 +296,9 @@ TEST(KernelTexture, CellsOfCheckersOnAGroundOfAnyRadius) {
     std::mt19937_64 random{6};
     std::uniform_real_distribution<double> uniform(-1, 1);
     for (const double radius : {1e1, 1e3, 1e6, 1e9, 1e12}) {
-      std::vector<Look> looks;
+      std::vector<TextureLook> looks;
       for (int i = 0; i < 4000; ++i) {
-        Look look;
+        TextureLook look;
         look.sphere = {0, -radius, 0, radius};
         const double v[3] = {uniform(random), -std::abs(uniform(random)) - 0.01, uniform(random)};
         const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -321,7 +321,7 @@ TEST(KernelTexture, CellsOfCheckersOnAGroundOfAnyRadius) {
 }
 
 TEST(KernelTexture, TheBooksPrecisionUsesTheBooksPoint) {
-  std::vector<Look> looks(1);
+  std::vector<TextureLook> looks(1);
   looks[0].origin[2] = 3;
   looks[0].direction[2] = -1;
   looks[0].sphere = {0, 0, 0, 1};
@@ -329,11 +329,11 @@ TEST(KernelTexture, TheBooksPrecisionUsesTheBooksPoint) {
   EXPECT_EQ(looks[0].rgb[0], 1);  // z = 1 is in cell 1, x = y = 0 in cells 0
 }
 
-std::vector<Point> random_points(double extent) {
+std::vector<SolidPoint> random_points(double extent) {
   std::mt19937_64 random{9};
   std::uniform_real_distribution<double> uniform(-extent, extent);
-  std::vector<Point> out(3000);
-  for (Point& p : out)
+  std::vector<SolidPoint> out(3000);
+  for (SolidPoint& p : out)
     for (int k = 0; k < 3; ++k) {
       p.base[k] = uniform(random);
       p.rest[k] = uniform(random) / 1000;
@@ -345,9 +345,9 @@ TEST(KernelTexture, NoiseIsZeroAtLatticePointsAndBounded) {
   const Texture texture = noise(TextureKind::kNoise, 4);
   for (int x = -3; x < 3; ++x) EXPECT_EQ(value_at(texture, x / 4.0, 0.25, -0.75), 0.5);
   double lowest = 1, highest = 0, sum = 0;
-  std::vector<Point> points = random_points(1000);
+  std::vector<SolidPoint> points = random_points(1000);
   ORRERY_BEST(evaluate_double)(texture, points);
-  for (const Point& p : points) {
+  for (const SolidPoint& p : points) {
     lowest = std::min(lowest, p.rgb[0]);
     highest = std::max(highest, p.rgb[0]);
     sum += p.rgb[0] / static_cast<double>(points.size());
@@ -411,7 +411,7 @@ TEST(KernelTexture, LanesAndPrecisionsAgree) {
   for (const TextureKind kind :
        {TextureKind::kChecker, TextureKind::kNoise, TextureKind::kTurbulence, TextureKind::kMarble}) {
     const Texture texture = noise(kind, 4);
-    std::vector<Point> wide = random_points(10), one = wide, narrow = wide;
+    std::vector<SolidPoint> wide = random_points(10), one = wide, narrow = wide;
     ORRERY_BEST(evaluate_double)(texture, wide);
     ORRERY_BEST(evaluate_one)(texture, one);
     ORRERY_BEST(evaluate_float)(texture, narrow);
@@ -443,7 +443,7 @@ TEST(KernelTexture, ImagesAreSeenFromOutsideAsInTheBook) {
   texture.kind = TextureKind::kImage;
   texture.image = &map;
   const auto seen = [&](double x, double y, double z) {
-    std::vector<Point> one(1);
+    std::vector<SolidPoint> one(1);
     one[0].outward[0] = x;
     one[0].outward[1] = y;
     one[0].outward[2] = z;
