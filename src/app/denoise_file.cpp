@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "image/format.h"
-#include "image/rewrite.h"
 #include "job/machine.h"
 #include "job/version.h"
 
@@ -33,7 +32,7 @@ DenoisedFile denoise_file(const Denoising& denoising) {
     out.report = denoise::denoise(picture, threads);
     return std::vector<image::Attribute>{{denoise::kAttribute, "orrery " + job::program_version()}};
   };
-  out.clamped = image::rewrite_exr(denoising.input, denoising.output, edit).clamped;
+  out.written = image::rewrite_exr(denoising.input, denoising.output, edit);
   return out;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 
 #include "denoise/denoise.h"
+#include "image/rewrite.h"
 
 namespace orrery::app {
 
@@ -17,7 +17,7 @@ struct Denoising {
 /// Result of denoise_file().
 struct DenoisedFile {
   denoise::Report report;
-  std::uint64_t clamped = 0;  ///< values that did not fit into half
+  image::RewriteReport written;
 };
 
 /// Filters the noise of an EXR. Its parts, other channels, pixel types and attributes are kept; the attribute

@@ -31,7 +31,13 @@ std::string text_of(const app::Denoising& denoising, const app::DenoisedFile& do
   if (report.bad_pixels > 0)
     out +=
         fmt::format("warning: {} pixels are not finite or too large; they were left as they are\n", report.bad_pixels);
-  if (done.clamped > 0) out += fmt::format("warning: {} values were clamped to the range of half\n", done.clamped);
+  if (!done.written.other_parts.empty())
+    out += fmt::format(
+        "warning: the parts {} have channels R, G and B of their own and were copied; denoise them as files of their "
+        "own\n",
+        base::joined(done.written.other_parts));
+  if (done.written.clamped > 0)
+    out += fmt::format("warning: {} values were clamped to the range of half\n", done.written.clamped);
   return out;
 }
 

@@ -51,7 +51,8 @@ void camera_at(const kernel::SceneView& scene, double time, double (&origin)[3],
   }
 }
 
-Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
+/// `along_axis`  z and exit_z are needed
+Hit locate(const kernel::SceneView& scene, const PathRecord& path, bool along_axis) {
   const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
   const double center[3] = {s.x, s.y, s.z};
   double origin[3], forward[3];
@@ -66,9 +67,11 @@ Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
     along += path.direction[k] * forward[k];
     through += path.direction[k] * path.offset[k];
   }
+  if (!scene.camera.is_orthographic) hit.distance = std::sqrt(far);
+  if (!along_axis && !scene.camera.is_orthographic) return hit;
   length = std::sqrt(length);
   hit.z /= length;
-  hit.distance = scene.camera.is_orthographic ? hit.z : std::sqrt(far);
+  if (scene.camera.is_orthographic) hit.distance = hit.z;
   // The far end of the chord. From inside the sphere the first hit is the exit.
   hit.exit_z = hit.z + std::max(0.0, -2 * through) * along / length;
   return hit;
@@ -107,7 +110,8 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   if (request.guide_normal) add3(guide_normal, path.guide_normal, path_weight);
   const bool hits = path.sphere != kernel::kNoSphere;
   Hit hit{};
-  if (hits && (request.nearest() || request.deep || request.halves)) hit = locate(scene, path);
+  const bool along_axis = request.nearest() || request.deep;
+  if (hits && (along_axis || request.halves)) hit = locate(scene, path, along_axis);
   if (request.halves) {
     halves.resize(2);
     add_to_half(halves[half], path, hit.distance, path_weight);

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernel/path_record.h"
@@ -111,22 +113,26 @@ inline constexpr LayerType kLayerTypes[] = {
 
 namespace detail {
 
-constexpr bool requests(const LayerRequest& request, LayerSource source) {
-  for (const LayerType& layer : kLayerTypes)
-    if (layer.source == source && request.*layer.requested) return true;
-  return false;
+/// Whether layers of a source are requested. This is asked per path: the table is evaluated at compile time.
+template <LayerSource kSource, std::size_t... kIndices>
+constexpr bool requests(const LayerRequest& request, std::index_sequence<kIndices...>) {
+  return ((kLayerTypes[kIndices].source == kSource && request.*kLayerTypes[kIndices].requested) || ...);
+}
+template <LayerSource kSource>
+constexpr bool requests(const LayerRequest& request) {
+  return requests<kSource>(request, std::make_index_sequence<std::size(kLayerTypes)>());
 }
 
 }  // namespace detail
 
-inline bool LayerRequest::lights() const { return detail::requests(*this, LayerSource::kLight); }
-inline bool LayerRequest::nearest() const { return detail::requests(*this, LayerSource::kNearest); }
+inline bool LayerRequest::lights() const { return detail::requests<LayerSource::kLight>(*this); }
+inline bool LayerRequest::nearest() const { return detail::requests<LayerSource::kNearest>(*this); }
 inline bool LayerRequest::paths_light() const {
-  return lights() || detail::requests(*this, LayerSource::kPaths) || deep || halves;
+  return lights() || detail::requests<LayerSource::kPaths>(*this) || deep || halves;
 }
-inline bool LayerRequest::guides() const { return detail::requests(*this, LayerSource::kGuide) || halves; }
+inline bool LayerRequest::guides() const { return detail::requests<LayerSource::kGuide>(*this) || halves; }
 inline bool LayerRequest::any() const {
-  return paths_light() || nearest() || guides() || detail::requests(*this, LayerSource::kSums) || coverage ||
+  return paths_light() || nearest() || guides() || detail::requests<LayerSource::kSums>(*this) || coverage ||
          !mattes.empty();
 }
 inline std::size_t LayerRequest::light_cells() const {

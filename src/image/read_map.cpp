@@ -29,6 +29,8 @@ Channels channels_of(const std::filesystem::path& file, const OIIO::ImageSpec& s
   const Channels rgb = {index("R"), index("G"), index("B")};
   if (*std::min_element(rgb.begin(), rgb.end()) >= 0) return rgb;
   if (names.size() == 1) return {0, 0, 0};
+  const int grey = index("Y");
+  if (names.size() == 2 && grey >= 0 && index("A") >= 0) return {grey, grey, grey};
   fail_to_read(file, "it has no channels R, G and B; it has " + base::joined(names));
 }
 

@@ -93,7 +93,7 @@ std::vector<float> values_of(const NativePart& part, int channel) {
   return out;
 }
 
-void set_values(NativePart& part, int channel, std::vector<float>& values, WriteReport& report) {
+void set_values(NativePart& part, int channel, std::vector<float>& values, RewriteReport& report) {
   if (type_of(part.spec, channel) == TypeDesc::HALF) {
     for (float& v : values) {
       if (!std::isfinite(v) || std::abs(v) <= film::kLargestHalf) continue;
@@ -107,6 +107,28 @@ void set_values(NativePart& part, int channel, std::vector<float>& values, Write
                       type_of(part.spec, channel), stride, OIIO::AutoStride, OIIO::AutoStride);
 }
 
+std::string name_of(const NativePart& part) { return std::string(part.spec.get_string_attribute("oiio:subimagename")); }
+
+bool have_same_window(const ImageSpec& a, const ImageSpec& b) {
+  return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
+}
+
+/// Parts that have colours of their own beside the beauty: views, or images of another data window.
+std::vector<std::string> parts_with_own_colors(const std::vector<NativePart>& parts) {
+  std::vector<std::string> out;
+  bool is_first = true;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const std::vector<std::string>& names = parts[p].spec.channelnames;
+    if (std::find(names.begin(), names.end(), "R") == names.end()) continue;
+    if (is_first && have_same_window(parts[p].spec, parts.front().spec)) {
+      is_first = false;
+    } else {
+      out.push_back(name_of(parts[p]).empty() ? std::to_string(p + 1) : name_of(parts[p]));
+    }
+  }
+  return out;
+}
+
 /// The planes of the parts, and where each is stored.
 std::pair<film::Picture, std::vector<Place>> planes_of_parts(const std::vector<NativePart>& parts) {
   const ImageSpec& first = parts.front().spec;
@@ -117,12 +139,12 @@ std::pair<film::Picture, std::vector<Place>> planes_of_parts(const std::vector<N
   std::set<std::string> names;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const ImageSpec& spec = parts[p].spec;
-    if (spec.x != first.x || spec.y != first.y || spec.width != first.width || spec.height != first.height) continue;
+    if (!have_same_window(spec, first)) continue;
     for (int c = 0; c < spec.nchannels; ++c) {
       const TypeDesc type = type_of(spec, c);
       if (type != TypeDesc::HALF && type != TypeDesc::FLOAT) continue;
       std::string name = spec.channelnames[static_cast<std::size_t>(c)];
-      if (names.count(name) > 0) name = std::string(spec.get_string_attribute("oiio:subimagename")) + "." + name;
+      if (names.count(name) > 0) name = name_of(parts[p]) + "." + name;
       if (!names.insert(name).second) continue;
       picture.planes.push_back({name, values_of(parts[p], c)});
       places.push_back({p, c});
@@ -133,8 +155,8 @@ std::pair<film::Picture, std::vector<Place>> planes_of_parts(const std::vector<N
 
 }  // namespace
 
-WriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
-                        const EditPlanes& edit) {
+RewriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
+                          const EditPlanes& edit) {
   for (const std::filesystem::path& file : {input, output})
     if (format_of(file) != Format::kExr)
       throw base::Error(base::ErrorKind::kUsage, file.string() + " is not an EXR file");
@@ -150,7 +172,8 @@ WriteReport rewrite_exr(const std::filesystem::path& input, const std::filesyste
   }
   auto& [picture, places] = planes;
   const std::vector<Attribute> attributes = edit(picture);
-  WriteReport report;
+  RewriteReport report;
+  report.other_parts = parts_with_own_colors(parts);
   for (std::size_t i = 0; i < places.size(); ++i)
     set_values(parts[places[i].part], places[i].channel, picture.planes[i].values, report);
   std::vector<WholePart> whole;

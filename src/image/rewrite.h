@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "film/picture.h"
@@ -15,16 +17,21 @@ namespace orrery::image {
 /// Result     attributes to add to the file
 using EditPlanes = std::function<std::vector<Attribute>(film::Picture& planes)>;
 
+/// What rewrite_exr() did.
+struct RewriteReport {
+  std::uint64_t clamped = 0;             ///< values that were clamped to the range of half
+  std::vector<std::string> other_parts;  ///< names of further parts with a channel R, which were copied
+};
+
 /// Copies an EXR with changed pixels. Parts, windows, channels, pixel types, compression and attributes are kept,
 /// except the stamp, which no longer describes the pixels. Integer channels are copied.
 ///
 /// The planes are the floating-point channels of all parts that have the data window of the first, by name. A channel
 /// whose name an earlier part has is named PART.CHANNEL.
 ///
-/// Result     the number of values that were clamped to the range of half
 /// Errors     base::Error: kUsage if a file is not an EXR, kMissingInput, kBadData if the input is damaged, deep, or a
 ///            shard or checkpoint, kCannotCreate, kIo; those of `edit`. An existing output is then unchanged
-WriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
-                        const EditPlanes& edit);
+RewriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
+                          const EditPlanes& edit);
 
 }  // namespace orrery::image

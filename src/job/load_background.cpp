@@ -84,6 +84,10 @@ LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& sc
     }
     image->sun.radiance = converted(to_working, image->sun.radiance);
   }
+  const math::Vec3d sun = image->sun.radiance;
+  out.brightest = static_cast<float>(std::max({sun.x, sun.y, sun.z}));
+  for (int y = 0; y < image->height(); ++y)
+    out.brightest = std::max(out.brightest, *std::max_element(image->row(y), image->row(y) + 3 * image->width()));
   out.width = image->width();
   out.height = image->height();
   out.bytes = compile::environment_bytes(out.width, out.height, sampling_of(scene));

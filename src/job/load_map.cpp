@@ -133,6 +133,7 @@ class Loader {
         const bool is_good = rgb[i] >= 0 && std::isfinite(rgb[i]);
         if (!is_good || rgb[i] > request_.largest * kSlack) ++replaced_.out_of_range;
         row[i] = is_good ? std::min(rgb[i], request_.largest) : 0.0F;
+        out_.brightest = std::max(out_.brightest, row[i]);
       }
     };
     image::read_map(request_.file, take, request_.formats);

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "compile/environment.h"
 #include "image/read_map.h"
 #include "scene/environment_image.h"
+#include "scene/limits.h"
 #include "scene/validate.h"
 
 namespace orrery::job {
@@ -20,12 +20,12 @@ struct MapRequest {
   std::filesystem::path file;
   std::string file_key, space_key;  ///< keys of the scene, for diagnostics
   image::MapFormats formats = image::MapFormats::kSceneLinear;
-  std::string color_space;                            ///< that the scene gives the file; empty: none
-  std::string default_space;                          ///< of scene-linear files
-  std::string working_space;                          ///< of the result
-  bool is_color = true;                               ///< false: data, which are not converted
-  float largest = std::numeric_limits<float>::max();  ///< values above are clamped
-  std::string ocio_config;                            ///< in the form of display::Settings
+  std::string color_space;                                     ///< that the scene gives the file; empty: none
+  std::string default_space;                                   ///< of scene-linear files
+  std::string working_space;                                   ///< of the result
+  bool is_color = true;                                        ///< false: data, which are not converted
+  float largest = static_cast<float>(scene::kBrightestLight);  ///< values above are clamped
+  std::string ocio_config;                                     ///< in the form of display::Settings
   compile::EnvironmentSampling sampling = compile::EnvironmentSampling::kNone;
   std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
   bool skips_large = false;        ///< an image that does not fit into memory is a warning and is not read
@@ -37,6 +37,7 @@ struct LoadedMap {
   std::string color_space;    ///< of the file; empty for data
   std::uint64_t bytes = 0;    ///< estimated memory of the texels and of the tables to sample them
   std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
+  float brightest = 0;                                   ///< largest value of `image`, a sun included
   std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
 };
 

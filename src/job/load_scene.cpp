@@ -98,6 +98,23 @@ class ColorCheck {
   std::optional<display::Choice> choice_;
 };
 
+/// Errors where a light whose brightness depends on an image or a sky is too bright for its exposure.
+std::vector<scene::SceneDiagnostic> check_exposures(const scene::Scene& scene, const LoadedScene& loaded) {
+  std::vector<scene::SceneDiagnostic> out;
+  const auto check = [&](const std::string& table, const LoadedMap& map, double exposure) {
+    const std::string fault = scene::exposure_fault(static_cast<double>(map.brightest), exposure);
+    if (!fault.empty()) out.push_back({base::Severity::kError, table + ".exposure", fault});
+  };
+  for (const scene::Material& material : scene.materials) {
+    const auto* const emitter = std::get_if<scene::Emitter>(&material.model);
+    const std::string table = "material." + material.name;
+    for (const LoadedTexture& texture : loaded.textures)
+      if (emitter != nullptr && texture.key == table + ".radiance") check(table, texture.map, emitter->exposure);
+  }
+  if (loaded.background) check("background", *loaded.background, scene.background.exposure);
+  return out;
+}
+
 }  // namespace
 
 LoadedScene load_scene(const SceneRequest& request) {
@@ -108,22 +125,21 @@ LoadedScene load_scene(const SceneRequest& request) {
     if (!diagnostics.empty()) return diagnostics;
     out.textures = load_textures(request.source.file, settings_of(request, scene.color).config, request.memory_limit,
                                  request.skips_large_background, request.texture_cache.get(), scene);
-    for (const LoadedTexture& texture : out.textures)
-      diagnostics.insert(diagnostics.end(), texture.map.diagnostics.begin(), texture.map.diagnostics.end());
-    const auto with = [&](const std::vector<scene::SceneDiagnostic>& more) {
+    const auto add = [&](const std::vector<scene::SceneDiagnostic>& more) {
       diagnostics.insert(diagnostics.end(), more.begin(), more.end());
-      return diagnostics;
     };
+    for (const LoadedTexture& texture : out.textures) add(texture.map.diagnostics);
     if (scene.background.type == scene::BackgroundType::kSky) {
       out.background = load_sky(settings_of(request, scene.color).config, scene);
-      return with(out.background->diagnostics);
+    } else if (has_image(scene.background)) {
+      const BackgroundRequest background{request.source.file.parent_path() / scene.background.file,
+                                         settings_of(request, scene.color).config, request.memory_limit,
+                                         request.skips_large_background, request.background_cache};
+      out.background = load_background(background, scene);
     }
-    if (!has_image(scene.background)) return diagnostics;
-    const BackgroundRequest background{request.source.file.parent_path() / scene.background.file,
-                                       settings_of(request, scene.color).config, request.memory_limit,
-                                       request.skips_large_background, request.background_cache};
-    out.background = load_background(background, scene);
-    return with(out.background->diagnostics);
+    if (out.background) add(out.background->diagnostics);
+    add(check_exposures(scene, out));
+    return diagnostics;
   };
   format::ReadOptions options;
   options.text = request.source.text;

@@ -2,7 +2,6 @@
 #include "job/load_textures.h"
 
 #include <algorithm>
-#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -27,7 +26,7 @@ MapRequest request_of(const scene::NamedTexture& named, const fs::path& folder, 
   out.default_space = scene.color.space;
   out.working_space = scene.color.working_space();
   out.is_color = named.use != scene::TextureUse::kNumber;
-  out.largest = named.use == scene::TextureUse::kRadiance ? std::numeric_limits<float>::max() : 1.0F;
+  if (named.use != scene::TextureUse::kRadiance) out.largest = 1;
   out.ocio_config = ocio_config;
   return out;
 }

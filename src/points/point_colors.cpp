@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "points/elements.h"
+#include "scene/value_text.h"
 
 namespace orrery::points {
 namespace {
@@ -160,19 +161,27 @@ PointColors colors_by_type(const data::Table& table, const Rows& rows, const Col
 }
 
 /// The file's colours as 24 bits per sphere.
-std::vector<std::uint32_t> bytes_of(const data::Table& table, const Rows& rows, const ColorSource& source) {
+std::vector<std::uint32_t> bytes_of(const data::Table& table, const Rows& rows, const ColorSource& source,
+                                    KeyFaults& faults) {
   std::vector<std::uint32_t> out(rows.size());
+  std::uint64_t nan = 0, out_of_range = 0;
   for (const std::string& name : source.columns) {
     for_each_number(*table.find(name), rows, [&](std::size_t i, double v) {
+      nan += std::isnan(v) ? 1 : 0;
+      out_of_range += v < 0 || v > source.rgb_maximum ? 1 : 0;
       const double byte = std::isnan(v) ? 0 : std::clamp(v / source.rgb_maximum, 0.0, 1.0) * 255;
       out[i] = out[i] << 8 | static_cast<std::uint32_t>(byte + 0.5);
     });
   }
+  if (nan > 0) faults.warning(".color.rgb", std::to_string(nan) + " values are NaN and count as 0");
+  if (out_of_range > 0)
+    faults.warning(".color.rgb", std::to_string(out_of_range) + " values are outside 0.." +
+                                     scene::number_text(source.rgb_maximum) + " and were clamped");
   return out;
 }
 
-PointColors colors_by_rgb(const data::Table& table, const Rows& rows, const ColorSource& source) {
-  std::vector<std::uint32_t> bytes = bytes_of(table, rows, source);
+PointColors colors_by_rgb(const data::Table& table, const Rows& rows, const ColorSource& source, KeyFaults& faults) {
+  std::vector<std::uint32_t> bytes = bytes_of(table, rows, source, faults);
   constexpr std::uint32_t kColors = std::uint32_t{1} << 24;
   std::vector<std::uint32_t> index(kColors);
   std::vector<std::uint32_t> distinct;
@@ -259,7 +268,7 @@ PointColors colors_of(const data::Table& table, const Rows& rows, const ColorSou
     case ColorSource::Kind::kMap: return colors_by_map(table, rows, source, color, faults);
     case ColorSource::Kind::kElement: return colors_by_element(table, rows, source, faults);
     case ColorSource::Kind::kType: return colors_by_type(table, rows, source, color, faults);
-    case ColorSource::Kind::kRgb: return colors_by_rgb(table, rows, source);
+    case ColorSource::Kind::kRgb: return colors_by_rgb(table, rows, source, faults);
   }
   return {};
 }

@@ -88,8 +88,13 @@ void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent
     using Numbers = std::decay_t<decltype(x)>;
     const auto& y = std::get<Numbers>(positions.columns[1].values);
     const auto& z = std::get<Numbers>(positions.columns[2].values);
-    for (std::size_t i = 0; i < positions.rows; ++i)
-      extent.add({static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])}, radius);
+    for (std::size_t i = 0; i < positions.rows; ++i) {
+      const math::Vec3d center{static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
+      if (!math::is_finite(center))
+        throw base::Error(base::ErrorKind::kBadData,
+                          "positions[" + std::to_string(i) + "] is not finite; leave such rows out");
+      extent.add(center, radius);
+    }
   });
 }
 

@@ -38,6 +38,7 @@ pybind11::array_t<T> view_of(const T* values, std::vector<pybind11::ssize_t> sha
 /// Adds the spheres around some points to the extent of a view.
 ///
 /// Domain     three columns of numbers
+/// Errors     base::Error(kBadData) if one of them is not finite
 void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent& extent);
 
 }  // namespace orrery::python

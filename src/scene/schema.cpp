@@ -123,7 +123,7 @@ Table background_table() {
                  {"degrees", "Image and sky: rotation about +y; 90 turns +z to +x"},
                  [](S& s) -> double& { return s.background.rotation; }),
        number<S>("exposure", {-kMaxStops, kMaxStops},
-                 {"stops", "Image and sky: multiplies the radiance by 2 to this power"},
+                 {"stops", "Image and sky: multiplies the radiance by 2 to this power. The product is at most 2^34"},
                  [](S& s) -> double& { return s.background.exposure; }),
        text<S>("light_group", {"", "Image and sky: light group. Default: the group `default`"},
                [](S& s) -> std::string& { return s.background.light_group; }),
@@ -299,7 +299,8 @@ std::vector<MaterialType> make_material_types() {
                             "Emitted radiance: radiant exitance divided by pi, per colour channel; or a "
                             "[texture](#textures)"},
                            [](M& m) -> Vec3d& { return std::get<Emitter>(m).radiance; })),
-        number<M>("exposure", {-kMaxStops, kMaxStops}, {"stops", "Multiplies the radiance by 2 to this power"},
+        number<M>("exposure", {-kMaxStops, kMaxStops},
+                  {"stops", "Multiplies the radiance by 2 to this power. The product is at most 2^34"},
                   [](M& m) -> double& { return std::get<Emitter>(m).exposure; }),
         text<M>("light_group", {"", "Light group, for the layer `light_groups`. Default: the group `default`"},
                 [](M& m) -> std::string& { return std::get<Emitter>(m).light_group; })},

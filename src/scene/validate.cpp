@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/validate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -35,6 +36,7 @@ bool in_domain(Vec3d c) {
   // Written so that a NaN is outside.
   return std::abs(c.x) <= kLargestLength && std::abs(c.y) <= kLargestLength && std::abs(c.z) <= kLargestLength;
 }
+double max(Vec3d v) { return std::max({v.x, v.y, v.z}); }
 bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
 
 void check_image(const Image& image, Problems& diagnostics) {
@@ -122,6 +124,20 @@ void check_background(const Background& background, Problems& diagnostics) {
   unused_unless(is_sky, kSky, "turbidity", background.turbidity != unset.turbidity);
   unused_unless(is_sky, kSky, "ground_albedo", background.ground_albedo != unset.ground_albedo);
   unused_unless(is_sky, kSky, "sun", background.sun != unset.sun);
+}
+
+/// Checks the exposure of emitters, except where the radiance is an image.
+void check_emitters(const Scene& scene, Problems& diagnostics) {
+  for (const Material& material : scene.materials) {
+    const auto* const emitter = std::get_if<Emitter>(&material.model);
+    if (emitter == nullptr) continue;
+    const Texture* const texture = emitter->radiance_texture.get();
+    if (texture != nullptr && texture->type == TextureType::kImage) continue;
+    const double radiance =
+        texture != nullptr ? std::max(max(texture->low), max(texture->high)) : max(emitter->radiance);
+    if (const std::string fault = exposure_fault(radiance, emitter->exposure); !fault.empty())
+      diagnostics.error("material." + material.name + ".exposure", fault);
+  }
 }
 
 /// Ray origins on the lens must be inside the domain of coordinates.
@@ -229,11 +245,19 @@ void check_coincident(const Scene& scene, const Scene* closing, Problems& diagno
 
 }  // namespace
 
+std::string exposure_fault(double radiance, double exposure) {
+  const double product = radiance * std::exp2(exposure);
+  if (product <= kBrightestLight) return {};
+  return "the radiance with exposure would be " + number_text(product) + "; the maximum is " +
+         number_text(kBrightestLight) + "; reduce the exposure";
+}
+
 std::vector<SceneDiagnostic> validate(const Scene& scene, const Scene* closing) {
   Problems diagnostics;
   check_image(scene.image, diagnostics);
   check_camera(scene.camera, diagnostics);
   check_background(scene.background, diagnostics);
+  check_emitters(scene, diagnostics);
   check_lens(scene.camera, diagnostics);
   check_projection(scene.camera, diagnostics);
   check_shutter(scene.camera, diagnostics);

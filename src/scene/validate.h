@@ -22,9 +22,15 @@ struct SceneDiagnostic {
   base::ErrorKind kind = base::ErrorKind::kBadData;  ///< of an error; kBadData or kMissingInput
 };
 
-/// Checks what the type and range of a single key cannot: a camera without direction, a lens of absurd size, numbers
-/// outside the domain, materials that do not exist, names of light groups, layers that the scene cannot have,
-/// coincident spheres (a warning).
+/// Returns what is wrong with the exposure of a light; empty if the light is not too bright.
+///
+/// `radiance`  its largest component
+/// `exposure`  stops
+std::string exposure_fault(double radiance, double exposure);
+
+/// Checks what the type and range of a single key cannot: a camera without direction, a lens of absurd size, lights
+/// of absurd exposure, numbers outside the domain, materials that do not exist, names of light groups, layers that the
+/// scene cannot have, coincident spheres (a warning).
 ///
 /// `closing`  the scene at shutter close, used only to find coincident spheres; null: no motion
 /// Domain     any scene, including non-finite numbers

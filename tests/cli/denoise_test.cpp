@@ -66,6 +66,21 @@ TEST_F(CliDenoise, FilesInTilesAreRewrittenInTiles) {
   EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0").status, 0);
 }
 
+TEST_F(CliDenoise, PartsWithColorsOfTheirOwnAreCopiedAndNamed) {
+  ASSERT_EQ(run("render good.toml -q --samples 8 -o left.exr --type float").status, 0);
+  ASSERT_EQ(run("render good.toml -q --samples 8 -o right.exr --type float --seed 2").status, 0);
+  const auto file = [&](const char* name) { return "'" + (folder_ / name).string() + "' "; };
+  const std::string join = "oiiotool " + file("left.exr") + "--attrib oiio:subimagename left " + file("right.exr") +
+                           "--attrib oiio:subimagename right --siappend -o " + file("both.exr");
+  ASSERT_EQ(std::system(join.c_str()), 0);
+  const Outcome denoised = run("denoise both.exr -o out.exr");
+  EXPECT_EQ(denoised.status, 0);
+  EXPECT_NE(denoised.err.find("warning: the parts right have channels R, G and B"), std::string::npos) << denoised.err;
+  ASSERT_EQ(std::system(("oiiotool " + file("out.exr") + "--subimage 1 -o " + file("copied.exr")).c_str()), 0);
+  EXPECT_EQ(run("compare right.exr copied.exr --fail-above max=0").status, 0);
+  EXPECT_EQ(run("compare left.exr out.exr --fail-above max=0").status, 1);
+}
+
 TEST_F(CliDenoise, MissingLayersAreNamedAndBadInputIsRejected) {
   ASSERT_EQ(run("render good.toml -q --samples 8 -o plain.exr").status, 0);
   const Outcome plain = run("denoise plain.exr -o a.exr");

@@ -361,6 +361,25 @@ TEST_F(CliValidation, TheMemoryOfABackgroundImageIsCheckedBeforeItIsRead) {
   EXPECT_TRUE(contains(run("info b.toml").out, ", background 0.4 KiB\n")) << run("info b.toml").out;
 }
 
+TEST_F(CliValidation, LightsTooBrightForTheFilmAreErrors) {
+  const auto errors = [&](const std::string& text) {
+    write("a.toml", std::string(kGoodScene) + text);
+    const Outcome r = run("check a.toml");
+    return (r.status == 65 ? "" : "not 65: ") + r.err;
+  };
+  const std::string lamp = "[material.lamp]\ntype = \"emitter\"\n";
+  EXPECT_TRUE(
+      contains(errors(lamp + "radiance = [1, 1, 1e6]\nexposure = 20\n"), "material.lamp.exposure: the radiance"));
+  EXPECT_TRUE(contains(errors("[background]\ntype = \"sky\"\nexposure = 40\n"), "background.exposure: the radiance"));
+  write("map.exr", support::ExrFile::constant(8, 4, {2, 2, 2}).bytes());
+  EXPECT_TRUE(contains(errors(std::string(kImageBackground) + "\"map.exr\"\nexposure = 34\n"),
+                       "background.exposure: the radiance with exposure would be 34359738368"));
+  EXPECT_TRUE(
+      contains(errors(lamp + "radiance = { texture = \"image\", file = \"map.exr\" }\nexposure = 34\n"),
+               "material.lamp.exposure: the radiance with exposure would be 34359738368; the maximum is 17179869184"));
+  EXPECT_EQ(run("check a.toml --set material.lamp.exposure=33").status, 0);
+}
+
 TEST_F(CliValidation, UnusedPointColoursAreReported) {
   write("c.ply",
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"

@@ -38,6 +38,10 @@ class Arrays(FolderTest):
         with self.assertRaises(KeyError):
             p["N.W"]
 
+    def test_an_index_is_no_layer(self):
+        with self.assertRaisesRegex(TypeError, "layers have names"):
+            self.picture[0]
+
     def test_no_copy_and_read_only(self):
         self.assertTrue(np.shares_memory(self.picture.beauty, self.picture.beauty))
         self.assertTrue(np.shares_memory(self.picture["Z"], self.picture["Z"]))

@@ -208,6 +208,12 @@ class Cameras(unittest.TestCase):
         with self.assertRaises(ValueError):
             orrery.Camera.fit(np.zeros((3, 2)))
 
+    def test_positions_that_are_not_finite(self):
+        p = positions()
+        p[7, 1] = np.nan
+        with self.assertRaisesRegex(orrery.SceneError, r"positions\[7\] is not finite"):
+            orrery.Camera.fit(p)
+
     def test_no_positions(self):
         orrery.Scene(camera=orrery.Camera.fit(np.zeros((0, 3)))).render(4, 4, samples=1)
 

@@ -47,8 +47,8 @@ void read_map(const std::filesystem::path& file, const std::function<void(int ro
   module().read_map(file, take, formats);
 }
 
-WriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
-                        const EditPlanes& edit) {
+RewriteReport rewrite_exr(const std::filesystem::path& input, const std::filesystem::path& output,
+                          const EditPlanes& edit) {
   return module().rewrite_exr(input, output, edit);
 }
 

@@ -51,6 +51,8 @@ class Picture:
         return self._native.statistics()
 
     def __getitem__(self, name):
+        if not isinstance(name, str):
+            raise TypeError(f"layers have names, not {name!r}; pixels are picture.beauty[row, column]")
         array = self._native.array(name) if name else None
         if array is not None:
             return array

@@ -56,7 +56,6 @@ class Scene:
         self._text = _NEW_SCENE
         self._settings = {}
         self._arrays = {}
-        self._aspect_keys = {}  # image.width and image.height
         if camera is not None:
             self.set("camera", camera)
         if background is not None:
@@ -72,6 +71,8 @@ class Scene:
 
         A table, such as a Camera, replaces all keys of its name.
         """
+        if not isinstance(key, str):
+            raise TypeError(f"a key is text such as 'camera.vfov', not {key!r}")
         if isinstance(value, (_keys.Keys, Mapping)):
             for old in [old for old in self._settings if old.startswith(key + ".")]:
                 del self._settings[old]

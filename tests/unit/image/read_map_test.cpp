@@ -64,6 +64,13 @@ TEST_F(ImageReadMap, ASingleChannelIsGrey) {
   EXPECT_EQ(values_of(folder_ / "a.exr"), (std::vector<float>{0, 0, 0, 1, 1, 1}));
 }
 
+TEST_F(ImageReadMap, GreyWithAlphaIsGrey) {
+  OIIO::ImageSpec spec(2, 1, 2, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"Y", "A"};
+  write_foreign("a.exr", spec);
+  EXPECT_EQ(values_of(folder_ / "a.exr"), (std::vector<float>{0, 0, 0, 2, 2, 2}));
+}
+
 TEST_F(ImageReadMap, ChannelsOfOtherNamesAreBadData) {
   OIIO::ImageSpec spec(2, 1, 2, OIIO::TypeDesc::FLOAT);
   spec.channelnames = {"N.X", "N.Y"};

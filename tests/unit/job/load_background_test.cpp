@@ -115,6 +115,15 @@ TEST_F(JobLoadBackground, ValuesThatAreNoRadianceCountAsZero) {
     EXPECT_EQ(loaded.image->row(0)[i], i == 0 || i == 4 || i == 5 || i == 8 || i == 9 ? 0 : 1) << i;
 }
 
+TEST_F(JobLoadBackground, ValuesBeyondTheFilmAreClamped) {
+  ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
+  exr.rgb[4] = 1e30F;
+  const LoadedBackground loaded = load(exr);
+  EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are out of range in lin_rec709 and were clamped"});
+  EXPECT_EQ(loaded.image->row(0)[4], 0x1p34F);
+  EXPECT_EQ(loaded.brightest, 0x1p34F);
+}
+
 TEST_F(JobLoadBackground, ColoursOutsideTheWorkingSpaceAreClamped) {
   ExrFile exr = ExrFile::constant(2, 1, {0, 1, 0});
   exr.color_interop_id = "lin_ap1_scene";

@@ -240,6 +240,9 @@ TEST_F(PointsPointColors, RgbIsDecoded) {
   expect_near(color_of(rgb_table<std::uint16_t>({65535}, {257 * 100}, {0}), 0), light(255, 100, 0));
   roles.rgb_maximum = 1;
   expect_near(color_of(rgb_table<float>({2, 0}, {-1, 0}, {NAN, 0}), 0), light(255, 0, 0));
+  EXPECT_EQ(diagnostics,
+            "warning points[0].color.rgb: 1 values are NaN and count as 0\n"
+            "warning points[0].color.rgb: 2 values are outside 0..1 and were clamped\n");
 }
 
 TEST_F(PointsPointColors, ManyRgbColorsAreReduced) {

@@ -94,6 +94,24 @@ TEST(SceneValidate, KeysOfSkiesHaveNoEffectOnOthers) {
   EXPECT_EQ(told(scene), Told{});
 }
 
+TEST(SceneValidate, RadianceWithExposureIsLimited) {
+  Scene scene;
+  Emitter lamp;
+  lamp.radiance = {1, 0, 0x1p20};
+  lamp.exposure = 14;
+  scene.materials = {{"lamp", lamp}};
+  EXPECT_EQ(told(scene), Told{}) << "2^34 is allowed";
+  std::get<Emitter>(scene.materials[0].model).exposure = 15;
+  EXPECT_EQ(told(scene), Told{"material.lamp.exposure: the radiance with exposure would be 34359738368; the maximum is "
+                              "17179869184; reduce the exposure"});
+  const auto texture = std::make_shared<Texture>();
+  texture->high = {0, 0x1p19, 0};
+  std::get<Emitter>(scene.materials[0].model).radiance_texture = texture;
+  EXPECT_EQ(told(scene), Told{}) << "the texture replaces the constant";
+  std::get<Emitter>(scene.materials[0].model).exposure = 16;
+  EXPECT_EQ(told(scene).size(), 1u);
+}
+
 TEST(SceneValidate, CameraMustHaveADirection) {
   Scene scene;
   scene.camera.look_at = scene.camera.look_from;
