@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/stop_point.h"
+
 namespace orrery::accel {
 namespace {
 
@@ -29,8 +31,10 @@ BoxFrame::BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::ui
     const kernel::Sphere s = spheres[id], change = motion[id];
     return kernel::Sphere{s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
   };
+  const base::StopPoint stop;
   const auto each = [&](auto f) {
     for (const std::uint32_t id : ids) {
+      stop.check(id);
       f(spheres[id]);
       if (id < moving_count) f(at_closing(id));
     }

@@ -9,6 +9,7 @@ namespace orrery::accel {
 
 std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision) {
   const bool is_fast = precision == kernel::Precision::kFast;
+  if (is_fast ? scene.distinct_in_single : scene.distinct) return {};
   const auto rounded = [is_fast](auto key) {
     if (is_fast)
       for (double& x : key) x = static_cast<double>(static_cast<float>(x));

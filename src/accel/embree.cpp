@@ -14,6 +14,7 @@
 #include "accel/owned_scene.h"
 #include "accel/sphere_bvh.h"
 #include "base/error.h"
+#include "base/stop_point.h"
 
 namespace orrery::accel {
 namespace {
@@ -51,7 +52,9 @@ std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std
   };
   std::vector<Large> largest;  // descending, at most one more than there can be outliers
   auto duplicate = duplicates.begin();
+  const base::StopPoint stop;
   for (std::uint32_t id = 0; id < count; ++id) {
+    stop.check(id);
     if (duplicate != duplicates.end() && *duplicate == id) {
       ++duplicate;
       continue;
@@ -197,8 +200,11 @@ class Embree final : public Accel {
     if (ids.size() < threshold || ids.size() > SphereBvh::kMaxSpheres) return {};
     const double limit = giant_radius(view);
     std::vector<std::uint32_t> giants;
-    for (const std::uint32_t id : ids)
+    const base::StopPoint stop;
+    for (const std::uint32_t id : ids) {
+      stop.check(id);
       if (view.spheres[id].radius > limit) giants.push_back(id);
+    }
     if (ids.size() - giants.size() < threshold) return {};
     std::erase_if(ids, [&](std::uint32_t id) { return view.spheres[id].radius > limit; });
     scene_.singles = std::move(giants);

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/stop_point.h"
+
 namespace orrery::base {
 
 /// A Bloom filter of hashes, with a false-positive rate of at most 1 in 50.
@@ -92,14 +94,17 @@ struct Repeated {
 /// Finds all items of 0 .. count - 1 whose key equals that of an earlier item, by ascending index.
 ///
 /// `key_of(i)` returns N numbers as a std::array; -0 equals 0, and a key with a NaN equals no other.
+/// Errors     base::Error(kStopped) in a StopScope
 /// Cost       on two busy cores 0.4 s for ten million items, 4 s for a hundred million; memory 1 to 3 bytes per item,
 ///            and 40 bytes per repeated item
 template <std::size_t N, class KeyOf>
 std::vector<Repeated> find_repeated(std::size_t count, KeyOf key_of) {
   // Sorting the hashes of a hundred million keys would take a quarter of the memory of their spheres. The filters drop
   // nearly all unique keys, and only the rest is sorted.
+  const StopPoint stop;
   const auto each = [&](auto visit) {
     for (std::size_t i = 0; i < count; ++i) {
+      stop.check(i);
       std::array<double, N> key = key_of(i);
       for (double& x : key) x += 0.0;  // -0 becomes 0
       if (key == key) visit(i, hash_of(key));

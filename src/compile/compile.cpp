@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "base/stop_point.h"
 #include "compile/camera_basis.h"
 #include "compile/daylight.h"
 #include "compile/light_tree.h"
@@ -23,6 +24,7 @@ using math::Vec3d;
 kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }
 
 void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
+  const base::StopPoint stop;
   const std::size_t count = scene.sphere_count();
   compiled.sphere_materials.reserve(count);
   MaterialTable table(scene, compiled);
@@ -34,6 +36,7 @@ void add_spheres(const scene::Scene& scene, CompiledScene& compiled) {
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     const scene::Points& points = scene.points[p];
     for (std::size_t i = 0; i < points.centers.size(); ++i) {
+      stop.check(i);
       const std::uint32_t material = points.materials.empty() ? points.material : points.materials[i];
       const bool inside_out = points.radii[i] < 0;
       compiled.sphere_materials.push_back(
@@ -48,7 +51,9 @@ Bounds bounds_of(const SphereStore& spheres) {
   if (spheres.empty()) return {};
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Bounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  const base::StopPoint stop;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
+    stop.check(i);
     const kernel::Sphere s = spheres[i];
     b.lower = {std::min(b.lower.x, s.x - s.radius), std::min(b.lower.y, s.y - s.radius),
                std::min(b.lower.z, s.z - s.radius)};
@@ -151,6 +156,8 @@ kernel::SceneView CompiledScene::view() const noexcept {
   v.direct_lighting = direct_lighting;
   v.motion = motion.data();
   v.moving_count = motion.size();
+  v.distinct = distinct_in.has_value();
+  v.distinct_in_single = distinct_in == scene::Precision::kFast;
   v.camera_motion = camera_motion;
   v.camera = camera;
   v.background = background;
@@ -202,6 +209,7 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   compiled.light_groups = {""};
   compiled.filter = compile_filter(scene.render);
   add_spheres(scene, compiled);
+  compiled.distinct_in = scene.distinct_in;
   set_background(scene, compiled);
   light_group(compiled, scene::background_light_group(scene.background));
   const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };

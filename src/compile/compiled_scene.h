@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ struct CompiledScene {
   Precision precision = Precision::kExact;
   Accelerator accelerator = Accelerator::kEmbree;
   Bounds bounds;
+  std::optional<scene::Precision> distinct_in;  ///< see scene::Scene
   FilterTables filter;
   int width = 0;                                       ///< px, of the rendered window
   int height = 0;                                      ///< px

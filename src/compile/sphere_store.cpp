@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "base/stop_point.h"
+
 namespace orrery::compile {
 namespace {
 
@@ -30,6 +32,7 @@ void append_singles(const scene::NumberArray& numbers, std::vector<float>& out) 
 
 void SphereStore::append(std::span<const scene::Points> sets) {
   const std::optional<double> common = common_radius(sets);
+  const base::StopPoint stop;
   std::size_t count = 0;
   bool fits = true;
   for (const scene::Points& points : sets) {
@@ -40,11 +43,13 @@ void SphereStore::append(std::span<const scene::Points> sets) {
     plain_.reserve(plain_.size() + count);
     for (const scene::Points& points : sets)
       for (std::size_t i = 0; i < points.centers.size(); ++i) {
+        stop.check(i);
         const math::Vec3d c = points.centers[i];
         plain_.push_back({c.x, c.y, c.z, std::abs(points.radii[i])});
       }
     return;
   }
+  stop.check();
   radius_ = common.value_or(0);
   centers_.reserve(3 * count);
   if (!common) radii_.reserve(count);

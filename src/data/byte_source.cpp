@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/stop_point.h"
 #include "base/text.h"
 #include "data/faults.h"
 
@@ -90,7 +91,9 @@ std::vector<char> decompressed(const std::filesystem::path& file, std::uint64_t 
   archive_entry* entry = nullptr;
   if (check(archive_read_next_header(in.get(), &entry)) == ARCHIVE_EOF) return {};
   std::vector<char> out;
+  const base::StopPoint stop;
   for (;;) {
+    stop.check();
     const std::size_t at = out.size();
     // Grows only by what was decompressed: the header of a compressed file may declare any size.
     out.resize(at + kBlock);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/stop_point.h"
 #include "base/text.h"
 
 namespace orrery::data::hdf5 {
@@ -145,7 +146,9 @@ void Dataset::append_as(const std::vector<std::pair<std::uint64_t, Values*>>& co
   const std::uint64_t block = block_rows();
   std::vector<T> buffer(static_cast<std::size_t>(block * components_));
   const Handle space(H5Dget_space(handle_.id()), H5Sclose);
+  const base::StopPoint stop;
   for (std::uint64_t row = 0; row < rows_; row += block) {
+    stop.check();
     const hsize_t offset[2] = {row, 0}, count[2] = {std::min(block, rows_ - row), components_};
     const Handle memory(H5Screate_simple(2, count, nullptr), H5Sclose);
     check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, offset, nullptr, count, nullptr));

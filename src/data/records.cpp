@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <variant>
 
+#include "base/stop_point.h"
+
 namespace orrery::data {
 namespace {
 
@@ -70,10 +72,12 @@ std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& la
   }
   if (rows == 0 || fields.empty()) return out;
   const std::size_t block_rows = std::max<std::size_t>(1, kBlockBytes / stride);
+  const base::StopPoint stop;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (rows - 1) / block_rows + 1),
                     [&](const tbb::blocked_range<std::size_t>& blocks) {
                       std::vector<char> block;
                       for (std::size_t b = blocks.begin(); b < blocks.end(); ++b) {
+                        stop.check();
                         const std::size_t first = b * block_rows, count = std::min(block_rows, rows - first);
                         block.resize(count * stride);
                         bytes.read(layout.begin + first * layout.stride, block.size(), block.data());

@@ -15,6 +15,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/stop_point.h"
 #include "data/text_row_parser.h"
 
 namespace orrery::data {
@@ -126,6 +127,7 @@ class Reading {
 
  private:
   void read_lines(std::uint64_t chunk, TextLines& lines) const {
+    stop_.check();
     const std::uint64_t first = begin_ + chunk * layout_.chunk_bytes;
     lines.read(bytes_, first, first + layout_.chunk_bytes, chunk == 0);
   }
@@ -222,6 +224,7 @@ class Reading {
 
   const ByteSource& bytes_;
   const TextLayout& layout_;
+  base::StopPoint stop_;
   Faults& faults_;
   std::uint64_t begin_;
   std::uint64_t chunk_count_;

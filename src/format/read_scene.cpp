@@ -272,7 +272,10 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<Overr
   if (const toml::array* keys = tables_under(reading, root, "key")) read_tracks(reading, *keys, result.scene);
   if (!reading.diagnostics.has_errors()) pose(reading, root, name, frame, result);
   read_points(reading, root, file, options, index, result.scene);
-  add_problems(reading, root, scene::validate(result.scene, result.closing ? &*result.closing : nullptr), name);
+  add_problems(reading, root, scene::validate(result.scene), name);
+  const auto coincident = scene::warn_of_coincident(result.scene, result.closing ? &*result.closing : nullptr);
+  if (coincident.empty()) result.scene.distinct_in = result.scene.render.precision;
+  add_problems(reading, root, coincident, name);
   const auto is_of_color = [](const std::string& key) { return key.rfind("color.", 0) == 0; };
   if (options.also && std::none_of(reading.unread.begin(), reading.unread.end(), is_of_color))
     add_problems(reading, root, options.also(result.scene), name);

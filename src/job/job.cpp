@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/stop_point.h"
 #include "compile/compile.h"
 #include "denoise/denoise.h"
 #include "film/layer_film.h"
@@ -261,6 +262,7 @@ JobReport run_job(const Job& job) {
   if (!job.files) add_job_files(job, own);
   check_request(job);
   JobReport report;
+  const base::StopScope scope(job.hooks.cancel);
   try {
     run_phases(job, files, report);
   } catch (const base::Error& error) {

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "base/stop_point.h"
+
 namespace orrery::job {
 namespace {
 
@@ -79,8 +81,11 @@ void add_textures(Hash& hash, const compile::TextureStore& store) {
 std::string scene_hash(const compile::CompiledScene& compiled) {
   Hash hash;
   hash.add_bits(compiled.spheres.size());
-  for (std::size_t i = 0; i < compiled.spheres.size(); ++i)
+  const base::StopPoint stop;
+  for (std::size_t i = 0; i < compiled.spheres.size(); ++i) {
+    stop.check(i);
     for (const kernel::Sphere s = compiled.spheres[i]; const double v : {s.x, s.y, s.z, s.radius}) hash.add(v);
+  }
   for (std::size_t i = 0; i < compiled.sphere_materials.size(); ++i) hash.add_bits(compiled.sphere_materials[i]);
   hash.add_bits(compiled.materials.size());
   for (const kernel::Material& m : compiled.materials) {

@@ -56,6 +56,8 @@ struct SceneView {
   IndexArray sphere_materials;  ///< one per sphere, index into `materials`
   const Material* materials = nullptr;
   std::size_t sphere_count = 0;
+  /// No two spheres coincide in double, or in single precision. False: not known.
+  bool distinct = false, distinct_in_single = false;
   const Emission* emission = nullptr;  ///< one per material; null if nothing emits
   /// Textures, and one entry per material; null if there are none. The constants that textures replace are their means.
   const Texture* textures = nullptr;

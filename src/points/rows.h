@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/stop_point.h"
 #include "data/table.h"
 #include "scene/validate.h"
 
@@ -46,6 +47,8 @@ template <class F>
 void for_each_number(const data::Column& column, const Rows& rows, F f) {
   std::visit(
       [&](const auto& values) {
+        const base::StopPoint stop;
+        stop.check();
         if constexpr (!std::is_same_v<std::decay_t<decltype(values)>, data::Words>)
           for (std::size_t i = 0; i < rows.size(); ++i) f(i, static_cast<double>(values[rows[i]]));
       },

@@ -260,6 +260,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Sphere> spheres;
   std::vector<Points> points;
+  /// No two spheres coincide in this precision, nor in one that rounds less. Empty: not known.
+  std::optional<Precision> distinct_in = {};
 
   /// Returns the number of spheres in [[sphere]] tables and points files.
   std::size_t sphere_count() const {

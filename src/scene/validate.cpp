@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/stop_point.h"
 #include "scene/coincident.h"
 #include "scene/layers.h"
 #include "scene/limits.h"
@@ -196,7 +197,9 @@ void check_points(const Points& points, const std::string& key, const Scene& sce
     if (const std::string fault = material_fault(points.material, scene); !fault.empty())
       diagnostics.error(key + ".material", fault);
   std::size_t faults = 0;
+  const base::StopPoint stop;
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
+    stop.check(i);
     const std::uint32_t material = points.materials.empty() ? 0 : points.materials[i];
     check_sphere(points.centers[i], points.radii[i], material, scene, [&](const std::string& part, std::string text) {
       if (points.materials.empty() && part == ".material") return;  // reported once, above
@@ -231,18 +234,6 @@ void check_light_groups(const Scene& scene, Problems& diagnostics) {
     check("background.light_group", scene.background.light_group);
 }
 
-/// Warns of coincident spheres: of two identical surfaces only the first is rendered.
-void check_coincident(const Scene& scene, const Scene* closing, Problems& diagnostics) {
-  for (const Points& p : scene.points)
-    if (p.radii.size() != p.centers.size()) return;  // reported above; the arrays must not be indexed
-  const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
-  for (const Coincident& c : found.reported)
-    diagnostics.warning(c.key, "has exactly the same centre and radius as " + c.first + "; only the first is rendered");
-  if (found.count > kMaxReported)
-    diagnostics.warning("", "and " + std::to_string(found.count - kMaxReported) + " more coincident spheres (" +
-                                std::to_string(found.count) + " in all)");
-}
-
 }  // namespace
 
 std::string exposure_fault(double radiance, double exposure) {
@@ -252,7 +243,7 @@ std::string exposure_fault(double radiance, double exposure) {
          number_text(kBrightestLight) + "; reduce the exposure";
 }
 
-std::vector<SceneDiagnostic> validate(const Scene& scene, const Scene* closing) {
+std::vector<SceneDiagnostic> validate(const Scene& scene) {
   Problems diagnostics;
   check_image(scene.image, diagnostics);
   check_camera(scene.camera, diagnostics);
@@ -266,7 +257,19 @@ std::vector<SceneDiagnostic> validate(const Scene& scene, const Scene* closing) 
     check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, diagnostics);
   check_light_groups(scene, diagnostics);
   check_layers(scene, diagnostics);
-  check_coincident(scene, closing, diagnostics);
+  return diagnostics.take();
+}
+
+std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene* closing) {
+  for (const Points& p : scene.points)
+    if (p.radii.size() != p.centers.size()) return {};  // an error of validate(); the arrays must not be indexed
+  Problems diagnostics;
+  const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
+  for (const Coincident& c : found.reported)
+    diagnostics.warning(c.key, "has exactly the same centre and radius as " + c.first + "; only the first is rendered");
+  if (found.count > kMaxReported)
+    diagnostics.warning("", "and " + std::to_string(found.count - kMaxReported) + " more coincident spheres (" +
+                                std::to_string(found.count) + " in all)");
   return diagnostics.take();
 }
 

@@ -30,13 +30,21 @@ std::string exposure_fault(double radiance, double exposure);
 
 /// Checks what the type and range of a single key cannot: a camera without direction, a lens of absurd size, lights
 /// of absurd exposure, numbers outside the domain, materials that do not exist, names of light groups, layers that the
-/// scene cannot have, coincident spheres (a warning).
+/// scene cannot have.
 ///
-/// `closing`  the scene at shutter close, used only to find coincident spheres; null: no motion
 /// Domain     any scene, including non-finite numbers
 /// Result     empty if the scene is valid; all diagnostics of [[sphere]] tables; the first kMaxReported of each points
-///            file and of the coincident spheres, with the number of the rest
-/// Cost       linear in the number of spheres; see base::find_repeated
-std::vector<SceneDiagnostic> validate(const Scene& scene, const Scene* closing = nullptr);
+///            file, with the number of the rest
+/// Errors     base::Error(kStopped) in a base::StopScope
+/// Cost       linear in the number of spheres
+std::vector<SceneDiagnostic> validate(const Scene& scene);
+
+/// Warns of coincident spheres: of two identical surfaces only the first is rendered.
+///
+/// `closing`  the scene at shutter close; null: no motion
+/// Result     the first kMaxReported, with the number of the rest; empty if there are none
+/// Errors     base::Error(kStopped) in a base::StopScope
+/// Cost       see base::find_repeated
+std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene* closing);
 
 }  // namespace orrery::scene

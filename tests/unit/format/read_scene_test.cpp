@@ -316,6 +316,15 @@ TEST(FormatReadScene, CoincidentSpheresAreAWarning) {
   EXPECT_EQ(wrong.find("warning"), std::string::npos) << "no warnings about a scene with errors";
 }
 
+TEST(FormatReadScene, ScenesWithoutCoincidentSpheresAreDistinctInTheirPrecision) {
+  SceneFiles files;
+  const std::string material = "[material.a]\ntype = \"dielectric\"\n";
+  const std::string sphere = "[[sphere]]\ncenter = [1, 2, 3]\nradius = 1\nmaterial = \"a\"\n";
+  EXPECT_EQ(files.read(material + sphere).scene.distinct_in, scene::Precision::kExact);
+  EXPECT_EQ(files.read(material + sphere, {"render.precision=fast"}).scene.distinct_in, scene::Precision::kFast);
+  EXPECT_EQ(files.read(material + sphere + sphere).scene.distinct_in, std::nullopt);
+}
+
 TEST(FormatReadScene, SettingsHaveTheirOrigin) {
   SceneFiles files;
   const auto settings = files.read("[camera]\nvfov = 20\n", {"render.precision=fast"}).settings;

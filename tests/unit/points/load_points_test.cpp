@@ -28,6 +28,36 @@ const std::string kCsv = "x,y,z,radius,type,name\n1,0,0,0.5,1,a\n2,0,0,0.25,2,b\
 
 using PointsLoadPoints = PointsFile;
 
+/// A file that claims to have a number of rows.
+class ClaimsRows final : public data::DataFile {
+ public:
+  ClaimsRows(std::unique_ptr<data::DataFile> file, std::uint64_t rows) : file_(std::move(file)), rows_(rows) {}
+
+  data::Format format() const override { return file_->format(); }
+  int frame_count() override { return file_->frame_count(); }
+  data::FrameInfo describe(int frame) override {
+    data::FrameInfo info = file_->describe(frame);
+    info.rows = rows_;
+    return info;
+  }
+  data::Table read(int, const std::vector<std::string>&) override {
+    ADD_FAILURE() << "the file was read";
+    return {};
+  }
+
+ private:
+  std::unique_ptr<data::DataFile> file_;
+  std::uint64_t rows_;
+};
+
+TEST_F(PointsLoadPoints, MoreSpheresThanIdsAreRefusedBeforeTheyAreRead) {
+  write("a.csv", "x,y,z,radius\n1,2,3,0.5\n");
+  request.open = [](const std::filesystem::path& file, const data::OpenOptions& options) {
+    return std::make_unique<ClaimsRows>(data::open(file, options), std::uint64_t{1} << 32);
+  };
+  EXPECT_EQ(load(), "error points[0].file: has 4294967296 rows; the maximum is 4294967295\n");
+}
+
 TEST_F(PointsLoadPoints, CentersAndRadii) {
   EXPECT_EQ(load("a.csv", "x,y,z,radius\n1,2,3,0.5\n-4,5e0,6,2\n"), "");
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{1, 2, 3}, {-4, 5, 6}}));

@@ -141,5 +141,13 @@ TEST(RenderCoincident, FastComparesInSinglePrecision) {
   }
 }
 
+TEST(RenderCoincident, SpheresThatAreDistinctInDoubleMayCoincideInSingle) {
+  scene::Scene one = furnace(scene::Lambertian{{0.5, 0.5, 0.5}}), two = one;
+  two.spheres.push_back({{0, 0.25 + 1e-12, 0}, 1, 1, ""});
+  two.distinct_in = scene::Precision::kExact;
+  one.render.precision = two.render.precision = scene::Precision::kFast;
+  EXPECT_TRUE(outcome(one, nullptr, {}) == outcome(two, nullptr, {}));
+}
+
 }  // namespace
 }  // namespace orrery::render

@@ -21,7 +21,9 @@ Scene with_sphere(Vec3d center, double radius) {
 /// "key: text" of each diagnostic, warnings in parentheses.
 std::vector<std::string> told(const Scene& scene) {
   std::vector<std::string> out;
-  for (const SceneDiagnostic& p : validate(scene)) {
+  std::vector<SceneDiagnostic> all = validate(scene);
+  for (const SceneDiagnostic& p : warn_of_coincident(scene, nullptr)) all.push_back(p);
+  for (const SceneDiagnostic& p : all) {
     const std::string line = p.key + ": " + p.text;
     out.push_back(p.severity == base::Severity::kError ? line : "(" + line + ")");
   }

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "accel/sphere_sort.h"
+
+#include <hwy/highway.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "base/stop_point.h"
+
+namespace orrery::accel {
+namespace {
+
+using Item = SphereItem;
+using Cell = SphereBvh::Cell;
+
+constexpr std::size_t kArity = SphereBvh::kArity;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Ranges larger than this are binned from a sample.
+constexpr std::size_t kSampleSize = 1 << 14;
+
+/// Ranges larger than this are divided between threads.
+constexpr std::size_t kParallelSize = 1 << 14;
+
+constexpr int kBins = 32;
+
+/// Ranges up to this size have few bins: what is done once per bin would take longer than what is done per sphere.
+constexpr std::size_t kSmallRange = 512;
+constexpr int kFewBins = 16;
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Four = hn::FixedTag<float, 4>;
+constexpr Four kFour;
+
+/// Bounds and number of the centres in one bin.
+struct alignas(16) Bin {
+  float lower[4] = {kInfinity, kInfinity, kInfinity, kInfinity};
+  float upper[4] = {-kInfinity, -kInfinity, -kInfinity, -kInfinity};
+  std::size_t count = 0;
+
+  void add(hn::Vec<Four> low, hn::Vec<Four> high, std::size_t more) {
+    hn::Store(hn::Min(hn::Load(kFour, lower), low), kFour, lower);
+    hn::Store(hn::Max(hn::Load(kFour, upper), high), kFour, upper);
+    count += more;
+  }
+  void add(const Bin& b) { add(hn::Load(kFour, b.lower), hn::Load(kFour, b.upper), b.count); }
+  /// Half the surface area after growth by `margin` on all sides.
+  float area(float margin) const {
+    const float x = upper[0] - lower[0] + 2 * margin, y = upper[1] - lower[1] + 2 * margin,
+                z = upper[2] - lower[2] + 2 * margin;
+    return x * y + y * z + z * x;
+  }
+};
+
+/// Where to divide a range: the first `left` items along `axis`, which is about where their coordinate is `at`.
+struct Split {
+  int axis = 0;
+  float at = 0;
+  std::size_t left = 0;
+};
+
+class Sorter {
+ public:
+  Sorter(std::span<Item> items, float margin, float reach, const std::function<bool(double)>& monitor)
+      : items_(items), margin_(margin), reach_(reach), monitor_(monitor) {}
+
+  NodeCells cells;
+
+  /// Sorts all items into the order of the leaves.
+  void sort() {
+    std::size_t unit = kArity;
+    while (unit * kArity < items_.size()) unit *= kArity;
+    std::size_t level_unit = kArity * kArity;
+    for (std::vector<Cell>& level : cells) {
+      level.resize((items_.size() + level_unit - 1) / level_unit);
+      level_unit *= kArity;
+      if (level.size() == 1) break;
+    }
+    divide(0, items_.size(), unit * kArity, {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}});
+    if (stopped_) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
+  }
+
+ private:
+  /// Orders a range so that each subtree of `unit` spheres is contiguous, by binary splits at multiples of `unit`
+  /// chosen by the surface area heuristic; then each of these.
+  void divide(std::size_t begin, std::size_t end, std::size_t unit, Cell cell) {
+    if (stopped_.load(std::memory_order_relaxed)) return;
+    stop_.check();
+    for (; end - begin <= unit && unit > kArity; unit /= kArity) {
+      // The range is one node.
+      std::size_t level = 0;
+      for (std::size_t u = kArity * kArity; u < unit; u *= kArity) ++level;
+      if (begin / unit < cells[level].size()) cells[level][begin / unit] = cell;
+    }
+    if (end - begin <= unit) {
+      report(end - begin);
+      return;
+    }
+    const Split split = best_split(begin, end, unit);
+    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(begin),
+               last = items_.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto middle = first + static_cast<std::ptrdiff_t>(split.left);
+    const int axis = split.axis;
+    // A partition at the chosen coordinate is quick; only the part in which the rank lies needs a selection.
+    const auto cut = std::partition(first, last, [&](const Item& i) { return i.center[axis] < split.at; });
+    const auto by_axis = [axis](const Item& a, const Item& b) { return a.center[axis] < b.center[axis]; };
+    stop_.check();
+    if (cut > middle) std::nth_element(first, middle, cut, by_axis);
+    if (cut < middle) std::nth_element(cut, middle, last, by_axis);
+    const std::size_t at = begin + split.left;
+    // No centre on the left is beyond the plane, and none on the right before it.
+    const float plane = cut == middle ? split.at : middle->center[axis];
+    Cell left = cell, right = cell;
+    left.upper[axis] = std::min(left.upper[axis], plane - reach_);
+    right.lower[axis] = std::max(right.lower[axis], plane + reach_);
+    if (end - begin > kParallelSize) {
+      tbb::parallel_invoke([&] { divide(begin, at, unit, left); }, [&] { divide(at, end, unit, right); });
+    } else {
+      divide(begin, at, unit, left);
+      divide(at, end, unit, right);
+    }
+  }
+
+  Split best_split(std::size_t begin, std::size_t end, std::size_t unit) const {
+    const std::size_t count = end - begin, stride = std::max<std::size_t>(1, count / kSampleSize);
+    const int bin_count = count <= kSmallRange ? kFewBins : kBins;
+    // The fourth lane is an item's id, and is ignored.
+    auto low = hn::Set(kFour, kInfinity), high = hn::Set(kFour, -kInfinity);
+    for (std::size_t i = begin; i < end; i += stride) {
+      const auto center = hn::LoadU(kFour, items_[i].center);
+      low = hn::Min(low, center);
+      high = hn::Max(high, center);
+    }
+    alignas(16) float lower[4], upper[4], per_width[4] = {0, 0, 0, 0};
+    hn::Store(low, kFour, lower);
+    hn::Store(high, kFour, upper);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float width = upper[axis] - lower[axis];
+      per_width[axis] = width > 0 ? static_cast<float>(bin_count) * (1 - 0x1p-20F) / width : 0;
+    }
+    Bin bins[3][kBins];
+    const auto factors = hn::Load(kFour, per_width);
+    const auto last = hn::Set(hn::RebindToSigned<Four>(), bin_count - 1);
+    for (std::size_t i = begin; i < end; i += stride) {
+      const auto center = hn::LoadU(kFour, items_[i].center);
+      alignas(16) std::int32_t at[4];
+      const auto bin_of = hn::ConvertTo(hn::RebindToSigned<Four>(), (center - low) * factors);
+      hn::Store(hn::Max(hn::Min(bin_of, last), hn::Zero(hn::RebindToSigned<Four>())), hn::RebindToSigned<Four>(), at);
+      for (int axis = 0; axis < 3; ++axis) bins[axis][at[axis]].add(center, center, 1);
+    }
+    const std::size_t units = (count + unit - 1) / unit, sampled = (count + stride - 1) / stride;
+    const float items_per_sample = static_cast<float>(count) / static_cast<float>(sampled);
+    Split best;
+    float least = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (per_width[axis] == 0) continue;
+      float right_area[kBins];
+      Bin right, left;
+      for (int b = bin_count; b-- > 1;) {
+        right.add(bins[axis][b]);
+        right_area[b] = right.area(margin_);
+      }
+      for (int b = 1; b < bin_count; ++b) {
+        left.add(bins[axis][b - 1]);
+        if (left.count == 0) continue;
+        if (left.count == sampled) break;
+        // The split is moved to the next multiple of the unit, which makes it worse the further it moves.
+        const float wanted = static_cast<float>(left.count) * items_per_sample / static_cast<float>(unit);
+        const auto left_units = std::clamp<std::size_t>(static_cast<std::size_t>(wanted + 0.5F), 1, units - 1);
+        const float moved = std::abs(static_cast<float>(left_units) - wanted) / static_cast<float>(units);
+        const float cost = (left.area(margin_) * static_cast<float>(left_units) +
+                            right_area[b] * static_cast<float>(units - left_units)) *
+                           (1 + moved);
+        if (cost < least) {
+          least = cost;
+          best = {axis, lower[axis] + static_cast<float>(b) / per_width[axis], left_units * unit};
+        }
+      }
+    }
+    if (least == kInfinity) best.left = units / 2 * unit;  // all centres coincide
+    return best;
+  }
+
+  void report(std::size_t count) {
+    if (!monitor_) return;
+    const std::size_t done = done_.fetch_add(count, std::memory_order_relaxed) + count;
+    // About a thousand calls in all.
+    const std::size_t step = items_.size() / 1024 + 1;
+    if (done / step != (done - count) / step &&
+        !monitor_(static_cast<double>(done) / static_cast<double>(items_.size())))
+      stopped_ = true;
+  }
+
+  std::span<Item> items_;
+  float margin_, reach_;
+  const std::function<bool(double)>& monitor_;
+  std::atomic<std::size_t> done_{0};
+  std::atomic<bool> stopped_{false};
+  base::StopPoint stop_;
+};
+
+}  // namespace
+
+NodeCells sort_spheres(std::span<SphereItem> items, float margin, float reach,
+                       const std::function<bool(double)>& monitor) {
+  Sorter sorter(items, margin, reach, monitor);
+  sorter.sort();
+  return std::move(sorter.cells);
+}
+
+}  // namespace orrery::accel

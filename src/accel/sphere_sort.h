@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "accel/sphere_bvh.h"
+
+namespace orrery::accel {
+
+/// A sphere while its BVH is built.
+struct SphereItem {
+  float center[3];  ///< box space
+  std::uint32_t id;
+};
+
+/// The cells of a BVH's nodes by level, those above the leaves first.
+using NodeCells = std::array<std::vector<SphereBvh::Cell>, SphereBvh::kMaxDepth>;
+
+/// Sorts spheres into the order of the leaves of a BVH, by the surface area heuristic.
+///
+/// `margin`   average radius, for the surface area, box space
+/// `reach`    distance from a centre that its sphere does not exceed, padded, box space
+/// `monitor`  receives the progress, 0..1, on any thread; returns false to cancel; or empty
+/// Errors     base::Error(kStopped) if the monitor cancelled, and in a base::StopScope
+NodeCells sort_spheres(std::span<SphereItem> items, float margin, float reach,
+                       const std::function<bool(double)>& monitor);
+
+}  // namespace orrery::accel

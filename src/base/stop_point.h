@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+namespace orrery::base {
+
+/// While it exists, a flag can stop the long computations of this thread.
+class StopScope {
+ public:
+  /// `flag`     true stops them; null: nothing does. Must outlive the scope
+  explicit StopScope(const std::atomic<bool>* flag) noexcept;
+  ~StopScope();
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+
+ private:
+  const std::atomic<bool>* before_;
+};
+
+/// Where a long computation can be stopped: knows the flag of the innermost StopScope on the thread that made it, and
+/// checks it on any thread. Outside of a scope nothing stops.
+class StopPoint {
+ public:
+  StopPoint() noexcept;
+
+  /// Errors     base::Error(kStopped)
+  void check() const {
+    if (flag_ != nullptr && flag_->load(std::memory_order_relaxed)) fail();
+  }
+
+  /// Checks now and then, for loops over many short steps.
+  void check(std::size_t step) const {
+    if (step % kSteps == 0) check();
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 1 << 20;
+  [[noreturn]] static void fail();
+
+  const std::atomic<bool>* flag_;
+};
+
+}  // namespace orrery::base
