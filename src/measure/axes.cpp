@@ -28,6 +28,7 @@ class Planner {
     for (const double times : {4, 2, 1}) noise(times * noise_);
     precision();
     samplers();
+    denoising();
     roulette();
     depth();
     fresnel();
@@ -81,6 +82,14 @@ class Planner {
     for (const int n : {16, 64})
       add("sampler", std::to_string(n) + " blue-noise", flag(n) + " --set render.sampler=blue-noise", n).apply =
           [](CompiledScene& w) { w.sampler.kind = kernel::SamplerKind::kBlueNoise; };
+  }
+
+  void denoising() {
+    for (const int n : {16, 64}) {
+      Choice& c = add("denoise", std::to_string(n) + " sobol", flag(n) + " --set render.sampler=sobol --denoise", n);
+      c.apply = [](CompiledScene& w) { w.sampler.kind = kernel::SamplerKind::kSobol; };
+      c.is_denoised = c.is_shortcut = true;
+    }
   }
 
   bool everything_is_white() const {

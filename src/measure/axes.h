@@ -18,6 +18,7 @@ struct Choice {
   double noise = 0;                                    ///< if above 0, render with --noise instead of `samples`
   std::function<void(compile::CompiledScene&)> apply;  ///< further changes; may be empty
   bool is_shortcut = false;                            ///< converges to a different image
+  bool is_denoised = false;                            ///< render with --denoise
   double slowness = 1;                                 ///< estimated time per sample, relative to the scene's settings
   std::optional<accel::Traversal> traversal;           ///< see render::Settings
 };

@@ -107,8 +107,10 @@ class Runner {
       throw base::Error(base::ErrorKind::kUsage,
                         "a study needs render.shading = \"path\"; the other modes trace no light paths");
     full_ = compile::compile(scene, closing());
-    const film::LayerRequest layers = job::choose_layers(scene, full_).request;
+    film::LayerRequest layers = job::choose_layers(scene, full_).request;
     memory_needs_ = job::memory_needs(full_, layers);
+    layers.halves = true;
+    denoise_needs_ = job::memory_needs(full_, layers);
     scene.spheres = {};
     scene.points = {};
     if (read_.closing) read_.closing->spheres = {};
@@ -247,12 +249,12 @@ class Runner {
     point.seconds = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < 2; ++i) {
       compiled.sampler.seed = seed(i);
-      render::Result result = renderer_.render(compiled, choice.noise, choice.traversal);
+      render::Result result = renderer_.render(compiled, choice.noise, choice.traversal, choice.is_denoised);
       (i == 0 ? pair.first : pair.second) = std::move(result.picture);
       point.seconds = std::min(point.seconds, renderer_.seconds_of(result.statistics));
       point.samples = static_cast<double>(result.statistics.paths) / pixels();
     }
-    job::MemoryNeeds needs = memory_needs_;
+    job::MemoryNeeds needs = choice.is_denoised ? denoise_needs_ : memory_needs_;
     needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
     needs.is_adaptive = choice.noise > 0;
     point.memory = job::estimate_memory(needs).total();
@@ -290,7 +292,7 @@ class Runner {
   StudyRenderer renderer_;
   format::ReadResult read_;       ///< without spheres
   CompiledScene reduced_, full_;  ///< at the study's size and at full resolution, both without spheres
-  job::MemoryNeeds memory_needs_;
+  job::MemoryNeeds memory_needs_, denoise_needs_;  ///< without and with --denoise
   Pair reference_;
   AxisPlan plan_;
   double read_s_ = 0;  ///< time to load the scene

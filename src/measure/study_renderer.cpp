@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "denoise/denoise.h"
 
 namespace orrery::measure {
 
@@ -28,16 +29,22 @@ accel::Accel& StudyRenderer::accel_of(const compile::CompiledScene& scene) {
 }
 
 render::Result StudyRenderer::render(compile::CompiledScene& scene, double noise,
-                                     std::optional<accel::Traversal> traversal) {
+                                     std::optional<accel::Traversal> traversal, bool is_denoised) {
   const Spheres::Loan loan(spheres_, scene);
   render::Settings settings;
   settings.threads = threads_;
   settings.sampling.noise = noise;
   settings.sampling.unlimited = noise > 0;
   settings.traversal = traversal;
+  settings.layers.halves = is_denoised;
   settings.cancel = request_.cancel;
   render::Result result = render::render(scene, accel_of(scene), settings);
   if (!result.completed) throw base::Error(base::ErrorKind::kStopped, "stopped; the study is incomplete");
+  if (is_denoised) {
+    const Clock::time_point begin = Clock::now();
+    denoise::denoise(result.picture, threads_);
+    result.statistics.render_s += std::chrono::duration<double>(Clock::now() - begin).count();
+  }
   result.picture.planes.resize(3);
   isa_ = result.statistics.isa;
   paths_ += static_cast<double>(result.statistics.paths);

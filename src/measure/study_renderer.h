@@ -63,11 +63,12 @@ class StudyRenderer {
   /// Duration of a render, in the same seconds.
   double seconds_of(const render::Statistics& did) const;
 
-  /// Renders with the scene's samples, or with --noise if `noise` is above 0. The image has planes R, G, B.
+  /// Renders with the scene's samples, or with --noise if `noise` is above 0. The image has planes R, G, B. The render
+  /// time includes that of denoising.
   ///
   /// Errors     base::Error(kStopped) if the study was cancelled
   render::Result render(compile::CompiledScene& scene, double noise = 0,
-                        std::optional<accel::Traversal> traversal = {});
+                        std::optional<accel::Traversal> traversal = {}, bool is_denoised = false);
 
   /// Measures paths per second, with `pilot` as the scene to render.
   double measure_speed(compile::CompiledScene pilot);

@@ -26,7 +26,7 @@ AxisPlan plan_of(const scene::Scene& s) { return plan_axes(s, compile::compile(s
 
 TEST(MeasureAxes, OnlyAxesThatAffectTheSceneArePlanned) {
   const AxisPlan all = plan_of(test::everything());
-  for (const char* axis : {"samples", "noise", "precision", "sampler", "roulette", "depth", "fresnel", "accelerator"})
+  for (const char* axis : {"samples", "noise", "precision", "sampler", "denoise", "roulette", "depth", "fresnel", "accelerator"})
     EXPECT_TRUE(has_axis(all, axis)) << axis;
   scene::Scene plain;
   plain.materials = {{"white", scene::Lambertian{{1, 1, 1}}}};
@@ -99,6 +99,13 @@ TEST_F(MeasureRun, SeparatesBiasFromNoise) {
   EXPECT_LT(point("precision", "fast").bias, 0.005);
   EXPECT_NEAR(point("sampler", "16 independent").noise / point("sampler", "256 independent").noise, 4, 0.8);
   EXPECT_LT(point("samples", "64 sobol").error, point("sampler", "64 independent").error);
+}
+
+TEST_F(MeasureRun, DenoisingTakesNoiseAndMemory) {
+  const Point &noisy = point("samples", "16 sobol"), &denoised = point("denoise", "16 sobol");
+  EXPECT_LT(denoised.noise, 0.7 * noisy.noise);
+  EXPECT_LT(denoised.error, noisy.error);
+  EXPECT_GT(denoised.memory, noisy.memory) << "for the halves of the samples";
 }
 
 TEST_F(MeasureRun, TheFrontIsParetoOptimal) {
