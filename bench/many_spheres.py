@@ -6,9 +6,10 @@
     bench/many_spheres.py build/src/orrery --counts 100000
     bench/many_spheres.py build/src/orrery --whole 100000000     from command to picture, all threads
 
-For each scene the first form prints closest hits per second of `orrery bench` - the accelerator of the scene, one Embree
-primitive per sphere, Embree's sphere points - and seconds of the build and peak bytes per sphere of a small render. The
-base, which is what the program takes without spheres, is subtracted. --json FILE keeps the numbers.
+For each scene the first form prints closest hits per second of `orrery bench` (the accelerator of the scene, one Embree
+primitive per sphere, Embree's sphere points), seconds of the build, the ratio of the build's time to that of Embree's
+sphere points, and peak bytes per sphere of a small render. The base, which is what the program takes without spheres, is
+subtracted. --json FILE keeps the numbers.
 """
 import argparse
 import array
@@ -113,6 +114,7 @@ def measure(program, scene, folder, rounds, base):
     return {"scene": scene.stem, "spheres": stats["spheres"], "isa": bench["isa"],
             "paths_per_second": {c["name"]: c["paths_per_s"]["median"] for c in bench["cases"]},
             "hits_per_second": hits, "build_seconds": stats["seconds"]["build"],
+            "build_ratio": bench["builds"][0]["ratio"]["median"],
             "bytes_per_sphere": (stats["peak_memory_bytes"] - base) / stats["spheres"]}
 
 
@@ -134,7 +136,8 @@ def main():
             return
         base = base_bytes(options.program, folder)
         results = []
-        print("scene                single rays  packets  one by one  sphere points   ratio    build  bytes/sphere")
+        print("scene                single rays  packets  one by one  sphere points   ratio    build  its ratio  "
+              "bytes/sphere")
         for count in map(int, options.counts.split(",")):
             for make in (uniform, crystal):
                 r = measure(options.program, make(folder, count), folder, options.rounds, base)
@@ -142,7 +145,8 @@ def main():
                 best = max(hits["single rays"], hits["packets"])
                 print(f"{r['scene']:20} {hits['single rays']:9.2f} M {hits['packets']:6.2f} M "
                       f"{hits.get('one by one, single', float('nan')):9.2f} M {hits['sphere points']:12.2f} M "
-                      f"{best / hits['sphere points']:7.2f} {r['build_seconds']:6.2f} s {r['bytes_per_sphere']:8.0f}", flush=True)
+                      f"{best / hits['sphere points']:7.2f} {r['build_seconds']:6.2f} s {r['build_ratio']:10.2f} "
+                      f"{r['bytes_per_sphere']:13.0f}", flush=True)
                 results.append(r)
         if options.json:
             pathlib.Path(options.json).write_text(json.dumps(results, indent=1) + "\n")

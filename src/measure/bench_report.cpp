@@ -49,6 +49,12 @@ std::string benchmark_text(const Benchmark& b) {
   for (const BenchTracing& t : b.tracing)
     base::append(out, "%-20s %10.3g  %s\n", t.name.c_str(), t.rays_per_s.median / 1e6,
                  with_quartiles("%.3g", t.ratio).c_str());
+  if (!b.builds.empty())
+    base::append(out, "\n%-20s %12s  %-24s %s\n", "build, all threads", "M spheres/s", "time to sphere points",
+                 "bytes/sphere");
+  for (const BenchBuild& build : b.builds)
+    base::append(out, "%-20s %12.3g  %-24s %.0f\n", build.name.c_str(), build.spheres_per_s.median / 1e6,
+                 with_quartiles("%.3g", build.ratio).c_str(), build.bytes_per_sphere);
   if (!b.features.empty()) out += "\nembree exact with one feature added\n";
   for (const BenchCase& c : b.features)
     base::append(out, "%-20s %10.3g  %s\n", c.name.c_str(), c.paths_per_s.median / 1e6,
@@ -59,10 +65,15 @@ std::string benchmark_text(const Benchmark& b) {
 
 std::string benchmark_json(const Benchmark& b) {
   using nlohmann::json;
-  json cases = json::array(), features = json::array(), tracing = json::array();
+  json cases = json::array(), features = json::array(), tracing = json::array(), builds = json::array();
   for (const BenchTracing& t : b.tracing)
     tracing.push_back(
         {{"name", t.name}, {"rays_per_s", quartiles_json(t.rays_per_s)}, {"ratio", quartiles_json(t.ratio)}});
+  for (const BenchBuild& build : b.builds)
+    builds.push_back({{"name", build.name},
+                      {"spheres_per_s", quartiles_json(build.spheres_per_s)},
+                      {"ratio", quartiles_json(build.ratio)},
+                      {"bytes_per_sphere", build.bytes_per_sphere}});
   for (const BenchCase& c : b.cases) cases.push_back(case_json(c));
   for (const BenchCase& c : b.features) features.push_back(case_json(c));
   return job::json_text({{"schema", "orrery.bench/1"},
@@ -77,6 +88,7 @@ std::string benchmark_json(const Benchmark& b) {
                          {"accelerator", b.accelerator},
                          {"cases", cases},
                          {"tracing", tracing},
+                         {"builds", builds},
                          {"features", features},
                          {"left_out", b.left_out}});
 }

@@ -15,6 +15,7 @@
 #include "job/machine.h"
 #include "job/reduced_picture.h"
 #include "job/scene_hash.h"
+#include "measure/bench_build.h"
 #include "measure/bench_tracing.h"
 #include "render/recorded_rays.h"
 #include "render/render.h"
@@ -288,6 +289,7 @@ Benchmark bench_scene(const BenchRequest& request) {
     if (tracing) tracing->measure(round);
   }
   if (tracing) out.tracing = tracing->results();
+  if (!compiled.spheres.empty()) out.builds = bench_builds(compiled.view(), request.rounds);
   for (std::size_t i = 0; i < cases.size(); ++i)
     (i < case_count ? out.cases : out.features).push_back(result_of(cases[i], cases[0].paths_per_s));
   return out;

@@ -41,6 +41,14 @@ struct BenchTracing {
   Quartiles ratio;  ///< speed relative to the first method in the same round
 };
 
+/// Result of building one accelerator.
+struct BenchBuild {
+  std::string name;  ///< "sphere points"
+  Quartiles spheres_per_s;
+  Quartiles ratio;              ///< time relative to Embree's sphere points in the same round
+  double bytes_per_sphere = 0;  ///< of the accelerator, without the spheres
+};
+
 /// Results of a benchmark whose rounds alternate between all cases.
 struct Benchmark {
   std::string scene_hash, isa, accelerator;
@@ -50,6 +58,7 @@ struct Benchmark {
   int threads = 0, rounds = 0;
   std::vector<BenchCase> cases;       ///< "embree exact" is the first
   std::vector<BenchTracing> tracing;  ///< with one thread only
+  std::vector<BenchBuild> builds;     ///< on all threads
   std::vector<BenchCase> features;    ///< embree exact with one feature added that the scene lacks; named after it
   std::vector<std::string> left_out;  ///< what was not measured, and why
 };

@@ -290,8 +290,8 @@ class Runner {
 
   const Request& request_;
   StudyRenderer renderer_;
-  format::ReadResult read_;       ///< without spheres
-  CompiledScene reduced_, full_;  ///< at the study's size and at full resolution, both without spheres
+  format::ReadResult read_;                        ///< without spheres
+  CompiledScene reduced_, full_;                   ///< at the study's size and at full resolution, both without spheres
   job::MemoryNeeds memory_needs_, denoise_needs_;  ///< without and with --denoise
   Pair reference_;
   AxisPlan plan_;

@@ -67,8 +67,8 @@ class StudyRenderer {
   /// time includes that of denoising.
   ///
   /// Errors     base::Error(kStopped) if the study was cancelled
-  render::Result render(compile::CompiledScene& scene, double noise = 0,
-                        std::optional<accel::Traversal> traversal = {}, bool is_denoised = false);
+  render::Result render(compile::CompiledScene& scene, double noise = 0, std::optional<accel::Traversal> traversal = {},
+                        bool is_denoised = false);
 
   /// Measures paths per second, with `pilot` as the scene to render.
   double measure_speed(compile::CompiledScene pilot);

@@ -68,6 +68,18 @@ TEST_F(MeasureBenchScene, MeasuresEveryPrecisionWithEmbreeAndLists) {
   EXPECT_TRUE(b.left_out.empty());
 }
 
+TEST_F(MeasureBenchScene, MeasuresTheBuildOfEveryAccelerator) {
+  const std::vector<BenchBuild> builds = bench_scene(request()).builds;
+  ASSERT_EQ(builds.size(), 3u);
+  EXPECT_EQ(builds[1].name, "BVH") << "the scene has one primitive per sphere";
+  EXPECT_EQ(builds[2].name, "sphere points");
+  EXPECT_EQ(builds[2].ratio.median, 1);
+  for (const BenchBuild& build : builds) {
+    EXPECT_GT(build.spheres_per_s.low, 0) << build.name;
+    EXPECT_GT(build.bytes_per_sphere, 0) << build.name;
+  }
+}
+
 TEST_F(MeasureBenchScene, MeasuresTheFeaturesThatTheSceneLacks) {
   EXPECT_EQ(names(bench_scene(request()).features),
             (std::vector<std::string>{"thin lens", "hemisphere", "lights", "textures"}));
@@ -138,6 +150,7 @@ Benchmark some_benchmark() {
   b.rays_per_path = 2.5;
   b.cases = {{"embree exact", {1e6, 2e6, 3e6}, {1, 1, 1}, Quartiles{0.6, 0.7, 0.8}},
              {"list book", {1e5, 2e5, 3e5}, {0.05, 0.1, 0.15}, {}}};
+  b.builds = {{"sphere points", {1e6, 2e6, 3e6}, {1, 1, 1}, 52.4}};
   b.left_out = {"something, since"};
   return b;
 }
@@ -151,6 +164,9 @@ TEST(MeasureBenchReport, FormatsTextReport) {
             "embree exact                  2  1 (1 .. 1)               70 %\n"
             "list book                   0.2  0.1 (0.05 .. 0.15)\n"
             "\n"
+            "build, all threads    M spheres/s  time to sphere points    bytes/sphere\n"
+            "sphere points                   2  1 (1 .. 1)               52\n"
+            "\n"
             "left out    something, since\n");
 }
 
@@ -160,6 +176,8 @@ TEST(MeasureBenchReport, FormatsJsonReport) {
   EXPECT_EQ(json["cases"][0]["tracing"]["median"], 0.7);
   EXPECT_TRUE(json["cases"][1]["tracing"].is_null());
   EXPECT_EQ(json["cases"][1]["ratio"]["high"], 0.15);
+  EXPECT_EQ(json["builds"][0]["spheres_per_s"]["high"], 3e6);
+  EXPECT_EQ(json["builds"][0]["bytes_per_sphere"], 52.4);
   EXPECT_EQ(json["left_out"][0], "something, since");
 }
 

@@ -26,7 +26,8 @@ AxisPlan plan_of(const scene::Scene& s) { return plan_axes(s, compile::compile(s
 
 TEST(MeasureAxes, OnlyAxesThatAffectTheSceneArePlanned) {
   const AxisPlan all = plan_of(test::everything());
-  for (const char* axis : {"samples", "noise", "precision", "sampler", "denoise", "roulette", "depth", "fresnel", "accelerator"})
+  for (const char* axis :
+       {"samples", "noise", "precision", "sampler", "denoise", "roulette", "depth", "fresnel", "accelerator"})
     EXPECT_TRUE(has_axis(all, axis)) << axis;
   scene::Scene plain;
   plain.materials = {{"white", scene::Lambertian{{1, 1, 1}}}};

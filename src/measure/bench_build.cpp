@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/bench_build.h"
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "accel/accel.h"
+
+namespace orrery::measure {
+namespace {
+
+/// No further round begins after this time.
+constexpr double kLongest = 3;  // s
+
+struct Method {
+  std::string name;
+  std::function<std::unique_ptr<accel::Accel>()> build;
+  std::vector<double> seconds;
+  std::size_t bytes = 0;
+};
+
+}  // namespace
+
+std::vector<BenchBuild> bench_builds(const kernel::SceneView& view, int rounds) {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  };
+  const bool has_bvh = accel::spheres_in_bvh(view) >= accel::kBvhThreshold;
+  const auto embree = [&](std::size_t threshold) {
+    return [&view, threshold] { return accel::make_embree(view, kernel::Precision::kExact, {}, threshold); };
+  };
+  std::vector<Method> methods = {{"accelerator", embree(accel::kBvhThreshold), {}},
+                                 {has_bvh ? "one by one" : "BVH", embree(has_bvh ? accel::kNoBvh : 1), {}},
+                                 {"sphere points", [&view] { return accel::make_native_points(view); }, {}}};
+  const Clock::time_point start = Clock::now();
+  for (int round = 0; round < rounds && (round == 0 || seconds_since(start) < kLongest); ++round) {
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+      // Each round starts with a different method.
+      Method& method = methods[(i + static_cast<std::size_t>(round)) % methods.size()];
+      const Clock::time_point begin = Clock::now();
+      const std::unique_ptr<accel::Accel> built = method.build();
+      method.seconds.push_back(seconds_since(begin));
+      method.bytes = built->bytes();
+    }
+  }
+  const auto count = static_cast<double>(view.sphere_count);
+  std::vector<BenchBuild> out;
+  for (const Method& method : methods) {
+    std::vector<double> rates, ratios;
+    for (std::size_t i = 0; i < method.seconds.size(); ++i) {
+      rates.push_back(count / method.seconds[i]);
+      ratios.push_back(method.seconds[i] / methods.back().seconds[i]);
+    }
+    out.push_back({method.name, quartiles(rates), quartiles(ratios), static_cast<double>(method.bytes) / count});
+  }
+  return out;
+}
+
+}  // namespace orrery::measure
