@@ -4,6 +4,7 @@
 
     bench/many_spheres.py build/src/orrery                       1 and 10 million, one thread
     bench/many_spheres.py build/src/orrery --counts 100000
+    bench/many_spheres.py build/src/orrery --radii               spheres of many sizes
     bench/many_spheres.py build/src/orrery --whole 100000000     from command to picture, all threads
 
 For each scene the first form prints closest hits per second of `orrery bench` (the accelerator of the scene, one Embree
@@ -44,14 +45,16 @@ element vertex {count}
 property float x
 property float y
 property float z
-end_header
+{more}end_header
 """
 CHUNK = 1 << 20
 
 
 def write(folder, name, count, chunks, radius, center, size):
+    """Writes a PLY file and its scene. The radius is a number, or '{ column = "radius" }'."""
+    more = "property float radius\n" if isinstance(radius, str) else ""
     with open(folder / (name + ".ply"), "wb") as out:
-        out.write(HEADER.format(count=count).encode())
+        out.write(HEADER.format(count=count, more=more).encode())
         for chunk in chunks:
             out.write(chunk)
     at = [center + size * x for x in (1.5, 1, 2)]
@@ -94,6 +97,38 @@ def crystal(folder, count):
     return write(folder, f"crystal-{count}", 4 * cells**3, chunks(), 0.3464, cells / 2, cells)
 
 
+def with_radii(folder, name, count, radius_of):
+    """Centres uniform in 1..2 on each axis, radii of their own."""
+    source = random.Random(1)
+
+    def chunks():
+        for begin in range(0, count, CHUNK):
+            rows = array.array("f")
+            for i in range(begin, min(count, begin + CHUNK)):
+                rows.extend((1 + source.random(), 1 + source.random(), 1 + source.random(), radius_of(source, i)))
+            yield rows.tobytes()
+
+    return write(folder, f"{name}-{count}", count, chunks(), '{ column = "radius" }', 1.5, 1)
+
+
+def stars(folder, count):
+    """Radii from a lognormal distribution over about four decades: a few large spheres among many small ones."""
+    typical = 0.0008 * (1e6 / count) ** (1 / 3)
+    return with_radii(folder, "stars", count, lambda source, i: typical * source.lognormvariate(0, 1.2))
+
+
+def grains(folder, count):
+    """Radii from r to 100 r, with as much volume in each octave: most spheres are small."""
+    least = 0.0006 * (1e6 / count) ** (1 / 3)
+    return with_radii(folder, "grains", count, lambda source, i: least * (1 - source.random() * (1 - 1e-6)) ** (-1 / 3))
+
+
+def giant(folder, count):
+    """A uniform cloud, and one sphere of a hundred times their radius in its middle."""
+    radius = 0.0025 * (1e6 / count) ** (1 / 3)
+    return with_radii(folder, "giant", count, lambda source, i: 100 * radius if i == 0 else radius)
+
+
 def statistics(program, scene, folder, *options):
     stats = folder / "stats.json"
     subprocess.run([program, "render", scene, "-o", folder / "out.png", "-q", "--stats", stats, *options], check=True)
@@ -124,6 +159,7 @@ def main():
     parser.add_argument("--counts", default="1000000,10000000")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--whole", type=int, metavar="COUNT")
+    parser.add_argument("--radii", action="store_true", help="stars, grains and a cloud with a giant instead")
     parser.add_argument("--json")
     parser.add_argument("--folder", help="where the scenes are written; default: a temporary folder")
     options = parser.parse_args()
@@ -139,7 +175,7 @@ def main():
         print("scene                single rays  packets  one by one  sphere points   ratio    build  its ratio  "
               "bytes/sphere")
         for count in map(int, options.counts.split(",")):
-            for make in (uniform, crystal):
+            for make in (stars, grains, giant) if options.radii else (uniform, crystal):
                 r = measure(options.program, make(folder, count), folder, options.rounds, base)
                 hits = {k: v / 1e6 for k, v in r["hits_per_second"].items()}
                 best = max(hits["single rays"], hits["packets"])
