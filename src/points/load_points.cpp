@@ -17,6 +17,7 @@
 #include "points/derived.h"
 #include "points/point_colors.h"
 #include "points/point_radii.h"
+#include "points/read_memory.h"
 #include "points/rows.h"
 #include "points/select.h"
 #include "scene/value_text.h"
@@ -28,11 +29,6 @@ using data::Vec3d;
 
 /// Rows are numbered by 32 bits.
 constexpr std::uint64_t kMaxRows = std::numeric_limits<std::uint32_t>::max();
-
-/// A scene::NumberArray stores these as floats.
-bool fits_single(data::ColumnType type) {
-  return type == data::ColumnType::kFloat32 || data::bytes_per_value(type) < 4;
-}
 
 /// Loads the spheres of one points table.
 class Loader {
@@ -133,47 +129,20 @@ class Loader {
     for (const std::string& column : info_.roles.image) need(column);
   }
 
-  data::ColumnType type_of(const std::string& name) const {
-    for (const data::ColumnInfo& column : info_.columns)
-      if (column.name == name) return column.type;
-    return data::ColumnType::kFloat64;
-  }
-
-  /// Of scene data. An upper bound: numbers that need no double precision are stored as floats.
-  std::uint64_t bytes_per_sphere() const {
-    const scene::PointsTransform unchanged;
-    const scene::PointsTransform& t = points_.transform;
-    const bool moves = points_.unwrap || !points_.assembly.empty() || !(points_.replicate == Vec3d{1, 1, 1}) ||
-                       t.scale != unchanged.scale || !(t.rotate == unchanged.rotate) ||
-                       !(t.translate == unchanged.translate);
-    bool all_single = !moves;
-    for (const std::string& column : info_.roles.position) all_single = all_single && fits_single(type_of(column));
-    std::uint64_t bytes = 3 * (all_single ? sizeof(float) : sizeof(double));
-    const bool same = radius_.scale == 1 && t.scale == unchanged.scale;
-    if (radius_.kind != RadiusSource::Kind::kValue)
-      bytes += same && fits_single(type_of(radius_.column)) ? sizeof(float) : sizeof(double);
-    if (!material_.empty()) bytes += sizeof(std::uint32_t);
-    return bytes + (color_.columns.empty() ? 0 : sizeof(std::uint16_t));
-  }
-
   /// `count`   of spheres in one image of the periodic box
   void require_memory(std::uint64_t count) const {
+    ReadMemory need;
+    need.rows = info_.rows;
+    for (const std::string& column : columns_) need.row_bytes += data::bytes_per_value(type_of(info_, column));
+    need.sphere_bytes = bytes_per_sphere(info_, points_, radius_);
+    if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
+    if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
+    if (request_.source != nullptr) need.sphere_bytes += sizeof(std::uint32_t) + need.row_bytes;
     const Vec3d n = points_.replicate;
-    const double images = n.x * n.y * n.z, spheres = static_cast<double>(count) * images;  // may exceed 64 bits
-    std::uint64_t row_bytes = 0;
-    for (const std::string& column : columns_) row_bytes += data::bytes_per_value(type_of(column));
-    const std::uint64_t copied = request_.source == nullptr ? 0 : sizeof(std::uint32_t) + row_bytes;
-    const double bytes = static_cast<double>(info_.rows * row_bytes) +
-                         spheres * static_cast<double>(bytes_per_sphere() + copied) +
-                         images * static_cast<double>(copies_.size() * sizeof(Copy));
-    if (request_.memory_limit == 0 || bytes <= static_cast<double>(request_.memory_limit)) return;
-    const auto whole = [](double x) { return static_cast<std::uint64_t>(std::min(x, 1e18)); };
-    throw base::Error(base::ErrorKind::kNoMemory,
-                      request_.file.string() + ": " + std::to_string(info_.rows) + " rows" +
-                          (count > 0 ? " and " + std::to_string(whole(spheres)) + " spheres" : "") + " need " +
-                          base::bytes_text(whole(bytes)) + " while they are read; " +
-                          base::bytes_text(request_.memory_limit) +
-                          " are available; select fewer rows, or render on a machine with more memory");
+    need.images = n.x * n.y * n.z;
+    need.spheres = static_cast<double>(count) * need.images;
+    need.copies = copies_.size();
+    points::require_memory(need, request_.memory_limit, request_.file);
   }
 
   void load(int frame) {

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "points/read_memory.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "points/copies.h"
+
+namespace orrery::points {
+namespace {
+
+/// A scene::NumberArray stores these as floats.
+bool fits_single(data::ColumnType type) {
+  return type == data::ColumnType::kFloat32 || data::bytes_per_value(type) < 4;
+}
+
+}  // namespace
+
+data::ColumnType type_of(const data::FrameInfo& info, const std::string& column) {
+  for (const data::ColumnInfo& known : info.columns)
+    if (known.name == column) return known.type;
+  return data::ColumnType::kFloat64;
+}
+
+std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius) {
+  const scene::PointsTransform unchanged;
+  const scene::PointsTransform& t = points.transform;
+  const bool moves = points.unwrap || !points.assembly.empty() || !(points.replicate == math::Vec3d{1, 1, 1}) ||
+                     t.scale != unchanged.scale || !(t.rotate == unchanged.rotate) ||
+                     !(t.translate == unchanged.translate);
+  bool all_single = !moves;
+  for (const std::string& column : info.roles.position) all_single = all_single && fits_single(type_of(info, column));
+  std::uint64_t bytes = 3 * (all_single ? sizeof(float) : sizeof(double));
+  const bool same = radius.scale == 1 && t.scale == unchanged.scale;
+  if (radius.kind != RadiusSource::Kind::kValue)
+    bytes += same && fits_single(type_of(info, radius.column)) ? sizeof(float) : sizeof(double);
+  return bytes;
+}
+
+void require_memory(const ReadMemory& need, std::uint64_t limit, const std::filesystem::path& file) {
+  const double bytes = static_cast<double>(need.rows * need.row_bytes) +
+                       need.spheres * static_cast<double>(need.sphere_bytes) +
+                       need.images * static_cast<double>(need.copies * sizeof(Copy));
+  if (limit == 0 || bytes <= static_cast<double>(limit)) return;
+  const auto whole = [](double x) { return static_cast<std::uint64_t>(std::min(x, 1e18)); };
+  throw base::Error(base::ErrorKind::kNoMemory,
+                    file.string() + ": " + std::to_string(need.rows) + " rows" +
+                        (need.spheres > 0 ? " and " + std::to_string(whole(need.spheres)) + " spheres" : "") +
+                        " need " + base::bytes_text(whole(bytes)) + " while they are read; " + base::bytes_text(limit) +
+                        " are available; select fewer rows, or render on a machine with more memory");
+}
+
+}  // namespace orrery::points
