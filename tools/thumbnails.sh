@@ -53,6 +53,12 @@ for elevation in 12 3; do
 done
 "$program" generate env studio -o "$work/studio.exr"
 picture $balls light-studio --samples 400 --set background.type=image --set "background.file=$work/studio.exr"
+"$program" generate planet -o "$work/planet.exr" --width 2048
+cp scenes/next-week/*.toml "$work"
+for name in 01-bouncing-spheres 02-checkered-spheres 03-planet 04-perlin-noise 05-turbulence 06-marble 07-lamp; do
+  picture "$work/$name.toml" "next-week-$name" --display "Gamma 2.0 Rec.709" --samples 1000
+done
+picture "$work/08-rough-glass.toml" next-week-08-rough-glass --samples 1000
 for count in 30 1000 100000; do
   "$program" generate cloud --count $count -o "$work/cloud-$count.toml"
   picture "$work/cloud-$count.toml" cloud-$count --samples 300
