@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the denoiser: error, energy, converged images, time and flicker.
 
-    bench/denoise.py build/src/orrery [error] [converged] [time] [flicker] [--width 320] [--scene NAME]
+    bench/denoise.py build/src/orrery [error] [converged] [time] [flicker] [--width 320] [--reference 2048]
+                                           [--scene NAME]
 
 error      factor by which --denoise divides the mean squared display error at 32 samples, and the change of the image's
-           mean, on the scenes of trade.py and four lit ones; against a reference of 2,048 samples
+           mean, on the scenes of trade.py and four lit ones; against a reference of --reference samples
 converged  the same at 4,096 samples, against 16,384
 time       seconds of --denoise at 64 samples on the final scene at 1920 x 1080, as a fraction of the render
 flicker    mean squared difference of consecutive frames to that of the reference, over 12 frames of a moving camera:
@@ -97,6 +98,7 @@ def main():
     parser.add_argument("program", help="the orrery executable")
     parser.add_argument("figure", nargs="*", help="error, converged, time, flicker")
     parser.add_argument("--width", type=int, default=320, help="image width, px")
+    parser.add_argument("--reference", type=int, default=2048, help="samples of the references of `error`")
     parser.add_argument("--scene", action="append", help="measure only this scene; can be repeated")
     options = parser.parse_args()
     figures = options.figure or ["error", "converged", "time", "flicker"]
@@ -105,7 +107,7 @@ def main():
         scenes = {**trade.scenes(options.program, work), **LIT}
         scenes = {name: scene for name, scene in scenes.items() if not options.scene or name in options.scene}
         if "error" in figures:
-            measure_error(options.program, scenes, work, options, 32, 2048)
+            measure_error(options.program, scenes, work, options, 32, options.reference)
         if "converged" in figures:
             measure_error(options.program, scenes, work, options, 4096, 16384)
         if "time" in figures:

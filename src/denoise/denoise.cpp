@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/denoise.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -13,88 +11,31 @@
 
 #include "base/error.h"
 #include "denoise/light_layers.h"
+#include "denoise/prefilter.h"
 #include "denoise/source_planes.h"
-#include "denoise/tile_filter.h"
+#include "denoise/tiles.h"
 
 namespace orrery::denoise {
 namespace {
 
-/// Squared differences of patches, in variances, from which on they have nothing in common: of guides, and of the
-/// beauty with and without two halves.
-constexpr float kGuideTolerance = 4, kTolerance = 4, kToleranceOfImage = 2;
-
-/// Radius of the window in which guides are filtered, px. They are less noisy than the beauty.
-constexpr int kGuideRadius = 2;
-
-struct Worker {
-  TileScratch scratch;
-  TileWeights weights;
-  TilePixels pixels;
-  std::vector<double> cells;
-};
-
-/// The tiles of an image.
-class Tiles {
- public:
-  Tiles(int width, int height) : width_(width), height_(height) {}
-
-  /// Calls `f(worker, x, y)` with the upper left pixel of each tile, on all threads.
-  template <class F>
-  void each(F f) {
-    const int columns = (width_ + kTileWidth - 1) / kTileWidth, rows = (height_ + kTileHeight - 1) / kTileHeight;
-    tbb::parallel_for(0, columns * rows, [&](int tile) {
-      f(workers_.local(), tile % columns * kTileWidth, tile / columns * kTileHeight);
-    });
-  }
-
-  /// Calls `f(index in the tile, index in the image)` for the pixels of a tile that are within the image.
-  template <class F>
-  void each_pixel(int x0, int y0, F f) const {
-    for (int y = y0; y < std::min(y0 + kTileHeight, height_); ++y)
-      for (int x = x0; x < std::min(x0 + kTileWidth, width_); ++x)
-        f(static_cast<std::size_t>((y - y0) * kTileWidth + x - x0),
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
-  }
-
- private:
-  int width_, height_;
-  tbb::enumerable_thread_specific<Worker> workers_;
-};
-
-/// Filters the guides, which are noisy where the lens or motion blurs them and behind glass, by their own similarity.
-std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, int width, int height, Tiles& tiles) {
-  WeightSource source;
-  source.radius = kGuideRadius;
-  source.tolerance = kGuideTolerance;
-  source.valid = &planes.valid;
-  for (std::size_t g = 0; g < kGuides; ++g)
-    source.compared.push_back({&planes.guides[g], &planes.guides[g], &planes.guide_variance[g]});
-  std::vector<std::vector<float>> out(
-      kGuides, std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)));
-  tiles.each([&](Worker& worker, int x, int y) {
-    compute_weights(source, x, y, worker.scratch, worker.weights);
-    for (std::size_t g = 0; g < kGuides; ++g) {
-      apply_weights(worker.weights, source.radius, planes.guides[g], x, y, worker.pixels);
-      tiles.each_pixel(x, y, [&](std::size_t from, std::size_t to) { out[g][to] = worker.pixels[from]; });
-    }
-  });
-  std::vector<PaddedPlane> result;
-  for (const std::vector<float>& values : out) result.push_back(padded(values, width, height));
-  return result;
-}
+/// Squared differences of patches of the beauty, in variances, from which on they have nothing in common: of filtered
+/// halves, and without halves.
+constexpr float kTolerance = 8, kToleranceOfImage = 2.5F;
 
 /// The weights' source for the beauty.
-WeightSource beauty_source(const SourcePlanes& planes, const std::vector<PaddedPlane>& guides) {
+WeightSource beauty_source(const SourcePlanes& planes, const FilteredHalves& halves,
+                           const std::vector<PaddedPlane>& guides) {
   WeightSource source;
   source.tolerance = planes.has_halves ? kTolerance : kToleranceOfImage;
   source.valid = &planes.valid;
   source.target = planes.target();
+  source.variance = planes.has_halves ? &halves.variance : &planes.variance;
   for (std::size_t c = 0; c < 3; ++c)
-    source.compared.push_back(planes.has_halves
-                                  ? ComparedChannel{&planes.a[c], &planes.b[c], &planes.variance[c]}
-                                  : ComparedChannel{&planes.beauty[c], &planes.beauty[c], &planes.variance[c]});
+    source.compared.push_back(planes.has_halves ? ComparedChannel{&halves.a[c], &halves.b[c]}
+                                                : ComparedChannel{&planes.beauty[c], &planes.beauty[c]});
   for (const PaddedPlane& guide : guides) source.guides.push_back(&guide);
-  source.guide_variance = &planes.total_guide_variance;
+  source.guide_variance = &planes.guide_variance;
+  source.has_regression = !guides.empty();
   return source;
 }
 
@@ -110,14 +51,15 @@ Report filter(film::Picture& picture) {
     is_positive[c] = std::none_of(beauty.begin(), beauty.end(), [](float v) { return v < 0; });
   }
   Tiles tiles(width, height);
+  const Frame frame{width, height};
   const std::vector<PaddedPlane> guides =
-      planes.guides.empty() ? std::vector<PaddedPlane>() : filtered_guides(planes, width, height, tiles);
-  const WeightSource source = beauty_source(planes, guides);
+      planes.guides.empty() ? std::vector<PaddedPlane>() : filtered_guides(planes, frame, tiles);
+  const FilteredHalves halves = planes.has_halves ? filtered_halves(planes, guides, frame, tiles) : FilteredHalves();
+  const WeightSource source = beauty_source(planes, halves, guides);
   std::vector<std::vector<PaddedPlane>> cells;
   for (const LightChannel& channel : lights.channels) {
     cells.emplace_back();
-    for (const std::size_t cell : channel.cells)
-      cells.back().push_back(padded(picture.planes[cell].values, width, height));
+    for (const std::size_t cell : channel.cells) cells.back().push_back(padded(picture.planes[cell].values, frame));
   }
   tiles.each([&](Worker& worker, int x, int y) {
     compute_weights(source, x, y, worker.scratch, worker.weights);

@@ -34,30 +34,30 @@ inline constexpr std::size_t kDistanceStride = kHaloWidth + kMaxLanes;
 /// Squared difference of each pixel of the tile, and of its halo, to the pixel at an offset, in units of the variance.
 ///
 /// The product of the differences in two independent halves is an unbiased estimate of the squared difference. Without
-/// halves, the part that noise explains is subtracted.
+/// halves, the part that noise explains is subtracted. The variance is mostly the smaller of the two pixels', so that a
+/// pixel with little noise, for instance in a shadow, takes no light from a noisy neighbour that differs from it.
 template <bool kHalves>
 HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int dx, int dy, float* out) {
   const D d;
   constexpr float kLeastNoise = 1e-30F, kFarthest = 1e6F;
+  constexpr float kOfSmaller = 1.8F, kOfLarger = 0.2F;
   for (int row = 0; row < kHaloHeight; ++row) {
     const int y = y0 + row - kPatchRadius;
     for (int column = 0; column < kHaloWidth; column += static_cast<int>(hn::Lanes(d))) {
       const int x = x0 + column - kPatchRadius;
-      V difference = hn::Zero(d), noise = hn::Set(d, kLeastNoise);
+      const V here = hn::LoadU(d, source.variance->at(x, y));
+      const V there = hn::LoadU(d, source.variance->at(x + dx, y + dy));
+      const V smaller = hn::Min(here, there);
+      V difference = kHalves ? hn::Zero(d) : hn::Neg(hn::Add(here, smaller));
       for (const ComparedChannel& channel : source.compared) {
         const auto step = [&](const PaddedPlane& plane) {
           return hn::Sub(hn::LoadU(d, plane.at(x, y)), hn::LoadU(d, plane.at(x + dx, y + dy)));
         };
-        const V here = hn::LoadU(d, channel.variance->at(x, y));
-        const V there = hn::LoadU(d, channel.variance->at(x + dx, y + dy));
         const V a = step(*channel.a);
-        if constexpr (kHalves) {
-          difference = add_product(difference, a, step(*channel.b));
-        } else {
-          difference = hn::Add(difference, hn::Sub(hn::Mul(a, a), hn::Add(here, hn::Min(here, there))));
-        }
-        noise = hn::Add(noise, hn::Add(here, there));
+        difference = add_product(difference, a, kHalves ? step(*channel.b) : a);
       }
+      V noise = add_product(hn::Set(d, kLeastNoise), hn::Set(d, kOfSmaller), smaller);
+      noise = add_product(noise, hn::Set(d, kOfLarger), hn::Max(here, there));
       const V far = hn::Set(d, kFarthest);
       const V distance = hn::Min(far, hn::Max(hn::Neg(far), hn::Div(difference, noise)));
       hn::StoreU(distance, d, out + static_cast<std::size_t>(row) * kDistanceStride + column);

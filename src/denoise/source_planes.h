@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "denoise/plane_values.h"
 #include "denoise/tile_filter.h"
 #include "film/picture.h"
 
@@ -14,10 +15,9 @@ namespace orrery::denoise {
 struct SourcePlanes {
   bool has_halves = false;                  ///< `a` and `b` are independent
   std::array<PaddedPlane, 3> beauty, a, b;  ///< the beauty, and that of two halves of the samples
-  std::array<PaddedPlane, 3> variance;      ///< of the beauty
+  PaddedPlane variance;                     ///< of the beauty, sum over the channels
   std::vector<PaddedPlane> guides;          ///< kGuides, or empty
-  std::vector<PaddedPlane> guide_variance;  ///< likewise
-  PaddedPlane total_guide_variance;         ///< the sum of guide_variance
+  PaddedPlane guide_variance;               ///< sum over the guides
   PaddedPlane valid;                        ///< 1; 0 outside of the image and where the beauty is not finite
   std::vector<std::string> missing;         ///< layers that the image lacks
 
@@ -27,9 +27,5 @@ struct SourcePlanes {
 /// Prepares the planes of an image with a beauty R, G, B: halves, guides and variance as far as the image has them.
 /// Values that are not finite are replaced by 0.
 SourcePlanes source_planes(const film::Picture& picture);
-
-/// Copies values into a plane and repeats those at the edge in its border. Values that are not finite or too large
-/// become 0.
-PaddedPlane padded(const std::vector<float>& values, int width_px, int height_px, float scale = 1);
 
 }  // namespace orrery::denoise

@@ -18,8 +18,9 @@ namespace orrery::denoise::HWY_NAMESPACE {
 inline constexpr std::size_t kUnknowns = kGuides + 1;
 inline constexpr std::size_t kEntries = kUnknowns * (kUnknowns + 1) / 2;
 
-/// Added to the mean square of each guide in the regression: guides that vary less than this are ignored.
-inline constexpr float kRidge = 1e-3F;
+/// Added to the mean squares of albedo, normal and inverse depth in the regression: guides that vary less than this are
+/// ignored.
+inline constexpr float kRidges[kGuides] = {1e-2F, 1e-2F, 1e-2F, 2e-2F, 2e-2F, 2e-2F, 3e-4F};
 /// Divisors are at least this large, so that pixels without valid neighbours do not divide by 0.
 inline constexpr float kTiny = 1e-12F;
 
@@ -97,7 +98,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
   });
   const V total = hn::Max(m[0], hn::Set(d, kTiny));
   for (std::size_t i = 1; i < kUnknowns; ++i)
-    m[i * (i + 1) / 2 + i] = add_product(m[i * (i + 1) / 2 + i], hn::Set(d, kRidge), total);
+    m[i * (i + 1) / 2 + i] = add_product(m[i * (i + 1) / 2 + i], hn::Set(d, kRidges[i - 1]), total);
   solve_first(d, m, z);
 
   const V of_total = hn::Div(hn::Set(d, 1.0F), total);
@@ -148,10 +149,10 @@ void compute_tile_weights(const WeightSource& source, int x, int y, TileScratch&
   for (int row = 0; row < kTileHeight; ++row) {
     for (int column = 0; column < kTileWidth; column += static_cast<int>(hn::Lanes(D()))) {
       const auto at = static_cast<std::size_t>(row * kTileWidth + column);
-      if (source.guides.empty()) {
-        normalize(source.radius, at, out);
-      } else {
+      if (source.has_regression) {
         regress(source, x + column, y + row, at, out);
+      } else {
+        normalize(source.radius, at, out);
       }
     }
   }

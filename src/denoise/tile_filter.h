@@ -12,24 +12,24 @@ namespace orrery::denoise {
 /// Number of guides: albedo, normal, inverse depth.
 inline constexpr std::size_t kGuides = 7;
 
-/// A channel by which patches are compared: two independent estimates of it, and the variance of their mean. Without
-/// independent estimates `a` and `b` are the same plane.
+/// A channel by which patches are compared: two independent estimates of it. Without independent estimates `a` and `b`
+/// are the same plane.
 struct ComparedChannel {
   const PaddedPlane* a = nullptr;
   const PaddedPlane* b = nullptr;
-  const PaddedPlane* variance = nullptr;
 };
 
 /// What the weights of a tile are computed from.
 struct WeightSource {
   std::vector<ComparedChannel> compared;
-  int radius = kWindowRadius;  ///< of the window of neighbours, at most kWindowRadius, px
+  const PaddedPlane* variance = nullptr;  ///< of the mean of `a` and `b`, sum over the channels
+  int radius = kWindowRadius;             ///< of the window of neighbours, at most kWindowRadius, px
   float tolerance = 1;  ///< squared difference of patches, in variances, from which on they have nothing in common
   const PaddedPlane* valid = nullptr;  ///< 1, or 0 for pixels to ignore; 0 outside of the image
-  /// kGuides planes, scaled so that pixels that differ by 1 have nothing in common. Empty: weighted means instead of a
-  /// regression.
+  /// kGuides planes, scaled so that pixels that differ by 1 have nothing in common; or empty.
   std::vector<const PaddedPlane*> guides;
   const PaddedPlane* guide_variance = nullptr;  ///< sum of the variances of all guides
+  bool has_regression = false;                  ///< on the guides; otherwise the weights are those of a weighted mean
   /// Image that the weights are for. A regression that would make it negative is blended with the weighted mean.
   std::array<const PaddedPlane*, 3> target = {};
 };
@@ -47,8 +47,8 @@ struct TileScratch {
   std::vector<float> distances, columns;
 };
 
-/// Computes weights by non-local means: neighbours weigh as much as the patches around them are alike. With guides, the
-/// weights are those of a linear regression on the guides over the neighbours.
+/// Computes weights by non-local means: neighbours weigh as much as the patches around them are alike. With
+/// `has_regression`, the weights are those of a linear regression on the guides over the neighbours.
 ///
 /// `x`, `y`   upper left pixel of the tile, multiples of its size
 /// `out`      resized to the number of neighbours

@@ -103,6 +103,63 @@ TEST(DenoiseDenoise, KeepsEnergyAndOtherPlanes) {
   ASSERT_EQ(picture.planes.size(), before.planes.size());
 }
 
+/// Replaces the light of both halves by f(pixel, normally distributed random number), and the beauty by their mean.
+template <class F>
+void set_light(film::Picture& picture, F f) {
+  std::mt19937 random(3);
+  std::normal_distribution<float> normal(0, 1);
+  for (const std::string name : {"R", "G", "B"}) {
+    const auto values_of = [&](const std::string& plane) -> std::vector<float>& {
+      return std::find_if(picture.planes.begin(), picture.planes.end(),
+                          [&](const film::Plane& p) { return p.name == plane; })
+          ->values;
+    };
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      const float a = values_of("half_a." + name)[i] = f(i, normal(random));
+      const float b = values_of("half_b." + name)[i] = f(i, normal(random));
+      values_of(name)[i] = (a + b) / 2;
+    }
+  }
+}
+
+/// Mean of a column of pixels.
+double column_mean(const film::Picture& picture, const std::string& name, std::size_t x) {
+  double sum = 0;
+  for (std::size_t y = 0; y < kHeight; ++y) sum += static_cast<double>(values(picture, name)[y * kWidth + x]);
+  return sum / kHeight;
+}
+
+TEST(DenoiseDenoise, SpreadsFirefliesWithTheirEnergy) {
+  film::Picture picture = noisy(0);
+  std::mt19937 random(5);
+  set_light(picture,
+            [&](std::size_t, float normal) { return 0.5F + 0.05F * normal + (random() % 200 == 0 ? 20.0F : 0.0F); });
+  const film::Picture before = picture;
+  denoise(picture);
+  double was = 0, is = 0, squares_were = 0, squares = 0;
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    const auto then = static_cast<double>(values(before, "G")[i]), now = static_cast<double>(values(picture, "G")[i]);
+    was += then;
+    is += now;
+    squares_were += (then - 0.6) * (then - 0.6);
+    squares += (now - 0.6) * (now - 0.6);
+  }
+  EXPECT_NEAR(is / was, 1, 0.015);
+  EXPECT_LT(squares, squares_were / 40);
+}
+
+TEST(DenoiseDenoise, AShadowTakesNoLightFromNoiseBesideIt) {
+  film::Picture picture = noisy(0);
+  for (film::Plane& plane : picture.planes)
+    if (plane.name.find("normal") != std::string::npos) plane.values.assign(kPixels, 0.5F);
+  set_light(picture, [](std::size_t i, float normal) {
+    const bool is_shadow = static_cast<int>(i % kWidth) < kEdge;
+    return is_shadow ? 0.1F + 0.01F * normal : std::max(0.0F, 0.5F + 0.3F * normal);
+  });
+  denoise(picture);
+  for (int x = 1; x <= 3; ++x) EXPECT_NEAR(column_mean(picture, "R", std::size_t{kEdge} - x), 0.1, 0.027) << x;
+}
+
 TEST(DenoiseDenoise, IsTheSameForAllThreadsAndInstructionSets) {
   film::Picture one = noisy(0.1F), two = one;
   denoise(one, 1);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "denoise/plane_values.h"
+
+namespace orrery::denoise {
+
+Values window_means(const Values& in, Frame frame, int radius_px) {
+  Values out(frame.pixels());
+  const auto width = static_cast<std::size_t>(frame.width), radius = static_cast<std::size_t>(radius_px);
+  const auto side = static_cast<float>(2 * radius_px + 1);
+  tbb::parallel_for(0, frame.height, [&](int y) {
+    Values sums(width + 2 * radius);  // of the window's columns
+    for (int i = -radius_px; i <= radius_px; ++i) {
+      const float* const row = in.data() + frame.at(0, y + i);
+      for (std::size_t x = 0; x < width; ++x) sums[radius + x] += row[x];
+    }
+    std::fill_n(sums.begin(), radius, sums[radius]);
+    std::fill_n(sums.end() - radius_px, radius, sums[radius + width - 1]);
+    float* const row = out.data() + frame.at(0, y);
+    for (std::size_t i = 0; i <= 2 * radius; ++i)
+      for (std::size_t x = 0; x < width; ++x) row[x] += sums[x + i];
+    for (std::size_t x = 0; x < width; ++x) row[x] /= side * side;
+  });
+  return out;
+}
+
+Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px) {
+  const Values squares = frame.each_index([&](std::size_t i) {
+    float sum = 0;
+    for (const Halves& plane : planes) {
+      const float difference = (usable((*plane.a)[i]) - usable((*plane.b)[i])) * plane.scale;
+      sum += difference * difference / 4;
+    }
+    return sum;
+  });
+  return window_means(squares, frame, radius_px);
+}
+
+PaddedPlane padded(const Values& values, Frame frame, float scale) {
+  PaddedPlane out(frame.width, frame.height);
+  constexpr int kBorder = PaddedPlane::kBorder;
+  tbb::parallel_for(-kBorder, frame.height + kBorder, [&](int y) {
+    const float* const from = values.data() + frame.at(0, y);
+    float* const to = out.at(0, y);
+    for (int x = 0; x < frame.width; ++x) to[x] = usable(from[x]) * scale;
+    std::fill_n(to - kBorder, kBorder, to[0]);
+    std::fill_n(to + frame.width, kBorder, to[frame.width - 1]);
+  });
+  return out;
+}
+
+}  // namespace orrery::denoise

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "denoise/padded_plane.h"
+
+namespace orrery::denoise {
+
+/// A plane's values in rows from the top.
+using Values = std::vector<float>;
+
+/// Larger values would overflow when squared.
+inline constexpr float kLargest = 0x1p40F;
+
+inline bool is_usable(float v) { return std::abs(v) <= kLargest; }
+/// Returns 0 for values that are not finite or too large.
+inline float usable(float v) { return is_usable(v) ? v : 0; }
+
+/// Rows of an image and the indices of its pixels.
+struct Frame {
+  int width, height;
+
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  /// Index of the pixel nearest to a place.
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(std::clamp(x, 0, width - 1));
+  }
+  /// Values by place.
+  template <class F>
+  Values each(F f) const {
+    Values out(pixels());
+    tbb::parallel_for(0, height, [&](int y) {
+      for (int x = 0; x < width; ++x) out[at(x, y)] = f(x, y);
+    });
+    return out;
+  }
+  /// Values by index.
+  template <class F>
+  Values each_index(F f) const {
+    Values out(pixels());
+    tbb::parallel_for(0, height, [&](int y) {
+      for (std::size_t i = at(0, y); i < at(0, y) + static_cast<std::size_t>(width); ++i) out[i] = f(i);
+    });
+    return out;
+  }
+};
+
+/// Means over square windows. Beyond the image its outermost pixels are repeated.
+Values window_means(const Values& in, Frame frame, int radius_px);
+
+/// A plane of two independent halves of the samples.
+struct Halves {
+  const Values* a;
+  const Values* b;
+  float scale = 1;  ///< of the values
+};
+
+/// Variance of the mean of two halves, averaged over square windows; sum over the planes.
+Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px);
+
+/// Copies values into a plane and repeats those at the edge in its border. Values that are not finite or too large
+/// become 0.
+PaddedPlane padded(const Values& values, Frame frame, float scale = 1);
+
+}  // namespace orrery::denoise

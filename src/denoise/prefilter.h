@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "denoise/plane_values.h"
+#include "denoise/source_planes.h"
+#include "denoise/tiles.h"
+
+namespace orrery::denoise {
+
+/// Filters the guides, which are noisy where the lens or motion blurs them and behind glass, by their own similarity.
+///
+/// Result     kGuides planes
+std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, Frame frame, Tiles& tiles);
+
+/// Two halves of the samples with less noise, by which the final weights are determined.
+struct FilteredHalves {
+  std::array<PaddedPlane, 3> a, b;
+  PaddedPlane variance;  ///< of their mean, sum over the channels
+};
+
+/// Filters both halves of the beauty with the same weights, of a small window.
+///
+/// `guides`   filtered
+/// Reference  rousselle2012
+FilteredHalves filtered_halves(const SourcePlanes& planes, const std::vector<PaddedPlane>& guides, Frame frame,
+                               Tiles& tiles);
+
+}  // namespace orrery::denoise
