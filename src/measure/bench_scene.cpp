@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/stop_point.h"
 #include "base/text.h"
 #include "compile/compile.h"
 #include "job/load_scene.h"
@@ -250,6 +251,7 @@ std::vector<FeatureCost> bench_features(const BenchRequest& request) {
 }
 
 Benchmark bench_scene(const BenchRequest& request) {
+  const base::StopScope scope(request.cancel);
   job::choose_isa(request.isa);
   Subject subject(request);
   const compile::CompiledScene& compiled = subject.compiled();

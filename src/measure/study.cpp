@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
+#include "base/stop_point.h"
 #include "base/text.h"
 #include "compile/compile.h"
 #include "job/job_files.h"
@@ -302,6 +303,9 @@ class Runner {
 
 }  // namespace
 
-Study run_study(const Request& request) { return Runner(request).run(); }
+Study run_study(const Request& request) {
+  const base::StopScope scope(request.cancel);
+  return Runner(request).run();
+}
 
 }  // namespace orrery::measure
