@@ -103,7 +103,7 @@ TEST_F(MeasureRun, SeparatesBiasFromNoise) {
 }
 
 TEST_F(MeasureRun, DenoisingTakesNoiseAndMemory) {
-  const Point &noisy = point("samples", "16 sobol"), &denoised = point("denoise", "16 sobol");
+  const Point noisy = point("samples", "16 sobol"), denoised = point("denoise", "16 sobol");
   EXPECT_LT(denoised.noise, 0.7 * noisy.noise);
   EXPECT_LT(denoised.error, noisy.error);
   EXPECT_GT(denoised.memory, noisy.memory) << "for the halves of the samples";
