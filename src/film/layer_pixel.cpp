@@ -67,8 +67,10 @@ Hit locate(const kernel::SceneView& scene, const PathRecord& path, bool along_ax
     along += path.direction[k] * forward[k];
     through += path.direction[k] * path.offset[k];
   }
-  if (!scene.camera.is_orthographic) hit.distance = std::sqrt(far);
-  if (!along_axis && !scene.camera.is_orthographic) return hit;
+  if (!scene.camera.is_orthographic) {
+    hit.distance = std::sqrt(far);
+    if (!along_axis) return hit;
+  }
   length = std::sqrt(length);
   hit.z /= length;
   if (scene.camera.is_orthographic) hit.distance = hit.z;

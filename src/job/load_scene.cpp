@@ -107,9 +107,11 @@ std::vector<scene::SceneDiagnostic> check_exposures(const scene::Scene& scene, c
   };
   for (const scene::Material& material : scene.materials) {
     const auto* const emitter = std::get_if<scene::Emitter>(&material.model);
+    if (emitter == nullptr || !emitter->radiance_texture) continue;
     const std::string table = "material." + material.name;
+    const std::string key = table + ".radiance";
     for (const LoadedTexture& texture : loaded.textures)
-      if (emitter != nullptr && texture.key == table + ".radiance") check(table, texture.map, emitter->exposure);
+      if (texture.key == key) check(table, texture.map, emitter->exposure);
   }
   if (loaded.background) check("background", *loaded.background, scene.background.exposure);
   return out;

@@ -23,17 +23,22 @@ struct Method {
 
 }  // namespace
 
+OtherKind other_kind(const kernel::SceneView& view) {
+  if (accel::spheres_in_bvh(view) > 0) return {"one by one", accel::kNoBvh};
+  return {"BVH", 1};
+}
+
 std::vector<BenchBuild> bench_builds(const kernel::SceneView& view, int rounds) {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
   };
-  const bool has_bvh = accel::spheres_in_bvh(view) >= accel::kBvhThreshold;
+  const OtherKind other = other_kind(view);
   const auto embree = [&](std::size_t threshold) {
     return [&view, threshold] { return accel::make_embree(view, kernel::Precision::kExact, {}, threshold); };
   };
   std::vector<Method> methods = {{"accelerator", embree(accel::kBvhThreshold), {}},
-                                 {has_bvh ? "one by one" : "BVH", embree(has_bvh ? accel::kNoBvh : 1), {}},
+                                 {other.name, embree(other.bvh_threshold), {}},
                                  {"sphere points", [&view] { return accel::make_native_points(view); }, {}}};
   const Clock::time_point start = Clock::now();
   for (int round = 0; round < rounds && (round == 0 || seconds_since(start) < kLongest); ++round) {

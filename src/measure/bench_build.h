@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "kernel/scene_view.h"
@@ -8,8 +10,16 @@
 
 namespace orrery::measure {
 
-/// Benchmark of building, on all threads: the accelerator that renders the scene in `exact`, the other kind (one Embree
-/// primitive per sphere, or a SphereBvh), and Embree's own sphere points. Rounds alternate between them.
+/// The accelerator that a benchmark compares with the default one: one Embree primitive per sphere if the default has a
+/// BVH of many spheres, otherwise such a BVH.
+struct OtherKind {
+  std::string name;
+  std::size_t bvh_threshold;  ///< for accel::make_embree
+};
+OtherKind other_kind(const kernel::SceneView& view);
+
+/// Benchmark of building, on all threads: the accelerator that renders the scene in `exact`, the other kind, and
+/// Embree's own sphere points. Rounds alternate between them.
 ///
 /// `rounds`   maximum number of rounds; there are fewer if they take seconds
 /// Domain     at least one sphere

@@ -50,8 +50,7 @@ std::string benchmark_text(const Benchmark& b) {
     base::append(out, "%-20s %10.3g  %s\n", t.name.c_str(), t.rays_per_s.median / 1e6,
                  with_quartiles("%.3g", t.ratio).c_str());
   if (!b.builds.empty())
-    base::append(out, "\n%-20s %12s  %-24s %s\n", "build, all threads", "M spheres/s", "time to sphere points",
-                 "bytes/sphere");
+    base::append(out, "\n%-20s %12s  %-24s %s\n", "build, all threads", "M spheres/s", "relative time", "bytes/sphere");
   for (const BenchBuild& build : b.builds)
     base::append(out, "%-20s %12.3g  %-24s %.0f\n", build.name.c_str(), build.spheres_per_s.median / 1e6,
                  with_quartiles("%.3g", build.ratio).c_str(), build.bytes_per_sphere);

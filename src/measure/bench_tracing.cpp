@@ -3,20 +3,21 @@
 
 #include <cstddef>
 
+#include "measure/bench_build.h"
+
 namespace orrery::measure {
 
 TracingBench::TracingBench(const kernel::SceneView& view, accel::Accel& fast,
                            render::RecordedRays<kernel::RayPacketFast>& rays, bool with_list)
     : points_(accel::make_native_points(view)), rays_(rays) {
-  const bool has_bvh = view.sphere_count >= accel::kBvhThreshold;
-  other_ = accel::make_embree(view, kernel::Precision::kFast, {}, has_bvh ? accel::kNoBvh : 1);
-  const std::string other = has_bvh ? "one by one, " : "BVH, ";
+  const OtherKind other = other_kind(view);
+  other_ = accel::make_embree(view, kernel::Precision::kFast, {}, other.bvh_threshold);
   for (const auto* packets : {&rays_.camera, &rays_.bounced})
     for (const kernel::RayPacketFast& packet : *packets) ray_count_ += packet.count;
   methods_ = {{"packets", &fast, accel::Traversal::kPacket, {}},
               {"single rays", &fast, accel::Traversal::kSingle, {}},
-              {other + "packets", other_.get(), accel::Traversal::kPacket, {}},
-              {other + "single", other_.get(), accel::Traversal::kSingle, {}},
+              {other.name + ", packets", other_.get(), accel::Traversal::kPacket, {}},
+              {other.name + ", single", other_.get(), accel::Traversal::kSingle, {}},
               {"sphere points", points_.get(), accel::Traversal::kSingle, {}}};
   if (!with_list) return;
   list_ = accel::make_simd_list(view, kernel::Precision::kFast);

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "data/data_file.h"
 #include "points/copies.h"
 #include "points/derived.h"

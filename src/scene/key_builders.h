@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Helpers for the definition of keys; used only by schema.cpp and points_keys.cpp.
+// Helpers for the definition of keys; used only by the files that define them.
 #pragma once
 
 #include <optional>
@@ -12,6 +12,10 @@
 #include "scene/schema.h"
 
 namespace orrery::scene {
+
+/// Ranges of a reflectance, probability or fuzz, and of a radiance without exposure.
+inline constexpr Range kUnit{0, 1};
+inline constexpr Range kLight{0, kBrightestBackground};
 
 /// Documentation of a key.
 struct KeyDoc {

@@ -15,14 +15,14 @@ using Keys = std::vector<Key<Texture>>;
 Key<Texture> value(TextureUse use, const char* name, const char* doc, Vec3d Texture::*member) {
   if (use == TextureUse::kNumber) {
     Key<Texture> key =
-        number<Texture>(name, {0, 1}, {"", doc}, [member](Texture& t) -> double& { return (t.*member).x; });
+        number<Texture>(name, kUnit, {"", doc}, [member](Texture& t) -> double& { return (t.*member).x; });
     key.set = [member](Texture& t, const Value& v) {
       const double x = std::get<double>(v);
       t.*member = {x, x, x};
     };
     return key;
   }
-  const Range range = use == TextureUse::kRadiance ? Range{0, kBrightestBackground} : Range{0, 1};
+  const Range range = use == TextureUse::kRadiance ? kLight : kUnit;
   return vector<Texture>(name, range, {"scene-linear", doc}, [member](Texture& t) -> Vec3d& { return t.*member; });
 }
 

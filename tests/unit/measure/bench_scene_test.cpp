@@ -164,7 +164,7 @@ TEST(MeasureBenchReport, FormatsTextReport) {
             "embree exact                  2  1 (1 .. 1)               70 %\n"
             "list book                   0.2  0.1 (0.05 .. 0.15)\n"
             "\n"
-            "build, all threads    M spheres/s  time to sphere points    bytes/sphere\n"
+            "build, all threads    M spheres/s  relative time            bytes/sphere\n"
             "sphere points                   2  1 (1 .. 1)               52\n"
             "\n"
             "left out    something, since\n");
