@@ -3,10 +3,11 @@
 """Measures the denoiser: error, energy, converged images, time and flicker.
 
     bench/denoise.py build/src/orrery [error] [converged] [time] [flicker] [--width 320] [--reference 2048]
-                                           [--scene NAME]
+                                           [--seeds 4] [--scene NAME]
 
-error      factor by which --denoise divides the mean squared display error at 32 samples, and the change of the image's
-           mean, on the scenes of trade.py and four lit ones; against a reference of --reference samples
+error      factor by which --denoise divides the mean squared display error at 32 samples, over all seeds and its range
+           over single ones, and the largest change of the image's mean, on the scenes of trade.py and four lit ones;
+           against a reference of --reference samples
 converged  the same at 4,096 samples, against 16,384
 time       seconds of --denoise at 64 samples on the final scene at 1920 x 1080, as a fraction of the render
 flicker    mean squared difference of consecutive frames to that of the reference, over 12 frames of a moving camera:
@@ -43,16 +44,24 @@ def mean(file):
 
 def measure_error(program, scenes, work, options, samples, reference_samples):
     factors = []
-    print(f"{'scene':16} {'samples':>8} {'error':>9} {'denoised':>9} {'factor':>8} {'change of the mean':>19}")
+    print(f"{'scene':16} {'samples':>8} {'error':>9} {'denoised':>9} {'factor':>8} {'of one seed':>16} "
+          f"{'change of the mean':>19}")
     for name, scene in scenes.items():
         reference, noisy, clean = (work / f"{kind}.exr" for kind in ("reference", "noisy", "clean"))
         render(program, scene, reference, options, "--samples", reference_samples, "--seed", 999)
-        render(program, scene, noisy, options, "--samples", samples, "--layers", "halves")
-        trade.run(program, "denoise", noisy, "-o", clean, "-q")
-        before, after = (trade.compared(program, file, reference)["display"] for file in (noisy, clean))
-        factors.append((before / after) ** 2 if after > 0 else 1)
-        print(f"{name:16} {samples:8} {before:9.5f} {after:9.5f} {factors[-1]:8.2f} {mean(clean) / mean(noisy) - 1:19.1e}",
-              flush=True)
+        squares, changes = {noisy: [], clean: []}, []
+        for seed in range(1, options.seeds + 1):
+            render(program, scene, noisy, options, "--samples", samples, "--layers", "halves", "--seed", seed)
+            trade.run(program, "denoise", noisy, "-o", clean, "-q")
+            for file, errors in squares.items():
+                errors.append(trade.compared(program, file, reference)["display"] ** 2)
+            changes.append(mean(clean) / mean(noisy) - 1)
+        before, after = (statistics.fmean(errors) for errors in squares.values())
+        of_seed = [b / a if a > 0 else 1 for b, a in zip(*squares.values())]
+        factors.append(before / after if after > 0 else 1)
+        spread = f"{min(of_seed):.2f} .. {max(of_seed):.2f}"
+        print(f"{name:16} {samples:8} {before ** 0.5:9.5f} {after ** 0.5:9.5f} {factors[-1]:8.2f} {spread:>16} "
+              f"{max(changes, key=abs):19.1e}", flush=True)
     print(f"median factor {statistics.median(factors):.2f}, smallest {min(factors):.2f}\n", flush=True)
 
 
@@ -99,6 +108,7 @@ def main():
     parser.add_argument("figure", nargs="*", help="error, converged, time, flicker")
     parser.add_argument("--width", type=int, default=320, help="image width, px")
     parser.add_argument("--reference", type=int, default=2048, help="samples of the references of `error`")
+    parser.add_argument("--seeds", type=int, default=4, help="number of seeds of `error` and `converged`")
     parser.add_argument("--scene", action="append", help="measure only this scene; can be repeated")
     options = parser.parse_args()
     figures = options.figure or ["error", "converged", "time", "flicker"]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/denoise.h"
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "denoise/light_balance.h"
 #include "denoise/light_layers.h"
 #include "denoise/prefilter.h"
 #include "denoise/source_planes.h"
@@ -39,13 +41,51 @@ WeightSource beauty_source(const SourcePlanes& planes, const FilteredHalves& hal
   return source;
 }
 
+/// What is known of a channel before it is filtered.
+struct ChannelLight {
+  bool is_positive;  ///< no value is negative; NaN counts as none
+  bool is_complete;  ///< the cells add up to the beauty
+};
+
+/// Restores the light of a filtered channel, rounds its cells so that they add up to the beauty, and adds up its
+/// layers.
+///
+/// `before`   the beauty before filtering
+void finish_channel(film::Picture& picture, const LightChannel& channel, const PaddedPlane& before,
+                    const PaddedPlane& valid, ChannelLight light) {
+  const Frame frame{picture.width, picture.height};
+  std::vector<float>& beauty = picture.planes[channel.beauty].values;
+  const LightBalance balance(before, beauty, valid, frame);
+  tbb::parallel_for(0, frame.height, [&](int y) {
+    std::vector<double> cells(channel.cells.size());
+    for (int x = 0; x < frame.width; ++x) {
+      if (*valid.at(x, y) == 0) continue;
+      const std::size_t i = frame.at(x, y);
+      const double factor = balance.at(x, y, *before.at(x, y), beauty[i]);
+      beauty[i] = static_cast<float>(factor * static_cast<double>(beauty[i]));
+      // The regression may overshoot below zero.
+      if (light.is_positive) beauty[i] = std::max(beauty[i], 0.0F);
+      for (std::size_t k = 0; k < cells.size(); ++k)
+        cells[k] = factor * static_cast<double>(picture.planes[channel.cells[k]].values[i]);
+      round_to_sum(cells, beauty[i], light.is_complete);
+      for (std::size_t k = 0; k < cells.size(); ++k)
+        picture.planes[channel.cells[k]].values[i] = static_cast<float>(cells[k]);
+      for (const LightChannel::Sum& sum : channel.sums) {
+        double total = 0;
+        for (const std::size_t k : sum.cells) total += cells[k];
+        picture.planes[sum.plane].values[i] = static_cast<float>(total);
+      }
+    }
+  });
+}
+
 Report filter(film::Picture& picture) {
   const int width = picture.width, height = picture.height;
   const SourcePlanes planes = source_planes(picture);
   const LightLayers lights = find_light_layers(picture);
   const bool is_complete = are_complete(picture, lights);
   Report report{lights.names, planes.missing, !planes.guides.empty(), 0};
-  std::array<bool, 3> is_positive{};  // no value is negative; NaN counts as none
+  std::array<bool, 3> is_positive{};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::vector<float>& beauty = picture.planes[lights.channels[c].beauty].values;
     is_positive[c] = std::none_of(beauty.begin(), beauty.end(), [](float v) { return v < 0; });
@@ -63,34 +103,21 @@ Report filter(film::Picture& picture) {
   }
   tiles.each([&](Worker& worker, int x, int y) {
     compute_weights(source, x, y, worker.scratch, worker.weights);
-    std::vector<TilePixels> filtered;
+    const auto filter_plane = [&](const PaddedPlane& from, std::size_t to) {
+      apply_weights(worker.weights, source.radius, from, x, y, worker.pixels);
+      std::vector<float>& values = picture.planes[to].values;
+      tiles.each_pixel(x, y, [&](std::size_t in_tile, int column, int row) {
+        if (*planes.valid.at(column, row) != 0) values[frame.at(column, row)] = worker.pixels[in_tile];
+      });
+    };
     for (std::size_t c = 0; c < 3; ++c) {
       const LightChannel& channel = lights.channels[c];
-      apply_weights(worker.weights, source.radius, planes.beauty[c], x, y, worker.pixels);
-      filtered.resize(channel.cells.size());
-      for (std::size_t i = 0; i < filtered.size(); ++i)
-        apply_weights(worker.weights, source.radius, cells[c][i], x, y, filtered[i]);
-      worker.cells.resize(filtered.size());
-      tiles.each_pixel(x, y, [&](std::size_t from, std::size_t to) {
-        if (*planes.valid.at(static_cast<int>(to % static_cast<std::size_t>(width)),
-                             static_cast<int>(to / static_cast<std::size_t>(width))) == 0)
-          return;
-        // The regression may overshoot below zero.
-        const float beauty = is_positive[c] ? std::max(worker.pixels[from], 0.0F) : worker.pixels[from];
-        picture.planes[channel.beauty].values[to] = beauty;
-        if (filtered.empty()) return;
-        for (std::size_t i = 0; i < filtered.size(); ++i) worker.cells[i] = static_cast<double>(filtered[i][from]);
-        round_to_sum(worker.cells, beauty, is_complete);
-        for (std::size_t i = 0; i < filtered.size(); ++i)
-          picture.planes[channel.cells[i]].values[to] = static_cast<float>(worker.cells[i]);
-        for (const LightChannel::Sum& sum : channel.sums) {
-          double total = 0;
-          for (const std::size_t i : sum.cells) total += worker.cells[i];
-          picture.planes[sum.plane].values[to] = static_cast<float>(total);
-        }
-      });
+      filter_plane(planes.beauty[c], channel.beauty);
+      for (std::size_t i = 0; i < channel.cells.size(); ++i) filter_plane(cells[c][i], channel.cells[i]);
     }
   });
+  for (std::size_t c = 0; c < 3; ++c)
+    finish_channel(picture, lights.channels[c], planes.beauty[c], planes.valid, {is_positive[c], is_complete});
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) report.bad_pixels += *planes.valid.at(x, y) == 0 ? 1 : 0;
   return report;

@@ -26,7 +26,9 @@ std::vector<Values> filtered(const WeightSource& source, const std::vector<const
     compute_weights(source, x, y, worker.scratch, worker.weights);
     for (std::size_t i = 0; i < planes.size(); ++i) {
       apply_weights(worker.weights, source.radius, *planes[i], x, y, worker.pixels);
-      tiles.each_pixel(x, y, [&](std::size_t from, std::size_t to) { out[i][to] = worker.pixels[from]; });
+      tiles.each_pixel(x, y, [&](std::size_t in_tile, int column, int row) {
+        out[i][frame.at(column, row)] = worker.pixels[in_tile];
+      });
     }
   });
   return out;

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
-
 #include "denoise/tile_filter.h"
 
 namespace orrery::denoise {
@@ -17,7 +15,6 @@ struct Worker {
   TileScratch scratch;
   TileWeights weights;
   TilePixels pixels;
-  std::vector<double> cells;
 };
 
 /// The tiles of an image.
@@ -34,13 +31,12 @@ class Tiles {
     });
   }
 
-  /// Calls `f(index in the tile, index in the image)` for the pixels of a tile that are within the image.
+  /// Calls `f(index in the tile, x, y)` for the pixels of a tile that are within the image.
   template <class F>
   void each_pixel(int x0, int y0, F f) const {
     for (int y = y0; y < std::min(y0 + kTileHeight, height_); ++y)
       for (int x = x0; x < std::min(x0 + kTileWidth, width_); ++x)
-        f(static_cast<std::size_t>((y - y0) * kTileWidth + x - x0),
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+        f(static_cast<std::size_t>((y - y0) * kTileWidth + x - x0), x, y);
   }
 
  private:

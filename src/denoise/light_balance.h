@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "denoise/plane_values.h"
+
+namespace orrery::denoise {
+
+/// Distance between the centres of neighbouring parts, px.
+inline constexpr int kPartSpacing = 64;
+
+/// Factors that restore the light of each part of a filtered plane to that before filtering: pixels may take more light
+/// from others, or less, than they give to them.
+///
+/// Parts are overlapping tents, 2 * kPartSpacing wide, that add up to 1 in each pixel, so that factors interpolated
+/// between parts keep the sum over the image. A part that lost light is multiplied by a factor of up to 1.05. In a part
+/// that gained light, the pixels that are brighter than before give back the same fraction of their gain.
+class LightBalance {
+ public:
+  /// `before`, `after`   plane before and after filtering
+  /// `valid`             1, or 0 for pixels to ignore, whose values may be anything
+  LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame);
+
+  /// The factor for a valid pixel; not negative.
+  ///
+  /// `before`, `after`   its values
+  double at(int x, int y, float before, float after) const;
+
+ private:
+  struct Part {
+    double lift = 0;   ///< fraction of all light to add
+    double share = 0;  ///< fraction of the gains to give back
+  };
+
+  int columns_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace orrery::denoise
