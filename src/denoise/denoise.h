@@ -22,7 +22,7 @@ struct Report {
 
 /// Filters the noise of an image's beauty, and applies the same weights to its light layers (lobe AOVs, light groups
 /// and the lobes of the groups). If they added up to the beauty, they do so again, bit for bit in single precision.
-/// Other planes are unchanged. The sum over the image is kept (LightBalance).
+/// Other planes are unchanged. The sum over the image is kept, within the limits of LightBalance.
 ///
 /// The weights come from the layer `halves`, or, as far as the image lacks it, from the guides `denoise.albedo`,
 /// `denoise.normal` and `depth`, from `variance` and from the beauty itself.

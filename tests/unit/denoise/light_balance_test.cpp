@@ -91,11 +91,12 @@ TEST(DenoiseLightBalance, IsLimitedAndIgnoresInvalidPixels) {
 
   const Values before(kFrame.pixels(), 1);
   Values after = before, valid = before;
-  after[7] = std::numeric_limits<float>::quiet_NaN();
-  after[8] = std::numeric_limits<float>::infinity();
-  valid[7] = valid[8] = 0;
-  const LightBalance balance(padded(before, kFrame), after, padded(valid, kFrame), kFrame);
-  EXPECT_EQ(balance.at(9, 0, 1, 1), 1);
+  valid[7] = 0;
+  for (const float invalid : {1e6F, -1e6F, std::numeric_limits<float>::infinity()}) {
+    after[7] = invalid;
+    const LightBalance balance(padded(before, kFrame), after, padded(valid, kFrame), kFrame);
+    EXPECT_EQ(balance.at(9, 0, 1, 2), 1) << invalid;  // a pixel with a gain
+  }
 }
 
 }  // namespace
