@@ -21,7 +21,8 @@ constexpr float kLeastVariance = 0.06F;
 /// Filters planes with the same weights.
 std::vector<Values> filtered(const WeightSource& source, const std::vector<const PaddedPlane*>& planes, Frame frame,
                              Tiles& tiles) {
-  std::vector<Values> out(planes.size(), Values(frame.pixels()));
+  std::vector<Values> out(planes.size());
+  tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) { out[i].resize(frame.pixels()); });
   tiles.each([&](Worker& worker, int x, int y) {
     compute_weights(source, x, y, worker.scratch, worker.weights);
     for (std::size_t i = 0; i < planes.size(); ++i) {

@@ -109,28 +109,37 @@ void each_light_channel(const LayerRequest& r, const LayerPixel& p, const kernel
   }
 }
 
+/// The mean of guides from their sum and total weight; 0 without weight.
+double mean_guide(std::int64_t sum, std::int64_t weight) {
+  return weight > 0 ? static_cast<double>(sum) * kernel::kGuideUnit / static_cast<double>(weight) : 0.0;
+}
+
 /// Calls `f(layer, channel, kind, value)` for every channel of the two halves. They are data, so that they are stored
 /// in single precision: their difference is what matters.
 template <class F>
-void each_half_channel(const LayerPixel& p, F f) {
-  static const HalfSums none;
+void each_half_channel(const Halves& halves, F f) {
+  struct Names {
+    const char *beauty, *albedo, *normal, *inverse_depth;
+  };
+  static constexpr Names kNames[2] = {{"half_a", "half_a.albedo", "half_a.normal", "half_a.inverse_depth"},
+                                      {"half_b", "half_b.albedo", "half_b.normal", "half_b.inverse_depth"}};
   for (std::size_t i = 0; i < 2; ++i) {
-    const HalfSums& half = p.halves.empty() ? none : p.halves[i];
-    const std::string name = i == 0 ? "half_a" : "half_b";
-    const auto channels = [&](const std::string& layer, const char* letters, const Int128(&sum)[3],
-                              std::int64_t weight) {
-      for (int k = 0; k < 3; ++k) f(layer, letters[k], PlaneKind::kData, static_cast<float>(mean(sum[k], weight)));
+    const Names& names = kNames[i];
+    const kernel::PixelSum& light = halves[i].light;
+    const kernel::GuideSum& guides = halves[i].guides;
+    const auto channels = [&](const char* layer, const char* letters, auto mean_of) {
+      for (int k = 0; k < 3; ++k) f(layer, letters[k], PlaneKind::kData, static_cast<float>(mean_of(k)));
     };
-    channels(name, "RGB", half.light, half.lit);
-    channels(name + ".albedo", "RGB", half.albedo, half.weight);
-    channels(name + ".normal", "XYZ", half.normal, half.weight);
-    f(name + ".inverse_depth", 'X', PlaneKind::kData, static_cast<float>(mean(half.inverse_depth, half.weight)));
+    channels(names.beauty, "RGB", [&](int k) { return mean(light.rgb[k], light.weight); });
+    channels(names.albedo, "RGB", [&](int k) { return mean_guide(guides.albedo[k], guides.weight); });
+    channels(names.normal, "XYZ", [&](int k) { return mean_guide(guides.normal[k], guides.weight); });
+    f(names.inverse_depth, 'X', PlaneKind::kData, static_cast<float>(mean(guides.inverse_depth, guides.weight)));
   }
 }
 
 /// Calls `f(layer, channel, kind, value)` for every requested channel, in file order.
 template <class F>
-void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::PixelSum& beauty,
+void each_channel(const LayerRequest& r, const LayerPixel& p, const Halves& halves, const kernel::PixelSum& beauty,
                   const kernel::SceneView& view, F f) {
   const bool hit = p.sphere != kernel::kNoSphere;
   using enum PlaneKind;
@@ -152,9 +161,16 @@ void each_channel(const LayerRequest& r, const LayerPixel& p, const kernel::Pixe
   if (r.object_id) f("object_id", 'X', kData, hit ? static_cast<float>(p.sphere) + 1 : 0.0F);
   if (r.material_id)
     f("material_id", 'X', kData, hit ? static_cast<float>(r.material_numbers[view.sphere_materials[p.sphere]]) : 0.0F);
-  if (r.guide_albedo) means("denoise.albedo", "RGB", kLight, p.guide_albedo);
-  if (r.guide_normal) means("denoise.normal", "XYZ", kVector, p.guide_normal);
-  if (r.halves) each_half_channel(p, f);
+  if (r.guide_albedo || r.guide_normal) {
+    kernel::GuideSum guides = halves[0].guides;
+    guides += halves[1].guides;
+    const auto guide = [&](const char* layer, const char* letters, PlaneKind kind, const std::int64_t(&sum)[3]) {
+      vector(layer, letters, kind, [&](int k) { return static_cast<float>(mean_guide(sum[k], guides.weight)); });
+    };
+    if (r.guide_albedo) guide("denoise.albedo", "RGB", kLight, guides.albedo);
+    if (r.guide_normal) guide("denoise.normal", "XYZ", kVector, guides.normal);
+  }
+  if (r.halves) each_half_channel(halves, f);
   for (const Matte& matte : r.mattes) {
     const std::vector<RankedCoverage> shares = ranked(matte, p);
     // A layer of four channels holds two ranks: id, coverage, id, coverage.
@@ -195,7 +211,7 @@ std::vector<DeepSample> deep_samples(const LayerPixel& p, bool background_visibl
 
 std::vector<Plane> planes_of(const LayerRequest& request) {
   std::vector<Plane> planes;
-  each_channel(request, LayerPixel{}, {}, {}, [&](const std::string& layer, char channel, PlaneKind kind, float) {
+  each_channel(request, {}, {}, {}, {}, [&](const std::string& layer, char channel, PlaneKind kind, float) {
     planes.push_back({(layer.empty() ? "" : layer + ".") + channel, {}, kind});
   });
   return planes;
@@ -212,9 +228,9 @@ LayerFilm::LayerFilm(const LayerRequest& request, const kernel::SceneView& view,
   deep_.pixels.resize(pixels);
 }
 
-void LayerFilm::set(std::size_t pixel, const LayerPixel& sums, const kernel::PixelSum& beauty) {
+void LayerFilm::set(std::size_t pixel, const LayerPixel& sums, const Halves& halves, const kernel::PixelSum& beauty) {
   std::size_t plane = 0;
-  each_channel(request_, sums, beauty, view_,
+  each_channel(request_, sums, halves, beauty, view_,
                [&](const auto&, char, PlaneKind, float v) { planes_[plane++].values[pixel] = v; });
   if (request_.deep) deep_.pixels[pixel] = deep_samples(sums, !request_.coverage);
   if (request_.coverage && sums.weight > 0)

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "film/half_sums.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "film/picture.h"
@@ -23,8 +24,8 @@ class LayerFilm {
 
   /// Sets all layers of a pixel from its sums. Threads may set different pixels concurrently.
   ///
-  /// Domain     `pixel` is an index into the rows from the top left; `beauty` is the sum of the same paths
-  void set(std::size_t pixel, const LayerPixel& sums, const kernel::PixelSum& beauty);
+  /// Domain     `pixel` is an index into the rows from the top left; `halves` and `beauty` are sums over the same paths
+  void set(std::size_t pixel, const LayerPixel& sums, const Halves& halves, const kernel::PixelSum& beauty);
 
   /// Appends the layers to an image of R, G, B, A, and replaces A by the coverage if that was requested.
   void move_to(Picture& picture);

@@ -51,8 +51,7 @@ void camera_at(const kernel::SceneView& scene, double time, double (&origin)[3],
   }
 }
 
-/// `along_axis`  z and exit_z are needed
-Hit locate(const kernel::SceneView& scene, const PathRecord& path, bool along_axis) {
+Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
   const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
   const double center[3] = {s.x, s.y, s.z};
   double origin[3], forward[3];
@@ -67,34 +66,18 @@ Hit locate(const kernel::SceneView& scene, const PathRecord& path, bool along_ax
     along += path.direction[k] * forward[k];
     through += path.direction[k] * path.offset[k];
   }
-  if (!scene.camera.is_orthographic) {
-    hit.distance = std::sqrt(far);
-    if (!along_axis) return hit;
-  }
   length = std::sqrt(length);
   hit.z /= length;
-  if (scene.camera.is_orthographic) hit.distance = hit.z;
+  hit.distance = scene.camera.is_orthographic ? hit.z : std::sqrt(far);
   // The far end of the chord. From inside the sphere the first hit is the exit.
   hit.exit_z = hit.z + std::max(0.0, -2 * through) * along / length;
   return hit;
 }
 
-void add_to_half(HalfSums& half, const PathRecord& path, double distance, std::int64_t weight) {
-  half.weight += weight;
-  add3(half.albedo, path.guide_albedo, weight);
-  add3(half.normal, path.guide_normal, weight);
-  // A camera inside a surface sees it at any small distance.
-  constexpr double kLargestInverse = 0x1p30;
-  if (distance > 0) half.inverse_depth += kernel::to_fixed_point(std::min(1 / distance, kLargestInverse)) * weight;
-  if (!is_good(path.light)) return;
-  half.lit += weight;
-  add3(half.light, path.light, weight);
-}
-
 }  // namespace
 
 void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene, const PathRecord& path,
-                     std::int64_t path_weight, std::size_t half) {
+                     std::int64_t path_weight) {
   weight += path_weight;
   if (is_good(path.light)) {
     lit += path_weight;
@@ -108,16 +91,9 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
       if (path_weight < 0) add3(negative_light, path.light, -path_weight);
     }
   }
-  if (request.guide_albedo) add3(guide_albedo, path.guide_albedo, path_weight);
-  if (request.guide_normal) add3(guide_normal, path.guide_normal, path_weight);
   const bool hits = path.sphere != kernel::kNoSphere;
   Hit hit{};
-  const bool along_axis = request.nearest() || request.deep;
-  if (hits && (along_axis || request.halves)) hit = locate(scene, path, along_axis);
-  if (request.halves) {
-    halves.resize(2);
-    add_to_half(halves[half], path, hit.distance, path_weight);
-  }
+  if (hits && (request.nearest() || request.deep)) hit = locate(scene, path);
   if (request.deep || (hits && !request.mattes.empty())) {
     SphereCoverage& share = share_of(shares, path.sphere);
     share.weight += path_weight;
@@ -173,19 +149,6 @@ void LayerPixel::add(const LayerPixel& other) {
   add_all(negative_squares, other.negative_squares);
   add_all(normal, other.normal);
   add_all(albedo, other.albedo);
-  add_all(guide_albedo, other.guide_albedo);
-  add_all(guide_normal, other.guide_normal);
-  halves.resize(std::max(halves.size(), other.halves.size()));
-  for (std::size_t i = 0; i < other.halves.size(); ++i) {
-    HalfSums& to = halves[i];
-    const HalfSums& from = other.halves[i];
-    add_all(to.light, from.light);
-    add_all(to.albedo, from.albedo);
-    add_all(to.normal, from.normal);
-    to.inverse_depth += from.inverse_depth;
-    to.weight += from.weight;
-    to.lit += from.lit;
-  }
   weight += other.weight;
   lit += other.lit;
   paths += other.paths;

@@ -23,22 +23,13 @@ struct SphereCoverage {
   double back = 0;                                         ///< farthest exit of a path along the view axis
 };
 
-/// Sums over half of a pixel's paths: those that LayerRequest::halves needs.
-struct HalfSums {
-  kernel::Int128 light[3] = {}, albedo[3] = {}, normal[3] = {};
-  kernel::Int128 inverse_depth = 0;  ///< 1 / distance of the first hit, 1 / scene units; 0 for a miss
-  std::int64_t weight = 0;           ///< of the paths
-  std::int64_t lit = 0;              ///< of the paths with valid radiance
-};
-
-/// Layer sums of one pixel. They are integers, so that the order of addition does not change a bit.
+/// Layer sums of one pixel, without denoiser guides. They are integers, so that the order of addition does not change a
+/// bit.
 struct LayerPixel {
   /// Adds a path, except its light events. Radiance that is not finite or exceeds kernel::kLargestSample is invalid and
   /// left out of all sums.
-  ///
-  /// `half`     0 or 1: the half of the samples that the path belongs to; for LayerRequest::halves
   void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path,
-           std::int64_t weight, std::size_t half = 0);
+           std::int64_t weight);
 
   /// Adds one of a path's light events. Ignored if the radiance of the path is invalid.
   ///
@@ -55,7 +46,7 @@ struct LayerPixel {
   Int128 squares[3] = {};  ///< sums of squared radiance, in units of kSquareUnit
   /// Sums of the radiance and of its square over the paths with negative weight; for the variance only.
   Int128 negative_light[3] = {}, negative_squares[3] = {};
-  Int128 normal[3] = {}, albedo[3] = {}, guide_albedo[3] = {}, guide_normal[3] = {};
+  Int128 normal[3] = {}, albedo[3] = {};
   std::int64_t weight = 0;   ///< total weight; each path has 1 unless the pixel filter has negative lobes
   std::int64_t lit = 0;      ///< weight of the paths with valid radiance
   std::int64_t paths = 0;    ///< number of paths with valid radiance
@@ -64,7 +55,6 @@ struct LayerPixel {
   double depth = std::numeric_limits<double>::infinity(), z = 0;
   double position[3] = {0, 0, 0};
   std::uint32_t sphere = kernel::kNoSphere;
-  std::vector<HalfSums> halves;        ///< two if LayerRequest::halves, else empty
   std::vector<SphereCoverage> shares;  ///< by ascending sphere, the background last; only for mattes and deep images
 };
 

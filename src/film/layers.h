@@ -61,8 +61,9 @@ struct LayerRequest {
   bool lights() const;       ///< radiance by lobe or light group, from light events
   bool nearest() const;      ///< a property of the nearest hit
   bool paths_light() const;  ///< the radiance of single paths
-  bool guides() const;       ///< a guide for denoising
-  bool any() const;
+  bool records() const;      ///< layers made from records of single paths
+  bool guides() const;       ///< sums of guides for denoising
+  bool any() const { return records() || guides(); }
 
   /// Number of sums that a pixel's light is divided into: a lobe each, or a lobe of a light group.
   std::size_t light_cells() const;
@@ -128,12 +129,13 @@ constexpr bool requests(const LayerRequest& request) {
 inline bool LayerRequest::lights() const { return detail::requests<LayerSource::kLight>(*this); }
 inline bool LayerRequest::nearest() const { return detail::requests<LayerSource::kNearest>(*this); }
 inline bool LayerRequest::paths_light() const {
-  return lights() || detail::requests<LayerSource::kPaths>(*this) || deep || halves;
+  return lights() || detail::requests<LayerSource::kPaths>(*this) || deep;
 }
-inline bool LayerRequest::guides() const { return detail::requests<LayerSource::kGuide>(*this) || halves; }
-inline bool LayerRequest::any() const {
-  return paths_light() || nearest() || guides() || detail::requests<LayerSource::kSums>(*this) || coverage ||
-         !mattes.empty();
+inline bool LayerRequest::records() const {
+  return paths_light() || nearest() || detail::requests<LayerSource::kSums>(*this) || coverage || !mattes.empty();
+}
+inline bool LayerRequest::guides() const {
+  return detail::requests<LayerSource::kGuide>(*this) || detail::requests<LayerSource::kHalves>(*this);
 }
 inline std::size_t LayerRequest::light_cells() const {
   return lights() ? (light_groups ? groups.size() : 1) * kernel::kLobes : 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/film.h"
+#include "film/half_sums.h"
 #include "film/layer_pixel.h"
 #include "kernel/render_tile.h"
 
@@ -40,6 +41,14 @@ struct Partial {
   std::size_t pixel_count() const { return film.pixel_count(); }
   bool has_halves() const { return second.pixel_count() > 0; }
 
+  /// Adds the samples of another shard of the same size.
+  ///
+  /// Domain     without adaptive sampling
+  void add(const Partial& other);
+
+  /// Whether the layers name spheres below `count` only. A damaged file may name others.
+  bool has_known_spheres(std::size_t count) const;
+
   /// Writes the mean of a pixel's samples, R, G and B, of both halves if there are two; 0 without samples. These are
   /// the bits of the finished image.
   void mean(int x, int y, float* rgb) const;
@@ -49,7 +58,8 @@ struct Partial {
   std::vector<std::uint32_t> counts;  ///< samples per pixel, row by row; with two halves, samples in each
   /// Target sample count of each pixel in the current pass; empty if it is the same for all.
   std::vector<std::uint32_t> goals;
-  std::vector<LayerPixel> layers;  ///< empty if no layers were requested
+  std::vector<LayerPixel> layers;  ///< empty unless LayerRequest::records()
+  std::vector<Halves> halves;      ///< empty unless LayerRequest::guides()
   RenderWork work;
 };
 

@@ -14,9 +14,9 @@ namespace {
 
 using kernel::Int128;
 
-constexpr std::uint32_t kFormat = 4;
+constexpr std::uint32_t kFormat = 5;
 
-enum Flag : std::uint32_t { kHasHalves = 1, kHasGoals = 2, kHasLayers = 4, kAllFlags = 7 };
+enum Flag : std::uint32_t { kHasSecond = 1, kHasGoals = 2, kHasLayers = 4, kHasHalves = 8, kAllFlags = 15 };
 
 std::uint64_t bits(std::uint64_t v) { return v; }
 std::uint64_t bits(std::int64_t v) { return static_cast<std::uint64_t>(v); }
@@ -163,10 +163,6 @@ void each_layer_number(Io& io, Layers& layers) {
     io.numbers(
         layers, [k](auto& p) -> auto& { return p.albedo[k]; });
     io.numbers(
-        layers, [k](auto& p) -> auto& { return p.guide_albedo[k]; });
-    io.numbers(
-        layers, [k](auto& p) -> auto& { return p.guide_normal[k]; });
-    io.numbers(
         layers, [k](auto& p) -> auto& { return p.position[k]; });
   }
   io.numbers(
@@ -183,6 +179,26 @@ void each_layer_number(Io& io, Layers& layers) {
       layers, [](auto& p) -> auto& { return p.z; });
   io.numbers(
       layers, [](auto& p) -> auto& { return p.sphere; });
+}
+
+template <class Io, class Halves>
+void each_half_number(Io& io, Halves& halves) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      io.numbers(
+          halves, [=](auto& h) -> auto& { return h[i].light.rgb[k]; });
+      io.numbers(
+          halves, [=](auto& h) -> auto& { return h[i].guides.albedo[k]; });
+      io.numbers(
+          halves, [=](auto& h) -> auto& { return h[i].guides.normal[k]; });
+    }
+    io.numbers(
+        halves, [=](auto& h) -> auto& { return h[i].light.weight; });
+    io.numbers(
+        halves, [=](auto& h) -> auto& { return h[i].guides.weight; });
+    io.numbers(
+        halves, [=](auto& h) -> auto& { return h[i].guides.inverse_depth; });
+  }
 }
 
 template <class Io, class Shares>
@@ -218,6 +234,7 @@ void each_pixel_number(Io& io, P& partial) {
   io.numbers(partial.counts, itself);
   if (!partial.goals.empty()) io.numbers(partial.goals, itself);
   if (!partial.layers.empty()) each_layer_number(io, partial.layers);
+  if (!partial.halves.empty()) each_half_number(io, partial.halves);
 }
 
 void write_light(Writer& out, const std::vector<LayerPixel>& layers) {
@@ -242,57 +259,6 @@ void read_light(Reader& in, std::vector<LayerPixel>& layers) {
     for (std::size_t k = 0; k < 3; ++k)
       in.numbers(
           layers, [=](auto& p) -> auto& { return p.light[i][k]; });
-}
-
-/// Reads or writes the sums of both halves of all pixels.
-template <class Io, class Layers>
-void each_half_number(Io& io, Layers& layers) {
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      io.numbers(
-          layers, [=](auto& p) -> auto& { return p.halves[i].light[k]; });
-      io.numbers(
-          layers, [=](auto& p) -> auto& { return p.halves[i].albedo[k]; });
-      io.numbers(
-          layers, [=](auto& p) -> auto& { return p.halves[i].normal[k]; });
-    }
-    io.numbers(
-        layers, [=](auto& p) -> auto& { return p.halves[i].inverse_depth; });
-    io.numbers(
-        layers, [=](auto& p) -> auto& { return p.halves[i].weight; });
-    io.numbers(
-        layers, [=](auto& p) -> auto& { return p.halves[i].lit; });
-  }
-}
-
-bool has_half_sums(const std::vector<LayerPixel>& layers) {
-  return std::any_of(layers.begin(), layers.end(), [](const LayerPixel& p) { return !p.halves.empty(); });
-}
-
-void write_halves(Writer& out, const std::vector<LayerPixel>& layers) {
-  const bool any = has_half_sums(layers);
-  out.number(std::uint32_t{any});
-  if (!any) return;
-  struct Halves {
-    std::vector<HalfSums> halves;
-  };
-  std::vector<Halves> padded(layers.size());  // a pixel without samples has no sums
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    padded[i].halves = layers[i].halves;
-    padded[i].halves.resize(2);
-  }
-  each_half_number(out, padded);
-}
-
-void read_halves(Reader& in, std::vector<LayerPixel>& layers) {
-  std::uint32_t any = 0;
-  in.number(any);
-  if (any > 1) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
-  if (any == 0) return;
-  // Each plane has two words at least: a damaged flag fails here, before allocation.
-  in.need(std::size_t{2} * 12 * 2 * 4);
-  for (LayerPixel& p : layers) p.halves.resize(2);
-  each_half_number(in, layers);
 }
 
 void write_shares(Writer& out, const Partial& partial) {
@@ -331,15 +297,14 @@ void read_shares(Reader& in, Partial& partial) {
 std::vector<std::uint32_t> to_words(const Partial& partial) {
   std::vector<std::uint32_t> words;
   Writer out(words);
-  const std::uint32_t flags = (partial.has_halves() ? kHasHalves : 0u) | (partial.goals.empty() ? 0u : kHasGoals) |
-                              (partial.layers.empty() ? 0u : kHasLayers);
+  const std::uint32_t flags = (partial.has_halves() ? kHasSecond : 0u) | (partial.goals.empty() ? 0u : kHasGoals) |
+                              (partial.layers.empty() ? 0u : kHasLayers) | (partial.halves.empty() ? 0u : kHasHalves);
   for (const std::uint32_t v : {kFormat, static_cast<std::uint32_t>(partial.film.width()),
                                 static_cast<std::uint32_t>(partial.film.height()), flags})
     out.number(v);
   each_effort(out, partial.work);
   each_pixel_number(out, partial);
   if (!partial.layers.empty()) write_light(out, partial.layers);
-  if (!partial.layers.empty()) write_halves(out, partial.layers);
   if (!partial.layers.empty()) write_shares(out, partial);
   return words;
 }
@@ -355,13 +320,13 @@ Partial from_words(const std::vector<std::uint32_t>& words, int width_px, int he
                                                      " pixels, not " + std::to_string(width_px) + " x " +
                                                      std::to_string(height_px));
   Partial partial(width_px, height_px);
-  if ((flags & kHasHalves) != 0) partial.second = Film(width_px, height_px);
+  if ((flags & kHasSecond) != 0) partial.second = Film(width_px, height_px);
   if ((flags & kHasGoals) != 0) partial.goals.resize(partial.pixel_count());
   if ((flags & kHasLayers) != 0) partial.layers.resize(partial.pixel_count());
+  if ((flags & kHasHalves) != 0) partial.halves.resize(partial.pixel_count());
   each_effort(in, partial.work);
   each_pixel_number(in, partial);
   if (!partial.layers.empty()) read_light(in, partial.layers);
-  if (!partial.layers.empty()) read_halves(in, partial.layers);
   if (!partial.layers.empty()) read_shares(in, partial);
   return partial;
 }

@@ -28,6 +28,13 @@ render::SamplingLimits limits_of(const Job& job, double seconds_so_far) {
   return out;
 }
 
+/// Whether a render with these settings can continue from these sums, also if their file is damaged.
+bool is_of_this_render(const film::Partial& from, const compile::CompiledScene& compiled,
+                       const render::Settings& settings) {
+  return from.has_halves() == settings.sampling.is_adaptive() && from.layers.empty() != settings.layers.records() &&
+         from.halves.empty() != settings.layers.guides() && from.has_known_spheres(compiled.spheres.size());
+}
+
 }  // namespace
 
 void stop_job(const std::string& remedy) {
@@ -68,13 +75,14 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   statistics.bad_samples = work.bad_samples;
   statistics.render_s = work.seconds;
   statistics.ended_by = "samples";
-  if (!layers.request.any()) merged.partial.layers.clear();
-  if (merged.partial.layers.empty() && layers.request.any())
-    throw base::Error(base::ErrorKind::kBadData, "the shards were rendered without the requested layers");
-  const auto has_halves = [](const film::LayerPixel& pixel) { return !pixel.halves.empty(); };
-  if (job.denoise && std::none_of(merged.partial.layers.begin(), merged.partial.layers.end(), has_halves))
+  if (!layers.request.records()) merged.partial.layers.clear();
+  if (!layers.request.guides()) merged.partial.halves.clear();
+  if (job.denoise && merged.partial.halves.empty())
     throw base::Error(base::ErrorKind::kBadData,
                       "the shards have no halves to denoise from; render them with --denoise or --layers halves");
+  if ((layers.request.records() && merged.partial.layers.empty()) ||
+      (layers.request.guides() && merged.partial.halves.empty()))
+    throw base::Error(base::ErrorKind::kBadData, "the shards were rendered without the requested layers");
   render::Result result = render::finished(compiled, layers.request, std::move(merged.partial));
   result.statistics = statistics;
   return result;
@@ -105,6 +113,10 @@ render::Result render_job(const Job& job, const compile::CompiledScene& compiled
   settings.on_snapshot = [&](const film::Partial& partial) { checkpoint.write_snapshot(partial); };
   std::optional<film::Partial> from = checkpoint.load(compiled.width, compiled.height);
   report.was_resumed = from.has_value();
+  if (from && !is_of_this_render(*from, compiled, settings))
+    throw base::Error(base::ErrorKind::kBadData, checkpoint.file().string() +
+                                                     " holds other sums than its header says; delete it, or render "
+                                                     "without --resume to start again");
   render::Result result = render::render(compiled, settings, std::move(from));
   report.render = result.statistics;
   report.phases.build_s = result.statistics.build_s;

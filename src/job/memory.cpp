@@ -9,6 +9,7 @@
 
 #include "accel/accel.h"
 #include "base/error.h"
+#include "film/half_sums.h"
 #include "film/layer_film.h"
 #include "film/layer_pixel.h"
 #include "job/text.h"
@@ -33,10 +34,8 @@ constexpr std::uint64_t kBytesPerLayerPlane = 2 * sizeof(float);
 
 /// A pixel's layer sums, and those of its light, with what the heap adds to an allocation.
 std::uint64_t bytes_of_sums(const MemoryNeeds& needs) {
-  if (!needs.layers) return 0;
   constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
-  const std::uint64_t halves = needs.halves ? 2 * sizeof(film::HalfSums) + kHeapBytes : 0;
-  return sizeof(film::LayerPixel) + halves +
+  return (needs.records ? sizeof(film::LayerPixel) : 0) + (needs.guides ? sizeof(film::Halves) : 0) +
          (needs.light_cells > 0 ? needs.light_cells * kBytesPerCell + kHeapBytes : 0);
 }
 
@@ -93,8 +92,8 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.textures = compiled.textures.bytes();
   needs.layer_planes = film::planes_of(layers).size();
-  needs.layers = layers.any();
-  needs.halves = layers.halves;
+  needs.records = layers.records();
+  needs.guides = layers.guides();
   needs.light_cells = layers.light_cells();
   needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
   needs.is_adaptive = is_adaptive;

@@ -27,8 +27,8 @@ struct MemoryNeeds {
   std::uint64_t background = 0;      ///< bytes of an image background
   std::uint64_t textures = 0;        ///< bytes of image textures
   std::uint64_t layer_planes = 0;    ///< besides R, G, B, A
-  bool layers = false;               ///< any layers, including those without planes
-  bool halves = false;               ///< LayerRequest::halves
+  bool records = false;              ///< LayerRequest::records()
+  bool guides = false;               ///< LayerRequest::guides()
   std::uint64_t light_cells = 0;     ///< LayerRequest::light_cells()
   bool embree = true;                ///< false: the list
   bool is_adaptive = false;          ///< --noise or --time: a second sum and an error estimate per pixel

@@ -102,15 +102,6 @@ std::string missing_shards(const std::vector<ShardFile>& shards) {
   return missing.empty() ? "" : "there is no shard with " + base::joined(missing);
 }
 
-/// Checks the sphere indices in layers, which a damaged file could point outside the scene.
-bool names_known_spheres(const film::Partial& partial, std::size_t spheres) {
-  const auto is_known = [spheres](std::uint32_t s) { return s == kernel::kNoSphere || s < spheres; };
-  return std::all_of(partial.layers.begin(), partial.layers.end(), [&](const film::LayerPixel& p) {
-    return is_known(p.sphere) && std::all_of(p.shares.begin(), p.shares.end(),
-                                             [&](const film::SphereCoverage& s) { return is_known(s.sphere); });
-  });
-}
-
 }  // namespace
 
 std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& files,
@@ -193,7 +184,7 @@ MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int heigh
       wrong("holds the sums of adaptive sampling, contrary to its header");
       continue;
     }
-    if (!names_known_spheres(shard, spheres) || range.end > samples) {
+    if (!shard.has_known_spheres(spheres) || range.end > samples) {
       wrong("has spheres or samples that its scene does not have");
       continue;
     }
@@ -210,13 +201,7 @@ MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int heigh
       wrong(overlap, "remove one of them");
       continue;
     }
-    out.partial.film.add(shard.film);
-    for (std::size_t p = 0; p < shard.counts.size(); ++p) out.partial.counts[p] += shard.counts[p];
-    if (!shard.layers.empty()) {
-      out.partial.layers.resize(shard.layers.size());
-      for (std::size_t p = 0; p < shard.layers.size(); ++p) out.partial.layers[p].add(shard.layers[p]);
-    }
-    out.partial.work += shard.work;
+    out.partial.add(shard);
     hosts.insert(shards[i].provenance.count("host") > 0 ? shards[i].provenance.at("host") : "");
   }
   if (out.left_out.size() == shards.size()) diagnostics = out.left_out;

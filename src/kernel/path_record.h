@@ -21,16 +21,15 @@ enum class Lobe : std::uint8_t {
 };
 inline constexpr int kLobes = 8;
 
-/// Data of one path for the layers besides the beauty. Computed only for tiles that request records.
+/// Data of one path for the layers besides the beauty and the denoiser guides. Computed only for tiles that request
+/// records.
 struct PathRecord {
-  double light[3] = {0, 0, 0};        ///< total radiance of the path, the sum of its light events
-  double offset[3] = {0, 0, 0};       ///< first hit: from the sphere's centre to the point, scene units
-  double direction[3] = {0, 0, 0};    ///< of the camera ray that hit it, unit
-  float guide_albedo[3] = {0, 0, 0};  ///< of the first surface that is not delta, times the throughput before it
-  float guide_normal[3] = {0, 0, 0};  ///< its normal, unit, against the ray; world space
-  std::uint32_t sphere = kNoSphere;   ///< first hit; kNoSphere: the background
-  float albedo[3] = {0, 0, 0};        ///< at the first hit; only in scenes with features.extended
-  double time = 0;                    ///< 0..1 within the shutter
+  double light[3] = {0, 0, 0};       ///< total radiance of the path, the sum of its light events
+  double offset[3] = {0, 0, 0};      ///< first hit: from the sphere's centre to the point, scene units
+  double direction[3] = {0, 0, 0};   ///< of the camera ray that hit it, unit
+  std::uint32_t sphere = kNoSphere;  ///< first hit; kNoSphere: the background
+  float albedo[3] = {0, 0, 0};       ///< at the first hit; only in scenes with features.extended
+  double time = 0;                   ///< 0..1 within the shutter
 };
 
 /// One contribution to a path's radiance: emission of the background or a light, times path throughput.

@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <type_traits>
+
 #include "kernel/compaction-inl.h"
 #include "kernel/render_tile.h"
 #include "kernel/scatter-inl.h"
@@ -22,7 +24,7 @@ inline constexpr unsigned kOnlyDeltaBit = 4;  ///< only delta materials so far
 inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, other than by passing through glass
 enum FirstLobe : unsigned { kDiffuse = 1, kSpecular = 2, kTransmission = 3 };
 
-/// Writes the records of one vector of paths.
+/// Writes the records and guides of one vector of paths.
 template <class D>
 class Recorder {
  public:
@@ -31,9 +33,7 @@ class Recorder {
   using Id = hn::TFromD<IdTag<D>>;
 
   HWY_INLINE Recorder(D d, const SceneView& scene, const Tile& tile, Ids pixels, Ids samples)
-      : scene_(scene), tile_(tile) {
-    hn::Store(pixels, IdTag<D>(), pixel_);
-    hn::Store(samples, IdTag<D>(), sample_);
+      : scene_(scene), tile_(tile), pixels_(pixels), samples_(samples) {
     (void)d;
   }
 
@@ -80,6 +80,7 @@ class Recorder {
     Stored rgb(d, light);
     hn::Store(history, du, way);
     hn::Store(groups, du, group);
+    const Names names(*this);
     LightEvents& events = *tile_.events;
     if (events.end - events.next < kPacketSize) events.make_room(events);
     each_lane(d, lanes, [&](int i) {
@@ -87,7 +88,7 @@ class Recorder {
       const bool direct = (static_cast<unsigned>(way[i]) & kIndirectBit) == 0;
       LightEvent& e = *events.next++;
       for (int k = 0; k < 3; ++k) e.value[k] = static_cast<double>(rgb.v[k][i]);
-      e.path = static_cast<std::uint32_t>(index(i));
+      e.path = static_cast<std::uint32_t>(index(names, i));
       e.group = static_cast<std::uint16_t>(group[i]);
       e.lobe = lobe != 0 ? static_cast<Lobe>(2 * lobe - (direct ? 1 : 0)) : unscattered;
     });
@@ -101,19 +102,57 @@ class Recorder {
     });
   }
 
-  /// Records the denoiser guides.
+  /// Adds the guides of the first surfaces that are not delta, or of the background, to the tile's sums.
   HWY_INLINE void guide(D d, hn::Mask<D> lanes, const Vec3<V>& albedo, const Vec3<V>& normal) {
-    Stored color(d, albedo), n(d, normal);
-    each(d, lanes, [&](PathRecord& r, int i) {
+    if (tile_.guides == nullptr || hn::AllFalse(d, lanes)) return;
+    const Vec3<V> a = in_guide_units(d, albedo), n = in_guide_units(d, normal);
+    if (GuideSum* const sum = common_sum(d, lanes)) {
+      sum->albedo[0] += total(d, lanes, a.x);
+      sum->albedo[1] += total(d, lanes, a.y);
+      sum->albedo[2] += total(d, lanes, a.z);
+      sum->normal[0] += total(d, lanes, n.x);
+      sum->normal[1] += total(d, lanes, n.y);
+      sum->normal[2] += total(d, lanes, n.z);
+      return;
+    }
+    const Stored color(d, a), along(d, n);
+    each_sum(d, lanes, [&](GuideSum& sum, std::int64_t weight, int i) {
       for (int k = 0; k < 3; ++k) {
-        r.guide_albedo[k] = static_cast<float>(color.v[k][i]);
-        r.guide_normal[k] = static_cast<float>(n.v[k][i]);
+        sum.albedo[k] += weight * static_cast<std::int64_t>(color.v[k][i]);
+        sum.normal[k] += weight * static_cast<std::int64_t>(along.v[k][i]);
       }
+    });
+  }
+
+  /// Adds the reciprocal distances of first hits to the tile's sums.
+  HWY_INLINE void inverse_depth(D d, hn::Mask<D> hit, V distance) {
+    if (tile_.guides == nullptr || hn::AllFalse(d, hit)) return;
+    const auto set = [d](double x) { return hn::Set(d, static_cast<hn::TFromD<D>>(x)); };
+    const V inverse = hn::Min(set(1) / distance, set(kLargestInverseDepth));
+    if (GuideSum* const sum = common_sum(d, hit)) {
+      // The digits of the fixed-point number in two parts, so that sums over the lanes are exact.
+      const V scaled = inverse * set(0x1p20), high = hn::Trunc(scaled), low = hn::Trunc((scaled - high) * set(0x1p40));
+      sum->inverse_depth += static_cast<Int128>(total(d, hit, high)) * (std::int64_t{1} << 40) + total(d, hit, low);
+      return;
+    }
+    HWY_ALIGN hn::TFromD<D> stored[kMax];
+    hn::Store(inverse, d, stored);
+    each_sum(d, hit, [&](GuideSum& sum, std::int64_t weight, int i) {
+      sum.inverse_depth += to_fixed_point(static_cast<double>(stored[i])) * weight;
     });
   }
 
  private:
   static constexpr std::size_t kMax = hn::MaxLanes(D());
+  /// Pixel and sample of each lane.
+  struct Names {
+    HWY_ALIGN Id pixel[kMax];
+    HWY_ALIGN Id sample[kMax];
+    HWY_INLINE explicit Names(const Recorder& of) {
+      hn::Store(of.pixels_, IdTag<D>(), pixel);
+      hn::Store(of.samples_, IdTag<D>(), sample);
+    }
+  };
   struct Stored {
     HWY_ALIGN hn::TFromD<D> v[3][kMax];
     HWY_INLINE Stored(D d, const Vec3<V>& from) {
@@ -122,22 +161,64 @@ class Recorder {
       hn::Store(from.z, d, v[2]);
     }
   };
+  /// Guides in units of kGuideUnit, limited to what 32 bits hold: integers.
+  static HWY_INLINE Vec3<V> in_guide_units(D d, const Vec3<V>& v) {
+    const auto limit = hn::Set(d, static_cast<hn::TFromD<D>>(1.75));
+    const auto units = hn::Set(d, static_cast<hn::TFromD<D>>(1 / kGuideUnit));
+    const auto convert = [&](V x) { return hn::Trunc(hn::Max(hn::Neg(limit), hn::Min(x, limit)) * units); };
+    return {convert(v.x), convert(v.y), convert(v.z)};
+  }
+  /// The sum over some lanes.
+  ///
+  /// Domain     integers below 2^49, so that the order of addition changes no bit
+  static HWY_INLINE std::int64_t total(D d, hn::Mask<D> lanes, V integers) {
+    const V masked = hn::IfThenElseZero(lanes, integers);
+    if constexpr (std::is_same_v<hn::TFromD<D>, double> || kMax == 1) {
+      return static_cast<std::int64_t>(hn::GetLane(hn::SumOfLanes(d, masked)));
+    } else {
+      const hn::Rebind<double, hn::Half<D>> dd;
+      const auto sums =
+          hn::PromoteTo(dd, hn::LowerHalf(masked)) + hn::PromoteTo(dd, hn::UpperHalf(hn::Half<D>(), masked));
+      return static_cast<std::int64_t>(hn::GetLane(hn::SumOfLanes(dd, sums)));
+    }
+  }
+  /// The sum that all lanes belong to with the weight 1; null if they belong to several.
+  HWY_INLINE GuideSum* common_sum(D d, hn::Mask<D> lanes) const {
+    if (scene_.filter.negative_share != 0) return nullptr;
+    const Id first = hn::GetLane(pixels_);
+    const auto same = hn::RebindMask(d, pixels_ == hn::Set(IdTag<D>(), first));
+    return hn::AllTrue(d, hn::Or(hn::Not(lanes), same)) ? &sum_of(first) : nullptr;
+  }
+  HWY_INLINE GuideSum& sum_of(Id pixel) const {
+    const PixelPlace at = place_of(pixel, scene_);
+    return tile_.guides[(at.y - tile_.y) * tile_.row_stride + (at.x - tile_.x)];
+  }
+  /// Calls `add(sum, weight, lane)` for each lane.
+  template <class Add>
+  HWY_INLINE void each_sum(D d, hn::Mask<D> lanes, Add add) const {
+    const Names names(*this);
+    each_lane(d, lanes, [&](int i) {
+      const std::uint64_t sample = names.sample[i];
+      add(sum_of(names.pixel[i]), scene_.filter.weight(sample, sample + 1), i);
+    });
+  }
   /// The index of a lane's record within the tile.
-  HWY_INLINE std::int64_t index(int lane) const {
-    const PixelPlace at = place_of(pixel_[lane], scene_);
+  HWY_INLINE std::int64_t index(const Names& names, int lane) const {
+    const PixelPlace at = place_of(names.pixel[lane], scene_);
     const auto count = static_cast<std::int64_t>(tile_.sample_end - tile_.sample_begin);
-    const auto sample = static_cast<std::int64_t>(sample_[lane]) - tile_.sample_begin;
+    const auto sample = static_cast<std::int64_t>(names.sample[lane]) - tile_.sample_begin;
     return (std::int64_t{at.y - tile_.y} * tile_.width + (at.x - tile_.x)) * count + sample;
   }
   template <class Do>
   HWY_INLINE void each(D d, hn::Mask<D> lanes, Do what) {
-    each_lane(d, lanes, [&](int lane) { what(tile_.records[index(lane)], lane); });
+    if (tile_.records == nullptr) return;
+    const Names names(*this);
+    each_lane(d, lanes, [&](int lane) { what(tile_.records[index(names, lane)], lane); });
   }
 
   const SceneView& scene_;
   const Tile& tile_;
-  HWY_ALIGN Id pixel_[kMax];
-  HWY_ALIGN Id sample_[kMax];
+  Ids pixels_, samples_;
 };
 
 /// Lanes whose material is delta: a sharp mirror or a dielectric.
@@ -148,9 +229,11 @@ HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
 }
 
 /// Updates the history of paths that a surface has scattered.
+///
+/// `has_lobes`  the lobe and the indirect bit are needed
 template <class D>
 HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Surface<D>& at,
-                                       const Vec3<hn::Vec<D>>& direction, std::uint32_t depth) {
+                                       const Vec3<hn::Vec<D>>& direction, std::uint32_t depth, bool has_lobes) {
   const IdTag<D> du;
   using Id = hn::TFromD<decltype(du)>;
   const auto ids = [&](unsigned v) { return hn::Set(du, static_cast<Id>(v)); };
@@ -158,6 +241,7 @@ HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Sur
     return hn::IfThenElseZero(hn::RebindMask(du, lanes), then);
   };
   const auto sharp = where(is_delta(d, at), hn::And(history, ids(kOnlyDeltaBit)));
+  if (!has_lobes) return sharp;
   const auto glass = is_kind(d, at.kind, MaterialKind::kDielectric);
   const auto passes = hn::AndNot(at.same_side(d, direction), glass);
   if (depth > 0) {

@@ -140,6 +140,8 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
   for (int i = 0; i < tile.pixel_count(); ++i) {
     const PixelPlace at = tile.pixel(i);
     tile.sums[at.y * tile.row_stride + at.x].weight += weight;
+    if constexpr (kLoop.records)
+      if (tile.guides != nullptr) tile.guides[at.y * tile.row_stride + at.x].weight += weight;
   }
 
   PathCounter counter(tile, scene);

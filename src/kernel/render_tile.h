@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "kernel/guide_sum.h"
 #include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/pixel_sum.h"
@@ -28,14 +29,14 @@ struct Tile {
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
   PixelSum* sums = nullptr;            ///< of the upper left pixel
-  std::int64_t row_stride = 0;         ///< from a pixel's sum to that of the pixel below
+  std::int64_t row_stride = 0;         ///< from a pixel's sums to those of the pixel below
   const PixelPlace* chosen = nullptr;  ///< the pixels to render, relative to the upper left one; null: all
   int chosen_count = 0;
   /// One record per path: the samples of a pixel, then the next pixel of the row. Null: not needed.
   PathRecord* records = nullptr;
+  GuideSum* guides = nullptr;     ///< of the upper left pixel, in rows as the sums; null: not needed
   LightEvents* events = nullptr;  ///< where the paths' light events go; null: not needed
-  bool record_light = true;       ///< false: the records' light is not needed
-  bool record_guides = true;      ///< false: the records' guides are not needed
+  bool record_light = true;       ///< false: the records' light and light events are not needed
 
   int pixel_count() const noexcept { return chosen != nullptr ? chosen_count : width * height; }
   /// The i-th pixel to render, relative to the upper left one.
@@ -51,7 +52,7 @@ struct TileCounts {
   std::int64_t target = 0;        ///< instruction set that the loop was compiled for, HWY_AVX2 etc.
 };
 
-/// Renders a tile and adds its samples to the tile's sums.
+/// Renders a tile and adds its samples to the tile's sums, without records, events and guides.
 ///
 /// Domain     the tracer intersects the view's spheres, in the precision that the function was chosen for
 using RenderTile = TileCounts (*)(const SceneView& scene, const Tracer& tracer, const Tile& tile, PathStream& stream);
@@ -70,9 +71,9 @@ enum class Lanes : std::uint8_t { kOne, kAll };
 RenderTile render_tile_function(const Features& features, Precision precision);
 RenderTileFast render_tile_fast_function(const Features& features);
 
-/// The same loop, which also fills the tile's records and events.
+/// The same loop, which also fills the tile's records, events and guides.
 ///
-/// Domain     the tiles have records
+/// Domain     tiles with events have records
 RenderTile record_tile_function(const Features& features, Precision precision);
 RenderTileFast record_tile_fast_function(const Features& features);
 

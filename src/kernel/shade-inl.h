@@ -194,9 +194,8 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
         arrive(missed, light, groups, Lobe::kBackground);
         if constexpr (kRecords) {
           const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
-          if (tile.record_guides)
-            record.guide(d, hn::And(missed, guided),
-                         {hn::Min(light.x, one), hn::Min(light.y, one), hn::Min(light.z, one)}, {zero, zero, zero});
+          record.guide(d, hn::And(missed, guided),
+                       {hn::Min(light.x, one), hn::Min(light.y, one), hn::Min(light.z, one)}, {zero, zero, zero});
         }
       }
     }
@@ -234,9 +233,9 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
         record.first_hit(d, hit, hits, at.surface.offset, ray.direction,
                          kMoves && scene.features.motion ? packet.time + v : nullptr);
         if constexpr (kLoop.extended) record.albedo(d, hit, at.albedo);
+        record.inverse_depth(d, hit, hn::Load(d, packet.distance + v));
       }
-      if (tile.record_guides)
-        record.guide(d, hn::AndNot(is_delta(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
+      record.guide(d, hn::AndNot(is_delta(d, at.surface), hn::And(hit, guided)), tinted, at.surface.normal);
       if (ends) continue;
     }
     if (scene.shading != Shading::kPath) {
@@ -260,7 +259,8 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
           const auto random_light =
               second_random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, chooses_light(scene));
           hn::Vec<IdTag<D>> reflected{};
-          if constexpr (kRecords) reflected = continued(d, history, at.surface, at.surface.normal, depth);
+          if constexpr (kRecords)
+            reflected = continued(d, history, at.surface, at.surface.normal, depth, tile.events != nullptr);
           connect<D, kLoop>(d, scene, at.surface, at.sphere.center, tinted, connects, hits, paths, reflected,
                             random_light, packet.time + v, stream.lit);
         }
@@ -282,7 +282,8 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       compactor.store_ids(d, paths, stream.lit.path + alive);
     }
     if constexpr (kRecords)
-      compactor.store_ids(d, continued(d, history, at.surface, scattered.direction, depth), stream.history + alive);
+      compactor.store_ids(d, continued(d, history, at.surface, scattered.direction, depth, tile.events != nullptr),
+                          stream.history + alive);
     alive += compactor.count();
   }
   return alive;

@@ -107,12 +107,11 @@ void ProgressiveSampling::render_square(int x0, int y0, int side, const OnPixel&
 }
 
 void ProgressiveSampling::render_group(kernel::Tile& tile, std::uint32_t have, std::uint32_t want, TileWorker& worker) {
-  film::LayerPixel* const layers = state_.layers.empty() ? nullptr : state_.layers.data();
   const auto render = [&](film::Film& film, std::uint32_t first) {
     tile.sample_begin = first + have;
     tile.sample_end = first + want;
     tile.sums = film.at(tile.x, tile.y);
-    render_tile_(tile, worker, layers);
+    render_tile_(tile, worker, state_);
     progress_.add(tile.path_count());
   };
   render(state_.film, state_.has_halves() ? 0 : settings_.sampling.sample_begin);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/render.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/version.h>
 
@@ -57,7 +59,8 @@ void report_pixels(const Settings& settings, const film::Partial& state) {
 film::Partial fresh_state(const compile::CompiledScene& compiled, const Settings& settings) {
   film::Partial state(compiled.width, compiled.height);
   if (settings.sampling.is_adaptive()) state.second = film::Film(compiled.width, compiled.height);
-  if (settings.layers.any()) state.layers.resize(state.pixel_count());
+  if (settings.layers.records()) state.layers.resize(state.pixel_count());
+  if (settings.layers.guides()) state.halves.resize(state.pixel_count());
   return state;
 }
 
@@ -91,9 +94,15 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   result.picture.frame_width = compiled.frame_width;
   result.picture.frame_height = compiled.frame_height;
   result.picture.pixel_aspect = compiled.pixel_aspect;
-  if (partial.layers.empty()) return result;
+  if (partial.layers.empty() && partial.halves.empty()) return result;
   film::LayerFilm layers(request, compiled.view(), compiled.width, compiled.height);
-  for (std::size_t i = 0; i < partial.layers.size(); ++i) layers.set(i, partial.layers[i], partial.film.sums()[i]);
+  const film::LayerPixel no_layers;
+  const film::Halves no_halves;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, partial.pixel_count(), 1024), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      layers.set(i, partial.layers.empty() ? no_layers : partial.layers[i],
+                 partial.halves.empty() ? no_halves : partial.halves[i], partial.film.sums()[i]);
+  });
   layers.move_to(result.picture);
   result.deep = layers.take_deep();
   return result;
@@ -129,14 +138,15 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
 
   const auto rendered = Clock::now();
   Result result;
-  if (!completed) {
-    result.partial = std::move(state);
-  } else if (settings.keep_partial) {
-    result = finished(compiled, settings.layers, state);
-    result.partial = std::move(state);
-  } else {
-    result = finished(compiled, settings.layers, std::move(state));
+  const auto finish = [&](film::Partial sums) {
+    pool.execute([&] { result = finished(compiled, settings.layers, std::move(sums)); });
+  };
+  if (completed && settings.keep_partial) {
+    finish(state);
+  } else if (completed) {
+    finish(std::move(state));
   }
+  if (!completed || settings.keep_partial) result.partial = std::move(state);
   statistics.finish_s = seconds_since(rendered);
   result.statistics = std::move(statistics);
   return result;

@@ -26,6 +26,12 @@ class DefaultRounding {
   std::fenv_t before_;
 };
 
+/// Index of a tile's pixel within the image.
+std::size_t index_of(const film::Partial& image, const kernel::Tile& tile, kernel::PixelPlace at) {
+  return static_cast<std::size_t>(tile.y + at.y) * static_cast<std::size_t>(image.film.width()) +
+         static_cast<std::size_t>(tile.x + at.x);
+}
+
 }  // namespace
 
 void LightEventBuffer::reset(std::size_t paths) {
@@ -48,9 +54,9 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
     : view_(compiled.view()),
       tracer_(accel.tracer()),
       request_(request),
-      width_(compiled.width),
-      samples_(compiled.samples),
-      is_adaptive_(is_adaptive) {
+      // Each half of a low-discrepancy sequence is a sequence of its own.
+      second_half_(is_adaptive ? kernel::Sampler::kSecondHalf
+                               : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
   const bool layers = request.any();
   if (request.coverage) view_.background_visible = false;
   if (compiled.precision == compile::Precision::kFast) {
@@ -62,13 +68,19 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
   }
 }
 
-void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const {
+void TileRenderer::operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const {
   const DefaultRounding rounding;
-  if (layers != nullptr) {
-    trace_layers(tile, worker, layers);
-  } else {
-    trace(tile, worker);
+  if (!request_.guides()) {
+    trace_records(tile, worker, image);
+    return;
   }
+  const std::uint32_t middle = std::clamp(second_half_, tile.sample_begin, tile.sample_end);
+  kernel::Tile half = tile;
+  half.sample_end = middle;
+  if (half.path_count() > 0) trace_half(half, worker, image);
+  half.sample_begin = middle;
+  half.sample_end = tile.sample_end;
+  if (half.path_count() > 0) trace_half(half, worker, image);
 }
 
 void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
@@ -85,22 +97,33 @@ void TileRenderer::trace(const kernel::Tile& tile, TileWorker& worker) const {
   worker.counts.target = counts.target;
 }
 
-std::size_t TileRenderer::half_of(std::uint32_t sample) const {
-  // Each half of a low-discrepancy sequence is a sequence of its own.
-  const std::uint32_t first = std::max(1U, static_cast<std::uint32_t>(samples_) / 2);
-  return sample >= (is_adaptive_ ? kernel::Sampler::kSecondHalf : first) ? 1 : 0;
+void TileRenderer::trace_half(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const {
+  const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  worker.light.assign(pixels, {});
+  worker.guides.assign(pixels, {});
+  kernel::Tile own = tile;
+  own.sums = worker.light.data();
+  own.guides = worker.guides.data();
+  own.row_stride = tile.width;
+  trace_records(own, worker, image);
+  const std::size_t half = tile.sample_begin < second_half_ ? 0 : 1;
+  for (int i = 0; i < tile.pixel_count(); ++i) {
+    const kernel::PixelPlace at = tile.pixel(i);
+    const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
+    tile.sums[at.y * tile.row_stride + at.x] += worker.light[within];
+    image.halves[index_of(image, tile, at)][half] += {worker.light[within], worker.guides[within]};
+  }
 }
 
-void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const {
+void TileRenderer::trace_records(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const {
+  if (!request_.records()) {
+    trace(tile, worker);
+    return;
+  }
   const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   const auto samples_at_a_time = std::max(1u, kMaxRecords / static_cast<std::uint32_t>(pixels));
-  const auto place_in_picture = [&](kernel::PixelPlace at) {
-    return static_cast<std::size_t>(tile.y + at.y) * static_cast<std::size_t>(width_) +
-           static_cast<std::size_t>(tile.x + at.x);
-  };
   kernel::Tile part = tile;
   part.record_light = request_.paths_light();
-  part.record_guides = request_.guides();
   for (std::uint32_t begin = tile.sample_begin; begin < tile.sample_end; begin = part.sample_end) {
     part.sample_begin = begin;
     part.sample_end = begin + std::min(samples_at_a_time, tile.sample_end - begin);
@@ -115,16 +138,16 @@ void TileRenderer::trace_layers(const kernel::Tile& tile, TileWorker& worker, fi
     for (int i = 0; i < tile.pixel_count(); ++i) {
       const kernel::PixelPlace at = tile.pixel(i);
       const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
-      film::LayerPixel& pixel = layers[place_in_picture(at)];
+      film::LayerPixel& pixel = image.layers[index_of(image, tile, at)];
       const kernel::PathRecord* record = part.records + within * samples;
       for (std::uint32_t s = begin; s < part.sample_end; ++s)
-        pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1), half_of(s));
+        pixel.add(request_, view_, *record++, view_.filter.weight(s, std::uint64_t{s} + 1));
     }
     if (part.events == nullptr) continue;
     for (const kernel::LightEvent* event = worker.events.begin(); event != worker.events.next; ++event) {
       const auto within = static_cast<int>(event->path / samples);
       const std::uint64_t s = begin + event->path % samples;
-      film::LayerPixel& pixel = layers[place_in_picture({within % tile.width, within / tile.width})];
+      film::LayerPixel& pixel = image.layers[index_of(image, tile, {within % tile.width, within / tile.width})];
       pixel.add(request_, part.records[event->path], *event, view_.filter.weight(s, s + 1));
     }
   }

@@ -6,8 +6,8 @@
 
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
-#include "film/layer_pixel.h"
 #include "film/layers.h"
+#include "film/partial.h"
 #include "kernel/render_tile.h"
 
 namespace orrery::render {
@@ -29,6 +29,8 @@ struct TileWorker {
   std::unique_ptr<kernel::PathStream> stream;
   std::unique_ptr<kernel::PathStreamFast> stream_fast;
   std::vector<kernel::PathRecord> records;
+  std::vector<kernel::PixelSum> light;   ///< of a tile's pixels
+  std::vector<kernel::GuideSum> guides;  ///< of a tile's pixels
   LightEventBuffer events;
   kernel::TileCounts counts;
 };
@@ -41,22 +43,19 @@ class TileRenderer {
   TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const film::LayerRequest& request,
                bool is_adaptive = false);
 
-  /// Renders one tile.
-  ///
-  /// `layers`   layer pixels of the whole image, row-major; null if the LayerRequest is empty
-  void operator()(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const;
+  /// Renders one tile, and adds its paths to the layers and halves of the image.
+  void operator()(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
 
  private:
   void trace(const kernel::Tile& tile, TileWorker& worker) const;
-  /// The half of the samples, 0 or 1, that a sample belongs to.
-  std::size_t half_of(std::uint32_t sample) const;
-  void trace_layers(const kernel::Tile& tile, TileWorker& worker, film::LayerPixel* layers) const;
+  /// Renders samples of one half, with sums of their own.
+  void trace_half(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
+  void trace_records(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
 
   kernel::SceneView view_;
   kernel::Tracer tracer_;
   const film::LayerRequest& request_;
-  int width_, samples_;
-  bool is_adaptive_;
+  std::uint32_t second_half_;  ///< its first sample
   kernel::RenderTile render_ = nullptr;
   kernel::RenderTileFast render_fast_ = nullptr;  ///< used if not null
 };

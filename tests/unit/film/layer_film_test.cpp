@@ -47,12 +47,12 @@ class FilmLayerFilm : public testing::Test {
     for (int c = 0; c < 3; ++c) beauty_.rgb[c] += kernel::to_fixed_point(path.light[c]) * weight;
     beauty_.weight += weight;
   }
-  void clear() { pixel_ = {}, beauty_ = {}; }
+  void clear() { pixel_ = {}, halves_ = {}, beauty_ = {}; }
 
   /// An image of one pixel from the paths added so far.
   Picture picture() {
     LayerFilm film(request_, view_, 1, 1);
-    film.set(0, pixel_, beauty_);
+    film.set(0, pixel_, halves_, beauty_);
     deep_ = {};
     Picture out{1, 1, {{"R", {0}}, {"A", {1}}}};
     film.move_to(out);
@@ -71,6 +71,7 @@ class FilmLayerFilm : public testing::Test {
   kernel::SceneView view_;
   LayerRequest request_;
   LayerPixel pixel_;
+  Halves halves_;
   kernel::PixelSum beauty_;
   DeepPicture deep_;
 };
@@ -492,35 +493,40 @@ TEST_F(FilmLayerFilm, LayersHaveTheirChannelNamesAndKinds) {
             "vector, ");
 }
 
+/// Halves of two paths each.
 TEST_F(FilmLayerFilm, HalvesAreMeansOfTheirOwnPaths) {
-  request_.halves = true;
-  kernel::PathRecord path = path_to(0, 1);
-  path.guide_albedo[1] = 0.5F;
-  path.guide_normal[2] = 1;
-  pixel_.add(request_, view_, path, 1, 0);
-  pixel_.add(request_, view_, path_to(0, 2), 1, 0);
-  pixel_.add(request_, view_, path_to(1, 5), 1, 1);
-  pixel_.add(request_, view_, kernel::PathRecord{}, 1, 1);
+  request_.halves = request_.guide_albedo = request_.guide_normal = true;
+  const auto one = static_cast<std::int64_t>(1 / kernel::kGuideUnit);
+  const kernel::Int128 unit = kernel::to_fixed_point(1);
+  HalfSums &a = halves_[0], &b = halves_[1];
+  a.light = {{3 * unit, 0, 0}, 2};
+  a.guides = {unit / 2, 2, {0, one / 2, 0}, {0, 0, one}};
+  b.light = {{0, 5 * unit, 0}, 1};  // one of its two paths is invalid
+  b.guides = {unit / 8, 2, {one, 0, 0}, {0, 0, -one}};
   const Picture p = picture();
   EXPECT_EQ(value(p, "half_a.R"), 1.5F);
-  EXPECT_EQ(value(p, "half_b.G"), 2.5F);
+  EXPECT_EQ(value(p, "half_b.G"), 5);
   EXPECT_EQ(value(p, "half_a.albedo.G"), 0.25F);
   EXPECT_EQ(value(p, "half_a.normal.Z"), 0.5F);
-  EXPECT_EQ(value(p, "half_b.normal.Z"), 0);
-  EXPECT_FLOAT_EQ(value(p, "half_a.inverse_depth.X"), 0.25F);
-  EXPECT_FLOAT_EQ(value(p, "half_b.inverse_depth.X"), 0.125F / 2) << "a miss counts as 0";
+  EXPECT_EQ(value(p, "half_b.normal.Z"), -0.5F);
+  EXPECT_EQ(value(p, "half_a.inverse_depth.X"), 0.25F);
+  EXPECT_EQ(value(p, "half_b.inverse_depth.X"), 0.0625F);
+  EXPECT_EQ(value(p, "denoise.albedo.R"), 0.25F);
+  EXPECT_EQ(value(p, "denoise.albedo.G"), 0.125F);
+  EXPECT_EQ(value(p, "denoise.normal.Z"), 0);
 }
 
-TEST_F(FilmLayerFilm, MergedPixelsAddTheirHalves) {
+TEST_F(FilmLayerFilm, MergedHalvesAreSums) {
   request_.halves = true;
-  LayerPixel first;
-  first.add(request_, view_, path_to(0, 1), 1, 0);
-  pixel_.add(request_, view_, path_to(0, 3), 1, 1);
-  pixel_.add(request_, view_, path_to(0, 2), 1, 0);
-  pixel_.add(first);
+  const kernel::Int128 unit = kernel::to_fixed_point(1);
+  const HalfSums of_one_path{{{unit, unit, unit}, 1}, {unit, 1, {0, 0, 0}, {0, 0, 0}}};
+  halves_[1] = {{{3 * unit, 0, 0}, 1}, {unit / 2, 1, {0, 0, 0}, {0, 0, 0}}};
+  halves_[1] += of_one_path;
   const Picture p = picture();
-  EXPECT_EQ(value(p, "half_a.R"), 1.5F);
-  EXPECT_EQ(value(p, "half_b.R"), 3);
+  EXPECT_EQ(value(p, "half_a.R"), 0);
+  EXPECT_EQ(value(p, "half_b.R"), 2);
+  EXPECT_EQ(value(p, "half_b.G"), 0.5F);
+  EXPECT_EQ(value(p, "half_b.inverse_depth.X"), 0.75F);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace orrery::film {
 namespace {
 
 /// A partial render with a different value in every number.
-Partial full_partial(bool halves, bool goals, bool layers, std::size_t light_groups = 1) {
+Partial full_partial(bool is_adaptive, bool goals, bool layers, bool halves, std::size_t light_groups = 1) {
   Partial p(5, 3);
   std::mt19937_64 random(3);
   const auto number = [&] { return static_cast<std::int64_t>(random()); };
@@ -21,7 +21,7 @@ Partial full_partial(bool halves, bool goals, bool layers, std::size_t light_gro
     for (kernel::PixelSum& s : film.sums()) s = {{large(), -large(), large()}, number()};
   };
   fill(p.film);
-  if (halves) p.second = Film(5, 3);
+  if (is_adaptive) p.second = Film(5, 3);
   fill(p.second);
   for (std::uint32_t& n : p.counts) n = static_cast<std::uint32_t>(random());
   if (goals)
@@ -31,20 +31,9 @@ Partial full_partial(bool halves, bool goals, bool layers, std::size_t light_gro
     l.light.resize(light_groups * kernel::kLobes);
     for (auto& cell : l.light)
       for (auto& v : cell) v = large();
-    for (auto* vector :
-         {&l.squares, &l.negative_light, &l.negative_squares, &l.normal, &l.albedo, &l.guide_albedo, &l.guide_normal})
+    for (auto* vector : {&l.squares, &l.negative_light, &l.negative_squares, &l.normal, &l.albedo})
       for (auto& v : *vector) v = large();
     for (auto* v : {&l.weight, &l.lit, &l.paths, &l.covered}) *v = number();
-    if (light_groups != 1) {
-      l.halves.resize(2);
-      for (HalfSums& half : l.halves) {
-        for (auto* vector : {&half.light, &half.albedo, &half.normal})
-          for (auto& v : *vector) v = large();
-        half.inverse_depth = large();
-        half.weight = number();
-        half.lit = number();
-      }
-    }
     l.depth = static_cast<double>(number());
     l.z = 1 / l.depth;
     for (double& v : l.position) v = static_cast<double>(number());
@@ -52,13 +41,19 @@ Partial full_partial(bool halves, bool goals, bool layers, std::size_t light_gro
     for (std::uint32_t s = 0; s < random() % 4; ++s)
       l.shares.push_back({3 * s, number(), {large(), large(), large()}, 0.1 * s, 1e30});
   }
+  if (halves) p.halves.resize(15);
+  for (Halves& pixel : p.halves)
+    for (HalfSums& half : pixel) {
+      half.light = {{large(), -large(), large()}, number()};
+      half.guides = {large(), number(), {number(), number(), number()}, {number(), number(), number()}};
+    }
   p.work = {1ull << 40, 1ull << 50, 3, 12.625};
   return p;
 }
 
 TEST(FilmPartialWords, RoundTrip) {
-  for (int kind = 0; kind < 8; ++kind) {
-    const Partial p = full_partial((kind & 1) != 0, (kind & 2) != 0, (kind & 4) != 0);
+  for (int kind = 0; kind < 16; ++kind) {
+    const Partial p = full_partial((kind & 1) != 0, (kind & 2) != 0, (kind & 4) != 0, (kind & 8) != 0);
     const std::vector<std::uint32_t> words = to_words(p);
     const Partial q = from_words(words, 5, 3);
     EXPECT_EQ(to_words(q), words) << kind;
@@ -69,9 +64,17 @@ TEST(FilmPartialWords, RoundTrip) {
     EXPECT_EQ(q.has_halves(), p.has_halves());
     EXPECT_TRUE(q.film.sums()[7].rgb[1] == p.film.sums()[7].rgb[1]);
     EXPECT_EQ(q.work.seconds, 12.625);
+    ASSERT_EQ(q.halves.size(), p.halves.size());
+    if (!p.halves.empty()) {
+      EXPECT_TRUE(q.halves[14][1].light.rgb[2] == p.halves[14][1].light.rgb[2]);
+      EXPECT_TRUE(q.halves[14][1].guides.inverse_depth == p.halves[14][1].guides.inverse_depth);
+      EXPECT_EQ(q.halves[3][0].guides.normal[2], p.halves[3][0].guides.normal[2]);
+      EXPECT_EQ(q.halves[3][0].guides.weight, p.halves[3][0].guides.weight);
+    }
+    ASSERT_EQ(q.layers.size(), p.layers.size());
     if (p.layers.empty()) continue;
     EXPECT_EQ(q.layers[3].shares.size(), p.layers[3].shares.size());
-    EXPECT_TRUE(q.layers[14].guide_normal[2] == p.layers[14].guide_normal[2]);
+    EXPECT_TRUE(q.layers[14].normal[2] == p.layers[14].normal[2]);
     EXPECT_TRUE(q.layers[2].negative_light[1] == p.layers[2].negative_light[1]);
     EXPECT_TRUE(q.layers[2].negative_squares[1] == p.layers[2].negative_squares[1]);
     EXPECT_EQ(q.layers[9].position[1], p.layers[9].position[1]);
@@ -79,7 +82,7 @@ TEST(FilmPartialWords, RoundTrip) {
 }
 
 TEST(FilmPartialWords, LightGroupsRoundTrip) {
-  Partial p = full_partial(false, false, true, 3);
+  Partial p = full_partial(false, false, true, false, 3);
   p.layers[4].light.clear();  // a pixel of another shard
   const std::vector<std::uint32_t> words = to_words(p);
   const Partial q = from_words(words, 5, 3);
@@ -92,26 +95,27 @@ TEST(FilmPartialWords, LightGroupsRoundTrip) {
 }
 
 TEST(FilmPartialWords, TruncatedWordsAreRefused) {
-  const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true));
+  const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true, true));
   for (std::size_t length = 0; length < words.size(); length += 7)
     EXPECT_THROW(from_words({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)}, 5, 3), base::Error)
         << length;
 }
 
 TEST(FilmPartialWords, TheWrongSizeIsRefused) {
-  const std::vector<std::uint32_t> words = to_words(full_partial(false, false, false));
+  const std::vector<std::uint32_t> words = to_words(full_partial(false, false, false, false));
   EXPECT_THROW(from_words(words, 3, 5), base::Error);
 }
 
 TEST(FilmPartialWords, ConstantPlanesAreStoredAsOneWord) {
   Partial empty(500, 400);
   empty.layers.resize(empty.pixel_count());
+  empty.halves.resize(empty.pixel_count());
   EXPECT_LT(to_words(empty).size(), 1000u);
   EXPECT_EQ(to_words(from_words(to_words(empty), 500, 400)), to_words(empty));
 }
 
 TEST(FilmPartialWords, DamagedWordsAreRefusedOrRead) {
-  const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true));
+  const std::vector<std::uint32_t> words = to_words(full_partial(true, true, true, true));
   std::minstd_rand random(5);
   int refused = 0;
   for (int i = 0; i < 3000; ++i) {

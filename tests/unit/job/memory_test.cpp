@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "compile/compile.h"
+#include "film/half_sums.h"
 #include "job/layers.h"
 #include "support/temp_dir.h"
 
@@ -63,7 +64,7 @@ MemoryEstimate estimate(int width, std::uint64_t spheres, bool embree, std::uint
   needs.sphere_bytes = 16 * spheres;
   needs.embree = embree;
   needs.layer_planes = layer_planes;
-  needs.layers = layer_planes > 0;
+  needs.records = layer_planes > 0;
   needs.is_adaptive = is_adaptive;
   return estimate_memory(needs);
 }
@@ -110,6 +111,19 @@ TEST(JobMemoryEstimate, GrowsWithLightGroups) {
   const std::uint64_t sum = 8 * 3 * 16, planes = (2 * 8 + 8) * 3 * 8, heap = 16;
   EXPECT_EQ(film_of({"light_groups"}) - film_of({"samples"}), 1000 * (3 * sum + heap + planes - 8));
   EXPECT_EQ(film_of({"emission"}) - film_of({"samples"}), 1000 * (sum + heap + 3 * 8 - 8));
+}
+
+/// Denoising alone needs no records of paths.
+TEST(JobMemoryEstimate, CountsTheHalvesOnlyWhereTheyAreNeeded) {
+  scene::Scene scene;
+  scene.image = {100, 10};
+  const compile::CompiledScene compiled = compile::compile(scene);
+  film::LayerRequest request;
+  const auto film = [&] { return estimate_memory(memory_needs(compiled, request)).film; };
+  const std::uint64_t beauty = film();
+  request.halves = true;
+  constexpr std::uint64_t kPlanes = 20 * 8;
+  EXPECT_EQ(film() - beauty, 1000 * (sizeof(film::Halves) + kPlanes));
 }
 
 TEST(JobMemoryEstimate, CountsTheBackgroundOnce) {

@@ -20,6 +20,7 @@ namespace {
 struct Rendered {
   std::vector<kernel::PixelSum> sums;
   std::vector<kernel::PathRecord> records;
+  std::vector<kernel::GuideSum> guides;
   LightEventBuffer events;
   kernel::TileCounts counts;
 
@@ -44,6 +45,8 @@ void render(const compile::CompiledScene& compiled, kernel::SceneView view, Kind
     out.records.resize(tile.path_count());
     out.events.reset(tile.path_count());
     tile.records = out.records.data();
+    out.guides.resize(out.sums.size());
+    tile.guides = out.guides.data();
     tile.events = &out.events;
   }
   if (compiled.precision == compile::Precision::kFast) {
@@ -71,8 +74,11 @@ void expect_same(const Rendered& a, const Rendered& b) {
     const kernel::PathRecord &x = a.records[i], &y = b.records[i];
     different += !equal(x.light, y.light) || !equal(x.offset, y.offset) || !equal(x.direction, y.direction);
     different += x.sphere != y.sphere;
-    for (int k = 0; k < 3; ++k)
-      different += x.guide_albedo[k] != y.guide_albedo[k] || x.guide_normal[k] != y.guide_normal[k];
+  }
+  for (std::size_t i = 0; i < a.guides.size(); ++i) {
+    const kernel::GuideSum &x = a.guides[i], &y = b.guides[i];
+    different += x.inverse_depth != y.inverse_depth || x.weight != y.weight;
+    for (int k = 0; k < 3; ++k) different += x.albedo[k] != y.albedo[k] || x.normal[k] != y.normal[k];
   }
   const auto p = a.all_events(), q = b.all_events();
   ASSERT_EQ(p.size(), q.size());

@@ -70,7 +70,7 @@ Settings with_layers(Settings settings = {}) {
   r.z = r.depth = r.normal = r.position = r.albedo = r.diffuse = r.specular = r.transmission = r.background = true;
   r.emission = r.light_groups = true;
   r.groups = {{"default", true, true}, {"other", true, false}};
-  r.variance = r.samples = r.object_id = r.guide_albedo = r.guide_normal = r.coverage = r.deep = true;
+  r.variance = r.samples = r.object_id = r.guide_albedo = r.guide_normal = r.halves = r.coverage = r.deep = true;
   r.mattes = {{"CryptoObject", [](std::uint32_t sphere) { return sphere + 1; }}};
   return settings;
 }
@@ -222,7 +222,6 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
   const Settings whole = with_layers();
   for (const int count : {2, 5}) {
     film::Partial sum(compiled.width, compiled.height);
-    sum.layers.resize(sum.pixel_count());
     for (int i = 0; i < count; ++i) {
       for (const std::uint32_t begin : {0u, 6u}) {
         Settings settings = with_layers();
@@ -232,9 +231,7 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
         settings.keep_partial = true;
         const Result part = render(compiled, settings);
         EXPECT_EQ(part.statistics.fewest_samples, settings.sampling.sample_end - begin);
-        sum.film.add(part.partial->film);
-        for (std::size_t p = 0; p < sum.layers.size(); ++p) sum.layers[p].add(part.partial->layers[p]);
-        sum.work += part.partial->work;
+        sum.add(*part.partial);
       }
     }
     const Result expected = render(compiled, whole);
