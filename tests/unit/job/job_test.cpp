@@ -8,11 +8,13 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "image/partial_file.h"
 #include "image/read.h"
 #include "support/temp_dir.h"
 
@@ -175,8 +177,45 @@ TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
   expect_refused("--shard 1/1, not 1/2");
   job_.scene.overrides.push_back("output.layers=[\"N\"]");
   expect_refused("layers none, not N");
+  job_.denoise = true;
+  expect_refused("layers none, not half_a.R");
   support::write_bytes(folder_ / "a.checkpoint.exr", checkpoint.substr(0, checkpoint.size() / 2));
   EXPECT_EQ(error().kind(), base::ErrorKind::kBadData);
+}
+
+/// A checkpoint whose header fits the render, but whose sums do not.
+TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
+  const std::filesystem::path checkpoint = folder_ / "a.checkpoint.exr";
+  job_.outputs.images = {folder_ / "a.exr"};
+  job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
+  job_.denoise = true;
+  std::atomic<bool> cancel{false};
+  job_.hooks.cancel = &cancel;
+  job_.hooks.on_progress = [&](const render::Progress&) { cancel = true; };
+  EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
+  cancel = false;
+  job_.hooks.on_progress = {};
+  job_.checkpoint.resume = true;
+  const image::PartialFile right = image::read_partial(checkpoint, 200, 100);
+  const std::vector<std::function<void(film::Partial&)>> changes = {
+      [](film::Partial& sums) { sums.layers.clear(); }, [](film::Partial& sums) { sums.halves.clear(); },
+      [](film::Partial& sums) { sums.second = film::Film(200, 100); },
+      [](film::Partial& sums) { sums.layers[5].sphere = 1; }};
+  film::Picture preview = right.partial.film.picture();
+  preview.frame_width = 200;
+  preview.frame_height = 100;
+  for (const auto& change : changes) {
+    image::PartialFile wrong = right;
+    change(wrong.partial);
+    image::write_partial(checkpoint, preview, {}, wrong.provenance, wrong.partial);
+    const base::Error refused = error();
+    EXPECT_EQ(refused.kind(), base::ErrorKind::kBadData);
+    EXPECT_NE(std::string(refused.what()).find("other sums than its header says; delete it"), std::string::npos)
+        << refused.what();
+  }
+  image::write_partial(checkpoint, preview, {}, right.provenance, right.partial);
+  run_job(job_);
+  EXPECT_EQ(statistics()["resumed"], true);
 }
 
 TEST_F(JobRun, WritesCheckpointsAtTheInterval) {
