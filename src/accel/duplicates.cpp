@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/repeated.h"
+#include "math/single.h"
 
 namespace orrery::accel {
 
@@ -12,7 +13,7 @@ std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Pr
   if (is_fast ? scene.distinct_in_single : scene.distinct) return {};
   const auto rounded = [is_fast](auto key) {
     if (is_fast)
-      for (double& x : key) x = static_cast<double>(static_cast<float>(x));
+      for (double& x : key) x = math::in_single_precision(x);
     return key;
   };
   const auto place = [&](std::size_t id) {

@@ -1,43 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compile/sphere_store.h"
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "base/stop_point.h"
 
 namespace orrery::compile {
 namespace {
 
-/// The radius that all spheres have; empty if they differ or there are none.
-std::optional<double> common_radius(std::span<const scene::Points> sets) {
-  std::optional<double> common;
+/// Different radii of sets that store few; empty if a set stores many, or there are more than indices of one byte tell
+/// apart.
+std::vector<double> common_palette(std::span<const scene::Points> sets) {
+  constexpr std::size_t kMax = 256;
+  std::vector<double> out;
+  const auto add = [&](double radius) {
+    radius = std::abs(radius);
+    if (std::find(out.begin(), out.end(), radius) == out.end()) out.push_back(radius);
+  };
   for (const scene::Points& points : sets) {
     if (points.radii.empty()) continue;
-    const double radius = std::abs(points.radii[0]);
-    if (!points.radii.is_uniform() || (common && *common != radius)) return {};
-    common = radius;
+    if (!points.radii.is_uniform() && points.radii.palette().empty()) return {};
+    if (points.radii.is_uniform()) add(points.radii[0]);
+    for (const double radius : points.radii.palette()) add(radius);
+    if (out.size() > kMax) return {};
   }
-  return common;
+  return out;
+}
+
+/// Appends the index of each radius in the palette.
+void append_indices(const scene::NumberArray& radii, const std::vector<double>& palette,
+                    std::vector<std::uint8_t>& out) {
+  const auto index = [&](double radius) {
+    return static_cast<std::uint8_t>(std::find(palette.begin(), palette.end(), std::abs(radius)) - palette.begin());
+  };
+  if (radii.is_uniform()) {
+    if (!radii.empty()) out.insert(out.end(), radii.size(), index(radii[0]));
+    return;
+  }
+  std::vector<std::uint8_t> of_palette;
+  for (const double radius : radii.palette()) of_palette.push_back(index(radius));
+  for (const std::uint8_t i : radii.palette_indices()) out.push_back(of_palette[i]);
 }
 
 void append_singles(const scene::NumberArray& numbers, std::vector<float>& out) {
   if (const float* const singles = numbers.singles())
     out.insert(out.end(), singles, singles + numbers.size());
-  else if (!numbers.empty())
-    out.insert(out.end(), numbers.size(), static_cast<float>(numbers[0]));
+  else
+    for (const double number : numbers) out.push_back(static_cast<float>(number));
 }
 
 }  // namespace
 
 void SphereStore::append(std::span<const scene::Points> sets) {
-  const std::optional<double> common = common_radius(sets);
+  std::vector<double> palette = common_palette(sets);
   const base::StopPoint stop;
   std::size_t count = 0;
   bool fits = true;
   for (const scene::Points& points : sets) {
     count += points.centers.size();
-    fits = fits && points.centers.numbers().fits_single() && (common || points.radii.fits_single());
+    fits = fits && points.centers.numbers().fits_single() && (!palette.empty() || points.radii.fits_single());
   }
   if (!fits) {
     plain_.reserve(plain_.size() + count);
@@ -50,12 +73,14 @@ void SphereStore::append(std::span<const scene::Points> sets) {
     return;
   }
   stop.check();
-  radius_ = common.value_or(0);
+  radius_palette_ = std::move(palette);
   centers_.reserve(3 * count);
-  if (!common) radii_.reserve(count);
+  if (radius_palette_.empty()) radii_.reserve(count);
+  if (radius_palette_.size() > 1) radius_indices_.reserve(count);
   for (const scene::Points& points : sets) {
     append_singles(points.centers.numbers(), centers_);
-    if (!common) append_singles(points.radii, radii_);
+    if (radius_palette_.empty()) append_singles(points.radii, radii_);
+    if (radius_palette_.size() > 1) append_indices(points.radii, radius_palette_, radius_indices_);
   }
   for (float& radius : radii_) radius = std::abs(radius);
 }

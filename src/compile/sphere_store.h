@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace orrery::compile {
 
-/// The spheres of a compiled scene, in 12 bytes each where that loses nothing.
+/// The spheres of a compiled scene, in 12 or 13 bytes each where that loses nothing.
 class SphereStore {
  public:
   std::size_t size() const noexcept { return plain_.size() + centers_.size() / 3; }
@@ -20,8 +21,8 @@ class SphereStore {
   /// Appends a sphere as it is. Not after spheres that are compact.
   void push_back(const kernel::Sphere& sphere) { plain_.push_back(sphere); }
 
-  /// Appends the spheres of points files, the last ones: compact if their centres, and their radii if these differ, are
-  /// exact in single precision.
+  /// Appends the spheres of points files, the last ones: compact if their centres are exact in single precision, and
+  /// their radii are, too, or are few different ones.
   void append(std::span<const scene::Points> points);
 
   /// Valid until this is modified.
@@ -31,18 +32,21 @@ class SphereStore {
     v.plain_count = plain_.size();
     v.centers = centers_.data();
     v.radii = radii_.empty() ? nullptr : radii_.data();
-    v.radius = radius_;
+    v.radius_indices = radius_indices_.empty() ? nullptr : radius_indices_.data();
+    v.radius_palette = radius_palette_.data();
     return v;
   }
 
   std::size_t bytes() const noexcept {
-    return plain_.size() * sizeof(kernel::Sphere) + (centers_.size() + radii_.size()) * sizeof(float);
+    return plain_.size() * sizeof(kernel::Sphere) + (centers_.size() + radii_.size()) * sizeof(float) +
+           radius_indices_.size();
   }
 
  private:
   std::vector<kernel::Sphere> plain_;
   std::vector<float> centers_, radii_;
-  double radius_ = 0;
+  std::vector<std::uint8_t> radius_indices_;
+  std::vector<double> radius_palette_;
 };
 
 }  // namespace orrery::compile

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/single.h"
+
 namespace orrery::film {
 namespace {
 
@@ -23,7 +25,7 @@ LightCells::LightCells(const LayerRequest& request, const LayerPixel& pixel, con
 /// precede those of the next: the lobes then have the same bits with and without groups.
 void LightCells::divide(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty,
                         std::size_t c) {
-  const auto whole = static_cast<double>(static_cast<float>(mean(beauty.rgb[c], beauty.weight)));
+  const auto whole = math::in_single_precision(mean(beauty.rgb[c], beauty.weight));
   if (whole == 0) return;
   const double last_bit = std::ldexp(1.0, std::ilogb(whole) - 23);
   Int128 total = 0, all = 0;

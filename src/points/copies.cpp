@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "math/single.h"
 
 namespace orrery::points {
 namespace {
@@ -23,6 +24,12 @@ Vec3d applied(const Transform& t, Vec3d p) {
 bool is_identity(const Transform& t) {
   const Transform identity;
   return t.rows == identity.rows && t.translation == identity.translation;
+}
+
+/// Rounds the atoms of an assembly, which often has millions, to 12 bytes: by up to 6e-8 of the distance from the
+/// origin, in ångström less than the files' last digit.
+Vec3d in_single_precision(Vec3d p) {
+  return {math::in_single_precision(p.x), math::in_single_precision(p.y), math::in_single_precision(p.z)};
 }
 
 /// The transform of a points table: scale, then turns about x, y and z, then translation.
@@ -55,20 +62,52 @@ const data::Assembly* find_assembly(const data::FrameInfo& info, const std::stri
   return nullptr;
 }
 
-template <class Array>
-void repeat(Array& values, const std::vector<std::vector<std::uint32_t>>& subsets,
-            const std::vector<std::size_t>& subset_of_copy, std::size_t total) {
-  if (values.empty()) return;
-  Array out;
-  out.reserve(total);
-  for (const std::size_t s : subset_of_copy) {
-    if (s == subsets.size()) {
-      for (std::size_t i = 0; i < values.size(); ++i) out.push_back(values[i]);
-    } else {
-      for (const std::uint32_t i : subsets[s]) out.push_back(values[i]);
+/// The spheres of each copy.
+struct CopiedSpheres {
+  std::vector<std::vector<std::uint32_t>> subsets;  ///< spheres of a set of chains
+  std::vector<std::size_t> subset_of_copy;          ///< subsets.size(): all spheres
+  std::size_t total = 0;                            ///< of all copies
+
+  /// Replaces values of the spheres by those of the copies: `f(value, copy)`, one copy after the other.
+  template <class Array, class F>
+  void repeat(Array& values, F f) const {
+    if (values.empty()) return;
+    Array out;
+    out.reserve(total);
+    for (std::size_t copy = 0; copy < subset_of_copy.size(); ++copy) {
+      if (subset_of_copy[copy] == subsets.size()) {
+        for (std::size_t i = 0; i < values.size(); ++i) out.push_back(f(values[i], copy));
+      } else {
+        for (const std::uint32_t i : subsets[subset_of_copy[copy]]) out.push_back(f(values[i], copy));
+      }
     }
+    values = std::move(out);
   }
-  values = std::move(out);
+  template <class Array>
+  void repeat(Array& values) const {
+    repeat(values, [](auto value, std::size_t) { return value; });
+  }
+};
+
+CopiedSpheres spheres_of(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
+  CopiedSpheres out;
+  std::vector<const std::vector<std::string>*> sets;
+  for (const Copy& copy : copies) {
+    if (copy.chains == nullptr || std::find(sets.begin(), sets.end(), copy.chains) != sets.end()) continue;
+    sets.push_back(copy.chains);
+    std::vector<std::uint8_t> is_in(chains.names.size());
+    for (std::size_t l = 0; l < is_in.size(); ++l)
+      is_in[l] = std::find(copy.chains->begin(), copy.chains->end(), chains.names[l]) != copy.chains->end() ? 1 : 0;
+    out.subsets.emplace_back();
+    for (std::uint32_t i = 0; i < chains.of_rows.size(); ++i)
+      if (is_in[chains.of_rows[i]] != 0) out.subsets.back().push_back(i);
+  }
+  for (const Copy& copy : copies) {
+    const auto set = static_cast<std::size_t>(std::find(sets.begin(), sets.end(), copy.chains) - sets.begin());
+    out.subset_of_copy.push_back(copy.chains == nullptr ? out.subsets.size() : set);
+    out.total += copy.chains == nullptr ? count : out.subsets[set].size();
+  }
+  return out;
 }
 
 /// Multiplies radii by a factor.
@@ -169,39 +208,16 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
     scale(points.radii, points.transform.scale);
     return;
   }
-  // The spheres of each set of chains; copies without chains have all spheres.
-  std::vector<const std::vector<std::string>*> sets;
-  std::vector<std::vector<std::uint32_t>> subsets;
-  for (const Copy& copy : copies) {
-    if (copy.chains == nullptr || std::find(sets.begin(), sets.end(), copy.chains) != sets.end()) continue;
-    sets.push_back(copy.chains);
-    std::vector<std::uint8_t> is_in(chains.names.size());
-    for (std::size_t l = 0; l < is_in.size(); ++l)
-      is_in[l] = std::find(copy.chains->begin(), copy.chains->end(), chains.names[l]) != copy.chains->end() ? 1 : 0;
-    subsets.emplace_back();
-    for (std::uint32_t i = 0; i < chains.of_rows.size(); ++i)
-      if (is_in[chains.of_rows[i]] != 0) subsets.back().push_back(i);
-  }
-  std::vector<std::size_t> subset_of_copy, size_of_copy;
-  std::size_t total = 0;
-  for (const Copy& copy : copies) {
-    const auto set = static_cast<std::size_t>(std::find(sets.begin(), sets.end(), copy.chains) - sets.begin());
-    subset_of_copy.push_back(copy.chains == nullptr ? subsets.size() : set);
-    size_of_copy.push_back(copy.chains == nullptr ? points.centers.size() : subsets[set].size());
-    total += size_of_copy.back();
-  }
-  repeat(points.centers, subsets, subset_of_copy, total);
-  repeat(points.radii, subsets, subset_of_copy, total);
-  repeat(points.materials, subsets, subset_of_copy, total);
-  repeat(points.colors, subsets, subset_of_copy, total);
-  if (rows != nullptr) repeat(*rows, subsets, subset_of_copy, total);
-  std::size_t i = 0;
-  for (std::size_t c = 0; c < copies.size(); ++c) {
-    for (const std::size_t end = i + size_of_copy[c]; i < end; ++i) {
-      const Vec3d center = applied(copies[c].transform, points.centers[i]);
-      points.centers.set(i, is_placed ? applied(placement, center) : center);
-    }
-  }
+  const CopiedSpheres spheres = spheres_of(copies, chains, points.centers.size());
+  spheres.repeat(points.centers, [&](Vec3d center, std::size_t copy) {
+    center = applied(copies[copy].transform, center);
+    if (!points.assembly.empty()) center = in_single_precision(center);
+    return is_placed ? applied(placement, center) : center;
+  });
+  spheres.repeat(points.radii);
+  spheres.repeat(points.materials);
+  spheres.repeat(points.colors);
+  if (rows != nullptr) spheres.repeat(*rows);
   if (is_placed) scale(points.radii, points.transform.scale);
 }
 

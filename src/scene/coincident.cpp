@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/repeated.h"
+#include "math/single.h"
 
 namespace orrery::scene {
 namespace {
@@ -51,7 +52,7 @@ Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, con
   const bool is_fast = scene.render.precision == Precision::kFast;
   const auto rounded = [is_fast](auto key) {
     if (is_fast)
-      for (double& x : key) x = static_cast<double>(static_cast<float>(x));
+      for (double& x : key) x = math::in_single_precision(x);
     return key;
   };
   SphereIndex spheres(scene);

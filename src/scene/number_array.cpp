@@ -6,20 +6,43 @@
 
 namespace orrery::scene {
 
+bool NumberArray::fits_single() const noexcept {
+  switch (storage_) {
+    case Storage::kOne: return is_single(value_);
+    case Storage::kPalette: return std::all_of(palette_.begin(), palette_.end(), is_single);
+    case Storage::kSingles: return true;
+    case Storage::kDoubles: break;
+  }
+  return false;
+}
+
 void NumberArray::spread(double value) {
   const std::size_t capacity = std::max(reserved_, count_);
-  if (storage_ == Storage::kOne && is_single(value_) && is_single(value)) {
-    singles_.reserve(capacity);
-    singles_.assign(count_, static_cast<float>(value_));
-    storage_ = Storage::kSingles;
+  if (storage_ == Storage::kOne) {
+    indices_.reserve(capacity);
+    indices_.assign(count_, 0);
+    palette_ = {value_};
+    last_found_ = 0;
+    storage_ = Storage::kPalette;
     return;
   }
-  std::vector<double> doubles;
-  doubles.reserve(capacity);
-  for (std::size_t i = 0; i < count_; ++i) doubles.push_back((*this)[i]);
-  doubles_ = std::move(doubles);
-  std::vector<float>().swap(singles_);
-  storage_ = Storage::kDoubles;
+  const auto copy_to = [&](auto& numbers) {
+    numbers.reserve(capacity);
+    for (std::size_t i = 0; i < count_; ++i)
+      numbers.push_back(static_cast<typename std::remove_reference_t<decltype(numbers)>::value_type>((*this)[i]));
+  };
+  if (storage_ == Storage::kPalette && fits_single() && is_single(value)) {
+    copy_to(singles_);
+    storage_ = Storage::kSingles;
+  } else {
+    std::vector<double> doubles;
+    copy_to(doubles);
+    doubles_ = std::move(doubles);
+    std::vector<float>().swap(singles_);
+    storage_ = Storage::kDoubles;
+  }
+  std::vector<std::uint8_t>().swap(indices_);
+  std::vector<double>().swap(palette_);
 }
 
 }  // namespace orrery::scene

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <iterator>
 #include <vector>
 
+#include "math/single.h"
 #include "math/vec3.h"
 
 namespace orrery::scene {
@@ -35,8 +37,8 @@ class ValueIterator {
   std::size_t at_;
 };
 
-/// Numbers of double precision. They are stored as floats, or as a single number if all are equal, as long as that
-/// loses nothing.
+/// Numbers of double precision. As long as that loses nothing, they are stored as a single number if all are equal, as
+/// indices of one byte if there are few different ones, or as floats.
 ///
 /// Not thread-safe, even for writes to different elements.
 class NumberArray {
@@ -51,10 +53,13 @@ class NumberArray {
 
   std::size_t size() const noexcept { return count_; }
   bool empty() const noexcept { return count_ == 0; }
-  std::size_t bytes() const noexcept { return singles_.size() * sizeof(float) + doubles_.size() * sizeof(double); }
+  std::size_t bytes() const noexcept {
+    return indices_.size() + singles_.size() * sizeof(float) + (palette_.size() + doubles_.size()) * sizeof(double);
+  }
 
   double operator[](std::size_t i) const noexcept {
     switch (storage_) {
+      case Storage::kPalette: return palette_[indices_[i]];
       case Storage::kSingles: return static_cast<double>(singles_[i]);
       case Storage::kDoubles: return doubles_[i];
       case Storage::kOne: break;
@@ -67,12 +72,18 @@ class NumberArray {
   /// All numbers are equal.
   bool is_uniform() const noexcept { return storage_ == Storage::kOne; }
   /// No number needs double precision.
-  bool fits_single() const noexcept { return storage_ == Storage::kSingles || (is_uniform() && is_single(value_)); }
+  bool fits_single() const noexcept;
   /// The numbers, if they are stored as floats; otherwise null.
   const float* singles() const noexcept { return storage_ == Storage::kSingles ? singles_.data() : nullptr; }
+  /// Numbers among which are all in this array, if they are stored as indices of these; otherwise empty.
+  const std::vector<double>& palette() const noexcept { return palette_; }
+  /// The index into the palette of each number.
+  const std::vector<std::uint8_t>& palette_indices() const noexcept { return indices_; }
 
   void set(std::size_t i, double value) {
-    if (storage_ == Storage::kSingles && is_single(value)) {
+    if (storage_ == Storage::kPalette && find(value)) {
+      indices_[i] = last_found_;
+    } else if (storage_ == Storage::kSingles && is_single(value)) {
       singles_[i] = static_cast<float>(value);
     } else if (storage_ == Storage::kDoubles) {
       doubles_[i] = value;
@@ -83,7 +94,9 @@ class NumberArray {
   }
   void push_back(double value) {
     if (count_ == 0 && storage_ == Storage::kOne) value_ = value;
-    if (storage_ == Storage::kSingles && is_single(value)) {
+    if (storage_ == Storage::kPalette && find(value)) {
+      indices_.push_back(last_found_);
+    } else if (storage_ == Storage::kSingles && is_single(value)) {
       singles_.push_back(static_cast<float>(value));
     } else if (storage_ == Storage::kDoubles) {
       doubles_.push_back(value);
@@ -98,6 +111,13 @@ class NumberArray {
   void clear() { *this = NumberArray(); }
   void reserve(std::size_t count) { reserved_ = count; }
   void resize(std::size_t count) {
+    if (storage_ == Storage::kPalette) {
+      if (count > count_ && !find(0)) {
+        spread(0);
+        return resize(count);
+      }
+      indices_.resize(count, last_found_);
+    }
     if (storage_ == Storage::kSingles) singles_.resize(count);
     if (storage_ == Storage::kDoubles) doubles_.resize(count);
     if (is_uniform() && count > count_ && !is_same(value_, 0)) {
@@ -119,23 +139,43 @@ class NumberArray {
   }
 
  private:
-  enum class Storage : std::uint8_t { kOne, kSingles, kDoubles };
+  enum class Storage : std::uint8_t { kOne, kPalette, kSingles, kDoubles };
 
-  static bool is_single(double x) { return static_cast<double>(static_cast<float>(x)) == x || std::isnan(x); }
+  /// More would take longer to search than the memory is worth.
+  static constexpr std::size_t kMaxPalette = 16;
+
+  static bool is_single(double x) { return math::in_single_precision(x) == x || std::isnan(x); }
   /// Distinguishes 0 from -0.
-  static bool is_same(double a, double b) { return a == b && std::signbit(a) == std::signbit(b); }
+  static bool is_same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+  /// Sets last_found_ to the value's index in the palette, to which it is added if there is room; else returns false.
+  bool find(double value) {
+    if (is_same(palette_[last_found_], value)) return true;
+    for (std::size_t i = 0; i < palette_.size(); ++i)
+      if (is_same(palette_[i], value)) {
+        last_found_ = static_cast<std::uint8_t>(i);
+        return true;
+      }
+    if (palette_.size() == kMaxPalette) return false;
+    last_found_ = static_cast<std::uint8_t>(palette_.size());
+    palette_.push_back(value);
+    return true;
+  }
 
   template <class Numbers>
   void append(const Numbers& numbers) {
     reserve(numbers.size());
     for (const double x : numbers) push_back(x);
   }
-  /// Stores each number, so that there can be one with `value` beside them.
+  /// Changes the storage, so that `value` can be added.
   void spread(double value);
 
   Storage storage_ = Storage::kOne;
   std::size_t count_ = 0, reserved_ = 0;
   double value_ = 0;
+  std::vector<double> palette_;
+  std::uint8_t last_found_ = 0;
+  std::vector<std::uint8_t> indices_;
   std::vector<float> singles_;
   std::vector<double> doubles_;
 };

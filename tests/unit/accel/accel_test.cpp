@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "kernel/isa.h"
+#include "math/single.h"
 #include "support/accel_rays.h"
 #include "support/intersect_batch.h"
 
@@ -122,35 +123,46 @@ TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
   kernel::limit_isa("");
 }
 
-/// Spheres in single precision, as compile::SphereStore keeps them.
+/// Spheres in single precision, as compile::SphereStore keeps them, with radii of their own or from a palette.
 struct Compact {
   std::vector<Sphere> plain;  ///< the same numbers, all as they are
   std::vector<float> centers, radii;
+  std::vector<std::uint8_t> indices;
+  std::vector<double> palette;
 
   /// `begin`   number of spheres that stay as they are
-  Compact(const std::vector<Sphere>& spheres, std::size_t begin) : plain(spheres) {
-    for (Sphere& s : plain) {
-      for (double* x : {&s.x, &s.y, &s.z, &s.radius}) *x = static_cast<float>(*x);
-    }
+  Compact(const std::vector<Sphere>& spheres, std::size_t begin, bool has_palette) : plain(spheres) {
+    for (Sphere& s : plain)
+      for (double* x : {&s.x, &s.y, &s.z}) *x = math::in_single_precision(*x);
     for (std::size_t i = begin; i < plain.size(); ++i) {
-      const Sphere& s = plain[i];
+      Sphere& s = plain[i];
       for (const double x : {s.x, s.y, s.z}) centers.push_back(static_cast<float>(x));
-      radii.push_back(static_cast<float>(s.radius));
+      if (has_palette) {
+        if (palette.size() < 200) palette.push_back(s.radius);
+        indices.push_back(static_cast<std::uint8_t>((i - begin) % 200));
+        s.radius = palette[indices.back()];
+      } else {
+        radii.push_back(static_cast<float>(s.radius));
+        s.radius = static_cast<double>(radii.back());
+      }
     }
   }
   kernel::SphereArray array() const {
     kernel::SphereArray a(plain.data());
-    a.plain_count = plain.size() - radii.size();
+    a.plain_count = plain.size() - centers.size() / 3;
     a.centers = centers.data();
-    a.radii = radii.data();
+    a.radii = radii.empty() ? nullptr : radii.data();
+    a.radius_indices = indices.data();
+    a.radius_palette = palette.data();
     return a;
   }
 };
 
 TEST(AccelAccel, CompactSpheresAreHitAsPlainOnes) {
   for (const Scene& scene : scenes())
-    for (const Way& way : kWays) {
-      const Compact spheres(scene.spheres, scene.spheres.size() / 3);
+    for (int way_and_kind = 0; way_and_kind < 2 * static_cast<int>(std::size(kWays)); ++way_and_kind) {
+      const Way& way = kWays[way_and_kind / 2];
+      const Compact spheres(scene.spheres, scene.spheres.size() / 3, way_and_kind % 2 != 0);
       kernel::SceneView plain;
       plain.spheres = spheres.plain.data();
       plain.sphere_count = spheres.plain.size();

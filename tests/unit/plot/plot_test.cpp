@@ -259,8 +259,9 @@ TEST_F(PlotPlot, SlicesRemoveTheSideOfTheCamera) {
   write("a.csv", "x,y,z,radius\n0,0,-5,1\n0,0,0,1\n0,0,5,1\n");
   const auto kept = [&] {
     make();
+    const scene::Scene plotted = read();
     std::vector<double> out;
-    for (const Vec3d& c : read().points[0].centers) out.push_back(c.z);
+    for (const Vec3d& c : plotted.points[0].centers) out.push_back(c.z);
     return out;
   };
   options.slice = std::pair{2, 1.0};

@@ -58,6 +58,26 @@ TEST(PointsCopies, OneCopyWithoutAnAssembly) {
   EXPECT_FALSE(faults.has_errors());
 }
 
+/// Copies of an assembly take 12 bytes each; other copies keep all digits.
+TEST(PointsCopies, AssembliesAreInSinglePrecision) {
+  const std::vector<Copy> copies = {{moved({0.1, 0, 0}), nullptr}, {moved({100, 0, 0}), nullptr}};
+  for (const bool is_assembly : {false, true}) {
+    scene::Points points;
+    if (is_assembly) points.assembly = "1";
+    for (int i = 0; i < 100; ++i) {
+      points.centers.push_back({0.001 * i, 0.3, 0.7});
+      points.radii.push_back(i % 3 == 0 ? 1.7 : 1.52);
+    }
+    make_copies(copies, {}, points);
+    ASSERT_EQ(points.centers.size(), 200u);
+    EXPECT_EQ(points.centers.numbers().bytes(), 600 * (is_assembly ? sizeof(float) : sizeof(double)));
+    EXPECT_EQ(points.radii.bytes(), 200 + 2 * sizeof(double));
+    const double exact = 0.001 * 99 + 100;
+    EXPECT_EQ(points.centers[199].x, is_assembly ? static_cast<double>(static_cast<float>(exact)) : exact);
+    EXPECT_EQ(points.radii[199], 1.7);
+  }
+}
+
 TEST(PointsCopies, AnAssemblyIsFoundByName) {
   data::FrameInfo info;
   info.assemblies = {{"1", {{{}, {moved({1, 0, 0})}}}},
