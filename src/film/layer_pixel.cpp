@@ -51,6 +51,20 @@ void camera_at(const kernel::SceneView& scene, double time, double (&origin)[3],
   }
 }
 
+/// False if a path's first hit is certainly not nearer than this, which is less work than to locate it.
+bool may_be_nearer(const kernel::SceneView& scene, const PathRecord& path, double than) {
+  if (scene.camera.is_orthographic || scene.features.motion) return true;
+  const kernel::Sphere s = scene.spheres[path.sphere];
+  const double center[3] = {s.x, s.y, s.z};
+  double squared = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double from_camera = center[k] - scene.camera.origin[k] + path.offset[k];
+    squared += from_camera * from_camera;
+  }
+  constexpr double kRounding = 1 + 0x1p-50;  // of both squares and the root
+  return !(squared > than * than * kRounding);
+}
+
 Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
   const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
   const double center[3] = {s.x, s.y, s.z};
@@ -93,7 +107,8 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   }
   const bool hits = path.sphere != kernel::kNoSphere;
   Hit hit{};
-  if (hits && (request.nearest() || request.deep)) hit = locate(scene, path);
+  const bool is_candidate = hits && request.nearest() && may_be_nearer(scene, path, depth);
+  if (is_candidate || (hits && request.deep)) hit = locate(scene, path);
   if (request.deep || (hits && !request.mattes.empty())) {
     SphereCoverage& share = share_of(shares, path.sphere);
     share.weight += path_weight;
@@ -121,7 +136,7 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
     const double n[3] = {path.offset[0] * outward, path.offset[1] * outward, path.offset[2] * outward};
     add3(normal, n, path_weight);
   }
-  if (!request.nearest() || !(hit.distance < depth)) return;
+  if (!is_candidate || !(hit.distance < depth)) return;
   depth = hit.distance;
   z = hit.z;
   sphere = path.sphere;

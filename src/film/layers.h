@@ -58,11 +58,14 @@ struct LayerRequest {
   std::vector<LightGroup> groups;               ///< of the scene, by kernel::LightEvent::group; for light_groups
   std::vector<Matte> mattes;
 
-  bool lights() const;       ///< radiance by lobe or light group, from light events
-  bool nearest() const;      ///< a property of the nearest hit
-  bool paths_light() const;  ///< the radiance of single paths
-  bool records() const;      ///< layers made from records of single paths
-  bool guides() const;       ///< sums of guides for denoising
+  bool lights() const;   ///< radiance by lobe or light group, from light events
+  bool hits() const;     ///< first hits of single paths
+  bool nearest() const;  ///< a property of the nearest hit
+  bool paths() const;    ///< number and radiance of the paths
+  bool paths_light() const { return lights() || paths() || deep; }  ///< the radiance of single paths
+  bool path_records() const { return hits() || paths() || deep; }   ///< sums over records of single paths
+  bool records() const { return lights() || path_records(); }       ///< layers made from records or light events
+  bool guides() const;                                              ///< sums of guides for denoising
   bool any() const { return records() || guides(); }
 
   /// Number of sums that a pixel's light is divided into: a lobe each, or a lobe of a light group.
@@ -128,11 +131,9 @@ constexpr bool requests(const LayerRequest& request) {
 
 inline bool LayerRequest::lights() const { return detail::requests<LayerSource::kLight>(*this); }
 inline bool LayerRequest::nearest() const { return detail::requests<LayerSource::kNearest>(*this); }
-inline bool LayerRequest::paths_light() const {
-  return lights() || detail::requests<LayerSource::kPaths>(*this) || deep;
-}
-inline bool LayerRequest::records() const {
-  return paths_light() || nearest() || detail::requests<LayerSource::kSums>(*this) || coverage || !mattes.empty();
+inline bool LayerRequest::paths() const { return detail::requests<LayerSource::kPaths>(*this); }
+inline bool LayerRequest::hits() const {
+  return nearest() || detail::requests<LayerSource::kSums>(*this) || coverage || deep || !mattes.empty();
 }
 inline bool LayerRequest::guides() const {
   return detail::requests<LayerSource::kGuide>(*this) || detail::requests<LayerSource::kHalves>(*this);

@@ -39,6 +39,7 @@ class Recorder {
 
   /// Resets the records of paths that begin.
   HWY_INLINE void begin(D d, hn::Mask<D> active) {
+    if (!tile_.record_hits) return;
     each(d, active, [](PathRecord& r, int) { r = {}; });
   }
 
@@ -47,6 +48,7 @@ class Recorder {
   /// `times`    of the rays; null if nothing moves
   HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids spheres, const Vec3<V>& offset, const Vec3<V>& direction,
                             const hn::TFromD<D>* times) {
+    if (!tile_.record_hits) return;
     const IdTag<D> du;
     HWY_ALIGN Id sphere[kMax];
     Stored at(d, offset), along(d, direction);
@@ -63,6 +65,7 @@ class Recorder {
 
   /// Records the albedo at the first hits.
   HWY_INLINE void albedo(D d, hn::Mask<D> hit, const Vec3<V>& albedo) {
+    if (!tile_.record_hits) return;
     Stored color(d, albedo);
     each(d, hit, [&](PathRecord& r, int i) {
       for (int k = 0; k < 3; ++k) r.albedo[k] = static_cast<float>(color.v[k][i]);

@@ -37,6 +37,7 @@ struct Tile {
   GuideSum* guides = nullptr;     ///< of the upper left pixel, in rows as the sums; null: not needed
   LightEvents* events = nullptr;  ///< where the paths' light events go; null: not needed
   bool record_light = true;       ///< false: the records' light and light events are not needed
+  bool record_hits = true;  ///< false: only the records' light is needed, and only that of paths with light events
 
   int pixel_count() const noexcept { return chosen != nullptr ? chosen_count : width * height; }
   /// The i-th pixel to render, relative to the upper left one.

@@ -124,6 +124,7 @@ void TileRenderer::trace_records(const kernel::Tile& tile, TileWorker& worker, f
   const auto samples_at_a_time = std::max(1u, kMaxRecords / static_cast<std::uint32_t>(pixels));
   kernel::Tile part = tile;
   part.record_light = request_.paths_light();
+  part.record_hits = request_.path_records();
   for (std::uint32_t begin = tile.sample_begin; begin < tile.sample_end; begin = part.sample_end) {
     part.sample_begin = begin;
     part.sample_end = begin + std::min(samples_at_a_time, tile.sample_end - begin);
@@ -135,7 +136,7 @@ void TileRenderer::trace_records(const kernel::Tile& tile, TileWorker& worker, f
       part.events = &worker.events;
     }
     trace(part, worker);
-    for (int i = 0; i < tile.pixel_count(); ++i) {
+    for (int i = 0; request_.path_records() && i < tile.pixel_count(); ++i) {
       const kernel::PixelPlace at = tile.pixel(i);
       const auto within = static_cast<std::size_t>(at.y * tile.width + at.x);
       film::LayerPixel& pixel = image.layers[index_of(image, tile, at)];
