@@ -22,7 +22,7 @@ enum class Lobe : std::uint8_t {
 inline constexpr int kLobes = 8;
 
 /// Data of one path for the layers besides the beauty and the denoiser guides. Computed only for tiles that request
-/// records.
+/// records. Of a path without a first hit only the sphere and the light are set.
 struct PathRecord {
   double light[3] = {0, 0, 0};       ///< total radiance of the path, the sum of its light events
   double offset[3] = {0, 0, 0};      ///< first hit: from the sphere's centre to the point, scene units

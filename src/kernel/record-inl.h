@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <type_traits>
 
 #include "kernel/compaction-inl.h"
@@ -37,10 +38,11 @@ class Recorder {
     (void)d;
   }
 
-  /// Resets the records of paths that begin.
-  HWY_INLINE void begin(D d, hn::Mask<D> active) {
+  /// Resets what is read of the records of paths that begin, and is not written to all of them later.
+  HWY_INLINE void begin(D d, hn::Mask<D> active, hn::Mask<D> missed) {
     if (!tile_.record_hits) return;
-    each(d, active, [](PathRecord& r, int) { r = {}; });
+    if (tile_.record_light) each(d, active, [](PathRecord& r, int) { std::fill_n(r.light, 3, 0.0); });
+    each(d, missed, [](PathRecord& r, int) { r.sphere = kNoSphere; });
   }
 
   /// Records the first hits.

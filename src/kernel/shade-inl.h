@@ -164,7 +164,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       history = hn::Load(du, carried.history + v);
       const auto only_delta = hn::Set(du, static_cast<Id>(kOnlyDeltaBit));
       guided = hn::RebindMask(d, hn::And(history, only_delta) == only_delta);
-      if (depth == 0) record.begin(d, active);
+      if (depth == 0) record.begin(d, active, missed);
     }
     // Radiance that arrives along the path, from a source of these light groups. Unless the loop is lit, the path ends.
     const auto arrive = [&](hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, [[maybe_unused]] hn::Vec<IdTag<D>> groups,
