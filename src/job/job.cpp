@@ -197,7 +197,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Checkpoint checkpoint(checkpoint_path, job.checkpoint, job.hooks, provenance, write_sums);
   render::Result result = job.merge.shards.empty()
                               ? render_job(job, compiled, settings, checkpoint, total.lap(), report)
-                              : merge_job(job, compiled, layers, provenance, report);
+                              : merge_job(job, compiled, settings, provenance, report);
   report.render = result.statistics;
   const double made_s = watch.lap();
   if (!job.merge.shards.empty()) report.phases.finish_s = made_s;

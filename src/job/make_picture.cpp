@@ -45,10 +45,10 @@ film::Picture preview(const compile::CompiledScene& compiled, const film::Partia
   film::Partial shown(0, 0);
   shown.film = partial.film;
   shown.second = partial.second;
-  return render::finished(compiled, {}, std::move(shown)).picture;
+  return render::finished(compiled, {}, std::move(shown), 1).picture;
 }
 
-render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const Layers& layers,
+render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
                          const image::Provenance& provenance, JobReport& report) {
   const ShardFile& first = job.merge.shards.front();
   std::vector<std::string> keys = {"version", "sceneHash"};
@@ -75,15 +75,15 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   statistics.bad_samples = work.bad_samples;
   statistics.render_s = work.seconds;
   statistics.ended_by = "samples";
-  if (!layers.request.records()) merged.partial.layers.clear();
-  if (!layers.request.guides()) merged.partial.halves.clear();
+  if (!settings.layers.records()) merged.partial.layers.clear();
+  if (!settings.layers.guides()) merged.partial.halves.clear();
   if (job.denoise && merged.partial.halves.empty())
     throw base::Error(base::ErrorKind::kBadData,
                       "the shards have no halves to denoise from; render them with --denoise or --layers halves");
-  if ((layers.request.records() && merged.partial.layers.empty()) ||
-      (layers.request.guides() && merged.partial.halves.empty()))
+  if ((settings.layers.records() && merged.partial.layers.empty()) ||
+      (settings.layers.guides() && merged.partial.halves.empty()))
     throw base::Error(base::ErrorKind::kBadData, "the shards were rendered without the requested layers");
-  render::Result result = render::finished(compiled, layers.request, std::move(merged.partial));
+  render::Result result = render::finished(compiled, settings.layers, std::move(merged.partial), settings.threads);
   result.statistics = statistics;
   return result;
 }

@@ -7,7 +7,6 @@
 #include "image/partial_file.h"
 #include "job/checkpoint.h"
 #include "job/job.h"
-#include "job/layers.h"
 #include "render/render.h"
 
 namespace orrery::job {
@@ -21,8 +20,9 @@ render::Result render_job(const Job& job, const compile::CompiledScene& compiled
 
 /// Merges shards instead of rendering.
 ///
+/// `settings` threads and layers
 /// Errors     base::Error(kBadData) if the scene has changed since; those of merge_shards
-render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const Layers& layers,
+render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
                          const image::Provenance& provenance, JobReport& report);
 
 /// The beauty image of a partial render.

@@ -84,7 +84,8 @@ std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings&
                                           : static_cast<std::uint32_t>(compiled.samples);
 }
 
-Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, film::Partial partial) {
+Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, film::Partial partial,
+                int threads) {
   Result result;
   result.completed = true;
   if (partial.has_halves()) partial.film.add(partial.second);
@@ -98,10 +99,13 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   film::LayerFilm layers(request, compiled.view(), compiled.width, compiled.height);
   const film::LayerPixel no_layers;
   const film::Halves no_halves;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, partial.pixel_count(), 1024), [&](const auto& range) {
+  const auto set_pixels = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
       layers.set(i, partial.layers.empty() ? no_layers : partial.layers[i],
                  partial.halves.empty() ? no_halves : partial.halves[i], partial.film.sums()[i]);
+  };
+  TilePool(threads > 0 ? threads : available_threads()).execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, partial.pixel_count(), 1024), set_pixels);
   });
   layers.move_to(result.picture);
   result.deep = layers.take_deep();
@@ -138,15 +142,14 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
 
   const auto rendered = Clock::now();
   Result result;
-  const auto finish = [&](film::Partial sums) {
-    pool.execute([&] { result = finished(compiled, settings.layers, std::move(sums)); });
-  };
-  if (completed && settings.keep_partial) {
-    finish(state);
-  } else if (completed) {
-    finish(std::move(state));
+  if (!completed) {
+    result.partial = std::move(state);
+  } else if (settings.keep_partial) {
+    result = finished(compiled, settings.layers, state, statistics.threads);
+    result.partial = std::move(state);
+  } else {
+    result = finished(compiled, settings.layers, std::move(state), statistics.threads);
   }
-  if (!completed || settings.keep_partial) result.partial = std::move(state);
   statistics.finish_s = seconds_since(rendered);
   result.statistics = std::move(statistics);
   return result;

@@ -82,7 +82,10 @@ Result render(const compile::CompiledScene& compiled, const Settings& settings, 
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings);
 
 /// Converts a partial to an image; pixels without samples are black.
-Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, film::Partial partial);
+///
+/// `threads`  0: all available
+Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, film::Partial partial,
+                int threads);
 
 /// The version of oneTBB in use.
 std::string tbb_version();

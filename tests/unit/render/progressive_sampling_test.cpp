@@ -236,7 +236,7 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
     }
     const Result expected = render(compiled, whole);
     EXPECT_EQ(sum.work.rays, expected.statistics.rays);
-    EXPECT_EQ(values(finished(compiled, whole.layers, std::move(sum)).picture), values(expected.picture));
+    EXPECT_EQ(values(finished(compiled, whole.layers, std::move(sum), 2).picture), values(expected.picture));
   }
 }
 
