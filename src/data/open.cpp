@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <string_view>
 
 #include "base/error.h"
 #include "data/readers.h"
@@ -22,6 +24,14 @@ std::string extension_of(const std::filesystem::path& file) {
   return is_compressed ? lower(file.stem().extension().string()) : last;
 }
 
+/// Whether a file begins as an EXR, PNG, JPEG, TIFF or Radiance image.
+bool is_image(std::string_view head) {
+  using namespace std::string_view_literals;
+  constexpr std::string_view kBegins[] = {"\x76\x2f\x31\x01"sv, "\x89PNG"sv, "\xff\xd8\xff"sv, "II*\0"sv, "MM\0*"sv,
+                                          "#?RADIANCE"sv,       "#?RGBE"sv};
+  return std::any_of(std::begin(kBegins), std::end(kBegins), [&](auto begin) { return head.starts_with(begin); });
+}
+
 /// Formats that end users meet, but that no reader supports; what to do about each.
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
@@ -32,6 +42,9 @@ std::string extension_of(const std::filesystem::path& file) {
   if (signature.head.empty()) {
     text = "the file is empty";
     remedy.clear();
+  } else if (is_image(signature.head)) {
+    text = "an image, not a scene or data file";
+    remedy = "`oiiotool --info -v` shows its layers and attributes";
   } else if (signature.extension == ".bp" || signature.extension == ".bp4" || signature.extension == ".bp5") {
     text = "ADIOS2 files are not supported";
     remedy = "convert it, e.g. with `bpls -d` to CSV, or write HDF5 from the simulation";

@@ -249,6 +249,8 @@ TEST_F(CliDataInfo, ErrorsAreThoseOfTheKindOfFile) {
   std::filesystem::rename(folder_ / "good.toml", folder_ / "good.txt");
   expect_error("info good.txt", 65, "unknown file format");
   expect_error("info none.dump", 66, "none.dump");
+  write("a.exr", std::string("\x76\x2f\x31\x01\2\0\0\0", 8));
+  expect_error("info a.exr", 65, "an image, not a scene or data file; `oiiotool --info -v` shows");
   expect_error("info a.dump --frame 4", 2, "--frame 4: a.dump has 3 frames");
   std::filesystem::rename(folder_ / "a.dump", folder_ / "a.toml");
   expect_error("info a.toml", 65, "a.toml:1:");
