@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <chrono>
 #include <optional>
@@ -166,9 +164,8 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
                      job.resources.disk_limit);
   require_memory(estimate_memory(memory_needs(compiled, layers.request, job.sampling.is_adaptive())),
                  job.resources.memory_limit, compiled.environment ? compiled.environment->bytes() : 0);
-  // Keep no second copy of the spheres during the BVH build, nor the readers' many small blocks, which the heap keeps.
+  // Keep no second copy of the spheres during the BVH build.
   for (scene::Points& points : read.scene.points) points.release_spheres();
-  if (!read.scene.points.empty()) malloc_trim(0);
   report.hosts = {provenance.at("host")};
   report.width = compiled.width;
   report.height = compiled.height;
