@@ -63,7 +63,7 @@ struct LayerRequest {
   bool nearest() const;  ///< a property of the nearest hit
   bool paths() const;    ///< number and radiance of the paths
   bool paths_light() const { return lights() || paths() || deep; }  ///< the radiance of single paths
-  bool path_records() const { return hits() || paths() || deep; }   ///< sums over records of single paths
+  bool path_records() const { return hits() || paths(); }           ///< sums over records of single paths
   bool records() const { return lights() || path_records(); }       ///< layers made from records or light events
   bool guides() const;                                              ///< sums of guides for denoising
   bool any() const { return records() || guides(); }

@@ -110,12 +110,13 @@ CopiedSpheres spheres_of(const std::vector<Copy>& copies, const Labels& chains, 
   return out;
 }
 
-/// Multiplies radii by a factor.
+/// Multiplies radii by a factor. As an array of its own, since old and new radii together can be too many for a
+/// palette.
 void scale(scene::NumberArray& radii, double factor) {
-  if (radii.is_uniform() && !radii.empty())
-    radii.assign(radii.size(), radii[0] * factor);
-  else
-    for (std::size_t i = 0; i < radii.size(); ++i) radii.set(i, radii[i] * factor);
+  scene::NumberArray scaled;
+  scaled.reserve(radii.size());
+  for (const double radius : radii) scaled.push_back(radius * factor);
+  radii = std::move(scaled);
 }
 
 }  // namespace

@@ -58,6 +58,18 @@ TEST(PointsCopies, OneCopyWithoutAnAssembly) {
   EXPECT_FALSE(faults.has_errors());
 }
 
+TEST(PointsCopies, ScaledRadiiStayCompact) {
+  scene::Points points;
+  for (int i = 0; i < 1000; ++i) {
+    points.centers.push_back({1.0 * i, 0, 0});
+    points.radii.push_back(0.1 + i % 12);
+  }
+  points.transform.scale = 3;
+  make_copies({{}}, {}, points);
+  EXPECT_EQ(points.radii[5], (0.1 + 5) * 3);
+  EXPECT_EQ(points.radii.bytes(), 1000 + 12 * sizeof(double));
+}
+
 /// Copies of an assembly take 12 bytes each; other copies keep all digits.
 TEST(PointsCopies, AssembliesAreInSinglePrecision) {
   const std::vector<Copy> copies = {{moved({0.1, 0, 0}), nullptr}, {moved({100, 0, 0}), nullptr}};
