@@ -43,7 +43,7 @@ void Partial::mean(int x, int y, float* rgb) const {
                    ? static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.weight))
                    : 0.0f;
   };
-  if (!has_halves()) return convert(film.sums()[i]);
+  if (!is_adaptive()) return convert(film.sums()[i]);
   kernel::PixelSum sum = film.sums()[i];
   convert(sum += second.sums()[i]);
 }

@@ -39,7 +39,8 @@ struct Partial {
   Partial(int width_px, int height_px) : film(width_px, height_px), counts(film.pixel_count()) {}
 
   std::size_t pixel_count() const { return film.pixel_count(); }
-  bool has_halves() const { return second.pixel_count() > 0; }
+  /// The sums are those of adaptive sampling.
+  bool is_adaptive() const { return second.pixel_count() > 0; }
 
   /// Adds the samples of another shard of the same size.
   ///

@@ -230,7 +230,7 @@ const auto itself = [](auto& v) -> auto& { return v; };
 template <class Io, class P>
 void each_pixel_number(Io& io, P& partial) {
   each_sum(io, partial.film.sums());
-  if (partial.has_halves()) each_sum(io, partial.second.sums());
+  if (partial.is_adaptive()) each_sum(io, partial.second.sums());
   io.numbers(partial.counts, itself);
   if (!partial.goals.empty()) io.numbers(partial.goals, itself);
   if (!partial.layers.empty()) each_layer_number(io, partial.layers);
@@ -297,7 +297,7 @@ void read_shares(Reader& in, Partial& partial) {
 std::vector<std::uint32_t> to_words(const Partial& partial) {
   std::vector<std::uint32_t> words;
   Writer out(words);
-  const std::uint32_t flags = (partial.has_halves() ? kHasSecond : 0u) | (partial.goals.empty() ? 0u : kHasGoals) |
+  const std::uint32_t flags = (partial.is_adaptive() ? kHasSecond : 0u) | (partial.goals.empty() ? 0u : kHasGoals) |
                               (partial.layers.empty() ? 0u : kHasLayers) | (partial.halves.empty() ? 0u : kHasHalves);
   for (const std::uint32_t v : {kFormat, static_cast<std::uint32_t>(partial.film.width()),
                                 static_cast<std::uint32_t>(partial.film.height()), flags})

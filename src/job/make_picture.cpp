@@ -31,7 +31,7 @@ render::SamplingLimits limits_of(const Job& job, double seconds_so_far) {
 /// Whether a render with these settings can continue from these sums, also if their file is damaged.
 bool is_of_this_render(const film::Partial& from, const compile::CompiledScene& compiled,
                        const render::Settings& settings) {
-  return from.has_halves() == settings.sampling.is_adaptive() && from.layers.empty() != settings.layers.records() &&
+  return from.is_adaptive() == settings.sampling.is_adaptive() && from.layers.empty() != settings.layers.records() &&
          from.halves.empty() != settings.layers.guides() && from.has_known_spheres(compiled.spheres.size());
 }
 

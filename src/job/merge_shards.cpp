@@ -180,7 +180,7 @@ MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int heigh
     const auto wrong = [&](std::string text, std::string remedy = {}) {
       diagnostics.push_back(error_in(shards[i].file, std::move(text), std::move(remedy)));
     };
-    if (shard.has_halves()) {
+    if (shard.is_adaptive()) {
       wrong("holds the sums of adaptive sampling, contrary to its header");
       continue;
     }

@@ -133,7 +133,7 @@ class Loader {
     ReadMemory need;
     need.rows = info_.rows;
     for (const std::string& column : columns_) need.row_bytes += data::bytes_per_value(type_of(info_, column));
-    need.sphere_bytes = bytes_per_sphere(info_, points_, radius_);
+    need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, copies_.size());
     if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
     if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
     if (request_.source != nullptr) need.sphere_bytes += sizeof(std::uint32_t) + need.row_bytes;

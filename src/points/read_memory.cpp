@@ -23,14 +23,16 @@ data::ColumnType type_of(const data::FrameInfo& info, const std::string& column)
   return data::ColumnType::kFloat64;
 }
 
-std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius) {
+std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
+                               std::size_t copies) {
   const scene::PointsTransform unchanged;
   const scene::PointsTransform& t = points.transform;
   const bool is_placed =
       t.scale != unchanged.scale || !(t.rotate == unchanged.rotate) || !(t.translate == unchanged.translate);
   bool all_single = !points.unwrap && points.replicate == math::Vec3d{1, 1, 1};
   for (const std::string& column : info.roles.position) all_single = all_single && fits_single(type_of(info, column));
-  all_single = !is_placed && (all_single || !points.assembly.empty());  // make_copies rounds assemblies
+  // make_copies rounds assemblies, unless their only transform changes nothing.
+  all_single = !is_placed && (all_single || (!points.assembly.empty() && copies > 1));
   std::uint64_t bytes = 3 * (all_single ? sizeof(float) : sizeof(double));
   const bool same = radius.scale == 1 && t.scale == unchanged.scale;
   if (radius.kind != RadiusSource::Kind::kValue)

@@ -27,7 +27,10 @@ data::ColumnType type_of(const data::FrameInfo& info, const std::string& column)
 
 /// Bytes of the centre and the radius of a sphere as scene data. An upper bound: numbers that need no double precision
 /// are stored as floats.
-std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius);
+///
+/// `copies`   of an assembly; else 1
+std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
+                               std::size_t copies);
 
 /// Checks that spheres fit into memory while they are read.
 ///

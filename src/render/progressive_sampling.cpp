@@ -114,8 +114,8 @@ void ProgressiveSampling::render_group(kernel::Tile& tile, std::uint32_t have, s
     render_tile_(tile, worker, state_);
     progress_.add(tile.path_count());
   };
-  render(state_.film, state_.has_halves() ? 0 : settings_.sampling.sample_begin);
-  if (state_.has_halves()) render(state_.second, Sampler::kSecondHalf);
+  render(state_.film, state_.is_adaptive() ? 0 : settings_.sampling.sample_begin);
+  if (state_.is_adaptive()) render(state_.second, Sampler::kSecondHalf);
 }
 
 film::RenderWork work_so_far(const film::RenderWork& before, const TilePool& pool, const ProgressReporter& progress) {

@@ -37,7 +37,7 @@ int threads_of(const Settings& settings) { return settings.threads > 0 ? setting
 void count_samples(const compile::CompiledScene& compiled, const Settings& settings, const film::Partial& state,
                    Statistics& statistics) {
   const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
-  const std::uint64_t halves = state.has_halves() ? 2 : 1;
+  const std::uint64_t halves = state.is_adaptive() ? 2 : 1;
   statistics.fewest_samples = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t i = 0; i < owned.size(); ++i) {
     if (!owned[i]) continue;
@@ -88,7 +88,7 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
                 int threads) {
   Result result;
   result.completed = true;
-  if (partial.has_halves()) partial.film.add(partial.second);
+  if (partial.is_adaptive()) partial.film.add(partial.second);
   result.picture = partial.film.picture();
   result.picture.x = compiled.window_x;
   result.picture.y = compiled.window_y;

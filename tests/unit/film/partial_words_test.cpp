@@ -61,7 +61,7 @@ TEST(FilmPartialWords, RoundTrip) {
     EXPECT_EQ(q.film.height(), 3);
     EXPECT_EQ(q.counts, p.counts);
     EXPECT_EQ(q.goals, p.goals);
-    EXPECT_EQ(q.has_halves(), p.has_halves());
+    EXPECT_EQ(q.is_adaptive(), p.is_adaptive());
     EXPECT_TRUE(q.film.sums()[7].rgb[1] == p.film.sums()[7].rgb[1]);
     EXPECT_EQ(q.work.seconds, 12.625);
     ASSERT_EQ(q.halves.size(), p.halves.size());

@@ -57,6 +57,17 @@ class JobRun : public testing::Test {
     return {base::ErrorKind::kInternal, ""};
   }
 
+  /// Stops the job while it renders, and lets it resume from the checkpoint.
+  void stop_while_rendering() {
+    std::atomic<bool> cancel{false};
+    job_.hooks.cancel = &cancel;
+    job_.hooks.on_progress = [&](const render::Progress&) { cancel = true; };
+    EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
+    job_.hooks.cancel = nullptr;
+    job_.hooks.on_progress = {};
+    job_.checkpoint.resume = true;
+  }
+
   nlohmann::json statistics() { return nlohmann::json::parse(support::file_bytes(job_.outputs.statistics)); }
 
   support::TempDir folder_;
@@ -129,10 +140,7 @@ TEST_F(JobRun, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
   const std::string uninterrupted = support::file_bytes(folder_ / "a.exr");
   std::filesystem::remove(folder_ / "a.exr");
 
-  std::atomic<bool> cancel{false};
-  job_.hooks.cancel = &cancel;
-  job_.hooks.on_progress = [&](const render::Progress&) { cancel = true; };
-  EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
+  stop_while_rendering();
   EXPECT_EQ(folder_.count(), 3u);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
   EXPECT_EQ(statistics()["exit_reason"], "stopped");
@@ -140,9 +148,6 @@ TEST_F(JobRun, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
   const auto rays = statistics()["rays"].get<std::uint64_t>();
   EXPECT_GT(rays, 0u);
 
-  cancel = false;
-  job_.hooks.on_progress = {};
-  job_.checkpoint.resume = true;
   run_job(job_);
   EXPECT_EQ(support::file_bytes(folder_ / "a.exr"), uninterrupted);
   EXPECT_EQ(statistics()["resumed"], true);
@@ -153,13 +158,7 @@ TEST_F(JobRun, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
 TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300"};
-  std::atomic<bool> cancel{false};
-  job_.hooks.cancel = &cancel;
-  job_.hooks.on_progress = [&](const render::Progress&) { cancel = true; };
-  EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
-  cancel = false;
-  job_.hooks.on_progress = {};
-  job_.checkpoint.resume = true;
+  stop_while_rendering();
   const std::string checkpoint = support::file_bytes(folder_ / "a.checkpoint.exr");
   const Job right = job_;
   const auto expect_refused = [&](const std::string& word) {
@@ -189,13 +188,7 @@ TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=200", "image.height=100", "render.samples=300", "output.layers=[\"Z\"]"};
   job_.denoise = true;
-  std::atomic<bool> cancel{false};
-  job_.hooks.cancel = &cancel;
-  job_.hooks.on_progress = [&](const render::Progress&) { cancel = true; };
-  EXPECT_EQ(error().kind(), base::ErrorKind::kStopped);
-  cancel = false;
-  job_.hooks.on_progress = {};
-  job_.checkpoint.resume = true;
+  stop_while_rendering();
   const image::PartialFile right = image::read_partial(checkpoint, 200, 100);
   const std::vector<std::function<void(film::Partial&)>> changes = {
       [](film::Partial& sums) { sums.layers.clear(); }, [](film::Partial& sums) { sums.halves.clear(); },

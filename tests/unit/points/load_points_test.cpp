@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "points/color_map.h"
+#include "points/read_memory.h"
 #include "points_file.h"
 
 namespace orrery::points {
@@ -431,6 +432,22 @@ TEST_F(PointsLoadPointsMemory, ChainsReduceTheNeed) {
   request.memory_limit = 2000;
   EXPECT_EQ(shortage(), "");
   EXPECT_EQ(points.centers.size(), 3u);
+}
+
+/// As make_copies stores them: a single copy and placed ones may keep double precision.
+TEST(PointsReadMemory, CopiesOfAssembliesAreInSinglePrecision) {
+  data::FrameInfo info;
+  info.roles.position = {"x", "y", "z"};
+  scene::Points assembly;
+  assembly.assembly = "1";
+  const auto bytes = [&](const scene::Points& p, std::size_t copies) {
+    return bytes_per_sphere(info, p, RadiusSource(), copies);
+  };
+  EXPECT_EQ(bytes({}, 1), 3 * sizeof(double));
+  EXPECT_EQ(bytes(assembly, 2), 3 * sizeof(float));
+  EXPECT_EQ(bytes(assembly, 1), 3 * sizeof(double));
+  assembly.transform.scale = 2;
+  EXPECT_EQ(bytes(assembly, 2), 3 * sizeof(double));
 }
 
 TEST_F(PointsLoadPoints, RowsOfTheSpheres) {

@@ -196,7 +196,7 @@ TEST(RenderProgressiveSampling, SnapshotsAreCompleteAndChangeNoBits) {
     settings.on_snapshot = [&](const film::Partial& partial) {
       ++snapshots;
       std::uint64_t paths = 0;
-      for (const std::uint32_t n : partial.counts) paths += n * (partial.has_halves() ? 2u : 1u);
+      for (const std::uint32_t n : partial.counts) paths += n * (partial.is_adaptive() ? 2u : 1u);
       EXPECT_EQ(partial.work.paths, paths);
       EXPECT_GE(paths, last);
       last = paths;
