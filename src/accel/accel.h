@@ -48,8 +48,8 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 /// Receives the progress of a build, 0..1, on any of its threads. Returns false to cancel the build.
 using BuildMonitor = std::function<bool(double fraction)>;
 
-/// From this many resting spheres of similar size on, these are one primitive of Embree's scene, with a BVH of their
-/// own inside (docs/decisions/0027-bvh-for-many-spheres.md). Below, each sphere is a primitive.
+/// If there are at least this many static spheres of similar size, they are one primitive of Embree's scene, with a BVH
+/// of their own inside (docs/decisions/0027-bvh-for-many-spheres.md). Below, each sphere is a primitive.
 inline constexpr std::size_t kBvhThreshold = 10'000;
 
 /// A threshold that no scene reaches.

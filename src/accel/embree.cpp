@@ -91,7 +91,7 @@ std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
 /// Spheres this many times larger than the median stay out of a SphereBvh: they would enlarge all boxes around them.
 constexpr double kGiantRatio = 16;
 
-/// The radius above which a resting sphere stays out of a SphereBvh, by the median of a sample.
+/// The radius above which a static sphere stays out of a SphereBvh, by the median of a sample.
 ///
 /// Domain     at least one sphere rests
 double giant_radius(const kernel::SceneView& view) {
@@ -190,7 +190,7 @@ class Embree final : public Accel {
     return scene;
   }
 
-  /// Selects the resting spheres of similar size for a BVH, if there are enough of them.
+  /// Selects the static spheres of similar size for a BVH, if there are enough of them.
   ///
   /// `ids`      ascending, of all spheres that are neither outliers nor duplicates
   /// Result     empty: each sphere is a primitive
@@ -214,13 +214,13 @@ class Embree final : public Accel {
 
   /// Moving spheres get a separate geometry, since the others need no second time step.
   void build(std::size_t primitives, const BuildMonitor& monitor) {
-    BuildState moving{&scene_, 0}, resting{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
+    BuildState moving{&scene_, 0}, still{&scene_, scene_.moving_primitives > 0 ? 1u : 0u};
     const auto add_spheres = [&](std::size_t count, unsigned time_steps, BuildState& state) {
       add_geometry(count, time_steps, &state, sphere_bounds, functions_.intersect, functions_.occluded);
     };
     if (scene_.moving_primitives > 0) add_spheres(scene_.moving_primitives, 2, moving);
     const std::size_t rest = bvh_.empty() ? primitives - scene_.moving_primitives : scene_.singles.size();
-    if (rest > 0) add_spheres(rest, 1, resting);
+    if (rest > 0) add_spheres(rest, 1, still);
     if (!bvh_.empty()) add_geometry(1, 1, &bvh_, bvh_bounds, functions_.intersect_bvh, functions_.occluded_by_bvh);
     if (monitor)
       rtcSetSceneProgressMonitorFunction(
@@ -229,9 +229,9 @@ class Embree final : public Accel {
           const_cast<BuildMonitor*>(&monitor));
     embree_.commit();
     rtcSetSceneProgressMonitorFunction(embree_.get(), nullptr, nullptr);
-    if (moving.refused + resting.refused > 0)
+    if (moving.refused + still.refused > 0)
       throw base::Error(base::ErrorKind::kInternal,
-                        "Embree would silently drop " + std::to_string(moving.refused + resting.refused) + " spheres");
+                        "Embree would silently drop " + std::to_string(moving.refused + still.refused) + " spheres");
     scene_.scene = embree_.get();
   }
 

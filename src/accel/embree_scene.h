@@ -27,7 +27,7 @@ struct EmbreeScene {
   /// ray tests them first, so that their hits limit the traversal.
   std::vector<std::uint32_t> outliers;
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
-  /// If there is a SphereBvh: ascending ids of the resting spheres outside of it, one primitive each.
+  /// If there is a SphereBvh: ascending ids of the static spheres outside of it, one primitive each.
   std::vector<std::uint32_t> singles;
   bool has_bvh = false;  ///< Embree is passed packets; `traversals` applies to the SphereBvh
   Traversals traversals;

@@ -12,7 +12,7 @@
 
 namespace orrery::accel {
 
-/// A BVH over many spheres at rest, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds in 8
+/// A BVH over many static spheres, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds in 8
 /// bits relative to the parent. It takes 13 bytes per sphere, or
 /// 14 if radii differ.
 ///

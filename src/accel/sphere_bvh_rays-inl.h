@@ -47,7 +47,7 @@ HWY_INLINE hn::Vec<ChildTag> from_bytes(const std::uint8_t* bytes) {
   return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, bytes)));
 }
 
-/// What a reference refers to: its upper two bits.
+/// Kind of a node reference, stored in its upper two bits.
 enum Kind : unsigned { kNode = 0, kEnd = 1, kLeaf = 2, kKinds = 3 };
 constexpr int kIndexWidth = 30;
 constexpr std::uint32_t kIndexMask = (1u << kIndexWidth) - 1;

@@ -40,6 +40,7 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
     const auto [stop, error] = std::from_chars(arguments.radius.data(), end, value);
     if (error == std::errc() && stop == end) {
       if (!(value > 0) || !std::isfinite(value)) refuse("--radius: must be above 0");
+      if (points.radius.scale != 1) refuse("--radius-scale is for radii of the data; multiply the number of --radius");
       points.radius.value = value;
     } else {
       points.radius.column = arguments.radius;
@@ -65,7 +66,7 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
 
 void read_slice(const std::string& text, plot::DataOptions& data) {
   if (text.empty()) return;
-  const std::string usage = "--slice: `" + text + "` is not a plane; write AXIS=PLACE, e.g. z=10";
+  const std::string usage = "--slice: `" + text + "` is not a plane; write AXIS=POSITION, e.g. z=10";
   if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') refuse(usage);
   data.slice = std::pair{text[0] - 'x', numbers_of(text.substr(2), '=', 1, usage)[0]};
 }
@@ -90,7 +91,7 @@ void add_data_options(Command& command, DataArguments& arguments, plot::DataOpti
   command.add_option("--select", points.select, "Use only rows that match, e.g. 'type == 2 && z > 0'")
       ->type_name("CONDITION");
   command.add_option("--slice", arguments.slice, "Cut open at a plane: remove the spheres in front of it, e.g. z=10")
-      ->type_name("AXIS=PLACE");
+      ->type_name("AXIS=POSITION");
   command.add_option("--component", arguments.component, "HDF5: particle type, N of PartTypeN")
       ->check(whole_number(0, 1000))
       ->type_name("N");
@@ -120,7 +121,7 @@ void add_look_options(Command& command, DataArguments& arguments, plot::DataOpti
       ->type_name("COLUMN");
   arguments.map = command.add_option("--map", points.color.map, "Colour map, e.g. viridis, fast, coolwarm, or a file")
                       ->type_name("MAP");
-  command.add_option("--range", arguments.range, "Values at both ends of the colour map; default: all values")
+  command.add_option("--range", arguments.range, "Values at both ends of the colour map; default: minimum and maximum")
       ->type_name("LOW:HIGH");
 }
 

@@ -52,7 +52,7 @@ int denoise(const DenoiseOptions& options) {
 
 void add_denoise(Command& program, Action& action) {
   const auto options = std::make_shared<DenoiseOptions>();
-  Command& command = *program.add_subcommand("denoise", "Filter the noise of an EXR image and its light layers");
+  Command& command = *program.add_subcommand("denoise", "Denoise an EXR image and its light layers");
   command.add_option("IN", options->denoising.input, "EXR image; best rendered with --layers halves")
       ->required()
       ->type_name("FILE");

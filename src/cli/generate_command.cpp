@@ -39,7 +39,8 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
   Command& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
   add_common(command, options->output, options->final_scene.seed);
   command
-      .add_option("--grid", options->final_scene.grid, "Cells from the centre to the edge; default: 11, as in the book")
+      .add_option("--grid", options->final_scene.grid,
+                  "Half the side of the square of small spheres, in cells; default: 11")
       ->transform(whole_number(0, generate::kLargestFinalGrid))
       ->type_name("N");
   command.add_flag("--moving", options->final_scene.moving,
@@ -111,7 +112,7 @@ void add_sky_options(Command& command, GenerateOptions& options) {
 
 void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
   Command& command =
-      *generate.add_subcommand("env", "A latitude-longitude image to light scenes with: a photo studio, or daylight");
+      *generate.add_subcommand("env", "A latitude-longitude environment map: a photo studio, or daylight");
   command.add_option("KIND", options->environment, "studio or sky")
       ->required()
       ->check(one_of({"studio", "sky"}))
@@ -172,8 +173,7 @@ void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& optio
 
 void add_generate(Command& program, Action& action) {
   const auto options = std::make_shared<GenerateOptions>();
-  Command& command =
-      *program.add_subcommand("generate", "Generate a scene file, an image to light scenes with, or a texture");
+  Command& command = *program.add_subcommand("generate", "Generate a scene file, an environment map or a texture");
   command.require_subcommand();
   add_final(command, options, action);
   add_cloud(command, options, action);

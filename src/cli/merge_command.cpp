@@ -44,7 +44,7 @@ void add_merge(Command& program, Action& action) {
   command.add_option("SHARD", options->shards, "EXR files rendered with --samples A:B or --shard I/N, in any order")
       ->required()
       ->type_name("FILE");
-  options->picture.add_to(command, options->job);
+  options->picture.add_to(command, options->job, false);  // shards have no deep samples
   command
       .add_option("--scene", options->job.scene.file,
                   "Scene file; default: the file that the shards were rendered from")

@@ -6,7 +6,7 @@
 
 namespace orrery::cli {
 
-void PictureOptions::add_to(Command& command, job::Job& job) {
+void PictureOptions::add_to(Command& command, job::Job& job, bool allows_deep) {
   const OptionGroup group(command, kImageOptions);
   command
       .add_option("-o,--output", files_,
@@ -21,15 +21,16 @@ void PictureOptions::add_to(Command& command, job::Job& job) {
   command
       .add_option("--compression", job.outputs.exr.compression, "EXR compression, e.g. zip or dwaa:45; default: zips")
       ->type_name("NAME");
-  command.add_option("--deep", job.outputs.deep, "Also write a deep EXR, with one sample for each sphere in a pixel")
-      ->type_name("FILE");
+  if (allows_deep)
+    command.add_option("--deep", job.outputs.deep, "Also write a deep EXR, with one sample for each sphere in a pixel")
+        ->type_name("FILE");
   command.add_flag("--multipart", job.outputs.exr.multipart, "Write each EXR layer to a separate part");
   command
       .add_option("--disk-limit", job.resources.disk_limit,
                   "Refuse to start if the estimated disk space exceeds SIZE, e.g. 8G; default: free space")
       ->transform(byte_size())
       ->type_name("SIZE");
-  command.add_flag("--denoise", job.denoise, "Filter the noise of the images; shards keep what merge --denoise needs");
+  command.add_flag("--denoise", job.denoise, "Denoise the images; shards keep what merge --denoise needs");
   command.add_flag("--reproducible", job.outputs.reproducible,
                    "Omit run-dependent metadata (date, render time, accelerator, instruction set) from EXR headers");
 }

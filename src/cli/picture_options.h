@@ -16,8 +16,9 @@ inline constexpr const char* kImageOptions = "Image options";
 /// The options that select a job's image files and their formats.
 class PictureOptions {
  public:
-  /// Domain     called once; neither this nor `job` moves until the command line is parsed
-  void add_to(Command& command, job::Job& job);
+  /// `allows_deep`  with --deep
+  /// Domain         called once; neither this nor `job` moves until the command line is parsed
+  void add_to(Command& command, job::Job& job, bool allows_deep = true);
 
   /// Converts the options that are not members of a job.
   ///

@@ -12,10 +12,12 @@
 #include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/render_options.h"
+#include "format/write_tree.h"
 #include "job/memory.h"
 #include "plot/plot.h"
 #include "plot/write_legend.h"
 #include "preview/target.h"
+#include "scene/value_text.h"
 
 namespace orrery::cli {
 namespace {
@@ -45,10 +47,32 @@ void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) 
   print_message(text);
 }
 
+/// The scene with the settings of the command line, so that rendering it needs none of them again.
+std::string saved_text(const std::string& text, std::vector<format::Override> settings,
+                       const display::Settings& display) {
+  // make_plot() has these two.
+  std::erase_if(settings, [](const format::Override& setting) {
+    return setting.text.starts_with("image.width=") || setting.text.starts_with("image.height=");
+  });
+  const auto set = [&](const char* key, const std::string& value) {
+    if (!value.empty()) settings.push_back({std::string("color.") + key + "=" + scene::string_text(value)});
+  };
+  if (!display.config.empty()) set("config", std::filesystem::absolute(display.config).string());
+  set("display", display.display);
+  set("view", display.view);
+  set("look", display.look);
+  if (display.exposure) settings.push_back({"color.exposure=" + scene::number_text(*display.exposure)});
+  if (settings.empty()) return text;
+  const auto same = [](const std::string& file) { return file; };
+  return text.substr(0, text.find('\n')) + "\n\n" + format::merged_text("plot", text, settings, same);
+}
+
 /// Checks the files that plot itself writes, before anything is read.
 void check_own_outputs(const PlotArguments& arguments) {
   base::FileSet files;
   files.add_input(arguments.plot.file, "data file");
+  const scene::PointsColor& color = arguments.plot.points.color;
+  if (color.has_map_file()) files.add_input(color.map, "colour map");
   const auto add = [&](const std::filesystem::path& file, const char* option) {
     if (file.empty()) return;
     files.add_output(file, option);
@@ -90,10 +114,11 @@ int run_plot(PlotArguments& arguments) {
     plot::write_legend(arguments.legend, made.points, display);
   }
   if (saves) {
-    base::write_text_file(arguments.save_scene, made.text);
+    base::write_text_file(arguments.save_scene, saved_text(made.text, overrides, job.outputs.display));
     render.batch.scenes = {arguments.save_scene};
   } else {
     job.scene.text = std::make_shared<const std::string>(made.text);
+    job.scene.is_generated = true;
     render.batch.scenes = {plot.file};
   }
   return run_render(render);
@@ -128,7 +153,7 @@ void add_plot(Command& program, Action& action) {
   add_view_options(command, arguments);
   add_render_options(command, arguments->render, false);
   command.footer(
-      "What is not given is chosen from the data, and printed.\n"
+      "Settings that are not given are chosen from the data and printed.\n"
       "\n"
       "Examples:\n"
       "  orrery plot melt.dump -o melt.png\n"

@@ -49,11 +49,12 @@ double distance_pc(double parallax_mas) {
 }
 
 /// Full intensity of colours in a text, which has no types: the smallest customary one that no colour exceeds.
-double full_intensity(const CsvShape& shape, const std::array<std::string, 3>& rgb) {
+double full_intensity(const std::vector<ColumnInfo>& columns, const std::vector<ColumnSurvey>& surveys,
+                      const std::array<std::string, 3>& rgb) {
   double largest = 0;
-  for (std::size_t i = 0; i < shape.columns.size(); ++i)
-    if (std::find(rgb.begin(), rgb.end(), shape.columns[i].name) != rgb.end())
-      largest = std::max(largest, shape.largest[i]);
+  for (std::size_t i = 0; i < surveys.size(); ++i)
+    if (std::find(rgb.begin(), rgb.end(), columns[i].name) != rgb.end())
+      largest = std::max(largest, surveys[i].largest);
   return largest > 255 ? 65535 : largest > 1 ? 255 : 1;
 }
 
@@ -64,11 +65,17 @@ class CsvFile final : public SingleFrame {
     if (shape_.columns.empty()) faults.fail(0, "the file has no rows");
     if (shape_.columns.size() > kMostColumns)
       faults.fail(shape_.first_line, "there are more than " + std::to_string(kMostColumns) + " columns");
+    TextLayout all = layout({});
+    all.surveys = true;
+    const TextTable survey = read_text_rows(*bytes, all, faults);
+    info_.rows = survey.rows;
+    set_types(shape_.columns, survey.surveys);
+    require_numbers(survey.surveys, faults);
     info_.columns = shape_.columns;
     info_.roles = customary_roles(info_.columns);
     if (info_.roles.position[0].empty()) find_positions(faults);
-    if (!info_.roles.rgb[0].empty()) info_.roles.rgb_maximum = full_intensity(shape_, info_.roles.rgb);
-    info_.rows = read_text_rows(*bytes, layout({}), faults).rows;
+    if (!info_.roles.rgb[0].empty())
+      info_.roles.rgb_maximum = full_intensity(shape_.columns, survey.surveys, info_.roles.rgb);
   }
 
   Table read(int, const std::vector<std::string>& names) override {
@@ -88,6 +95,27 @@ class CsvFile final : public SingleFrame {
   }
 
  private:
+  /// Without this, a column of radii with one word in it would be a column of strings, and the radius another.
+  void require_numbers(const std::vector<ColumnSurvey>& surveys, Faults& faults) const {
+    std::vector<ColumnInfo> as_numbers = shape_.columns;
+    for (ColumnInfo& column : as_numbers) column.type = ColumnType::kFloat64;
+    const Roles roles = customary_roles(as_numbers);
+    std::vector<std::string> names = {roles.radius};
+    names.insert(names.end(), roles.position.begin(), roles.position.end());
+    names.insert(names.end(), roles.rgb.begin(), roles.rgb.end());
+    if (const auto stars = equatorial(as_numbers); stars && roles.position[0].empty())
+      names.insert(names.end(), {stars->ra, stars->dec, stars->distance});
+    for (std::size_t i = 0; i < surveys.size(); ++i) {
+      const ColumnSurvey& survey = surveys[i];
+      if (survey.has_numbers && survey.first_word_line != 0 &&
+          std::find(names.begin(), names.end(), shape_.columns[i].name) != names.end())
+        faults.add(survey.first_word_line,
+                   "column " + shape_.columns[i].name + ": '" + survey.first_word + "' is not a number",
+                   "correct it, or leave it empty");
+    }
+    faults.raise_if_any();
+  }
+
   /// Positions in columns of other names, or computed from equatorial coordinates.
   void find_positions(Faults& faults) {
     equatorial_ = equatorial(info_.columns);
@@ -118,6 +146,7 @@ class CsvFile final : public SingleFrame {
     layout.first_line = shape_.first_line;
     layout.separator = shape_.separator;
     layout.allows_missing = true;
+    layout.allows_comments = true;
     for (const ColumnInfo& column : shape_.columns)
       layout.columns.push_back({column.type, std::find(names.begin(), names.end(), column.name) != names.end()});
     return layout;

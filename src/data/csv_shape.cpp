@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "data/customary.h"
 #include "data/text_cursor.h"
@@ -50,8 +49,11 @@ Sample read_sample(const ByteSource& bytes) {
     }
     const std::string_view text = trimmed(line.text);
     if (text.empty()) continue;
-    if (sample.lines.empty() && (text[0] == '#' || text[0] == '%')) {
-      sample.comment = trimmed(text.substr(std::min(text.find_first_not_of("#%"), text.size())));
+    // CloudCompare begins its header with two slashes.
+    const bool is_header_of_slashes = sample.lines.empty() && text.starts_with("//");
+    if (text[0] == '#' || text[0] == '%' || is_header_of_slashes) {
+      if (sample.lines.empty())
+        sample.comment = trimmed(text.substr(std::min(text.find_first_not_of("#%/"), text.size())));
       continue;
     }
     if (sample.lines.empty()) begin = line.offset;
@@ -83,45 +85,6 @@ bool is_number(const CsvValue& value) {
   return parse_number(value.text, ignored);
 }
 
-bool is_quoted(const Rows& rows, std::size_t column) {
-  return !rows.empty() && std::all_of(rows.begin(), rows.end(), [column](const auto& row) {
-    return column < row.size() && row[column].is_quoted;
-  });
-}
-
-/// Returns whether all values are integers, some of which a float64 cannot represent.
-bool has_large_integers(const Rows& rows, std::size_t column) {
-  constexpr std::int64_t kLargestExact = std::int64_t{1} << 53;
-  bool is_large = false;
-  for (const auto& row : rows) {
-    std::int64_t integer = 0;
-    if (column >= row.size() || !parse_integer(row[column].text, integer)) return false;
-    is_large = is_large || integer > kLargestExact || integer < -kLargestExact;
-  }
-  return is_large;
-}
-
-/// Determines type and largest number of a column.
-void examine(CsvShape& shape, std::size_t column, const Rows& rows) {
-  ColumnType& type = shape.columns[column].type;
-  for (const auto& row : rows) {
-    if (column >= row.size() || row[column].text.empty()) continue;
-    double number = 0;
-    if (!parse_number(row[column].text, number)) type = ColumnType::kText;
-    shape.largest[column] = std::max(shape.largest[column], number);
-  }
-  if (has_large_integers(rows, column)) type = ColumnType::kInt64;
-}
-
-/// Some programs quote all values, others only texts.
-void examine_quotes(CsvShape& shape, const Rows& rows) {
-  std::vector<bool> quoted;
-  for (std::size_t i = 0; i < shape.columns.size(); ++i) quoted.push_back(is_quoted(rows, i));
-  if (std::find(quoted.begin(), quoted.end(), false) == quoted.end()) return;
-  for (std::size_t i = 0; i < shape.columns.size(); ++i)
-    if (quoted[i]) shape.columns[i].type = ColumnType::kText;
-}
-
 }  // namespace
 
 CsvShape csv_shape(const ByteSource& bytes) {
@@ -147,11 +110,25 @@ CsvShape csv_shape(const ByteSource& bytes) {
   for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), kMostColumns + 1); ++i) {
     const std::string name = names[i].text.empty() ? "column" + std::to_string(i + 1) : names[i].text;
     shape.columns.push_back({unique_name(name, shape.columns), ColumnType::kFloat64});
-    shape.largest.push_back(-std::numeric_limits<double>::infinity());
-    examine(shape, i, rows);
   }
-  examine_quotes(shape, rows);
+  std::vector<ColumnSurvey> surveys(shape.columns.size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < std::min(row.size(), surveys.size()); ++i)
+      surveys[i].add(row[i].text, row[i].is_quoted, shape.first_line);
+  set_types(shape.columns, surveys);
   return shape;
+}
+
+void set_types(std::vector<ColumnInfo>& columns, const std::vector<ColumnSurvey>& surveys) {
+  // Some programs quote all values, others only strings.
+  const bool may_quote_numbers =
+      std::all_of(surveys.begin(), surveys.end(), [](const ColumnSurvey& survey) { return survey.is_quoted; });
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const bool is_string = !surveys[i].is_number() || (surveys[i].is_quoted && !may_quote_numbers);
+    columns[i].type = is_string                       ? ColumnType::kText
+                      : surveys[i].is_large_integer() ? ColumnType::kInt64
+                                                      : ColumnType::kFloat64;
+  }
 }
 
 std::vector<CsvValue> split_row(std::string_view line, char separator) {

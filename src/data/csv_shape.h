@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data/byte_source.h"
+#include "data/column_survey.h"
 #include "data/table.h"
 
 namespace orrery::data {
@@ -18,21 +19,24 @@ struct CsvShape {
   std::uint64_t first_line = 1;     ///< its line number
   bool has_header = false;          ///< otherwise the columns are named column1, column2 ..
   std::vector<ColumnInfo> columns;  ///< kFloat64, kInt64 or kText
-  std::vector<double> largest;      ///< the largest number of each column in the first rows
 };
 
-/// Examines up to 1000 rows after comments, which begin with # or %.
+/// Examines up to 1000 rows. Lines that begin with # or % are comments, and lines above the first row that begin with
+/// //.
 ///
 /// - The separator is the first of tab, semicolon, comma and blank that divides all of these rows into equally many
 ///   values, at least two.
 /// - The first row is the header if none of its values is a number; otherwise the last comment is, if it has as many
 ///   words as the rows have values.
-/// - A column has numbers if all of its values are numbers or empty. They are integers of 64 bits if all are integers,
-///   of which a float64 cannot represent some. If all values of a column are quoted, but not those of all columns, then
-///   it has texts.
+/// - The types of columns are those of set_types(), as far as the examined rows show.
 ///
 /// Errors     base::Error: kBadData for a line that is too long; kIo
 CsvShape csv_shape(const ByteSource& bytes);
+
+/// Sets the types of columns. A column has numbers if all of its values are numbers or missing. They are integers of 64
+/// bits if all are integers, of which a float64 cannot represent some. If all values of a column are quoted, but not
+/// those of all columns, then it has strings.
+void set_types(std::vector<ColumnInfo>& columns, const std::vector<ColumnSurvey>& surveys);
 
 /// A value of a row, without quotes and blanks around it.
 struct CsvValue {

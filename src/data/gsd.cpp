@@ -119,7 +119,7 @@ std::optional<Box> GsdReader::box_of(std::uint64_t frame) {
   const std::vector<double> b = setting(frame, "configuration/box", 6);
   if (b.empty()) return std::nullopt;
   for (const double value : b)
-    if (!std::isfinite(value)) fail("frame " + std::to_string(frame) + ": the box is not finite");
+    if (!std::isfinite(value)) fail("frame " + std::to_string(frame) + ": the box has values that are not finite");
   const std::vector<double> dimensions = setting(frame, "configuration/dimensions", 1);
   const bool is_flat = !dimensions.empty() && dimensions[0] == 2;
   // Lengths x, y, z, then tilt factors xy, xz, yz. The box is centred at the origin.

@@ -5,6 +5,7 @@
 
 #include "base/stop_point.h"
 #include "base/text.h"
+#include "data/records.h"
 
 namespace orrery::data::hdf5 {
 namespace {
@@ -165,7 +166,13 @@ void Dataset::append(const std::vector<std::pair<std::uint64_t, Values*>>& colum
   switch (type_) {
     case ColumnType::kFloat64: return append_as<double>(columns, faults);
     case ColumnType::kFloat32: return append_as<float>(columns, faults);
-    case ColumnType::kInt64: return append_as<std::int64_t>(columns, faults);
+    case ColumnType::kInt64:
+      append_as<std::int64_t>(columns, faults);
+      if (H5Tequal(memory_type_, H5T_NATIVE_UINT64) > 0)
+        for (const auto& [component, values] : columns)
+          check_unsigned(name_, std::get<std::vector<std::int64_t>>(*values), faults);
+      faults.raise_if_any();
+      return;
     case ColumnType::kInt32: return append_as<std::int32_t>(columns, faults);
     case ColumnType::kUint16: return append_as<std::uint16_t>(columns, faults);
     case ColumnType::kUint8: return append_as<std::uint8_t>(columns, faults);

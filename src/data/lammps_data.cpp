@@ -95,7 +95,7 @@ class Header {
       if (words.size() == 4 && words[2] == kLow[i] && last == kHigh[i]) {
         bounds_[i] = {number(words[0]), number(words[1])};
         if (bounds_[i]->first > bounds_[i]->second)
-          faults_.fail(line(), "the box has a low coordinate above the high one");
+          faults_.fail(line(), "a lower bound of the box exceeds the upper bound");
       }
       if (words.size() == 4 && last == kEdges[i])
         edges_[i] = Vec3d{number(words[0]), number(words[1]), number(words[2])};
@@ -118,7 +118,7 @@ class Header {
       faults_.fail(line(), "the section \"Atoms\" does not name its style, which decides what its columns mean",
                    "write for example \"Atoms # full\"; styles: " + known);
     if (style.size() != 1 || !set_columns(style[0]))
-      faults_.fail(line(), "atom style \"" + std::string(style[0]) + "\" is not supported", "supported are " + known);
+      faults_.fail(line(), "atom style \"" + std::string(style[0]) + "\" is not supported", "supported: " + known);
     TextCursor::Place place = cursor_.place();
     std::string row;
     while (cursor_.next(row) && words_of(row).empty()) place = cursor_.place();

@@ -40,7 +40,7 @@ class FrameReader {
         next_line();
       else
         faults_.fail(item_line(), "'ITEM: " + name.substr(0, kMaxShown) + "' is no item of a dump of atoms",
-                     "supported are dumps of style atom and custom");
+                     "supported: dumps of style atom and custom");
     }
   }
 
@@ -99,7 +99,7 @@ class FrameReader {
       const Vec3d low{v[0][0] - std::min({0.0, xy, xz, xy + xz}), v[1][0] - std::min(0.0, yz), v[2][0]};
       const Vec3d high{v[0][1] - std::max({0.0, xy, xz, xy + xz}), v[1][1] - std::max(0.0, yz), v[2][1]};
       if (!(low.x <= high.x && low.y <= high.y && low.z <= high.z))
-        faults_.fail(item_line(), "the box has a low coordinate above the high one");
+        faults_.fail(item_line(), "a lower bound of the box exceeds the upper bound");
       frame_.box = lammps_box(low, high, xy, xz, yz);
     }
     const auto words = words_of(name);

@@ -68,11 +68,11 @@ LasHeader parse_header(const ByteSource& bytes, Faults& faults) {
   const auto at = [&]<class T>(T, std::size_t offset) { return load<T>(head.data() + offset, false); };
   const int major = at(std::uint8_t{}, 24), minor = at(std::uint8_t{}, 25);
   if (major != 1 || minor > 4)
-    faults.fail(0,
-                "version " + std::to_string(major) + "." + std::to_string(minor) + " of LAS; supported are 1.0 to 1.4");
+    faults.fail(0, "version " + std::to_string(major) + "." + std::to_string(minor) + " of LAS; supported: 1.0 to 1.4");
   const auto header_bytes = at(std::uint16_t{}, 94);
   if (header_bytes < kShortestHeader || header_bytes > bytes.size())
-    faults.fail(0, "the header declares its own length as " + std::to_string(header_bytes) + " bytes");
+    faults.fail(0, "the length of the header is " + std::to_string(header_bytes) + " bytes; must be from " +
+                       std::to_string(kShortestHeader) + " to the file size");
   LasHeader header;
   header.points.begin = at(std::uint32_t{}, 96);
   const auto format = at(std::uint8_t{}, 104);
@@ -80,7 +80,7 @@ LasHeader parse_header(const ByteSource& bytes, Faults& faults) {
       has_laszip_record(bytes, header_bytes, at(std::uint32_t{}, 100), header.points.begin))
     refuse_laz(faults, bytes.file());
   header.point_format = format;
-  if (format > 10) faults.fail(0, "point format " + std::to_string(format) + "; supported are 0 to 10");
+  if (format > 10) faults.fail(0, "point format " + std::to_string(format) + "; supported: 0 to 10");
   header.points.stride = at(std::uint16_t{}, 105);
   if (header.points.stride < defined_bytes(format))
     faults.fail(0, "point records of " + std::to_string(header.points.stride) + " bytes; point format " +

@@ -36,7 +36,7 @@ class NpyFile final : public SingleFrame {
       faults.fail(0, fault);
     check_shape(header, faults);
     if (const std::uint64_t declared = npy_data_bytes(header); declared != bytes->size() - header.begin)
-      faults.fail(0, "the header declares an array of the shape " + shape_text(header) + " with items of " +
+      faults.fail(0, "the header declares an array with shape " + shape_text(header) + " with items of " +
                          std::to_string(header.item_size) + " bytes, but " +
                          std::to_string(bytes->size() - header.begin) +
                          " bytes follow; the file is truncated, or the header is wrong");

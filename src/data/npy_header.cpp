@@ -63,7 +63,7 @@ std::string parse_field(const PythonLiteral& source, NpyHeader& header) {
     return "a field is not (name, type) or (name, type, shape)";
   const PythonLiteral& first = source.items[0];
   const PythonLiteral& name = first.is(Kind::kSequence) && first.items.size() == 2 ? first.items[1] : first;
-  if (!name.is(Kind::kText)) return "the name of a field is not a text";
+  if (!name.is(Kind::kText)) return "the name of a field is not a string";
   NpyField field;
   field.name = name.text;
   if (!source.items[1].is(Kind::kText))
@@ -93,7 +93,7 @@ std::string parse_description(const PythonLiteral& source, NpyHeader& header) {
   if (source.is(Kind::kText)) {
     NpyField field;
     if (std::string fault = parse_type(source.text, field); !fault.empty()) return fault;
-    if (field.components == 0) return "its items are bytes without a type";
+    if (field.components == 0) return "its items are raw bytes (dtype void)";
     header.item_size = field.size;
     header.fields.push_back(field);
     return {};
@@ -140,7 +140,7 @@ std::string parse_npy_header(std::string_view head, NpyHeader& header) {
   header.begin = npy_header_end(head);
   if (header.begin == 0) return "the file ends within the header";
   const int version = head[kSignature.size()];
-  if (version < 1 || version > 3) return "version " + std::to_string(version) + " of the format; supported are 1 to 3";
+  if (version < 1 || version > 3) return "version " + std::to_string(version) + " of the format; supported: 1 to 3";
   if (header.begin > kLongestNpyHeader)
     return "the header exceeds the limit of " + std::to_string(kLongestNpyHeader) + " bytes";
   if (header.begin > head.size()) return "the file ends within the header";

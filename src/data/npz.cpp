@@ -70,7 +70,7 @@ class NpzFile final : public SingleFrame {
     const auto positions = std::find_if(members_.begin(), members_.end(), has_positions);
     if (positions == members_.end())
       faults.fail(0, "there is no array of positions; the arrays are: " + listed_members(),
-                  "save an array `pos` of the shape (N, 3), or arrays `x`, `y` and `z` of the shape (N,)");
+                  "save an array `pos` with shape (N, 3), or arrays `x`, `y` and `z` with shape (N,)");
     info_.rows = positions->header.rows();
     for (Member& member : members_) add_columns(member);
     info_.roles = required_roles(info_.columns, faults);
@@ -127,13 +127,13 @@ class NpzFile final : public SingleFrame {
   static std::vector<char> array_bytes(ZipReader& zip, const Member& member, std::uint64_t& limit, Faults& faults) {
     const std::uint64_t data = npy_data_bytes(member.header), begin = member.header.begin;
     if (data > limit || begin > limit - data)
-      faults.fail(0, "array " + quoted_word(member.name) + " of the shape " + shape_text(member.header) +
+      faults.fail(0, "array " + quoted_word(member.name) + " with shape " + shape_text(member.header) +
                          " exceeds the limit of " + base::bytes_text(limit) + " of decompressed data");
     limit -= data + begin;
     std::vector<char> bytes = zip.read(data + begin + 1);
     if (bytes.size() != data + begin)
       faults.fail(0,
-                  "array " + quoted_word(member.name) + " of the shape " + shape_text(member.header) + " needs " +
+                  "array " + quoted_word(member.name) + " with shape " + shape_text(member.header) + " needs " +
                       std::to_string(data) + " bytes of data, but " +
                       (bytes.size() > data + begin
                            ? "more"

@@ -36,15 +36,18 @@ bool is_image(std::string_view head) {
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
   std::string remedy =
-      "supported are LAMMPS dump and data, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5 (Gadget, SWIFT), VTP "
-      "and "
-      "VTU";
+      "supported: LAMMPS dump and data, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5 (Gadget, SWIFT), VTP, VTU";
   if (signature.head.empty()) {
     text = "the file is empty";
     remedy.clear();
   } else if (is_image(signature.head)) {
     text = "an image, not a scene or data file";
     remedy = "`oiiotool --info -v` shows its layers and attributes";
+  } else if (signature.extension == ".pqr") {
+    text = "PQR files are not supported";
+    remedy =
+        "convert it to a table: (echo x y z radius; awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' " +
+        bytes.file().filename().string() + ") > atoms.txt";
   } else if (signature.extension == ".bp" || signature.extension == ".bp4" || signature.extension == ".bp5") {
     text = "ADIOS2 files are not supported";
     remedy = "convert it, e.g. with `bpls -d` to CSV, or write HDF5 from the simulation";

@@ -89,7 +89,8 @@ std::string PdbReader::text_of(const PdbModel& model) {
 void PdbReader::set_box(const gemmi::Structure& structure) {
   box_.reset();
   const bool has_symmetry = structure.spacegroup_hm != "P 1" && !structure.spacegroup_hm.empty();
-  if (has_symmetry || !structure.cell.is_crystal()) return;
+  // Programs write a cell of zeros for structures without one.
+  if (has_symmetry || !structure.cell.is_crystal() || !(structure.cell.volume > 0)) return;
   Box box;
   for (int i = 0; i < 3; ++i) {
     const gemmi::Vec3 edge = structure.cell.orth.mat.column_copy(i);
@@ -137,7 +138,8 @@ void PdbReader::load(int frame) {
 }  // namespace
 
 bool is_pdb(const Signature& signature) {
-  if (signature.head.empty()) return false;
+  // Its columns are not those of PDB: a charge and a radius.
+  if (signature.head.empty() || signature.extension == ".pqr") return false;
   constexpr std::array<std::string_view, 20> kRecords = {
       "HEADER", "OBSLTE", "TITLE ", "SPLIT ", "CAVEAT", "COMPND", "SOURCE", "KEYWDS", "EXPDTA", "NUMMDL",
       "MDLTYP", "AUTHOR", "REVDAT", "REMARK", "CRYST1", "ORIGX1", "SCALE1", "MODEL ", "ATOM  ", "HETATM"};

@@ -2,10 +2,10 @@
 #include "data/ply_cursor.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
+
+#include "data/text_rows.h"
 
 namespace orrery::data {
 namespace {
@@ -95,10 +95,8 @@ void PlyCursor::step_over_line_end() {
 
 bool PlyCursor::take_word(double& value) {
   skip_blanks();
-  const char* const begin = at_ < row_end_ && *at_ == '+' ? at_ + 1 : at_;
-  const auto [end, error] = std::from_chars(begin, row_end_, value);
-  if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
-  if (end == begin || error == std::errc::invalid_argument || (end < row_end_ && !is_blank(*end))) return false;
+  const char* const end = std::find_if(at_, row_end_, is_blank);
+  if (!parse_number({at_, end}, value)) return false;
   at_ = end;
   return true;
 }

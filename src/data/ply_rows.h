@@ -10,8 +10,8 @@
 
 namespace orrery::data {
 
-/// Returns the minimum size of a row of an element, bytes, to check counts before memory is allocated; the size of each
-/// row in a binary file, if the element has no list.
+/// Returns the minimum size of an element's row, in bytes; exact in a binary file if the element has no lists. Used to
+/// check counts before memory is allocated.
 std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding);
 
 /// Raises an error if fewer bytes follow than the rows of an element need.

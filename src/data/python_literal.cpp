@@ -74,12 +74,12 @@ class Parser {
       char c = source_[at_++];
       if (c == '\\') {
         if (at_end() || (source_[at_] != '\\' && source_[at_] != '\'' && source_[at_] != '"'))
-          return fail("a text contains an escape sequence that is not supported");
+          return fail("a string contains an escape sequence that is not supported");
         c = source_[at_++];
       }
       out.text += c;
     }
-    if (at_end()) return fail("a text has no end");
+    if (at_end()) return fail("a string has no end");
     ++at_;
     return true;
   }

@@ -40,18 +40,15 @@ void decode_field(const RecordField& field, const char* records, std::size_t str
   });
 }
 
-/// An unsigned integer beyond the largest int64 has become negative.
-void check_unsigned(const RecordField& field, const Values& values, Faults& faults) {
-  if (field.type != NumberType::kUint64) return;
-  const auto& column = std::get<std::vector<std::int64_t>>(values);
-  for (std::size_t row = 0; row < column.size(); ++row)
-    if (column[row] < 0)
-      faults.add_of_many(0, "row " + std::to_string(row) + ": `" + field.name + "` is " +
-                                std::to_string(static_cast<std::uint64_t>(column[row])) +
+}  // namespace
+
+void check_unsigned(const std::string& column, const std::vector<std::int64_t>& values, Faults& faults) {
+  for (std::size_t row = 0; row < values.size(); ++row)
+    if (values[row] < 0)
+      faults.add_of_many(0, "row " + std::to_string(row) + ": `" + column + "` is " +
+                                std::to_string(static_cast<std::uint64_t>(values[row])) +
                                 ", larger than the largest int64");
 }
-
-}  // namespace
 
 bool contains(std::uint64_t size, const RecordLayout& layout) {
   return layout.begin <= size && (layout.stride == 0 || layout.rows <= (size - layout.begin) / layout.stride);
@@ -85,7 +82,9 @@ std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& la
                           decode_field(fields[f], block.data(), stride, count, out[f], first);
                       }
                     });
-  for (std::size_t f = 0; f < fields.size(); ++f) check_unsigned(fields[f], out[f], faults);
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    if (fields[f].type == NumberType::kUint64)
+      check_unsigned(fields[f].name, std::get<std::vector<std::int64_t>>(out[f]), faults);
   return out;
 }
 

@@ -27,6 +27,9 @@ struct RecordLayout {
   std::uint64_t rows = 0;
 };
 
+/// Adds an error for each value that was an unsigned integer beyond the largest int64, and is therefore negative.
+void check_unsigned(const std::string& column, const std::vector<std::int64_t>& values, Faults& faults);
+
 /// Returns whether a file of `size` bytes contains all records.
 bool contains(std::uint64_t size, const RecordLayout& layout);
 

@@ -75,10 +75,10 @@ void TextLines::read(const ByteSource& bytes, std::uint64_t first, std::uint64_t
   std::memset(buffer_.get() + end_, '\n', kTextPadding);
 }
 
-std::uint64_t TextLines::filled_count() const {
+std::uint64_t TextLines::filled_count(bool skips_comments) const {
   std::uint64_t count = 0;
   for (const char* at = begin(); at < end(); at = line_end(at) + 1)
-    if (*skip_blanks(at) != '\n') ++count;
+    if (!has_no_row(at, skips_comments)) ++count;
   return count;
 }
 

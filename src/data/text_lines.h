@@ -38,7 +38,9 @@ class TextLines {
   /// Number of lines.
   std::uint64_t count() const { return newline_count(begin(), end()); }
   /// Number of lines that contain more than white space.
-  std::uint64_t filled_count() const;
+  ///
+  /// `skips_comments`  without those that begin with # or %
+  std::uint64_t filled_count(bool skips_comments) const;
 
  private:
   void reserve(std::size_t count);
@@ -55,6 +57,12 @@ constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 inline const char* skip_blanks(const char* at) {
   while (is_blank(*at)) ++at;
   return at;
+}
+
+/// Returns whether a line has no row: it is blank, or a comment where those are skipped.
+inline bool has_no_row(const char* line, bool skips_comments) {
+  const char first = *skip_blanks(line);
+  return first == '\n' || (skips_comments && (first == '#' || first == '%'));
 }
 
 }  // namespace orrery::data

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -106,9 +107,12 @@ const char* scan_any_number(const char* at, double& value) {
 }
 
 bool parse_number(std::string_view word, double& value) {
-  std::string padded(word);
-  padded.append(kTextPadding, '\n');
-  return scan_number(padded.data(), value) == padded.data() + word.size();
+  constexpr std::size_t kLongest = 4096;  // no number has as many digits
+  char padded[kLongest + kTextPadding];
+  if (word.size() > kLongest) return false;
+  std::memcpy(padded, word.data(), word.size());
+  std::memset(padded + word.size(), '\n', kTextPadding);
+  return scan_number(padded, value) == padded + word.size();
 }
 
 }  // namespace orrery::data

@@ -46,15 +46,16 @@ const char* RowParser::parse(const TextLines& lines, std::uint64_t line, std::ui
   columns_ = &columns;
   for (WordList& words : words_) words.clear();
   unescaped_.clear();
+  if (layout_->surveys) surveys_.assign(layout_->columns.size(), {});
   faults_.clear();
   fault_count_ = 0;
   row_ = first_row;
   line_ = line;
-  const bool skips_empty = layout_->rows == kRowsToEnd;
+  const bool skips_lines = layout_->rows == kRowsToEnd;
   const char* at = lines.begin();
   for (const std::uint64_t end = first_row + rows; row_ < end && at < lines.end(); ++line_) {
     const char* const start = at;
-    if (skips_empty && *skip_blanks(at) == '\n') {
+    if (skips_lines && has_no_row(at, layout_->allows_comments)) {
       at = line_end(at) + 1;
       continue;
     }
@@ -78,6 +79,7 @@ const char* RowParser::parse_blank_separated(const char* at) {
     void* const column = (*columns_)[c];
     if (column == nullptr) {
       at = word_end(at);
+      if (layout_->surveys) surveys_[c].add({begin, at}, false, line_);
       continue;
     }
     switch (layout_->columns[c].type) {
@@ -86,8 +88,11 @@ const char* RowParser::parse_blank_separated(const char* at) {
       default: at = word_end(at); element<std::uint32_t>(column, row_) = words_[c].index_of({begin, at});
     }
     if (at == nullptr || !ends_word(*at)) {
-      fail_value(c, begin, word_end(begin));
-      return nullptr;
+      at = word_end(begin);
+      if (!store_missing(c, {begin, at})) {
+        fail_value(c, begin, at);
+        return nullptr;
+      }
     }
   }
   if (layout_->allows_more) return line_end(at);
@@ -116,7 +121,8 @@ const char* RowParser::parse_separated(const char* at) {
     at = skip(at);
     std::string_view value;
     const char* const begin = at;
-    if (*at == '"') {
+    const bool is_quoted = *at == '"';
+    if (is_quoted) {
       at = quoted_value(at, value);
       if (at == nullptr) {
         fail("column " + std::to_string(c + 1) + ": a quoted value does not end in this line");
@@ -129,7 +135,7 @@ const char* RowParser::parse_separated(const char* at) {
       while (end > begin && is_blank(end[-1])) --end;
       value = {begin, end};
     }
-    if ((*at != separator && *at != '\n') || !store(c, value)) {
+    if ((*at != separator && *at != '\n') || !store(c, value, is_quoted)) {
       fail_value(c, begin, std::find_if(at, line_end(at), [&](char x) { return x == separator; }));
       return nullptr;
     }
@@ -162,21 +168,29 @@ const char* RowParser::quoted_value(const char* at, std::string_view& value) {
 }
 
 /// Result     false if the value is not of the column's type
-bool RowParser::store(std::size_t c, std::string_view value) {
+bool RowParser::store(std::size_t c, std::string_view value, bool is_quoted) {
+  if (layout_->surveys) surveys_[c].add(value, is_quoted, line_);
   void* const column = (*columns_)[c];
   if (column == nullptr) return true;
   const char* const end = value.data() + value.size();
   switch (layout_->columns[c].type) {
-    case ColumnType::kFloat64: {
-      auto& number = element<double>(column, row_);
-      if (!value.empty()) return scan_number(value.data(), number) == end;
-      number = std::numeric_limits<double>::quiet_NaN();
-      return layout_->allows_missing;
-    }
+    case ColumnType::kFloat64:
+      return (!value.empty() && scan_number(value.data(), element<double>(column, row_)) == end) ||
+             store_missing(c, value);
     case ColumnType::kInt64:
       return !value.empty() && scan_integer(value.data(), element<std::int64_t>(column, row_)) == end;
     default: element<std::uint32_t>(column, row_) = words_[c].index_of(value); return true;
   }
+}
+
+/// Stores NaN for a missing value.
+///
+/// Result     false if the value is not missing, or the column cannot store NaN
+bool RowParser::store_missing(std::size_t c, std::string_view value) {
+  if (!layout_->allows_missing || layout_->columns[c].type != ColumnType::kFloat64) return false;
+  if (!value.empty() && !is_missing_marker(value)) return false;
+  element<double>((*columns_)[c], row_) = std::numeric_limits<double>::quiet_NaN();
+  return true;
 }
 
 void RowParser::fail(std::string text) {
@@ -191,7 +205,7 @@ void RowParser::fail_value(std::size_t c, const char* begin, const char* end) {
   const ColumnType type = layout_->columns[c].type;
   fail("column " + std::to_string(c + 1) + ": '" + word + (is_long ? "...' is not " : "' is not ") +
        (type == ColumnType::kInt64  ? "an integer"
-        : type == ColumnType::kText ? "a text"
+        : type == ColumnType::kText ? "a string"
                                     : "a number"));
 }
 

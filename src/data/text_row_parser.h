@@ -48,6 +48,8 @@ class RowParser {
 
   /// Distinct words of a text column, valid as long as the lines.
   const std::vector<std::string_view>& words(std::size_t column) const { return words_[column].words(); }
+  /// Surveys of the columns, if the layout requests them.
+  const std::vector<ColumnSurvey>& surveys() const { return surveys_; }
   /// The first faulty lines, by line.
   const std::vector<Fault>& faults() const { return faults_; }
   std::uint64_t fault_count() const { return fault_count_; }
@@ -56,7 +58,8 @@ class RowParser {
   const char* parse_blank_separated(const char* at);
   const char* parse_separated(const char* at);
   const char* quoted_value(const char* at, std::string_view& value);
-  bool store(std::size_t column, std::string_view value);
+  bool store(std::size_t column, std::string_view value, bool is_quoted);
+  bool store_missing(std::size_t column, std::string_view value);
   void fail(std::string text);
   void fail_value(std::size_t column, const char* begin, const char* end);
 
@@ -66,6 +69,7 @@ class RowParser {
   std::uint64_t line_ = 0;
   std::vector<WordList> words_;
   std::deque<std::string> unescaped_;  ///< words that contain quotes
+  std::vector<ColumnSurvey> surveys_;
   std::vector<Fault> faults_;
   std::uint64_t fault_count_ = 0;
 };

@@ -100,6 +100,7 @@ class Reading {
         word_indices_(layout.columns.size()) {
     table_.end = begin_;
     for (const TextColumn& column : layout.columns) table_.values.push_back(reserved_column(column, max_rows_));
+    if (layout.surveys) table_.surveys.resize(layout.columns.size());
   }
 
   TextTable run() {
@@ -148,7 +149,7 @@ class Reading {
         [&](const tbb::blocked_range<std::uint64_t>& range, std::uint64_t count) {
           for (std::uint64_t chunk = range.begin(); chunk < range.end(); ++chunk) {
             read_lines(chunk, lines.local());
-            count += lines.local().filled_count();
+            count += lines.local().filled_count(layout_.allows_comments);
           }
           return count;
         },
@@ -168,7 +169,8 @@ class Reading {
   Chunk* load(Chunk* chunk) const {
     read_lines(chunk->number, chunk->lines);
     chunk->line_count = chunk->lines.count();
-    chunk->row_count = layout_.rows == kRowsToEnd ? chunk->lines.filled_count() : chunk->line_count;
+    chunk->row_count =
+        layout_.rows == kRowsToEnd ? chunk->lines.filled_count(layout_.allows_comments) : chunk->line_count;
     return chunk;
   }
 
@@ -200,6 +202,7 @@ class Reading {
     for (std::uint64_t i = faults.size(); i < chunk.parser.fault_count(); ++i) faults_.add_of_many(0, {});
     for (std::size_t c = 0; c < table_.values.size(); ++c)
       if (layout_.columns[c].type == ColumnType::kText && layout_.columns[c].is_wanted) merge_words(chunk, c);
+    for (std::size_t c = 0; c < table_.surveys.size(); ++c) table_.surveys[c].add(chunk.parser.surveys()[c]);
   }
 
   /// Replaces indices into the chunk's words by indices into the table's.
@@ -211,7 +214,7 @@ class Reading {
       auto at = indices.find(word);
       if (at == indices.end()) {
         if (words.size() == std::numeric_limits<std::uint32_t>::max())
-          faults_.fail(chunk.first_line, "column " + std::to_string(column + 1) + " has too many distinct texts");
+          faults_.fail(chunk.first_line, "column " + std::to_string(column + 1) + " has too many distinct strings");
         at = indices.emplace(word, static_cast<std::uint32_t>(words.size())).first;
         words.emplace_back(word);
       }

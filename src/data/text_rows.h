@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data/byte_source.h"
+#include "data/column_survey.h"
 #include "data/faults.h"
 #include "data/table.h"
 
@@ -28,7 +29,9 @@ struct TextLayout {
   char separator = ' ';             ///< ' ': any number of blanks and tabs; else one character, values may be quoted
   bool allows_more = false;         ///< rows may have values beyond the last column
   char comment = '\0';              ///< begins a comment behind the last value (only with separator ' '); 0: none
-  bool allows_missing = false;      ///< an empty value is NaN (only with a separator other than ' ')
+  bool allows_missing = false;      ///< an empty value (with a separator other than ' ') or a marker such as NA is NaN
+  bool allows_comments = false;     ///< lines that begin with # or % are skipped (only up to the end of the file)
+  bool surveys = false;             ///< all columns are surveyed, none is stored
   /// Bytes that a thread parses at a time; the result does not depend on it.
   std::uint64_t chunk_bytes = std::uint64_t{1} << 18;
   std::vector<TextColumn> columns;
@@ -36,8 +39,9 @@ struct TextLayout {
 
 struct TextTable {
   std::uint64_t rows = 0;
-  std::vector<Values> values;  ///< one per column; empty if it is not wanted
-  std::uint64_t end = 0;       ///< offset behind the last row
+  std::vector<Values> values;         ///< one per column; empty if it is not wanted
+  std::vector<ColumnSurvey> surveys;  ///< one per column, if requested
+  std::uint64_t end = 0;              ///< offset behind the last row
 };
 
 /// Parses the rows of a text table in parallel. Numbers are correctly rounded and independent of the locale; `nan`,

@@ -65,7 +65,7 @@ void VtkDocument::check_root() {
   if (type == "PPolyData" || type == "PUnstructuredGrid")
     fail("the file only names the files of its pieces", "use these, or save one .vtp file with ParaView");
   if (type != "PolyData" && type != "UnstructuredGrid")
-    fail("VTK data of the type " + quoted_word(type) + "; supported are PolyData and UnstructuredGrid",
+    fail("VTK type " + quoted_word(type) + " is not supported; supported: PolyData and UnstructuredGrid",
          "save the points as a .vtp file with ParaView");
   if (order != "LittleEndian" && order != "BigEndian") fail("unknown byte order " + quoted_word(order));
   if (header != "UInt32" && header != "UInt64") fail("unknown header type " + quoted_word(header));

@@ -92,7 +92,7 @@ NpyText npy_text(const base::OutputFile& out, const Column& column) {
     text.is_ascii = text.is_ascii && std::all_of(word.begin(), word.end(), [](char c) { return c > 0; });
     if (word.size() > kLongestNpyText || word.ends_with('\0'))
       refuse_to_write(out.path(), "column " + quoted_word(column.name) +
-                                      " has a text that is too long or ends in a zero byte; leave the column out");
+                                      " has a string that is too long or ends in a zero byte; leave the column out");
   }
   return text;
 }

@@ -111,18 +111,26 @@ XyzOutput property_at(const Table& table, std::size_t first) {
   return out;
 }
 
+/// Returns the column of chemical elements; null if there is none that XYZ can store.
+const Column* element_of(const Table& table) {
+  for (const char* name : {"element", "species", "symbol"})
+    if (const Column* const column = table.find(name);
+        column != nullptr && column->type() == ColumnType::kText && is_storable_in_xyz(*column))
+      return column;
+  return nullptr;
+}
+
 /// Returns the properties: species, pos, then the other columns in their order. Adds the names of columns that XYZ
 /// cannot store to `left_out`.
 std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>& left_out) {
   std::vector<XyzOutput> out;
-  const Column* const element = table.find("element");
-  const bool has_species = element != nullptr && element->type() == ColumnType::kText && is_storable_in_xyz(*element);
-  if (has_species) out.push_back({"species", {element}, 'S'});
+  const Column* const element = element_of(table);
+  if (element != nullptr) out.push_back({"species", {element}, 'S'});
   out.push_back({"pos", {table.find("x"), table.find("y"), table.find("z")}, 'R'});
   std::set<std::string> used = {"species", "pos"};
   for (std::size_t i = 0; i < table.columns.size();) {
     const std::string& name = table.columns[i].name;
-    if (name == "x" || name == "y" || name == "z" || (has_species && name == "element")) {
+    if (name == "x" || name == "y" || name == "z" || &table.columns[i] == element) {
       ++i;
       continue;
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data/customary.h"
 #include "data/text_cursor.h"
 #include "data/text_rows.h"
 
@@ -98,7 +99,7 @@ std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t lin
     begin = end + 1;
   }
   std::vector<XyzProperty> out;
-  constexpr std::int64_t kMaxColumns = 10000;  // protects the memory: each has a name
+  constexpr auto kMaxColumns = static_cast<std::int64_t>(kMostColumns);
   std::int64_t columns = 0;
   for (std::size_t i = 0; i < parts.size(); i += 3) {
     XyzProperty property;
@@ -116,7 +117,9 @@ std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t lin
       faults.fail(line, shown + "unknown type '" + std::string(parts[i + 1]) + "'", std::string(kRemedy));
     std::int64_t count = 0;
     if (!parse_integer(parts[i + 2], count) || count < 1 || count > kMaxColumns || (columns += count) > kMaxColumns)
-      faults.fail(line, shown + "'" + std::string(parts[i + 2]) + "' is not a number of columns, 1 to 10000",
+      faults.fail(line,
+                  shown + "'" + std::string(parts[i + 2]) + "' is not a number of columns; at most " +
+                      std::to_string(kMaxColumns) + " in all",
                   std::string(kRemedy));
     property.count = static_cast<std::size_t>(count);
     out.push_back(std::move(property));
@@ -128,18 +131,21 @@ std::optional<Box> xyz_box(const XyzValues& values, std::uint64_t line, Faults& 
   const std::string* const lattice = find(values, {"Lattice", "lattice"});
   if (lattice == nullptr) return std::nullopt;
   const auto edges = numbers(*lattice, 9);
+  // Without properties, the comment may be a sentence about a lattice.
+  if (!edges && find(values, {"Properties", "properties"}) == nullptr && elements(*lattice).size() < 2)
+    return std::nullopt;
   if (!edges)
-    faults.fail(line, "Lattice has not 9 numbers, three vectors", "write Lattice=\"ax ay az bx by bz cx cy cz\"");
+    faults.fail(line, "`Lattice` must be 9 numbers, three vectors", "write Lattice=\"ax ay az bx by bz cx cy cz\"");
   Box box;
   for (std::size_t i = 0; i < 3; ++i) box.edges[i] = {(*edges)[3 * i], (*edges)[3 * i + 1], (*edges)[3 * i + 2]};
   if (const std::string* const origin = find(values, {"Origin", "origin"}); origin != nullptr) {
     const auto xyz = numbers(*origin, 3);
-    if (!xyz) faults.fail(line, "Origin has not 3 numbers");
+    if (!xyz) faults.fail(line, "`Origin` must be 3 numbers");
     box.origin = {(*xyz)[0], (*xyz)[1], (*xyz)[2]};
   }
   if (const std::string* const pbc = find(values, {"pbc", "PBC"}); pbc != nullptr) {
     const auto flags = elements(*pbc);
-    if (flags.size() != 3) faults.fail(line, "pbc has not 3 values", "write for example pbc=\"T T F\"");
+    if (flags.size() != 3) faults.fail(line, "`pbc` must be 3 values", "write for example pbc=\"T T F\"");
     for (std::size_t i = 0; i < 3; ++i) {
       const bool is_true = flags[i] == "1" || flags[i][0] == 'T' || flags[i][0] == 't';
       if (!is_true && flags[i] != "0" && flags[i][0] != 'F' && flags[i][0] != 'f')

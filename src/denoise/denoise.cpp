@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
@@ -79,6 +80,14 @@ void finish_channel(film::Picture& picture, const LightChannel& channel, const P
   });
 }
 
+/// Index of the alpha plane, unless the whole image is opaque.
+std::optional<std::size_t> partial_alpha(const film::Picture& picture) {
+  for (std::size_t i = 0; i < picture.planes.size(); ++i)
+    if (const film::Plane& plane = picture.planes[i]; plane.name == "A")
+      if (std::any_of(plane.values.begin(), plane.values.end(), [](float a) { return a != 1; })) return i;
+  return {};
+}
+
 Report filter(film::Picture& picture) {
   const int width = picture.width, height = picture.height;
   const SourcePlanes planes = source_planes(picture);
@@ -101,6 +110,9 @@ Report filter(film::Picture& picture) {
     cells.emplace_back();
     for (const std::size_t cell : channel.cells) cells.back().push_back(padded(picture.planes[cell].values, frame));
   }
+  // Colours are premultiplied: where they spread, so must alpha.
+  const std::optional<std::size_t> alpha = partial_alpha(picture);
+  const PaddedPlane noisy_alpha = alpha ? padded(picture.planes[*alpha].values, frame) : PaddedPlane();
   tiles.each([&](Worker& worker, int x, int y) {
     compute_weights(source, x, y, worker.scratch, worker.weights);
     const auto filter_plane = [&](const PaddedPlane& from, std::size_t to) {
@@ -115,7 +127,11 @@ Report filter(film::Picture& picture) {
       filter_plane(planes.beauty[c], channel.beauty);
       for (std::size_t i = 0; i < channel.cells.size(); ++i) filter_plane(cells[c][i], channel.cells[i]);
     }
+    if (alpha) filter_plane(noisy_alpha, *alpha);
   });
+  // The regression may overshoot.
+  if (alpha)
+    for (float& a : picture.planes[*alpha].values) a = std::clamp(a, 0.0F, 1.0F);
   for (std::size_t c = 0; c < 3; ++c)
     finish_channel(picture, lights.channels[c], planes.beauty[c], planes.valid, {is_positive[c], is_complete});
   for (int y = 0; y < height; ++y)
@@ -133,10 +149,10 @@ Report denoise(film::Picture& picture, int threads) {
   return arena.execute([&] { return filter(picture); });
 }
 
+bool is_half(std::string_view plane) { return plane.starts_with("half_a.") || plane.starts_with("half_b."); }
+
 void remove_halves(film::Picture& picture) {
-  std::erase_if(picture.planes, [](const film::Plane& plane) {
-    return plane.name.starts_with("half_a.") || plane.name.starts_with("half_b.");
-  });
+  std::erase_if(picture.planes, [](const film::Plane& plane) { return is_half(plane.name); });
 }
 
 }  // namespace orrery::denoise

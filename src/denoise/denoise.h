@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "film/picture.h"
@@ -17,12 +18,14 @@ struct Report {
   std::vector<std::string> layers;   ///< light layers that were filtered with the beauty
   std::vector<std::string> missing;  ///< layers that the image lacks; each would improve the result
   bool has_guides = false;           ///< albedo and normal guided the filter
-  std::uint64_t bad_pixels = 0;      ///< pixels whose beauty is not finite or too large; left as they were
+  std::uint64_t bad_pixels =
+      0;  ///< pixels without samples, or whose beauty is not finite or too large; left as they were
 };
 
 /// Filters the noise of an image's beauty, and applies the same weights to its light layers (lobe AOVs, light groups
 /// and the lobes of the groups). If they added up to the beauty, they do so again, bit for bit in single precision.
-/// Other planes are unchanged. The sum over the image is kept, within the limits of LightBalance.
+/// Alpha is filtered with the same weights if part of the image is transparent, since colours are premultiplied. Other
+/// planes are unchanged. The sum over the image is kept, within the limits of LightBalance.
 ///
 /// The weights come from the layer `halves`, or, as far as the image lacks it, from the guides `denoise.albedo`,
 /// `denoise.normal` and `depth`, from `variance` and from the beauty itself.
@@ -32,6 +35,9 @@ struct Report {
 /// Errors     base::Error(kBadData) if the image has no R, G and B
 /// Reference  rousselle2012, bitterli2016
 Report denoise(film::Picture& picture, int threads = 0);
+
+/// Returns whether a plane belongs to the layer `halves`.
+bool is_half(std::string_view plane);
 
 /// Removes the planes of the layer `halves`.
 void remove_halves(film::Picture& picture);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <deque>
 
 namespace orrery::denoise {
 namespace {
@@ -78,18 +79,61 @@ float relative_scale(const Values& inverse_depth, float scale) {
   return sum > 0 ? static_cast<float>(scale * static_cast<double>(inverse_depth.size()) / sum) : 0.0F;
 }
 
-void add_guides_of_halves(SourcePlanes& out, const Planes& planes, Frame frame) {
+/// Pixels by the halves that have samples in them. A half without samples is NaN.
+struct HalfCounts {
+  std::size_t with_one = 0, with_none = 0;
+};
+
+/// Fraction of pixels with one half from which on the halves as a whole tell too little about the noise.
+constexpr double kMaxLonePixels = 1.0 / 16;
+
+HalfCounts count_halves(const Planes& planes, Frame frame) {
+  const Values &a = planes.at("half_a.inverse_depth.X"), &b = planes.at("half_b.inverse_depth.X");
+  HalfCounts out;
+  for (std::size_t i = 0; i < frame.pixels(); ++i) {
+    out.with_one += std::isnan(a[i]) != std::isnan(b[i]) ? 1 : 0;
+    out.with_none += std::isnan(a[i]) && std::isnan(b[i]) ? 1 : 0;
+  }
+  return out;
+}
+
+/// The halves of a channel. Where one has no samples, it is replaced by the other.
+class HalfPlanes {
+ public:
+  HalfPlanes(const Planes& planes, HalfCounts counts, Frame frame) : planes_(planes), counts_(counts), frame_(frame) {}
+
+  /// `end`      of the names, such as ".albedo.R"
+  /// Result     valid as long as this
+  Halves of(const std::string& end, float scale = 1) {
+    const Values &a = planes_.at("half_a" + end), &b = planes_.at("half_b" + end);
+    return counts_.with_one == 0 ? Halves{&a, &b, scale} : Halves{&filled(a, b), &filled(b, a), scale};
+  }
+
+ private:
+  const Values& filled(const Values& own, const Values& other) {
+    return filled_.emplace_back(
+        frame_.each_index([&](std::size_t i) { return std::isnan(own[i]) ? other[i] : own[i]; }));
+  }
+
+  const Planes& planes_;
+  HalfCounts counts_;
+  Frame frame_;
+  std::deque<Values> filled_;
+};
+
+void add_guides_of_halves(SourcePlanes& out, HalfPlanes& planes, Frame frame) {
   std::vector<Halves> halves;
   for (const GuideName& name : kGuideNames) {
-    const std::string end = std::string(".") + name.of_half + "." + name.channel;
-    const Values &a = planes.at("half_a" + end), &b = planes.at("half_b" + end);
+    const Halves both = planes.of(std::string(".") + name.of_half + "." + name.channel);
+    const Values &a = *both.a, &b = *both.b;
     const Values mean = frame.each_index([&](std::size_t i) { return (usable(a[i]) + usable(b[i])) / 2; });
     const bool is_depth = name.scale == kDepthScale;
     const float scale = is_depth ? relative_scale(mean, name.scale) : name.scale;
     halves.push_back({&a, &b, scale});
     out.guides.push_back(padded(mean, frame, scale));
   }
-  out.guide_variance = padded(variance_of(halves, frame, kGuideNoiseRadius), frame);
+  out.guide_variance = out.has_halves ? padded(variance_of(halves, frame, kGuideNoiseRadius), frame)
+                                      : PaddedPlane(frame.width, frame.height);
 }
 
 void add_guides_of_layers(SourcePlanes& out, const Planes& planes, Frame frame) {
@@ -128,25 +172,28 @@ SourcePlanes source_planes(const film::Picture& picture) {
     return planes.has(half, "RGB") && planes.has(half + ".albedo", "RGB") && planes.has(half + ".normal", "XYZ") &&
            planes.has(half + ".inverse_depth", "X");
   };
-  out.has_halves = has_half("half_a") && has_half("half_b");
+  const bool has_planes = has_half("half_a") && has_half("half_b");
+  const HalfCounts counts = has_planes ? count_halves(planes, frame) : HalfCounts();
+  const double lone = static_cast<double>(counts.with_one) / static_cast<double>(frame.pixels());
+  out.has_halves = has_planes && lone <= kMaxLonePixels;
+  HalfPlanes half_planes(planes, counts, frame);
   const bool has_variance = planes.has("variance", "RGB");
   std::vector<Halves> halves;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string letter(1, "RGB"[c]);
     out.beauty[c] = padded(planes.at(letter), frame);
     if (!out.has_halves) continue;
-    const Values &a = planes.at("half_a." + letter), &b = planes.at("half_b." + letter);
-    out.a[c] = padded(a, frame);
-    out.b[c] = padded(b, frame);
-    halves.push_back({&a, &b});
+    halves.push_back(half_planes.of("." + letter));
+    out.a[c] = padded(*halves.back().a, frame);
+    out.b[c] = padded(*halves.back().b, frame);
   }
   out.variance = padded(out.has_halves ? variance_of(halves, frame, kBeautyNoiseRadius)
                                        : variance_without_halves(planes, has_variance, frame),
                         frame);
-  if (out.has_halves) {
-    add_guides_of_halves(out, planes, frame);
+  if (!out.has_halves) out.missing.push_back(has_planes ? "halves (one has no samples)" : "halves");
+  if (has_planes) {
+    add_guides_of_halves(out, half_planes, frame);
   } else {
-    out.missing.push_back("halves");
     if (!has_variance) out.missing.push_back("variance");
     const bool has_albedo = planes.has("denoise.albedo", "RGB"), has_normal = planes.has("denoise.normal", "XYZ");
     if (!has_albedo) out.missing.push_back("denoise.albedo");
@@ -162,6 +209,11 @@ SourcePlanes source_planes(const film::Picture& picture) {
       for (int x = 0; x < frame.width; ++x)
         if (!is_usable(row[x])) *out.valid.at(x, y) = 0;
     }
+    if (counts.with_none == 0) return;
+    const float* const a = planes.at("half_a.inverse_depth.X").data() + frame.at(0, y);
+    const float* const b = planes.at("half_b.inverse_depth.X").data() + frame.at(0, y);
+    for (int x = 0; x < frame.width; ++x)
+      if (std::isnan(a[x]) && std::isnan(b[x])) *out.valid.at(x, y) = 0;
   });
   return out;
 }

@@ -2,6 +2,7 @@
 #include "farm/submit.h"
 
 #include <cctype>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -30,7 +31,12 @@ Commands commands_of(const Submission& submission) {
   const job::SceneRequest scene{{batch.scenes.front(), job.scene.overrides, out.frames.front()}, job.outputs.display};
   job::add_scene_files(scene.source.file, job::load_scene(scene).read.scene, *jobs.front().files);
   out.name = job_name_of(batch.scenes.front());
-  out.folder = job.outputs.images.front().path.parent_path() / (out.name + ".shards");
+  // Named after the image: jobs that render one scene with different settings must not share shards.
+  const std::filesystem::path& image = job.outputs.images.front().path;
+  std::string folder = image.filename().string() + ".shards";
+  for (char& c : folder)
+    if (std::string_view("#%{}").find(c) != std::string_view::npos) c = '_';  // patterns of Slurm, parallel and orrery
+  out.folder = image.parent_path() / folder;
   // Scripts create a folder for the shards. The other engines cannot, so shards are files next to the images.
   const bool is_script = submission.engine == Engine::kSlurm || submission.engine == Engine::kParallel;
   const std::string prefix = out.folder.string() + (is_script ? "/" : ".");

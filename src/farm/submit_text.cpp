@@ -103,18 +103,22 @@ std::string parallel_text(const Submission& s, const Commands& c) {
   const std::string folder = base::shell_quoted(c.folder.string());
   std::string out = "#!/bin/sh\n" + heading(s, c, "GNU parallel on this machine");
   out += fmt::format(
-      "# Run it with sh. After a failure, run it again: only failed and unfinished tasks are repeated.\n"
-      "set -eu\nmkdir -p {}\nthreads=$((($(nproc) + {}) / {}))\n",
+      "# Run it with sh. After a failure, run it again: finished images are skipped, merges are repeated.\n"
+      "set -eu\nmkdir -p {}\nthreads=$((($(nproc) + {}) / {}))\nexport threads\n",
       folder, s.jobs_at_a_time - 1, s.jobs_at_a_time);
-  const auto run = [&](const Words& words, const char* kind, const std::string& more, const std::string& tail) {
-    out += fmt::format("parallel --jobs {} --joblog {}/{}.log --resume-failed --retries 3 \\\n  {}{} \\\n  ::: {}{}\n",
-                       s.jobs_at_a_time, folder, kind, base::shell_quoted(shell_line(words, "{1}", "{2}") + more),
-                       more.empty() ? "" : "\" -t $threads\"", frame_list(c, " "), tail);
+  // parallel would replace {1} in the names of files, so that it does not get to see the command.
+  const auto run = [&](const std::string& command, const char* kind, const std::string& shards) {
+    out += fmt::format(
+        "\nORRERY_{0}={1}\nexport ORRERY_{0}\n"
+        "parallel --jobs {2} --joblog {3}/{0}.log --retries 3 \\\n"
+        "  'sh -c \"$ORRERY_{0}\" sh {{1}}{4}' \\\n  ::: {5}{6}\n",
+        kind, base::shell_quoted(command), s.jobs_at_a_time, folder, shards.empty() ? "" : " {2}", frame_list(c, " "),
+        shards);
   };
-  std::string shards = " :::";
-  for (int i = 1; i <= s.shards; ++i) shards += " " + std::to_string(i);
-  run(c.render, "render", " --progress none -q", s.shards > 1 ? shards : "");
-  if (!c.merge.empty()) run(c.merge, "merge", "", "");
+  std::string shards;
+  for (int i = 1; s.shards > 1 && i <= s.shards; ++i) shards += (i == 1 ? " ::: " : " ") + std::to_string(i);
+  run(shell_line(c.render, "\"$1\"", "\"$2\"") + " --progress none -q -t \"$threads\"", "render", shards);
+  if (!c.merge.empty()) run(shell_line(c.merge, "\"$1\"", ""), "merge", "");
   return out;
 }
 

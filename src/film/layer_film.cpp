@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "film/light_cells.h"
@@ -109,13 +110,15 @@ void each_light_channel(const LayerRequest& r, const LayerPixel& p, const kernel
   }
 }
 
-/// The mean of guides from their sum and total weight; 0 without weight.
+constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
+
+/// The mean of guides from their sum and total weight.
 double mean_guide(std::int64_t sum, std::int64_t weight) {
-  return weight > 0 ? static_cast<double>(sum) * kernel::kGuideUnit / static_cast<double>(weight) : 0.0;
+  return static_cast<double>(sum) * kernel::kGuideUnit / static_cast<double>(weight);
 }
 
 /// Calls `f(layer, channel, kind, value)` for every channel of the two halves. They are data, so that they are stored
-/// in single precision: their difference is what matters.
+/// in single precision: their difference is what matters. A half without weight is NaN: 0 would be a measurement.
 template <class F>
 void each_half_channel(const Halves& halves, F f) {
   struct Names {
@@ -127,13 +130,16 @@ void each_half_channel(const Halves& halves, F f) {
     const Names& names = kNames[i];
     const kernel::PixelSum& light = halves[i].light;
     const kernel::GuideSum& guides = halves[i].guides;
+    const bool has_mean = light.weight > 0 && guides.weight > 0;
     const auto channels = [&](const char* layer, const char* letters, auto mean_of) {
-      for (int k = 0; k < 3; ++k) f(layer, letters[k], PlaneKind::kData, static_cast<float>(mean_of(k)));
+      for (int k = 0; k < 3; ++k)
+        f(layer, letters[k], PlaneKind::kData, static_cast<float>(has_mean ? mean_of(k) : kNoMean));
     };
     channels(names.beauty, "RGB", [&](int k) { return mean(light.rgb[k], light.weight); });
     channels(names.albedo, "RGB", [&](int k) { return mean_guide(guides.albedo[k], guides.weight); });
     channels(names.normal, "XYZ", [&](int k) { return mean_guide(guides.normal[k], guides.weight); });
-    f(names.inverse_depth, 'X', PlaneKind::kData, static_cast<float>(mean(guides.inverse_depth, guides.weight)));
+    f(names.inverse_depth, 'X', PlaneKind::kData,
+      static_cast<float>(has_mean ? mean(guides.inverse_depth, guides.weight) : kNoMean));
   }
 }
 

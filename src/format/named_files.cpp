@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "format/toml_tree.h"
+#include "scene/scene.h"
 
 namespace orrery::format {
 
@@ -25,8 +26,12 @@ NamedFiles named_files(const std::filesystem::path& scene_file, const std::vecto
             if (const auto file = (*texture)["file"].value<std::string>()) out.textures.push_back(*file);
   if (const toml::array* points = root["points"].as_array())
     for (const toml::node& node : *points)
-      if (const toml::table* table = node.as_table())
+      if (const toml::table* table = node.as_table()) {
         if (const auto file = (*table)["file"].value<std::string>()) out.points.push_back(*file);
+        scene::PointsColor color;
+        color.map = (*table)["color"]["map"].value_or(std::string());
+        if (color.has_map_file()) out.color_maps.push_back(color.map);
+      }
   return out;
 }
 

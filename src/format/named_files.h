@@ -12,6 +12,7 @@ namespace orrery::format {
 /// The files that a scene names, as written in it: relative to its folder, with frame patterns.
 struct NamedFiles {
   std::vector<std::string> points;
+  std::vector<std::string> color_maps;
   std::string background;
   std::vector<std::string> textures;
   std::string ocio_config;

@@ -67,8 +67,8 @@ toml::table& element_of(toml::table& root, std::string_view list) {
   toml::array* array = node == nullptr ? nullptr : node->as_array();
   if (array == nullptr) throw Fault{"the scene has no list `" + name + "`"};
   if (index >= array->size())
-    throw Fault{std::string(list) + " does not exist; the scene has " + std::to_string(array->size()) + " of `" + name +
-                    "`, counted from 0",
+    throw Fault{std::string(list) + " does not exist; the scene has " + std::to_string(array->size()) + " `" + name +
+                    "` tables, counted from 0",
                 ""};
   toml::table* element = array->get(index)->as_table();
   if (element == nullptr) throw Fault{std::string(list) + " is not a table"};

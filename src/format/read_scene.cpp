@@ -259,6 +259,7 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<Overr
   Reading reading;
   const toml::table root = parse_tree(name, text, overrides, reading.source, reading.diagnostics);
   if (root.empty()) reading.diagnostics.raise_errors(name);
+  if (options.is_generated) reading.source.add(name, text, true);
 
   ReadResult result;
   report_unknown_tables(reading, root);

@@ -44,6 +44,7 @@ struct ReadOptions {
   SceneCheck also = {};             ///< called if [color] has no errors
   std::uint64_t memory_limit = 0;   ///< bytes that the spheres of a data file may take while they are read; 0: no limit
   points::OpenData open_data = {};  ///< replaces data::open(), for data in memory
+  bool is_generated = false;        ///< `text` was written by a program: diagnostics omit its lines
 };
 
 /// Reads and checks a scene file, and the data files that it names.

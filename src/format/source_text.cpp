@@ -35,7 +35,9 @@ std::size_t byte_of_character(std::string_view line, std::size_t index) {
 
 }  // namespace
 
-void SourceText::add(const std::string& name, std::string_view text) { texts_[name] = {std::string(text), {}}; }
+void SourceText::add(const std::string& name, std::string_view text, bool is_generated) {
+  texts_[name] = {std::string(text), is_generated, {}};
+}
 
 void SourceText::add_override(const Override& override, std::string parsed, std::vector<std::size_t> inserted) {
   ShownOverride own;
@@ -104,6 +106,10 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
   out.column = place.column;
   out.width = place.width;
   const auto found = texts_.find(place.text_name);
+  if (found != texts_.end() && found->second.is_generated) {
+    out.line = out.column = 0;
+    return out;
+  }
   if (found == texts_.end() || place.column < 1) return out;
   const std::string_view line = line_of(found->second, place.line);
   const auto begin = static_cast<std::size_t>(place.column) - 1;

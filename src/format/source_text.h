@@ -29,7 +29,8 @@ struct Place {
 /// The texts from which a scene is read, the file and the overrides, to quote their lines in diagnostics.
 class SourceText {
  public:
-  void add(const std::string& name, std::string_view text);
+  /// `is_generated`  a program wrote the text, so that its lines mean nothing to the user: diagnostics omit them
+  void add(const std::string& name, std::string_view text, bool is_generated = false);
 
   /// Adds the next line of kOverrideName.
   ///
@@ -47,6 +48,7 @@ class SourceText {
  private:
   struct Text {
     std::string bytes;
+    bool is_generated;
     mutable std::vector<std::size_t> begins;  ///< of every kStride-th line; filled on first use
   };
   struct ShownOverride {

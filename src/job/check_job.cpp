@@ -29,6 +29,9 @@ void check_request(const Job& job) {
   if (is_shard(job)) check_shard(job);
   if (!job.outputs.deep.empty() && image::format_of(job.outputs.deep) != image::Format::kExr)
     throw base::Error(base::ErrorKind::kUsage, job.outputs.deep.string() + " cannot hold deep samples; use EXR");
+  if (!job.outputs.deep.empty() && job.denoise)
+    throw base::Error(base::ErrorKind::kUsage,
+                      "--denoise does not filter deep samples; render --deep without --denoise, in a run of its own");
   for (const OutputFile& output : outputs_of(job)) base::check_creatable(output.path);
   image::check_compression(job.outputs.exr.compression);
   choose_isa(job.resources.isa);

@@ -95,6 +95,7 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Comp
 
 void count_bad_values(const film::Picture& picture, JobReport& report) {
   for (const film::Plane& plane : picture.planes) {
+    if (denoise::is_half(plane.name)) continue;  // NaN without samples
     const film::BadValues bad = film::count_bad_values(plane);
     if (!bad.any()) continue;
     report.bad_values += bad;
@@ -111,8 +112,9 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
     out = fmt::format("noise {:.3g} instead of {:.3g}: {}", *statistics.noise, job.sampling.noise,
                       ended_by_time ? "the time budget ended" : "the pixels that need more samples reached the limit");
   if (job.sampling.noise > 0 && statistics.unjudged_pixels > 0)
-    out += fmt::format("{}the noise of {} pixels cannot be judged: too few paths found light near them; allow more {}",
-                       out.empty() ? "" : "; ", statistics.unjudged_pixels, ended_by_time ? "time" : "samples");
+    out +=
+        fmt::format("{}the noise of {} pixels cannot be estimated: too few paths found light near them; allow more {}",
+                    out.empty() ? "" : "; ", statistics.unjudged_pixels, ended_by_time ? "time" : "samples");
   return out;
 }
 
@@ -156,7 +158,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
     base::check_creatable(manifest);
   }
   const image::Provenance provenance = provenance_of(job, compiled, layers);
-  const std::string stamp = stamp_of(job, provenance, display);
+  const std::string stamp = stamp_of(job, provenance, display, report.display.config_id);
   report.scene_hash = provenance.at("sceneHash");
   report.was_skipped = job.skip_existing && is_up_to_date(job, compiled, provenance, stamp);
   if (report.was_skipped) return;

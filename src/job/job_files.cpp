@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPointsRole = "points file";
+constexpr const char* kMapRole = "colour map";
 constexpr const char* kBackgroundRole = "background image";
 constexpr const char* kTextureRole = "texture";
 
@@ -50,13 +51,17 @@ void add_named_files(const SceneSource& scene, const std::vector<int>& frames, b
     for (const int frame : frames) files.add_input(scene_file.parent_path() / base::with_frame(name, frame), role);
   };
   for (const std::string& name : named.points) add(name, kPointsRole);
+  for (const std::string& name : named.color_maps) add(name, kMapRole);
   if (!named.background.empty()) add(named.background, kBackgroundRole);
   for (const std::string& name : named.textures) add(name, kTextureRole);
 }
 
 void add_scene_files(const fs::path& scene_file, const scene::Scene& scene, base::FileSet& files) {
   add_ocio_configs(config_of(scene_file, scene.color), files);
-  for (const scene::Points& points : scene.points) files.add_input(scene_file.parent_path() / points.file, kPointsRole);
+  for (const scene::Points& points : scene.points) {
+    files.add_input(scene_file.parent_path() / points.file, kPointsRole);
+    if (points.color.has_map_file()) files.add_input(scene_file.parent_path() / points.color.map, kMapRole);
+  }
   if (!scene.background.file.empty())
     files.add_input(scene_file.parent_path() / scene.background.file, kBackgroundRole);
   for (const scene::NamedTexture& texture : scene::image_textures(scene))

@@ -72,7 +72,7 @@ class Loader {
     if (!header.color_interop_id.empty()) return header.color_interop_id;
     if (header.chromaticities) {
       if (const display::KnownSpace* known = display::known_space(*header.chromaticities)) return known->interop_id;
-      warn(request_.file_key, "its chromaticities are those of no known colour space and are ignored");
+      warn(request_.file_key, "its chromaticities match no known colour space and are ignored");
     }
     return header.color_space;
   }
@@ -139,7 +139,7 @@ class Loader {
     image::read_map(request_.file, take, request_.formats);
     out_.image = image;
     if (replaced_.nan + replaced_.infinite + replaced_.negative > 0)
-      warn(request_.file_key, fmt::format("{} values are NaN, {} infinite and {} negative; they count as 0",
+      warn(request_.file_key, fmt::format("{} values are NaN, {} infinite and {} negative; they are replaced by 0",
                                           replaced_.nan, replaced_.infinite, replaced_.negative));
     if (replaced_.out_of_range > 0)
       warn(request_.file_key, fmt::format("{} values are out of range{} and were clamped", replaced_.out_of_range,

@@ -145,6 +145,7 @@ LoadedScene load_scene(const SceneRequest& request) {
   };
   format::ReadOptions options;
   options.text = request.source.text;
+  options.is_generated = request.source.is_generated;
   options.frame = request.source.frame;
   options.open_data = request.source.open_data;
   options.also = check_and_load;

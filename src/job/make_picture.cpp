@@ -21,9 +21,8 @@ namespace {
 /// The sampling limits of a render that starts this many seconds after its job. The scene's sample count limits
 /// adaptive sampling only if an override sets it.
 render::SamplingLimits limits_of(const Job& job, double seconds_so_far) {
-  constexpr double kShortest = 1e-3;  // 0 would be no limit
   render::SamplingLimits out = job.sampling;
-  if (out.seconds > 0) out.seconds = std::max(out.seconds - seconds_so_far, kShortest);
+  out.spend(seconds_so_far);
   out.unlimited = !is_limited(job);
   return out;
 }
@@ -33,6 +32,21 @@ bool is_of_this_render(const film::Partial& from, const compile::CompiledScene& 
                        const render::Settings& settings) {
   return from.is_adaptive() == settings.sampling.is_adaptive() && from.layers.empty() != settings.layers.records() &&
          from.halves.empty() != settings.layers.guides() && from.has_known_spheres(compiled.spheres.size());
+}
+
+/// Requires that shards have the layers of the image.
+void require_layers(const Job& job, const render::Settings& settings, const film::Partial& merged,
+                    const ShardFile& first, const image::Provenance& provenance) {
+  const auto fail = [](const std::string& text) { throw base::Error(base::ErrorKind::kBadData, text); };
+  if (job.denoise && merged.halves.empty())
+    fail("the shards have no halves to denoise from; render them with --denoise or --layers halves");
+  // Other formats do not hold the layers that the shards may have.
+  if (!job.outputs.has_exr()) return;
+  if (!merged.halves.empty() && !settings.layers.guides())
+    fail("the shards were rendered with --denoise; merge them with --denoise");
+  if (const std::string wrong = difference(first.provenance, provenance, {"layers"}); !wrong.empty())
+    fail(fmt::format("{} has {} as {}; the scene has changed, or --scene names another one", first.file.string(), wrong,
+                     job.scene.file.string()));
 }
 
 }  // namespace
@@ -51,9 +65,7 @@ film::Picture preview(const compile::CompiledScene& compiled, const film::Partia
 render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
                          const image::Provenance& provenance, JobReport& report) {
   const ShardFile& first = job.merge.shards.front();
-  std::vector<std::string> keys = {"version", "sceneHash"};
-  // Other formats do not hold the layers that the shards may have.
-  if (job.outputs.has_exr()) keys.push_back("layers");
+  const std::vector<std::string> keys = {"version", "sceneHash"};
   if (const std::string wrong = difference(first.provenance, provenance, keys); !wrong.empty())
     throw base::Error(base::ErrorKind::kBadData,
                       fmt::format("{} has {} as {}; the scene has changed, or --scene names another one",
@@ -61,6 +73,7 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   MergedShards merged =
       merge_shards(job.merge.shards, compiled.width, compiled.height, static_cast<std::uint32_t>(compiled.samples),
                    compiled.spheres.size(), job.merge.allow_missing);
+  require_layers(job, settings, merged.partial, first, provenance);
   for (const base::Diagnostic& diagnostic : merged.left_out)
     if (job.hooks.on_warning) job.hooks.on_warning(diagnostic);
   report.missing = merged.missing;
@@ -77,9 +90,6 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   statistics.ended_by = "samples";
   if (!settings.layers.records()) merged.partial.layers.clear();
   if (!settings.layers.guides()) merged.partial.halves.clear();
-  if (job.denoise && merged.partial.halves.empty())
-    throw base::Error(base::ErrorKind::kBadData,
-                      "the shards have no halves to denoise from; render them with --denoise or --layers halves");
   if ((settings.layers.records() && merged.partial.layers.empty()) ||
       (settings.layers.guides() && merged.partial.halves.empty()))
     throw base::Error(base::ErrorKind::kBadData, "the shards were rendered without the requested layers");

@@ -16,7 +16,10 @@ namespace orrery::job {
 image::Provenance provenance_of(const Job& job, const compile::CompiledScene& compiled, const Layers& layers);
 
 /// Hash of everything that determines the images of a job. An image with this stamp in its header is up to date.
-std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display);
+///
+/// `config_id`  OCIO's digest of the config, which changes with its contents
+std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
+                     const std::string& config_id);
 
 /// The first difference of two provenances, as text: "scene hash 1234, not 5678"; empty: none.
 ///

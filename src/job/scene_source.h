@@ -18,6 +18,7 @@ struct SceneSource {
   int frame = 1;
   std::shared_ptr<const std::string> text = {};  ///< of the scene, if `file` is only its name; null: read the file
   decltype(format::ReadOptions::open_data) open_data = {};  ///< see format::ReadOptions
+  bool is_generated = false;                                ///< see format::ReadOptions
 };
 
 }  // namespace orrery::job

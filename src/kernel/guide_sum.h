@@ -31,7 +31,7 @@ struct GuideSum {
 /// 32 bits hold the guides of a path, 64 bits those of 2^31 paths.
 inline constexpr double kGuideUnit = 0x1p-30;
 
-/// Upper bound to which reciprocal distances are clamped: a camera inside a surface sees it at any small distance.
+/// Upper bound of reciprocal distances: a camera can be arbitrarily close to a surface.
 inline constexpr double kLargestInverseDepth = 0x1p28;
 
 }  // namespace orrery::kernel

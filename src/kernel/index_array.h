@@ -9,7 +9,7 @@ namespace orrery::kernel {
 
 /// Unsigned integers of 0, 1, 2 or 4 bytes each. Owns nothing.
 ///
-/// An element is read with four bytes from its first one on: three bytes after the last element are read as well.
+/// Reading an element loads four bytes from its start, so three bytes after the last element must be readable.
 struct IndexArray {
   const unsigned char* data = nullptr;
   std::uint32_t stride = 0;  ///< bytes; 0: all are equal, and stored in four bytes

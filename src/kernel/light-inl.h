@@ -94,8 +94,8 @@ struct ChosenLights {
 
 /// Descends the light tree at each vertex, to the leaf that `next` leads to.
 ///
-/// `next`     called as next(left, whole, level): whether each lane continues to the left child, whose share of
-///            the importance is left / whole
+/// `next`     called as next(share, inner, ranges, level): returns whether each lane continues to the left child, which
+///            has this share of the importance. `inner`: lanes that have not reached a leaf
 /// Result     the probability of the path to the leaf
 template <class D, class Next>
 HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, LightRange (&range)[hn::MaxLanes(D())],

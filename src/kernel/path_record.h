@@ -36,7 +36,7 @@ struct PathRecord {
 struct LightEvent {
   double value[3];          ///< emitted radiance times the path's throughput
   std::uint32_t path;       ///< index of the path's record within the tile
-  std::uint16_t group = 0;  ///< light group of the source; 0: of none
+  std::uint16_t group = 0;  ///< light group of the source; 0: the default group
   Lobe lobe = Lobe::kBackground;
 };
 

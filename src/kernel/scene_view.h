@@ -64,7 +64,8 @@ struct SceneView {
   const MaterialTextures* material_textures = nullptr;
   Lights lights;  ///< the emitters that light sampling chooses from
   DirectLighting direct_lighting = DirectLighting::kMis;
-  /// Changes of centre and radius of the first spheres until the shutter closes. The others do not move.
+  /// Change in centre and radius of each of the first `moving_count` spheres, from shutter open to shutter close; null:
+  /// none.
   const Sphere* motion = nullptr;
   std::size_t moving_count = 0;
   Camera camera;

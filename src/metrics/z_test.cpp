@@ -6,6 +6,12 @@
 #include <numbers>
 
 namespace orrery::metrics {
+namespace {
+
+/// Relative difference that storing one of the images in half precision can cause.
+constexpr double kHalfPrecision = 0x1p-10;
+
+}  // namespace
 
 double two_sided_quantile(double chance) {
   double low = 0, high = 40;
@@ -25,7 +31,7 @@ std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance,
   for (int c = 0; c < 3; ++c) {
     for (int y0 = 0; y0 < picture.height; y0 += kTestedSide) {
       for (int x0 = 0; x0 < picture.width; x0 += kTestedSide) {
-        double sum = 0, expected = 0;
+        double sum = 0, expected = 0, magnitude = 0;
         for (int y = y0; y < std::min(y0 + kTestedSide, picture.height); ++y) {
           for (int x = x0; x < std::min(x0 + kTestedSide, picture.width); ++x) {
             const auto i =
@@ -39,12 +45,13 @@ std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance,
             expected += v;
             squares += d * d;
             light += b;
+            magnitude += std::abs(b);
           }
         }
         differences += sum;
         variances += expected;
-        if (!(expected > 0)) continue;
-        const double z = sum / std::sqrt(expected);
+        if (!(expected > 0) && std::abs(sum) <= kHalfPrecision * magnitude) continue;
+        const double z = expected > 0 ? sum / std::sqrt(expected) : std::copysign(kCertainZ, sum);
         zs.push_back(z);
         if (std::abs(z) <= std::abs(out.largest_z)) continue;
         out.largest_z = z;

@@ -16,7 +16,7 @@ inline constexpr int kTestedSide = 16;  // px
 /// Result of a z-test of whether two noisy images show the same scene, and the split of their difference into noise and
 /// bias.
 struct ZTest {
-  int tests = 0;                  ///< number of blocks with non-zero variance, counted per channel
+  int tests = 0;                  ///< number of blocks that have variance or differ, counted per channel
   int rejected = 0;               ///< number of tests with |z| above critical_z
   double largest_z = 0;           ///< z of the largest magnitude; positive if the image is brighter than the reference
   int channel = 0, x = 0, y = 0;  ///< channel of largest_z, and upper left corner of its block, px
@@ -29,7 +29,11 @@ struct ZTest {
   bool differ() const { return rejected > 0; }
 };
 
-/// Compares the means of blocks of kTestedSide px in each channel.
+/// z of a block without variance whose means differ: no noise explains it.
+inline constexpr double kCertainZ = 1e6;
+
+/// Compares the means of blocks of kTestedSide px in each channel. Without variance, means may differ by the precision
+/// of half.
 ///
 /// Domain     views of the same size; variances are those of the pixel means; a reference without variance is exact
 /// Result     empty if the image has no variance

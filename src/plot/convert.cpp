@@ -194,7 +194,7 @@ class Converter {
       refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames all");
     base::FileSet files;
     for (const int frame : data_.all()) files.add_input(data_.file_of(frame), "data file");
-    if (points::find_color_map(keys_.color.map) == nullptr) files.add_input(keys_.color.map, "colour map");
+    if (keys_.color.has_map_file()) files.add_input(keys_.color.map, "colour map");
     for (const int frame : data_.all()) files.add_output(output_of(frame), "-o");
     for (const int frame : data_.all()) base::check_creatable(output_of(frame));
   }
@@ -222,7 +222,7 @@ class Converter {
       out.notes.push_back("left out " + base::joined(output.left_out()) + ": the name is that of a column above");
     const std::vector<std::string> unwritten = data::write_table(out.file, output.table());
     if (!unwritten.empty())
-      out.notes.push_back("left out " + base::joined(unwritten) + ": the format cannot store these texts");
+      out.notes.push_back("left out " + base::joined(unwritten) + ": the format cannot store these strings");
     for (const data::Column& column : output.table().columns)
       if (std::find(unwritten.begin(), unwritten.end(), column.name) == unwritten.end())
         out.columns.push_back(column.name);

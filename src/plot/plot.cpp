@@ -87,9 +87,12 @@ class PlotMaker {
     } else {
       radius.value = 1;
       const double distance = spacing();
-      if (distance > 0) radius.value = rounded(distance / 2);
+      if (distance > 0) radius.value = distance / 2;
+      radius.value = rounded(*radius.value * radius.scale);
       chose("radius " + number_text(*radius.value),
-            distance > 0 ? "half the median distance to the nearest neighbour" : "no particle has a neighbour");
+            std::string(distance > 0 ? "half the median distance to the nearest neighbour"
+                                     : "no particle has a neighbour") +
+                (radius.scale == 1 ? "" : "; scaled by " + number_text(radius.scale)));
     }
   }
 

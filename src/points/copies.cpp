@@ -141,6 +141,10 @@ std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& po
     faults.error(".replicate", "the numbers of copies must be integers");
   else if (!(n == Vec3d{1, 1, 1}) && !info.box)
     faults.error(".replicate", "the file has no periodic box");
+  else
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (const double counts[] = {n.x, n.y, n.z}; counts[axis] > 1 && info.box->edges[axis] == Vec3d{})
+        faults.error(".replicate", std::string("edge ") + "abc"[axis] + " of the box has no length");
   return out;
 }
 

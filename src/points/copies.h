@@ -32,7 +32,7 @@ std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& po
 /// Cost       100 bytes per copy and image: check the memory first
 std::vector<Copy> replicated(const std::vector<Copy>& copies, const data::Box& box, data::Vec3d counts);
 
-/// The number of spheres that make_copies() makes of `count` spheres; at most this if a copy lists a chain twice.
+/// The number of spheres that make_copies() makes of `count` spheres; an upper bound if a copy lists a chain twice.
 std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
 
 /// Replaces the spheres by their copies, one copy after the other, and applies the transform of the points.

@@ -12,7 +12,7 @@ namespace orrery::points {
 inline constexpr const char* kSpeed = "speed";
 
 /// Adds the column `speed` to the columns of a frame, if it can be computed: from vx, vy and vz, or from the components
-/// of velocity, velocities or vel.
+/// of velocity, velocities, vel or velo.
 void add_derived_columns(data::FrameInfo& info);
 
 /// Returns the columns of the file that a column is computed from; empty if the file has it.

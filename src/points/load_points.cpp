@@ -200,11 +200,30 @@ class Loader {
     }
     const data::Column* const ids = table.find(info_.roles.id);
     if (ids == nullptr) return list.empty() ? Rows(table.rows) : Rows(std::move(list));
-    std::vector<double> id(table.rows);
-    for_each_number(*ids, Rows(table.rows), [&](std::size_t i, double v) { id[i] = v; });
-    if (std::is_sorted(id.begin(), id.end())) return list.empty() ? Rows(table.rows) : Rows(std::move(list));
+    // As they are in the file: a double cannot represent all ids of 64 bits.
+    return std::visit(
+        [&](const auto& id) {
+          if constexpr (requires { is_before(id[0], id[0]); }) return in_order_of(id, std::move(list));
+          return Rows(std::move(list));  // ids are numbers
+        },
+        ids->values);
+  }
+
+  /// Order of ids. Missing ones come last.
+  template <class T>
+  static bool is_before(T a, T b) {
+    if constexpr (std::is_floating_point_v<T>)
+      if (std::isnan(a) || std::isnan(b)) return !std::isnan(a) && std::isnan(b);
+    return a < b;
+  }
+
+  template <class Ids>
+  static Rows in_order_of(const Ids& id, std::vector<std::uint32_t> list) {
+    bool is_sorted = true;
+    for (std::size_t i = 1; i < id.size() && is_sorted; ++i) is_sorted = !is_before(id[i], id[i - 1]);
+    if (is_sorted) return list.empty() ? Rows(id.size()) : Rows(std::move(list));
     if (list.empty()) {
-      list.resize(table.rows);
+      list.resize(id.size());
       std::iota(list.begin(), list.end(), 0U);
     }
     sort_by_id(id, list);
@@ -212,19 +231,20 @@ class Loader {
   }
 
   /// Sorts rows by id. Ids are usually 1 to N in another order, which takes one pass.
-  static void sort_by_id(const std::vector<double>& id, std::vector<std::uint32_t>& list) {
+  template <class Ids>
+  static void sort_by_id(const Ids& id, std::vector<std::uint32_t>& list) {
     constexpr std::uint32_t kFree = 0xffffffff;
     std::vector<std::uint32_t> at(id.size() + 1, kFree);
     bool is_permutation = true;
     for (const std::uint32_t row : list) {
-      const double n = id[row];
+      const auto n = static_cast<double>(id[row]);
       is_permutation = n >= 0 && n <= static_cast<double>(id.size()) && n == std::floor(n) &&
                        at[static_cast<std::size_t>(n)] == kFree;
       if (!is_permutation) break;
       at[static_cast<std::size_t>(n)] = row;
     }
     if (!is_permutation) {
-      std::stable_sort(list.begin(), list.end(), [&](auto a, auto b) { return id[a] < id[b]; });
+      std::stable_sort(list.begin(), list.end(), [&](auto a, auto b) { return is_before(id[a], id[b]); });
       return;
     }
     list.clear();

@@ -29,7 +29,10 @@ std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows
                                       const char* part, KeyFaults& faults) {
   Labels labels = labels_of(*table.find(column), rows, kMaxLabels);
   if (labels.of_rows.size() == rows.size()) return labels;
-  faults.error(part, "column `" + column + "` has more than " + std::to_string(kMaxLabels) + " distinct values");
+  faults.error(part, "column `" + column + "` has more than " + std::to_string(kMaxLabels) + " distinct values" +
+                         (table.find(column)->type() == data::ColumnType::kText
+                              ? "; colour by another column"
+                              : "; use a continuous map, e.g. viridis, or another column"));
   return {};
 }
 
@@ -160,23 +163,35 @@ PointColors colors_by_type(const data::Table& table, const Rows& rows, const Col
   return out;
 }
 
+/// The value of full intensity. Colours of floating point are from 0 to 1, but some programs write 0 to 255.
+double full_intensity(const data::Table& table, const Rows& rows, const ColorSource& source) {
+  constexpr double kMaxOvershoot = 2;
+  double largest = 0;
+  for (const std::string& name : source.columns)
+    for_each_number(*table.find(name), rows, [&](std::size_t, double v) {
+      if (v > largest && std::isfinite(v)) largest = v;
+    });
+  return source.rgb_maximum == 1 && largest > kMaxOvershoot ? largest > 255 ? 65535 : 255 : source.rgb_maximum;
+}
+
 /// The file's colours as 24 bits per sphere.
 std::vector<std::uint32_t> bytes_of(const data::Table& table, const Rows& rows, const ColorSource& source,
                                     KeyFaults& faults) {
+  const double full = full_intensity(table, rows, source);
   std::vector<std::uint32_t> out(rows.size());
   std::uint64_t nan = 0, out_of_range = 0;
   for (const std::string& name : source.columns) {
     for_each_number(*table.find(name), rows, [&](std::size_t i, double v) {
       nan += std::isnan(v) ? 1 : 0;
-      out_of_range += v < 0 || v > source.rgb_maximum ? 1 : 0;
-      const double byte = std::isnan(v) ? 0 : std::clamp(v / source.rgb_maximum, 0.0, 1.0) * 255;
+      out_of_range += v < 0 || v > full ? 1 : 0;
+      const double byte = std::isnan(v) ? 0 : std::clamp(v / full, 0.0, 1.0) * 255;
       out[i] = out[i] << 8 | static_cast<std::uint32_t>(byte + 0.5);
     });
   }
-  if (nan > 0) faults.warning(".color.rgb", std::to_string(nan) + " values are NaN and count as 0");
+  if (nan > 0) faults.warning(".color.rgb", std::to_string(nan) + " values are NaN and are replaced by 0");
   if (out_of_range > 0)
-    faults.warning(".color.rgb", std::to_string(out_of_range) + " values are outside 0.." +
-                                     scene::number_text(source.rgb_maximum) + " and were clamped");
+    faults.warning(".color.rgb", std::to_string(out_of_range) + " values are outside 0.." + scene::number_text(full) +
+                                     " and were clamped");
   return out;
 }
 
@@ -216,7 +231,7 @@ void set_map(const scene::PointsColor& color, const std::filesystem::path& folde
              KeyFaults& faults) {
   if (const ColorMap* map = find_color_map(color.map)) {
     out.map = *map;
-  } else if (color.map.find_first_of("./\\") != std::string::npos) {
+  } else if (color.has_map_file()) {
     out.map = read_color_map(folder / color.map);
   } else {
     const std::string suggestion = base::did_you_mean(color.map, color_map_names());

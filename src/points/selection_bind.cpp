@@ -19,7 +19,7 @@ constexpr const char* type_text(Type type) {
     case Type::kNumber: return "a number";
     case Type::kTruth: return "a condition";
     case Type::kTextColumn:
-    case Type::kText: return "a text";
+    case Type::kText: return "a string";
   }
   return "";
 }
@@ -74,7 +74,7 @@ class Binder {
     // element == C
     const bool is_compared = at + 1 < code_.steps.size() && (code_.steps[at + 1].op == SelectionOp::kEqual ||
                                                              code_.steps[at + 1].op == SelectionOp::kUnequal);
-    if (is_compared) remedy += "; a text is quoted: \"" + name + "\"";
+    if (is_compared) remedy += "; strings are quoted: \"" + name + "\"";
     fail_selection(code_.text, code_.steps[at].span, "unknown column " + name, remedy);
   }
 
@@ -112,7 +112,7 @@ class Binder {
         emit({BlockOp::kInNumbers, 0, 0, 0, step.index}, Type::kTruth, step.span);
         break;
       case SelectionOp::kInTexts:
-        add_in_texts(pop_of(Type::kTextColumn, step, "the list has texts"), code_.text_lists[step.index], step.span);
+        add_in_texts(pop_of(Type::kTextColumn, step, "the list has strings"), code_.text_lists[step.index], step.span);
         break;
     }
   }
@@ -150,7 +150,7 @@ class Binder {
       fail_selection(code_.text, step.span, "a condition cannot be compared",
                      "combine conditions by && and ||, or add parentheses");
     if (left.type == Type::kText && right.type == Type::kText)
-      fail_selection(code_.text, step.span, "two texts are compared", "write a column without quotes");
+      fail_selection(code_.text, step.span, "two strings are compared", "write a column without quotes");
     if (left.type == Type::kNumber) std::swap(left, right);
     const bool is_column = left.type == Type::kTextColumn;
     fail_selection(code_.text, left.span,
@@ -179,7 +179,7 @@ class Binder {
     std::string remedy = reason;
     if (remedy.empty() && type == Type::kTruth) remedy = "compare it, as in: x != 0";
     if (remedy.empty() && operand.type == Type::kTruth) remedy = "add parentheses";
-    if (remedy.empty()) remedy = "texts are compared by ==, != and in";
+    if (remedy.empty()) remedy = "strings can be compared with ==, != and in";
     if (type == Type::kTextColumn && operand.type == Type::kText) remedy = "write a column without quotes";
     fail_selection(code_.text, operand.span,
                    verbatim(step.span) + " expects " + expected + ", not " + type_text(operand.type), remedy);

@@ -330,9 +330,9 @@ class Parser {
       } else if (token_.kind == Kind::kText && !negative) {
         texts.emplace_back(token_.text);
       } else {
-        fail_at_token("expected a number or a text", "e.g. type in [1, 2], chain in [\"A\", \"B\"]");
+        fail_at_token("expected a number or a string", "e.g. type in [1, 2], chain in [\"A\", \"B\"]");
       }
-      if (!numbers.empty() && !texts.empty()) fail_at_token("list of both numbers and texts", "use two lists");
+      if (!numbers.empty() && !texts.empty()) fail_at_token("list of both numbers and strings", "use two lists");
       read();
     } while (take(","));
     if (!take("]")) fail_at_token("expected , or ]", "e.g. type in [1, 2]");

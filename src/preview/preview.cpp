@@ -61,7 +61,7 @@ void Preview::run() {
   pthread_setname_np(pthread_self(), "preview");  // for profilers
   Clock::time_point start;
   double processor_start = 0;
-  std::optional<Pacing> pacing;  // of the present image
+  std::optional<Pacing> pacing;  // of the current image
   std::unique_lock lock(mutex_);
   for (;;) {
     const Request request = request_;

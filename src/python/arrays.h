@@ -25,9 +25,9 @@ std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& colum
 /// Moves a column into a one-dimensional array without a copy of the numbers; texts become a list of str.
 pybind11::object array_of(data::Values values);
 
-/// Returns an array that shows values of an object without a copy, read-only.
+/// Returns a read-only array that views values without a copy.
 ///
-/// Domain     `owner` keeps the values
+/// Domain     `owner` keeps the values alive
 template <class T>
 pybind11::array_t<T> view_of(const T* values, std::vector<pybind11::ssize_t> shape, const pybind11::object& owner) {
   pybind11::array_t<T> out(std::move(shape), values, owner);

@@ -36,7 +36,7 @@ class Ranking {
   }
 
   struct Bin {
-    double error = 0;         ///< sum of the pixels' present squared errors
+    double error = 0;         ///< sum of the pixels' current squared errors
     double root = 0;          ///< sum of the roots of the squared errors of one sample
     double samples = 0;       ///< that its pixels have
     std::uint64_t price = 0;  ///< samples needed to double them

@@ -8,7 +8,7 @@ namespace orrery::render {
 
 /// The goal and the limits of the next iteration of adaptive sampling.
 struct RoundGoal {
-  double error_ratio = 0;            ///< target squared error of the image / present one
+  double error_ratio = 0;            ///< target squared error of the image / current one
   std::uint64_t affordable = 0;      ///< maximum samples of this iteration
   std::uint32_t most_per_pixel = 0;  ///< maximum samples of a pixel
 };

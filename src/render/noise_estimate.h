@@ -19,7 +19,7 @@ struct NoiseEstimate {
   double upper() const { return mean_square + 2 * standard_error; }
 };
 
-/// Estimates the noise of the present image.
+/// Estimates the noise of the current image.
 NoiseEstimate estimate_noise(const PixelStatistics& statistics, TilePool& pool);
 
 /// Pixels without a reliable error estimate: too few paths around them have found light.

@@ -169,7 +169,9 @@ Result render(const compile::CompiledScene& compiled, const Settings& settings, 
     return {};
   }
   const double build_s = seconds_since(start);
-  Result result = render(compiled, *accel, settings, std::move(from));
+  Settings after_build = settings;
+  after_build.sampling.spend(build_s);
+  Result result = render(compiled, *accel, after_build, std::move(from));
   result.statistics.build_s = build_s;
   return result;
 }

@@ -34,7 +34,7 @@ struct Settings {
   /// Called from any thread with the progress of the BVH build, 0..1.
   std::function<void(double fraction)> on_build;
   const std::atomic<bool>* cancel = nullptr;  ///< polled during the build and between tiles; true stops the render
-  /// Polled often, from any thread. If true, the threads wait while `on_snapshot` receives the present state.
+  /// Polled often, from any thread. If true, the threads wait while `on_snapshot` receives the current state.
   std::function<bool()> snapshot_is_due;
   std::function<void(const film::Partial&)> on_snapshot;
   /// Called on the rendering threads for pixels that have received samples, and for those of an earlier run when a

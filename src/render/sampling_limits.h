@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "render/pixel_shard.h"
@@ -20,6 +21,11 @@ struct SamplingLimits {
 
   /// True if the pixels are sampled adaptively.
   bool is_adaptive() const { return noise > 0 || seconds > 0; }
+  /// Takes time that has passed from the time budget, if there is one.
+  void spend(double used_s) {
+    constexpr double kShortest = 1e-3;  // 0 would be no limit
+    if (seconds > 0) seconds = std::max(seconds - used_s, kShortest);
+  }
   /// True if these are not all samples of all pixels.
   bool is_partial() const { return sample_end > 0 || shard.count > 1; }
 };

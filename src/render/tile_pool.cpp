@@ -4,21 +4,26 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <atomic>
+#include <optional>
 
 namespace orrery::render {
 
 struct TilePool::Impl {
-  // Raises the limit: by default TBB uses no more threads than processors.
-  tbb::global_control limit;
+  // Raises the limit if necessary: by default TBB uses no more threads than processors. The smallest limit holds for
+  // all renders of the process, so that fewer threads must not set one.
+  std::optional<tbb::global_control> limit;
   tbb::task_arena arena;
   tbb::enumerable_thread_specific<TileWorker> workers;
 
-  explicit Impl(int threads)
-      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)), arena(threads) {}
+  explicit Impl(int threads) : arena(threads) {
+    if (threads > tbb::info::default_concurrency())
+      limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  }
 };
 
 TilePool::TilePool(int threads) : impl_(std::make_unique<Impl>(threads)) {}

@@ -12,8 +12,8 @@ namespace orrery::render {
 
 /// Chooses the BVH traversal for a scene.
 ///
-/// Unless a traversal is requested, a few thousandths of the image's paths are rendered and the tracing of their rays
-/// is timed with both traversals. If the image has too few paths for that to pay off, the number of spheres decides.
+/// Unless a traversal is requested, up to 0.2 % of the image's paths are rendered and the tracing of their rays is
+/// timed with both traversals. If the image has too few paths for that to pay off, the number of spheres decides.
 /// Hits, and with them the image, do not depend on the choice.
 accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel,
                                     std::optional<accel::Traversal> requested);

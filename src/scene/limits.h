@@ -31,8 +31,8 @@ inline constexpr int kLargestSide = 65536;
 /// Maximum background radiance: the sum of a pixel's samples then fits into 128 bits.
 inline constexpr double kBrightestBackground = 1e6;
 
-/// Maximum radiance with exposure: half of kernel::kLargestSample. The light of a path that gathers more at several
-/// vertices is an invalid sample.
+/// Maximum radiance after exposure: half of kernel::kLargestSample. A path whose total exceeds kLargestSample is a bad
+/// sample.
 inline constexpr double kBrightestLight = 0x1p34;
 
 /// Maximum absolute rotation of the background, degrees: an animation may make many turns.

@@ -22,8 +22,8 @@ std::vector<Key<P>> make_keys() {
                        {"",
                         "Data file, relative to the scene file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, "
                         "HDF5 or VTK; see [Data files](data.md). May contain a frame pattern such as `####`",
-                        "Read once. 32 bytes of scene data per sphere, 36 with materials, 34 with colours, excluding "
-                        "the BVH"},
+                        "Read for each frame. At least 12 bytes of scene data per sphere, excluding the BVH; see "
+                        "[Cost](data.md#cost)"},
                        [](P& p) -> std::filesystem::path& { return p.file; })),
       optional_integer<P>("frame", {1, kMaxFrameOfFile}, {"", "Frame of the file, counted from 1"},
                           "the rendered frame, if the file has several",

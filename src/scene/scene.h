@@ -171,6 +171,8 @@ struct PointsColor {
   bool rgb = false;                                  ///< the file's colours
 
   bool is_set() const { return !column.empty() || !element.empty() || !types.empty() || rgb; }
+  /// Whether `map` is a file: names have neither dots nor slashes.
+  bool has_map_file() const { return map.find_first_of("./\\") != std::string::npos; }
 };
 
 /// A point p of a file is at scale * R p + translate, where R turns about x, then y, then z.

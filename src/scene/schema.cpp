@@ -71,7 +71,7 @@ Table camera_table() {
                  {"frames",
                   "Shutter closing time, relative to the frame. If later than `shutter_open`, camera and spheres "
                   "that move during the interval are motion-blurred",
-                  "Only if something moves: one extra random dimension per vertex, and motion-blurred bounds"},
+                  "Only if something moves: one extra random dimension per path, and motion-blurred bounds"},
                  [](S& s) -> double& { return s.camera.shutter_close; })}};
 }
 
@@ -195,7 +195,8 @@ Table render_table() {
                   "Sampling of direct light. `mis`: light and BSDF sampling, combined by multiple importance sampling. "
                   "`bsdf`: BSDF sampling only, as in the book. `light`: light sampling only, except for reflections in "
                   "mirrors and glass and inside emitters, where it is impossible",
-                  "`mis` and `light`: one shadow ray per diffuse or fuzzy vertex; none in scenes without lights"},
+                  "`mis` and `light`: one shadow ray per vertex on a diffuse material or fuzzy metal; none in scenes "
+                  "without lights"},
                  [](S& s) -> DirectLighting& { return s.render.direct_lighting; }),
        choice<S>("filter", {"box", "gaussian", "blackman-harris", "mitchell"},
                  {"",

@@ -57,8 +57,8 @@ std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
        {required(text<Texture>(
             "file",
             {"",
-             "Image file, relative to the scene file: EXR, HDR, PNG, JPEG, TIFF, ... with +y at the top, +x at the "
-             "centre and +z halfway to the left edge. May contain a frame pattern such as `####`",
+             "Image file, relative to the scene file: EXR, HDR, PNG, JPEG, TIFF or PPM, with +y at the top, +x "
+             "at the centre and +z halfway to the left edge. May contain a frame pattern such as `####`",
              "12 bytes per texel"},
             [](Texture& t) -> std::filesystem::path& { return t.file; })),
         text<Texture>("color_space",

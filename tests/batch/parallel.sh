@@ -21,10 +21,10 @@ cp "$scenes/book/final.toml" 'a shot.toml'
   --set 'material.ground.albedo=[0.5, 0.4, 0.5]' --program "$program" > shot.sh
 
 # A folder with the name of a shard file makes that task fail; the script must report it.
-mkdir -p 'a_shot.shards/3.2.shard.exr'
+mkdir -p 'shot.____.exr.shards/3.2.shard.exr'
 if sh shot.sh 2> first.log; then echo "parallel: a shard failed, but the script succeeded"; exit 1; fi
-[ "$(awk 'NR > 1 && $7 != 0' a_shot.shards/render.log | wc -l)" = 1 ] || { cat a_shot.shards/render.log; exit 1; }
-rmdir 'a_shot.shards/3.2.shard.exr'
+[ "$(awk 'NR > 1 && $7 != 0' shot.____.exr.shards/render.log | wc -l)" = 1 ] || { cat shot.____.exr.shards/render.log; exit 1; }
+rmdir 'shot.____.exr.shards/3.2.shard.exr'
 sh shot.sh 2> second.log
 sh shot.sh 2> third.log  # nothing left to render
 

@@ -19,7 +19,7 @@ done
 [ "$(id -u)" -eq 0 ] || { echo "slurm: skipped: only root can start nodes"; exit 77; }
 
 host=$(hostname -s)
-rm -rf "$folder/cluster" "$folder/shot.shards" "$folder"/*.exr
+rm -rf "$folder/cluster" "$folder/shot.____.exr.shards" "$folder"/*.exr
 mkdir -p "$folder/cluster/state" "$folder/cluster/keys"
 chmod 0700 "$folder/cluster/keys"
 cd "$folder"
@@ -131,6 +131,6 @@ starts=$(grep -c "\(Started\|Allocate\) JobId=$killed(" cluster/slurmctld.log)
 for frame in 1 2; do
   # shellcheck disable=SC2086
   "$program" render shot.toml -o "one.####.exr" --frames $frame $settings -q
-  cmp "one.000$frame.exr" "shot.000$frame.exr" || { tail -n 3 shot.shards/*.log; exit 1; }
+  cmp "one.000$frame.exr" "shot.000$frame.exr" || { tail -n 3 shot.____.exr.shards/*.log; exit 1; }
 done
 echo "slurm: two frames in four shards each, one node killed: the same bytes as a single process"

@@ -58,7 +58,7 @@ TEST_F(CliConvert, EveryFormatGivesTheSamePlotAndTheSameValues) {
     const bool has_texts = name != "b.ply";
     EXPECT_EQ(r.err, "wrote " + name + ": 4 spheres; columns x, y, z, radius, id, type, " +
                          (has_texts ? "element, " : "") + "vx, vy, vz\n" +
-                         (has_texts ? "" : "note: b.ply: left out element: the format cannot store these texts\n"));
+                         (has_texts ? "" : "note: b.ply: left out element: the format cannot store these strings\n"));
     ASSERT_EQ(run("plot " + name + " -o b.ppm" + plot).status, 0) << name;
     EXPECT_TRUE(text_of(folder_ / "b.ppm") == text_of(folder_ / "a.ppm")) << name;
     const nlohmann::json after = info(name);
@@ -112,7 +112,7 @@ TEST_F(CliConvert, CopiesOfAnAssemblyHaveTheRowsOfTheirChains) {
   EXPECT_EQ(r.status, 0);
   EXPECT_TRUE(contains(r.err,
                        "note: a.xyz: no column radius: the file has no radius; --radius or --element-radii sets it\n"
-                       "note: a.xyz: left out altloc: the format cannot store these texts\n"))
+                       "note: a.xyz: left out altloc: the format cannot store these strings\n"))
       << r.err;
 }
 
@@ -199,6 +199,72 @@ TEST_F(CliConvert, NoInputIsOverwritten) {
   expect_error("convert a.01.csv -o map.csv --color-by x --map map.csv", 2, "colour map");
   for (const char* file : {"a.01.csv", "a.02.csv"}) EXPECT_EQ(text_of(folder_ / file), csv) << file;
   EXPECT_EQ(text_of(folder_ / "map.csv"), "0,0,0\n1,1,1\n");
+}
+
+/// The column of elements keeps its meaning, whatever it is called.
+TEST_F(CliConvert, ElementsOfAnXyzAreElements) {
+  write("in.xyz", "2\nProperties=species:S:1:pos:R:3\nSi 0 0 0\nO 1 1 1\n");
+  EXPECT_TRUE(contains(converted("in.xyz", "out.xyz"), "Properties=species:S:1:pos:R:3\nSi 0 0 0\nO 1 1 1"));
+  EXPECT_EQ(info("out.xyz")["roles"]["element"], "species");
+}
+
+/// A text file with a wrong checksum decompresses, but not to what was written.
+TEST_F(CliConvert, DamagedCompressionIsAnError) {
+  write("in.csv", "x,y,z\n0,0,0\n2,0,0\n");
+  ASSERT_EQ(std::system(("gzip -k " + (folder_ / "in.csv").string()).c_str()), 0);
+  const std::string good = text_of(folder_ / "in.csv.gz");
+  EXPECT_EQ(converted("in.csv.gz"), "x,y,z\n0,0,0\n2,0,0\n");
+  write("two.csv.gz", good + good + std::string(16, '\0'));
+  EXPECT_EQ(run("convert two.csv.gz -o two.csv").status, 65) << "two members: the second has a header as well";
+  for (const std::size_t from_end : {1, 5, 12}) {
+    std::string damaged = good;
+    damaged[damaged.size() - from_end] ^= 1;
+    write("damaged.csv.gz", damaged);
+    expect_error("convert damaged.csv.gz -o out.csv", 65, "damaged compressed data");
+  }
+  write("short.csv.gz", good.substr(0, good.size() - 3));
+  expect_error("convert short.csv.gz -o out.csv", 65, "truncated");
+  write("longer.csv.gz", good + "x");
+  expect_error("convert longer.csv.gz -o out.csv", 65, "damaged compressed data");
+}
+
+TEST_F(CliConvert, ColorMapsAreInputsOfAllCommands) {
+  write("map.txt", "0 0 255\n255 0 0\n");
+  write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,2\n");
+  const std::string plot = "plot a.csv -o a.ppm --width 8 --height 4 --samples 1 -q --color-by q --map ./map.txt ";
+  for (const char* output : {"--stats map.txt", "--save-scene map.txt", "--legend map.txt", "--log map.txt"})
+    EXPECT_EQ(run(plot + output).status, 2) << output;
+  ASSERT_EQ(run(plot + "--save-scene s.toml").status, 0);
+  EXPECT_EQ(run("render s.toml -o b.ppm --stats map.txt").status, 2);
+  EXPECT_EQ(text_of(folder_ / "map.txt"), "0 0 255\n255 0 0\n");
+}
+
+/// Rendering the saved scene needs no option again, except those of sampling.
+TEST_F(CliConvert, SavedScenesHaveTheSettingsOfTheCommandLine) {
+  write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,2\n");
+  const std::string size = " --width 16 --height 9 --samples 4 -q";
+  ASSERT_EQ(run("plot a.csv -o a.ppm --set camera.width=5 --seed 7 --exposure 1 --save-scene s.toml" + size).status, 0);
+  ASSERT_EQ(run("render s.toml -o b.ppm -q").status, 0);
+  EXPECT_TRUE(text_of(folder_ / "a.ppm") == text_of(folder_ / "b.ppm"));
+  ASSERT_EQ(run("plot a.csv -o c.ppm" + size).status, 0);
+  EXPECT_FALSE(text_of(folder_ / "a.ppm") == text_of(folder_ / "c.ppm")) << "the settings matter";
+  EXPECT_EQ(run("plot a.csv -o c.ppm --radius 0.3 --radius-scale 2" + size).status, 2);
+  const Outcome scaled = run("plot a.csv -o c.ppm --radius-scale 2 --width 16 --height 9 --samples 1");
+  EXPECT_TRUE(contains(scaled.err, "radius 1: half the median distance to the nearest neighbour; scaled by 2"))
+      << scaled.err;
+}
+
+/// The scene of a plot is not a file: its lines mean nothing to the user.
+TEST_F(CliConvert, ErrorsOfAPlotHaveNoLinesOfItsScene) {
+  write("far.csv", "x,y,z\n1e30,0,0\n0,0,0\n");
+  const Outcome r = run("plot far.csv -o far.png");
+  EXPECT_EQ(r.status, 65);
+  EXPECT_TRUE(contains(r.err, "far.csv: error: camera.width")) << r.err;
+}
+
+TEST_F(CliConvert, FilesOfOtherLayoutsAreRefused) {
+  write("a.pqr", "REMARK   1 PQR file\nATOM      1  N   ALA     1       1.000   2.000   3.000  0.1414 1.8240\n");
+  expect_error("info a.pqr", 65, "PQR files are not supported");
 }
 
 TEST_F(CliConvert, ErrorsLeaveNoFile) {

@@ -53,7 +53,7 @@ TEST_F(CliTrade, PixelsWithoutNoiseEstimateAreReported) {
   const Outcome r = run("render dark.toml -o a.exr --noise 0.3 --samples 64 --stats s.json --progress none");
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.err.find("warning: "), std::string::npos) << r.err;
-  EXPECT_NE(r.err.find(" pixels cannot be judged: too few paths found light near them; allow more samples\n"),
+  EXPECT_NE(r.err.find(" pixels cannot be estimated: too few paths found light near them; allow more samples\n"),
             std::string::npos)
       << r.err;
   const auto s = stats();

@@ -116,12 +116,12 @@ TEST(ImageNextWeekPictures, TheLampLightsTheFloorBesideIt) {
 
 TEST(ImageNextWeekPictures, SmallSpheresMoveAndTheGroundDoesNot) {
   const film::Picture moving = picture_of("01-bouncing-spheres", {"render.samples=32"});
-  const film::Picture resting = picture_of("01-bouncing-spheres", {"render.samples=32", "camera.shutter_close=0"});
+  const film::Picture still = picture_of("01-bouncing-spheres", {"render.samples=32", "camera.shutter_close=0"});
   double changed = 0;
   for (int y = kHeight / 2; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const double u = (x + 0.5) / kWidth, v = (y + 0.5) / kHeight;
-      changed += std::abs(brightness(pixel(moving, u, v)) - brightness(pixel(resting, u, v))) > 0.1 ? 1 : 0;
+      changed += std::abs(brightness(pixel(moving, u, v)) - brightness(pixel(still, u, v))) > 0.1 ? 1 : 0;
     }
   EXPECT_GT(changed / (kWidth * kHeight / 2), 0.05);
   EXPECT_LT(changed / (kWidth * kHeight / 2), 0.5);

@@ -132,10 +132,60 @@ TEST_F(DataCsv, ATextInAColumnOfNumbersIsAnErrorWithItsLine) {
   std::string text = "# comment\nx,y,z\n";
   for (int i = 0; i < 1500; ++i) text += "1,2,3\n";
   EXPECT_EQ(faults(text), "");
-  EXPECT_EQ(faults(text + "1,two,3\n"), "1503: column 2: 'two' is not a number\n");
+  EXPECT_EQ(faults(text + "1,two,3\n1,three,3\n"),
+            "1503: column y: 'two' is not a number; correct it, or leave it empty\n");
   EXPECT_EQ(faults(text + "1,2\n"), "1503: has 2 values, not 3\n");
   EXPECT_EQ(faults(text + "1,2,3,4\n"), "1503: has more than 3 values\n");
   EXPECT_EQ(columns("x,y,z,q\n1,2,3,4\n1,2,3,none\n"), "x:float64 y:float64 z:float64 q:text");
+}
+
+/// One word must not turn radii or colours into strings, which would be replaced by defaults.
+TEST_F(DataCsv, AWordInAColumnWithAMeaningIsAnError) {
+  EXPECT_EQ(faults("x,y,z,radius\n0,0,0,1\n1,0,0,broken\n"),
+            "3: column radius: 'broken' is not a number; correct it, or leave it empty\n");
+  EXPECT_EQ(faults("x,y,z,red,green,blue\n0,0,0,1,0,?\n0,0,0,1,0,0\n"),
+            "2: column blue: '?' is not a number; correct it, or leave it empty\n");
+  EXPECT_EQ(faults("ra,dec,parallax\n1,2,3\n1,2,-\n"),
+            "3: column parallax: '-' is not a number; correct it, or leave it empty\n");
+  EXPECT_EQ(columns("x,y,z,radius\n0,0,0,small\n"), "x:float64 y:float64 z:float64 radius:text") << "no number at all";
+}
+
+TEST_F(DataCsv, MarkersOfMissingValuesAreNan) {
+  for (const std::string marker : {"NA", "N/A", "n/a", "#N/A", "<NA>", "null", "NULL", "None", ""}) {
+    const Table table = read("x,y,z,radius\n0,0,0,0.5\n0,0,0," + marker + "\n0,0,0,2\n");
+    EXPECT_EQ(numbers(table, "radius")[0], 0.5);
+    EXPECT_TRUE(std::isnan(numbers(table, "radius")[1])) << marker;
+    EXPECT_EQ(numbers(table, "radius")[2], 2);
+  }
+  EXPECT_TRUE(std::isnan(numbers(read("x y z q\n1 2 3 4\n1 2 3 NA\n"), "q")[1])) << "separated by blanks";
+  EXPECT_EQ(columns("x,y,z,element\n1,2,3,NA\n"), "x:float64 y:float64 z:float64 element:text") << "no number";
+}
+
+/// A scan may begin with a million rows without colours.
+TEST_F(DataCsv, TheWholeFileDeterminesTypesAndRanges) {
+  std::string colors = "x,y,z,red,green,blue\n", ids = "x,y,z,id\n", words = "x,y,z,note\n";
+  for (int i = 0; i < 2000; ++i) {
+    colors += "0,0,0,0,0,0\n";
+    ids += "0,0,0,1\n";
+    words += "0,0,0,\n";
+  }
+  EXPECT_EQ(roles(colors + "0,0,0,200,100,50\n").rgb_maximum, 255);
+  EXPECT_EQ(roles(colors + "0,0,0,30000,100,50\n").rgb_maximum, 65535);
+  const auto file = open(ids + "0,0,0,9007199254740993\n");
+  EXPECT_EQ(support::columns_text(file->describe(0)), "x:float64 y:float64 z:float64 id:int64");
+  EXPECT_EQ(std::get<std::vector<std::int64_t>>(file->read(0, {"id"}).columns[0].values).back(), 9007199254740993);
+  EXPECT_EQ(texts(read(words + "0,0,0,binary\n"), "note").back(), "binary");
+  EXPECT_EQ(columns(words + "0,0,0,\"1\"\n"), "x:float64 y:float64 z:float64 note:float64") << "not all are quoted";
+}
+
+TEST_F(DataCsv, CommentsAreSkippedAnywhere) {
+  const Table table = read("# first\nx,y,z\n1,2,3\n# between\n  % indented\n4,5,6\n# last\n");
+  EXPECT_EQ(numbers(table, "x"), (std::vector<double>{1, 4}));
+  EXPECT_EQ(numbers(read("1 2 3\n# between\n4 5 6\n"), "column3"), (std::vector<double>{3, 6}));
+  EXPECT_EQ(faults("x,y,z\n# comment\n1,2,three\n1,2,3\n"),
+            "3: column z: 'three' is not a number; correct it, or leave it empty\n")
+      << "comments count as lines";
+  EXPECT_EQ(roles("//X Y Z R G B\n1 2 3 255 0 0\n").rgb[0], "R") << "of CloudCompare";
 }
 
 TEST_F(DataCsv, QuotedColumnsAreTextsUnlessAllAreQuoted) {

@@ -102,7 +102,7 @@ TEST_F(DataLammpsData, ErrorsHaveLines) {
   EXPECT_EQ(errors(kHead + atoms + "1 1 0 0 0\n2 1 0 0 0\n3 1 0 0 0\n"), "19: more rows than 2 atoms\n");
   EXPECT_EQ(errors(kHead), "0: no section \"Atoms\"\n");
   EXPECT_EQ(errors("\n2 atoms\n0 x xlo xhi\n"), "3: 'x' is not a number\n");
-  EXPECT_EQ(errors("\n2 atoms\n1 0 xlo xhi\n"), "3: the box has a low coordinate above the high one\n");
+  EXPECT_EQ(errors("\n2 atoms\n1 0 xlo xhi\n"), "3: a lower bound of the box exceeds the upper bound\n");
 }
 
 TEST_F(DataLammpsData, ReadsFilesOfOtherPrograms) {

@@ -220,7 +220,7 @@ TEST_F(DataLammpsDump, ErrorsHaveLines) {
             "5: positions are scaled, but the frame has no item \"BOX BOUNDS\"\n");
   EXPECT_EQ(errors(kHead), "5: the file ends within the header of a frame\n");
   EXPECT_EQ(errors(kHead + "ITEM: BOX BOUNDS pp pp pp\n1 0\n0 1\n0 1\n" + atoms + "0 0 0\n0 0 0\n"),
-            "8: the box has a low coordinate above the high one\n");
+            "8: a lower bound of the box exceeds the upper bound\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n-1\n"), "4: expected a number of atoms, found '-1'\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\n"),
             "3: 'ITEM: NUMBER OF ENTRIES' is no item of a dump of atoms\n");

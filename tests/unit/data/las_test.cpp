@@ -248,10 +248,10 @@ TEST_F(DataLas, WrongHeadersAreRefused) {
   las = good;
   las.format = 11;
   las.record_bytes = 90;
-  EXPECT_EQ(faults(las), "point format 11; supported are 0 to 10\n");
+  EXPECT_EQ(faults(las), "point format 11; supported: 0 to 10\n");
   las = good;
   las.minor = 5;
-  EXPECT_EQ(faults(las), "version 1.5 of LAS; supported are 1.0 to 1.4\n");
+  EXPECT_EQ(faults(las), "version 1.5 of LAS; supported: 1.0 to 1.4\n");
   las = good;
   las.scale[1] = 0;
   EXPECT_EQ(faults(las), "the header's scale or offset of the coordinates is zero or not finite\n");

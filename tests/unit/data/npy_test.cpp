@@ -152,7 +152,7 @@ TEST_F(DataNpy, VersionsTwoAndThreeHaveALongLength) {
     EXPECT_EQ(numbers(read(npy_bytes("'<i2'", false, "(1, 3)", sequence<std::int16_t>({1, 2, 3}), version)), "z"),
               std::vector<double>{3})
         << version;
-  EXPECT_EQ(faults(npy_bytes("'<i2'", false, "(1, 3)", "", 4)), "version 4 of the format; supported are 1 to 3\n");
+  EXPECT_EQ(faults(npy_bytes("'<i2'", false, "(1, 3)", "", 4)), "version 4 of the format; supported: 1 to 3\n");
 }
 
 TEST_F(DataNpy, ManyRowsAreReadInParallel) {
@@ -197,7 +197,7 @@ TEST_F(DataNpy, ArraysThatAreNoTablesAreRefused) {
 TEST_F(DataNpy, LyingShapesAreRefusedBeforeAllocation) {
   const std::string data(24, '\0');
   EXPECT_EQ(faults(npy_bytes("'<f8'", false, "(2, 3)", data)),
-            "the header declares an array of the shape (2, 3) with items of 8 bytes, but 24 bytes follow; the file is "
+            "the header declares an array with shape (2, 3) with items of 8 bytes, but 24 bytes follow; the file is "
             "truncated, or the header is wrong\n");
   EXPECT_NE(faults(npy_bytes("'<f8'", false, "(1, 3)", data + "x")), "") << "excess data";
   for (const char* shape : {"(768614336404564651, 3)", "(18446744073709551615, 3)", "(2305843009213693953, 3)"})
@@ -224,8 +224,8 @@ TEST_F(DataNpy, MalformedHeadersAreRefused) {
             "the header needs `descr`, `fortran_order` and `shape`\n");
   EXPECT_EQ(faults(with("{'descr': __import__('os')}")), "the header is malformed: unexpected `_`\n");
   EXPECT_EQ(faults(with("{'descr': '\\x41'}")),
-            "the header is malformed: a text contains an escape sequence that is not supported\n");
-  EXPECT_EQ(faults(with("{'descr': '<f8}")), "the header is malformed: a text has no end\n");
+            "the header is malformed: a string contains an escape sequence that is not supported\n");
+  EXPECT_EQ(faults(with("{'descr': '<f8}")), "the header is malformed: a string has no end\n");
   EXPECT_EQ(faults(with("{'descr' '<f8'}")), "the header is malformed: `:` is missing after a key\n");
   EXPECT_EQ(faults(with("{'descr': ('<f8' 1)}")), "the header is malformed: `)` is missing\n");
   EXPECT_EQ(faults(with(std::string(60000, '['))), "the header is malformed: it is nested too deeply\n");

@@ -119,7 +119,7 @@ TEST_F(DataNpz, WithoutPositionsTheArraysAreListed) {
               {"readme", "text"}}),
       "there is no array of positions; the arrays are: a (1,), pos (it contains Python objects; convert them, "
       "e.g. with `astype('f8')`), b (the shape (1, 2, 3) is not that of columns), readme (not an array in NumPy's "
-      "format); save an array `pos` of the shape (N, 3), or arrays `x`, `y` and `z` of the shape (N,)\n");
+      "format); save an array `pos` with shape (N, 3), or arrays `x`, `y` and `z` with shape (N,)\n");
   EXPECT_NE(faults({}), "");
   EXPECT_EQ(faults({{"pos.npy", kPositions}, {"pos.npy", kPositions}, {"pos.npy", kPositions}}),
             "duplicate column `pos[1]`\n");
@@ -127,11 +127,11 @@ TEST_F(DataNpz, WithoutPositionsTheArraysAreListed) {
 
 TEST_F(DataNpz, LyingShapesAreRefused) {
   EXPECT_EQ(faults({{"pos.npy", npy_bytes("'<f8'", false, "(2, 3)", std::string(40, '\0'))}}),
-            "array `pos` of the shape (2, 3) needs 48 bytes of data, but 40 follow its header\n");
+            "array `pos` with shape (2, 3) needs 48 bytes of data, but 40 follow its header\n");
   EXPECT_EQ(faults({{"pos.npy", npy_bytes("'<f8'", false, "(2, 3)", std::string(49, '\0'))}}),
-            "array `pos` of the shape (2, 3) needs 48 bytes of data, but more follow its header\n");
+            "array `pos` with shape (2, 3) needs 48 bytes of data, but more follow its header\n");
   EXPECT_EQ(faults({{"pos.npy", npy_bytes("'<f8'", false, "(999999999999999999, 3)", std::string(40, '\0'))}}),
-            "array `pos` of the shape (999999999999999999, 3) exceeds the limit of 16.0 GiB of decompressed data\n");
+            "array `pos` with shape (999999999999999999, 3) exceeds the limit of 16.0 GiB of decompressed data\n");
   EXPECT_NE(faults({{"pos.npy", npy_bytes("'<f8'", false, "(400000000, 3)", std::string(40, '\0'))}}), "")
       << "below the limit: only what exists is read";
   EXPECT_EQ(support::columns_text(open({{"pos.npy", npy_bytes("'<f8'", false, "(0, 3)", "")},
@@ -167,11 +167,11 @@ TEST_F(DataNpz, DecompressedDataAreLimited) {
   options.decompressed_limit = 5000000;
   EXPECT_EQ(support::read_faults(folder_ / "a.npz", options), "");
   options.decompressed_limit = 2400000;
-  EXPECT_NE(support::read_faults(folder_ / "a.npz", options).find("array `pos` of the shape (100000, 3) exceeds"),
+  EXPECT_NE(support::read_faults(folder_ / "a.npz", options).find("array `pos` with shape (100000, 3) exceeds"),
             std::string::npos)
       << "with its header";
   options.decompressed_limit = 4800000;
-  EXPECT_NE(support::read_faults(folder_ / "a.npz", options).find("array `v` of the shape (100000, 3) exceeds"),
+  EXPECT_NE(support::read_faults(folder_ / "a.npz", options).find("array `v` with shape (100000, 3) exceeds"),
             std::string::npos);
 }
 

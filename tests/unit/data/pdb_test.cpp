@@ -147,6 +147,9 @@ TEST_F(DataPdb, CellWithoutSymmetryIsTheBox) {
       opened("CRYST1   10.000   20.000   30.000  90.00  90.00  90.00 P 21 21 21    4\n" + carbon)->describe(0).box);
   EXPECT_FALSE(
       opened("CRYST1    1.000    1.000    1.000  90.00  90.00  90.00 P 1           1\n" + carbon)->describe(0).box);
+  EXPECT_FALSE(
+      opened("CRYST1    0.000    0.000    0.000  90.00  90.00  90.00 P 1           1\n" + carbon)->describe(0).box)
+      << "of VMD";
 }
 
 /// REMARK 350 with transforms whose serial numbers are consecutive from `first`; each moves along x by its number.

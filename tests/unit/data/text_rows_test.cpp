@@ -148,7 +148,7 @@ TEST_F(DataTextRows, SeparatedValuesMayBeQuotedAndMissing) {
   rows.allows_missing = false;
   EXPECT_EQ(errors("a,,b\na,1\n\"a,1,b\n\"a\"b,1,c\na,1,b,\n", rows),
             "1: column 2: '' is not a number\n2: has 2 values, not 3\n"
-            "3: column 1: a quoted value does not end in this line\n4: column 1: '\"a\"b' is not a text\n"
+            "3: column 1: a quoted value does not end in this line\n4: column 1: '\"a\"b' is not a string\n"
             "5: has more than 3 values\n");
 }
 

@@ -186,7 +186,7 @@ TEST_F(DataVtk, OtherFilesOfVtkAreRefusedWithARemedy) {
             "the file only names the files of its pieces; use these, or save one .vtp file with ParaView\n");
   EXPECT_EQ(
       faults("<VTKFile type=\"ImageData\"/>"),
-      "VTK data of the type `ImageData`; supported are PolyData and UnstructuredGrid; save the points as a .vtp file "
+      "VTK type `ImageData` is not supported; supported: PolyData and UnstructuredGrid; save the points as a .vtp file "
       "with ParaView\n");
   EXPECT_EQ(
       faults(root("compressor=\"vtkLZ4DataCompressor\"", poly(piece(2, kPoints)))),

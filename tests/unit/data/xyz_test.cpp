@@ -165,8 +165,10 @@ TEST_F(DataXyz, ErrorsHaveLines) {
   EXPECT_EQ(errors("1\nProperties=species:S:1\nH\n"), "2: Properties has no positions\n");
   EXPECT_EQ(errors("1\nProperties=pos:R:2\n1 2\n"), "2: property \"pos\" is not of 3 real numbers\n");
   EXPECT_EQ(errors("1\nProperties=pos:R:3:a:R:9999999\n1 2 3\n"),
-            "2: property \"a\": '9999999' is not a number of columns, 1 to 10000\n");
-  EXPECT_EQ(errors("1\nLattice=\"1 2 3\"\nH 1 2 3\n"), "2: Lattice has not 9 numbers, three vectors\n");
+            "2: property \"a\": '9999999' is not a number of columns; at most 4096 in all\n");
+  for (const char* title : {"Si crystal, lattice=5.43", "Si lattice relaxed", "pbc = xyz, lattice = 5"})
+    EXPECT_EQ(errors(std::string("1\n") + title + "\nH 1 2 3\n"), "") << "a sentence";
+  EXPECT_EQ(errors("1\nLattice=\"1 2 3\"\nH 1 2 3\n"), "2: `Lattice` must be 9 numbers, three vectors\n");
   EXPECT_EQ(errors("1\nLattice=\"1 0 0 0 1 0 0 0 1\" pbc=\"T X F\"\nH 1 2 3\n"), "2: pbc: 'X' is neither T nor F\n");
 }
 

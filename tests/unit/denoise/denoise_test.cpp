@@ -50,7 +50,8 @@ film::Picture noisy(float noise, unsigned seed = 1) {
     const std::vector<float> b = picture.find(std::string("half_b.") + name)->values;
     plane(name, [&](std::size_t i) { return (a[i] + b[i]) / 2; });
   }
-  plane("A", [](std::size_t i) { return static_cast<float>(i % 3); });
+  plane("A", [](std::size_t) { return 1.0F; });
+  plane("Z", [](std::size_t i) { return static_cast<float>(i % 3); });
   return picture;
 }
 
@@ -98,7 +99,7 @@ TEST(DenoiseDenoise, KeepsEnergyAndOtherPlanes) {
     is += static_cast<double>(values(picture, "R")[i]);
   }
   EXPECT_NEAR(is / was, 1, 1e-5);
-  EXPECT_EQ(values(picture, "A"), values(before, "A"));
+  for (const char* name : {"A", "Z"}) EXPECT_EQ(values(picture, name), values(before, name)) << name;
   EXPECT_EQ(values(picture, "half_a.R"), values(before, "half_a.R"));
   ASSERT_EQ(picture.planes.size(), before.planes.size());
 }
@@ -291,10 +292,70 @@ TEST(DenoiseDenoise, BadPixelsStayAloneAndDoNotSpread) {
   EXPECT_TRUE(std::isnan(values(picture, "R")[0]));
 }
 
+std::vector<float>& values_of(film::Picture& picture, const std::string& name) {
+  return std::find_if(picture.planes.begin(), picture.planes.end(), [&](const auto& p) { return p.name == name; })
+      ->values;
+}
+
+/// A half without samples is NaN. Taken for 0, it would make all pixels look alike.
+TEST(DenoiseDenoise, AHalfWithoutSamplesTellsNothing) {
+  film::Picture picture = noisy(0.1F);
+  for (film::Plane& plane : picture.planes)
+    if (plane.name.starts_with("half_b."))
+      for (std::size_t i = 0; i < kPixels; i += 2) plane.values[i] = std::numeric_limits<float>::quiet_NaN();
+  film::Picture without = picture;
+  remove_halves(without);
+  const double before = mean_squared_error(picture);
+  const Report report = denoise(picture);
+  EXPECT_EQ(report.missing, std::vector<std::string>{"halves (one has no samples)"});
+  EXPECT_TRUE(report.has_guides);
+  EXPECT_LT(mean_squared_error(picture), before / 3);
+  double left = 0;
+  for (std::size_t y = 0; y < kHeight; ++y) left += static_cast<double>(values(picture, "G")[y * kWidth + kEdge - 1]);
+  EXPECT_NEAR(left / kHeight, 0.5, 0.02) << "the other half guides";
+}
+
+TEST(DenoiseDenoise, PixelsWithoutSamplesStayAsTheyAre) {
+  film::Picture picture = noisy(0.1F);
+  constexpr std::size_t kHole = 20 * kWidth + 30;
+  for (film::Plane& plane : picture.planes)
+    if (is_half(plane.name)) plane.values[kHole] = std::numeric_limits<float>::quiet_NaN();
+  for (const char* name : {"R", "G", "B"}) values_of(picture, name)[kHole] = 0;
+  const Report report = denoise(picture);
+  EXPECT_TRUE(report.missing.empty());
+  EXPECT_EQ(report.bad_pixels, 1U);
+  EXPECT_EQ(values(picture, "R")[kHole], 0);
+  EXPECT_NEAR(values(picture, "R")[kHole + 1], 0.5, 0.1) << "and do not darken others";
+}
+
+/// Colours are premultiplied: a transparent pixel that receives light must receive alpha, too.
+TEST(DenoiseDenoise, AlphaIsFilteredWithTheColors) {
+  film::Picture picture = noisy(0);
+  std::mt19937 random(5);
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    const float alpha = random() % 2 == 0 ? 0.0F : 1.0F;  // an edge out of focus, at two samples
+    values_of(picture, "A")[i] = alpha;
+    for (const std::string name : {"R", "G", "B"}) {
+      values_of(picture, "half_a." + name)[i] = random() % 2 == 0 ? 0.0F : 2 * alpha;
+      values_of(picture, "half_b." + name)[i] = 2 * alpha - values_of(picture, "half_a." + name)[i];
+      values_of(picture, name)[i] = alpha;
+    }
+  }
+  denoise(picture);
+  double spread = 0;
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    const float alpha = values(picture, "A")[i];
+    EXPECT_TRUE(alpha >= 0 && alpha <= 1);
+    EXPECT_NEAR(values(picture, "R")[i], alpha, 0.06) << i;
+    spread += alpha > 0.1F && alpha < 0.9F ? 1 : 0;
+  }
+  EXPECT_GT(spread, 0.5 * kPixels) << "the noise was filtered";
+}
+
 TEST(DenoiseDenoise, TheBeautyAloneIsFilteredAndNamesWhatIsMissing) {
   film::Picture picture = noisy(0.1F);
   remove_halves(picture);
-  EXPECT_EQ(picture.planes.size(), 4U);
+  EXPECT_EQ(picture.planes.size(), 5U);
   const double before = mean_squared_error(picture);
   const Report report = denoise(picture);
   EXPECT_EQ(report.missing,
@@ -321,7 +382,7 @@ TEST(DenoiseDenoise, RadianceOfAnyScaleIsFilteredAlike) {
   film::Picture normal = noisy(0.1F), tiny = normal;
   constexpr float kScale = 0x1p-30F;  // a power of two, so that no rounding differs
   for (film::Plane& plane : tiny.planes)
-    if (plane.name.size() <= 8 && plane.name != "A")
+    if (plane.name.size() <= 8 && plane.name != "A" && plane.name != "Z")
       for (float& v : plane.values) v *= kScale;
   denoise(normal);
   denoise(tiny);

@@ -167,7 +167,7 @@ TEST(FormatOverrides, SyntaxErrorsInListsAreReported) {
 
 TEST(FormatOverrides, ListElementsMustExist) {
   EXPECT_EQ(told("sphere[2].radius=1"),
-            "--set: error: sphere[2] does not exist; the scene has 2 of `sphere`, counted from 0");
+            "--set: error: sphere[2] does not exist; the scene has 2 `sphere` tables, counted from 0");
   EXPECT_EQ(told("points[0].radius=1").rfind("--set: error: the scene has no list `points`", 0), 0u);
   EXPECT_EQ(told("camera[0].vfov=1").rfind("--set: error: the scene has no list `camera`", 0), 0u);
   EXPECT_EQ(told("sphere[0]=1").rfind("--set: error: a list element cannot be set as a whole", 0), 0u);

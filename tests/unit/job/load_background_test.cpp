@@ -84,8 +84,7 @@ TEST_F(JobLoadBackground, AnUnknownDeclaredSpaceIsAWarningAndAnUnknownKeyAnError
   exr.color_interop_id.clear();
   exr.chromaticities = {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F, 0.8F};
   loaded = load(exr);
-  EXPECT_EQ(texts(loaded),
-            Texts{"background.file: its chromaticities are those of no known colour space and are ignored"});
+  EXPECT_EQ(texts(loaded), Texts{"background.file: its chromaticities match no known colour space and are ignored"});
   exr.chromaticities.clear();
   scene_.background.color_space = "foo";
   loaded = load(exr);
@@ -110,7 +109,8 @@ TEST_F(JobLoadBackground, ValuesThatAreNoRadianceCountAsZero) {
   exr.rgb[8] = -1e-6F;
   exr.rgb[9] = -0.0F;
   const LoadedBackground loaded = load(exr);
-  EXPECT_EQ(texts(loaded), Texts{"background.file: 1 values are NaN, 2 infinite and 1 negative; they count as 0"});
+  EXPECT_EQ(texts(loaded),
+            Texts{"background.file: 1 values are NaN, 2 infinite and 1 negative; they are replaced by 0"});
   for (int i = 0; i < 24; ++i)
     EXPECT_EQ(loaded.image->row(0)[i], i == 0 || i == 4 || i == 5 || i == 8 || i == 9 ? 0 : 1) << i;
 }

@@ -79,7 +79,7 @@ TEST(JobMemoryEstimate, GrowsWithPixelsAndSpheres) {
   EXPECT_EQ(estimate(1, 100, true).spheres, 1600u);
 }
 
-/// Many resting spheres of similar size take less each; moving ones and giants do not.
+/// Many static spheres of similar size take less each; moving ones and giants do not.
 TEST(JobMemoryEstimate, CountsTheSpheresInTheBvh) {
   scene::Scene scene;
   scene.materials = {{"a", scene::Lambertian{}}};
@@ -87,13 +87,13 @@ TEST(JobMemoryEstimate, CountsTheSpheresInTheBvh) {
   const auto accelerator_of = [&](const scene::Scene* closing) {
     return estimate_memory(memory_needs(compile::compile(scene, closing), {})).accelerator;
   };
-  const std::uint64_t one = estimate(1, 1, true).accelerator, resting = accelerator_of(nullptr);
-  EXPECT_LT(resting, 30'000 * one / 3);
+  const std::uint64_t one = estimate(1, 1, true).accelerator, still = accelerator_of(nullptr);
+  EXPECT_LT(still, 30'000 * one / 3);
   scene::Scene closing = scene;
   for (scene::Sphere& s : closing.spheres) s.center.y = 1;
   EXPECT_EQ(accelerator_of(&closing), 30'000 * one);
   for (int i = 0; i < 10'000; ++i) scene.spheres[static_cast<std::size_t>(i)].radius = 10;
-  EXPECT_EQ(accelerator_of(nullptr), resting / 3 * 2 + 10'000 * one);
+  EXPECT_EQ(accelerator_of(nullptr), still / 3 * 2 + 10'000 * one);
 }
 
 TEST(JobMemoryEstimate, GrowsWithLightGroups) {

@@ -201,10 +201,10 @@ TEST_F(MeasureRun, MotionBlurIsMeasured) {
          "material.grey = { type = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n"
          "sphere = [{ center = [0, 0, 0], radius = 1, material = \"grey\", name = \"ball\" }]\n"
          "key = [{ target = \"sphere.ball.center\", frames = [1, 2], values = [[0, 0, 0], [2, 0, 0]] }]\n";
-  const Study moving = small_study(file, 1), resting = small_study(file, 1, {"camera.shutter_close=0"});
+  const Study moving = small_study(file, 1), still = small_study(file, 1, {"camera.shutter_close=0"});
   EXPECT_EQ(moving.scene_hash, info_of(file).scene_hash);
-  EXPECT_NE(moving.scene_hash, resting.scene_hash);
-  EXPECT_NE(moving.reference.planes[0].values, resting.reference.planes[0].values);
+  EXPECT_NE(moving.scene_hash, still.scene_hash);
+  EXPECT_NE(moving.reference.planes[0].values, still.reference.planes[0].values);
 }
 
 }  // namespace

@@ -293,6 +293,21 @@ TEST(MetricsZTest, FalsePositivesAreRareAndBiasIsDetected) {
   EXPECT_FALSE(z_test(biased.view, {48, 48, {}}, zero.view, variance.view));
 }
 
+/// Without variance no noise explains a difference, except the rounding of half-precision files.
+TEST(MetricsZTest, BlocksWithoutVarianceMustBeEqual) {
+  const Own none(48, 48, [](int, int, int) { return 0.0; }), grey(48, 48, [](int, int, int) { return 0.5; });
+  const auto test = [&](double corner) {
+    const Own other(48, 48, [=](int x, int y, int) { return x < 16 && y < 16 ? corner : 0.5; });
+    return *z_test(other.view, none.view, grey.view, none.view);
+  };
+  EXPECT_FALSE(test(0.5).differ());
+  EXPECT_FALSE(test(0.5002).differ());
+  const ZTest darker = test(0.4);
+  EXPECT_TRUE(darker.differ());
+  EXPECT_EQ(darker.rejected, 3) << "in each channel";
+  EXPECT_EQ(darker.largest_z, -kCertainZ);
+}
+
 TEST(MetricsFalseColor, GoesFromBlackToPaleYellow) {
   const film::Picture p = false_color({3, 1, {0, 0.05f, 7}}, 0.1);
   EXPECT_LT(p.find("R")->values[0], 0.01f);

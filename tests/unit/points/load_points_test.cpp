@@ -98,6 +98,12 @@ TEST_F(PointsLoadPoints, IdsNeedNotBeConsecutive) {
   EXPECT_EQ(x(), (Numbers{2, 3, 1}));
   EXPECT_EQ(load("b.dump", frame("id x y z", {"2 1 0 0", "1 2 0 0", "2 3 0 0", "0 4 0 0"})), "");
   EXPECT_EQ(x(), (Numbers{4, 2, 1, 3})) << "equal ids stay in the order of the file";
+  EXPECT_EQ(load("n.dump", frame("id x y z", {"1152921504606846979 3 0 0", "1152921504606846977 1 0 0",
+                                              "1152921504606846978 2 0 0"})),
+            "");
+  EXPECT_EQ(x(), (Numbers{1, 2, 3})) << "a double cannot tell these";
+  EXPECT_EQ(load("m.csv", "x,y,z,id\n1,0,0,\n2,0,0,7\n3,0,0,4\n4,0,0,\n"), "");
+  EXPECT_EQ(x(), (Numbers{3, 2, 1, 4})) << "missing ids are last";
   points.select = "x != 2";
   EXPECT_EQ(load("c.dump", frame("id x y z", {"3 1 0 0", "1 2 0 0", "2 3 0 0"})), "");
   EXPECT_EQ(x(), (Numbers{3, 1})) << "selected rows in the order of their ids";
@@ -266,6 +272,11 @@ TEST_F(PointsLoadPoints, Replicate) {
                 {1, 2, 3}, {4, 5, 6}, {11, 2, 3}, {14, 5, 6}, {1, 2, 33}, {4, 5, 36}, {11, 2, 33}, {14, 5, 36}}));
   EXPECT_EQ(points.colors, (std::vector<std::uint16_t>{0, 255, 0, 255, 0, 255, 0, 255}));
   EXPECT_EQ(load("b.csv", kCsv), "error points[0].replicate: the file has no periodic box\n");
+  const std::string box_of_zeros = "1\nLattice=\"0 0 0 0 0 0 0 0 5\" Properties=pos:R:3:radius:R:1\n1 2 3 0.5\n";
+  EXPECT_EQ(load("c.xyz", box_of_zeros), "error points[0].replicate: edge a of the box has no length\n");
+  points.replicate = {1, 1, 2};
+  EXPECT_EQ(load("c.xyz", box_of_zeros), "");
+  EXPECT_EQ(points.centers.size(), 2u);
 }
 
 /// Two atoms in two chains. Assembly 1 is chain A twice, and chain B once.

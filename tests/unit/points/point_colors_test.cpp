@@ -186,7 +186,10 @@ TEST_F(PointsPointColors, TooManyCategories) {
   for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<double>(i);
   keys.map = "tab10";
   colors(table_of(many));
-  EXPECT_EQ(diagnostics, "error points[0].color.column: column `c` has more than 4096 distinct values\n");
+  EXPECT_EQ(diagnostics,
+            "error points[0].color.column: column `c` has more than 4096 distinct values; use a continuous map, e.g. "
+            "viridis, "
+            "or another column\n");
   many.pop_back();
   colors(table_of(many));
   EXPECT_EQ(diagnostics, "");
@@ -241,8 +244,19 @@ TEST_F(PointsPointColors, RgbIsDecoded) {
   roles.rgb_maximum = 1;
   expect_near(color_of(rgb_table<float>({2, 0}, {-1, 0}, {NAN, 0}), 0), light(255, 0, 0));
   EXPECT_EQ(diagnostics,
-            "warning points[0].color.rgb: 1 values are NaN and count as 0\n"
+            "warning points[0].color.rgb: 1 values are NaN and are replaced by 0\n"
             "warning points[0].color.rgb: 2 values are outside 0..1 and were clamped\n");
+}
+
+/// Some programs write floating point colours from 0 to 255.
+TEST_F(PointsPointColors, TheRangeOfFloatingPointColorsIsThatOfTheirValues) {
+  keys.column.clear();
+  keys.rgb = true;
+  roles.rgb = {"r", "g", "b"};
+  roles.rgb_maximum = 1;
+  expect_near(color_of(rgb_table<float>({0, 200}, {0, 100}, {0, 50}), 1), light(200, 100, 50));
+  expect_near(color_of(rgb_table<float>({0, 25700}, {0, 257}, {0, 0}), 1), light(100, 1, 0));
+  EXPECT_EQ(diagnostics, "");
 }
 
 TEST_F(PointsPointColors, ManyRgbColorsAreReduced) {

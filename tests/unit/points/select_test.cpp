@@ -163,7 +163,7 @@ TEST(PointsSelect, EvaluatesEveryBlock) {
 TEST(PointsSelect, UnknownColumnsAreReportedWithThoseThatExist) {
   EXPECT_EQ(message("z > 0 && typ == 2"), "10+3 unknown column typ; did you mean `type`?");
   EXPECT_NE(message("charge > 0").find("columns are x, z, type, id"), std::string::npos);
-  EXPECT_NE(message("element == Xe").find("a text is quoted: \"Xe\""), std::string::npos);
+  EXPECT_NE(message("element == Xe").find("strings are quoted: \"Xe\""), std::string::npos);
 }
 
 TEST(PointsSelect, TypesAreChecked) {
@@ -172,16 +172,16 @@ TEST(PointsSelect, TypesAreChecked) {
             "quote the other side, as in: element == \"C\"");
   EXPECT_EQ(message("type == \"2\""), "9+3 text compared with a number; numbers are written without quotes");
   EXPECT_EQ(message("element < 'C'"),
-            "11+3 < expects a number, not a text; "
-            "texts are compared by ==, != and in");
-  EXPECT_EQ(message("element in [1]"), "1+7 in expects a number, not a text; the list has numbers");
-  EXPECT_EQ(message("type in ['1']"), "1+4 in expects a text, not a number; the list has texts");
+            "11+3 < expects a number, not a string; "
+            "strings can be compared with ==, != and in");
+  EXPECT_EQ(message("element in [1]"), "1+7 in expects a number, not a string; the list has numbers");
+  EXPECT_EQ(message("type in ['1']"), "1+4 in expects a string, not a number; the list has strings");
   EXPECT_EQ(message("type && z > 0").substr(0, 43), "1+4 && expects a condition, not a number; c");
   EXPECT_EQ(message("(z > 0) == (x > 0)").substr(0, 37), "9+2 a condition cannot be compared; c");
   EXPECT_EQ(message("!type == 1").substr(0, 41), "2+4 ! expects a condition, not a number; ");
   EXPECT_EQ(message("z"), "1+1 expected a condition, not a number; compare it, as in: x != 0");
-  EXPECT_EQ(message("element"), "1+7 expected a condition, not a text; compare it, as in: x != 0");
-  EXPECT_EQ(message("'C' == 'C'").substr(0, 23), "5+2 two texts are compa");
+  EXPECT_EQ(message("element"), "1+7 expected a condition, not a string; compare it, as in: x != 0");
+  EXPECT_EQ(message("'C' == 'C'").substr(0, 23), "5+2 two strings are com");
   EXPECT_EQ(message("abs(z > 0) == 1").substr(0, 9), "7+1 expec");
 }
 
@@ -195,7 +195,7 @@ TEST(PointsSelect, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(message("0 < z < 2"), "7+1 comparisons cannot be chained; write 1 < x && x < 2");
   EXPECT_EQ(message("z >"), "4+1 the condition ends too early; e.g. type == 2 && z > 0");
   EXPECT_EQ(message("element == \"C"), "12+2 quote is not closed; add \"");
-  EXPECT_EQ(message("type in []").substr(0, 29), "10+1 expected a number or a t");
+  EXPECT_EQ(message("type in []").substr(0, 29), "10+1 expected a number or a s");
   EXPECT_EQ(message("type in 1").substr(0, 29), "9+1 expected a list after `in");
   EXPECT_EQ(message("type in [1, 'a']").substr(0, 29), "13+3 list of both numbers and");
   EXPECT_EQ(message("floor(z) > 1"), "1+5 unknown function floor; functions are abs, sqrt, min, max");

@@ -186,7 +186,7 @@ TEST(RenderDirectLight, ASmallLampHasAMillionTimesLessVarianceThanByChance) {
 }
 
 TEST(RenderDirectLight, MotionIsThatOfTheRaysTime) {
-  // A lamp that moves along the floor gives the mean of the lamps at rest.
+  // A lamp that moves along the floor gives the mean of static lamps.
   scene::Scene open = lit_floor({-3, 2, 0}, 0.2, 100), closed = open;
   closed.spheres[1].center.x = 3;
   closed.camera = open.camera;
