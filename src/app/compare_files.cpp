@@ -209,7 +209,7 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
   check_files(picture, reference, pictures);
   if (!layer.empty() && !pictures.flip.empty())
     throw base::Error(base::ErrorKind::kUsage, "--flip covers colours only; remove --layer");
-  const film::Picture a = image::read(picture), b = image::read(reference);
+  const film::Picture a = image::read(picture, image::Parts::kAll), b = image::read(reference, image::Parts::kAll);
   for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
     if (!file.empty()) image::check_size(file, a.width, a.height);
   Comparison out = compare(a, b, developed ? Encoding::kDisplay : Encoding::kLight, layer, threads);

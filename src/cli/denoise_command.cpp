@@ -24,13 +24,15 @@ std::string text_of(const app::Denoising& denoising, const app::DenoisedFile& do
   const denoise::Report& report = done.report;
   std::string out =
       fmt::format("wrote {}: beauty and {} light layers\n", denoising.output.string(), report.layers.size());
+  if (done.written.had_attributes)
+    out += fmt::format("warning: {} was denoised already and has been filtered again\n", denoising.input.string());
   if (!report.missing.empty())
     out += fmt::format("warning: {} lacks the layers {}: {}; render with --layers halves for the best result\n",
                        denoising.input.string(), base::joined(report.missing),
                        report.has_guides ? "noise was estimated from the beauty" : "only the beauty guided the filter");
   if (report.bad_pixels > 0)
-    out +=
-        fmt::format("warning: {} pixels are not finite or too large; they were left as they are\n", report.bad_pixels);
+    out += fmt::format("warning: {} pixels have no samples, are not finite or too large; they were left as they are\n",
+                       report.bad_pixels);
   if (!done.written.other_parts.empty())
     out += fmt::format(
         "warning: the parts {} have channels R, G and B of their own and were copied; denoise them as files of their "

@@ -43,6 +43,7 @@ std::unique_ptr<preview::Preview> start_preview(const preview::Target& target, P
   hooks.on_pixels = [started](const film::Partial& state, const film::RenderedPixels& rendered) {
     started->write(state, rendered);
   };
+  hooks.on_denoised = [started](const film::Picture& picture) { started->write(picture); };
   hooks.develops_pixels = target.is_developed();
   return out;
 }

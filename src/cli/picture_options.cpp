@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/picture_options.h"
 
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "base/text.h"
 #include "cli/display_options.h"
 #include "cli/option_checks.h"
 
@@ -33,6 +38,32 @@ void PictureOptions::add_to(Command& command, job::Job& job, bool allows_deep) {
   command.add_flag("--denoise", job.denoise, "Denoise the images; shards keep what merge --denoise needs");
   command.add_flag("--reproducible", job.outputs.reproducible,
                    "Omit run-dependent metadata (date, render time, accelerator, instruction set) from EXR headers");
+}
+
+std::string PictureOptions::unused_options(const job::Job& job, bool shows_display) const {
+  const job::Outputs& outputs = job.outputs;
+  std::string out;
+  const auto warn = [&](const std::vector<std::pair<const char*, bool>>& options, const char* formats) {
+    std::vector<std::string> given;
+    for (const auto& [name, is_given] : options)
+      if (is_given) given.emplace_back(name);
+    if (!given.empty())
+      out += fmt::format("warning: {} without effect: {}, and none is written\n", base::joined(given), formats);
+  };
+  const display::Settings& display = outputs.display;
+  if (!outputs.has_display_format() && !shows_display)
+    warn({{"--display", !display.display.empty()},
+          {"--view", !display.view.empty()},
+          {"--look", !display.look.empty()},
+          {"--exposure", display.exposure.has_value()},
+          {"--bits", outputs.bits != 0}},
+         "the display transform applies to PNG, TIFF, JPEG and PPM");
+  if (!outputs.has_exr())
+    warn({{"--type", type_ != "half"},
+          {"--compression", outputs.exr.compression != job::Outputs().exr.compression},
+          {"--multipart", outputs.exr.multipart}},
+         "these options apply to EXR");
+  return out;
 }
 
 void PictureOptions::finish(job::Job& job) const {

@@ -20,6 +20,11 @@ class PictureOptions {
   /// Domain         called once; neither this nor `job` moves until the command line is parsed
   void add_to(Command& command, job::Job& job, bool allows_deep = true);
 
+  /// Returns a warning for each kind of option that changes none of the files, one per line.
+  ///
+  /// `shows_display`  a preview or a legend uses the display transform
+  std::string unused_options(const job::Job& job, bool shows_display) const;
+
   /// Converts the options that are not members of a job.
   ///
   /// Errors     base::Error(kUsage) for a file with an unknown extension

@@ -108,6 +108,7 @@ int run_plot(PlotArguments& arguments) {
   if (!job.sampling.noise && !job.sampling.seconds && !has_samples && plot.style != plot::Style::kFlat)
     job.sampling.noise = kNoise;
   print_choices(made, arguments);
+  render.shows_display = !arguments.legend.empty() || saves;
   if (!arguments.legend.empty()) {
     display::Settings display = job.outputs.display;
     if (display.view.empty()) display.view = "Un-tone-mapped";

@@ -16,6 +16,7 @@ struct RenderOptions {
   PictureOptions picture;
   std::string preview, progress = "auto", traversal = "auto", shard, frames;
   bool quiet = false, verbose = false, strict = false, fail_fast = false;
+  bool shows_display = false;  ///< the display transform is used for more than images
 };
 
 /// Adds the options of rendering, except those that name the scene, its frames and its shard.

@@ -49,6 +49,10 @@ std::vector<format::Override> SceneOptions::overrides() const {
   std::vector<format::Override> out;
   for (const Short& option : short_forms_) {
     if (option.flag->count() == 0 || is_range(option)) continue;
+    for (const std::string& setting : set_)
+      if (format::Override(setting).sets(option.key))
+        throw base::Error(base::ErrorKind::kUsage,
+                          fmt::format("{} and --set {} set the same key; omit one of them", option.name, setting));
     const std::string value = option.is_list ? "[" + option.value + "]" : option.value;
     out.emplace_back(std::string(option.key) + "=" + value, option.name, option.value);
   }

@@ -26,8 +26,9 @@ struct Settings {
 
 /// The resolved display transform.
 struct Choice {
-  std::string config;     ///< "built-in", or the config file
-  std::string config_id;  ///< OCIO's digest of the config; it changes with the text of the config
+  std::string config;        ///< "built-in", or the config file
+  std::string config_id;     ///< OCIO's digest of the config; it changes with the text of the config
+  std::string transform_id;  ///< OCIO's digest of the display transform; it changes with the contents of LUT files
   std::string display, view;
   std::string working_space;       ///< canonical name in the config
   std::vector<std::string> files;  ///< LUT files that the transforms read

@@ -90,6 +90,7 @@ View find_view(const Config& source, const Settings& settings) {
     const ocio::ConstProcessorMetadataRcPtr metadata = out.transform->getProcessorMetadata();
     for (int i = 0; i < metadata->getNumFiles(); ++i) out.choice.files.emplace_back(metadata->getFile(i));
     out.processor = out.transform->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+    out.choice.transform_id = out.processor->getCacheID();
     const std::string space = final_space(*source.config, out.choice);
     out.is_srgb = space.find("sRGB") != std::string::npos;
     out.choice.is_hdr = is_hdr(*source.config, space);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/text.h"
 #include "farm/submit.h"
 
@@ -49,7 +50,7 @@ std::size_t render_tasks(const Submission& s, const Commands& c) {
 }
 
 std::string heading(const Submission& s, const Commands& c, const char* engine) {
-  return fmt::format("# Renders {}{}{} with {}: {} tasks{}.\n", s.batch.scenes.front().string(),
+  return fmt::format("# Renders {}{}{} with {}: {} tasks{}.\n", base::printable(s.batch.scenes.front().string()),
                      s.frames_text.empty() ? "" : ", frames ", s.frames_text, engine, render_tasks(s, c),
                      s.shards > 1 ? fmt::format(", {} per frame, and one merge per frame", s.shards) : "");
 }
@@ -64,6 +65,11 @@ std::string slurm_array(const Commands& c, const std::string& kind, std::size_t 
 }
 
 std::string slurm_text(const Submission& s, const Commands& c) {
+  // #SBATCH lines have no way to escape these.
+  if (c.folder.string().find_first_of("\"\\\n\r") != std::string::npos)
+    throw base::Error(base::ErrorKind::kUsage, base::printable(c.folder.string()) +
+                                                   ": Slurm's log files cannot be in folders with quotes, backslashes "
+                                                   "or line ends in their names; write the image elsewhere");
   std::string out = "#!/bin/sh\n" + heading(s, c, "Slurm");
   out += fmt::format(
       "# Run it with sh in a directory that all nodes mount at the same path. Edit it as needed.\n"

@@ -223,6 +223,24 @@ void pose(Reading& reading, const toml::table& root, const std::string& file, in
                     "sphere[" + std::to_string(i) + "].radius changes sign while the shutter is open");
 }
 
+/// Whether an override sets what a track animates; the names of a sphere, by index and by name, are the same.
+bool sets_target(const Override& override, const scene::Track& track, const scene::Scene& scene) {
+  if (override.sets(track.target)) return true;
+  const std::vector<std::size_t> spheres = scene::spheres_of_target(scene, track.target);
+  return spheres.size() == 1 &&
+         override.sets("sphere[" + std::to_string(spheres[0]) + "]" + track.target.substr(track.target.rfind('.')));
+}
+
+/// A track replaces what an override sets.
+void warn_of_animated_overrides(Reading& reading, const std::vector<Override>& overrides, const scene::Scene& scene) {
+  for (std::size_t i = 0; i < overrides.size(); ++i)
+    for (std::size_t t = 0; t < scene.tracks.size(); ++t)
+      if (sets_target(overrides[i], scene.tracks[t], scene))
+        reading.add(base::Severity::kWarning, Place{kOverrideName, static_cast<int>(i) + 1, 1, 1},
+                    scene.tracks[t].target + " is animated by key[" + std::to_string(t) + "], which takes precedence",
+                    "remove all animation with --set key=[]");
+}
+
 void report_unknown_tables(Reading& reading, const toml::table& root) {
   std::vector<std::string> known;
   for (const scene::Table& table : scene::tables()) known.push_back(table.name);
@@ -244,7 +262,10 @@ std::vector<Setting> settings_of(const SourceText& source, const toml::table& ro
         origin = place.text_name == kOverrideName ? source.option_at(place.line)
                                                   : place.text_name + ':' + std::to_string(place.line);
       }
-      settings.push_back({table.name + "." + key.name, key.text(scene), origin});
+      const std::string full_name = table.name + "." + key.name;
+      for (std::size_t i = 0; i < scene.tracks.size(); ++i)
+        if (scene.tracks[i].target == full_name) origin = "key[" + std::to_string(i) + "]";
+      settings.push_back({full_name, key.text(scene), origin});
     }
   }
   return settings;
@@ -271,6 +292,7 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<Overr
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
   read_spheres(reading, root, index, result.scene);
   if (const toml::array* keys = tables_under(reading, root, "key")) read_tracks(reading, *keys, result.scene);
+  warn_of_animated_overrides(reading, overrides, result.scene);
   if (!reading.diagnostics.has_errors()) pose(reading, root, name, frame, result);
   read_points(reading, root, file, options, index, result.scene);
   add_problems(reading, root, scene::validate(result.scene), name);

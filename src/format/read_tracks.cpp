@@ -77,7 +77,14 @@ std::optional<scene::Animated> read_target(Reading& reading, const toml::table& 
     return {};
   }
   if (target) return target;
-  std::string remedy = base::did_you_mean(name, scene::animated_names(scene));
+  const std::vector<std::string> names = scene::animated_names(scene);
+  const bool is_textured = std::find(names.begin(), names.end(), name) != names.end();
+  if (is_textured) {
+    reading.error(place_of(*node), full_name + ".target: \"" + name + "\" has a texture and cannot be animated",
+                  "animate a number of the material that has no texture");
+    return {};
+  }
+  std::string remedy = base::did_you_mean(name, names);
   if (remedy.empty())
     remedy = "targets are numbers of camera, background, material.NAME, sphere.NAME and sphere[INDEX]";
   reading.error(place_of(*node), full_name + ".target: \"" + name + "\" is not a number that can be animated", remedy);

@@ -44,8 +44,8 @@ void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) 
 int Input::row_step() const { return spec.tile_width == 0 ? kRowsAtATime : spec.tile_height; }
 
 bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const {
-  if (spec.tile_width == 0) return in->read_scanlines(0, 0, begin, end, 0, first_channel, end_channel, type, out);
-  return in->read_tiles(0, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
+  if (spec.tile_width == 0) return in->read_scanlines(part, 0, begin, end, 0, first_channel, end_channel, type, out);
+  return in->read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
 }
 
 std::string Input::complaint() const {
@@ -53,14 +53,16 @@ std::string Input::complaint() const {
   return text.empty() ? "its pixels cannot be decoded" : text;
 }
 
-Input open_input(const std::filesystem::path& file) {
+Input open_input(const std::filesystem::path& file, Alpha alpha) {
   prepare_library();
   const Format format = format_of(file);
   base::require_readable(file);
-  Input out{OIIO::ImageInput::create(library_name(format)), {}};
+  Input out{OIIO::ImageInput::create(library_name(format)), {}, 0};
   if (!out.in)
     throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read " + file.string() + OIIO::geterror());
-  if (!out.in->open(file.string(), out.spec)) fail_to_read(file, out.in->geterror());
+  OIIO::ImageSpec settings;
+  if (alpha == Alpha::kAsInFile) settings.attribute("oiio:UnassociatedAlpha", 1);
+  if (!out.in->open(file.string(), out.spec, settings)) fail_to_read(file, out.in->geterror());
   check_spec(file, out.spec);
   return out;
 }

@@ -17,10 +17,11 @@ namespace orrery::image {
 /// Errors     base::Error(kBadData) if it is out of range or the pixels are deep
 void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec);
 
-/// An open image file: the first part of a multi-part EXR.
+/// An open image file, and one part of it.
 struct Input {
   std::unique_ptr<OIIO::ImageInput> in;
   OIIO::ImageSpec spec;
+  int part = 0;
 
   /// Rows to decode at a time.
   int row_step() const;
@@ -30,9 +31,12 @@ struct Input {
   std::string complaint() const;
 };
 
+/// How colours are read that a file stores beside alpha, not multiplied by it, as PNG does.
+enum class Alpha { kPremultiplied, kAsInFile };
+
 /// Opens an image and checks its header.
 ///
 /// Errors     as read()
-Input open_input(const std::filesystem::path& file);
+Input open_input(const std::filesystem::path& file, Alpha alpha = Alpha::kPremultiplied);
 
 }  // namespace orrery::image

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <new>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "image/input.h"
 
@@ -86,12 +88,29 @@ film::Picture decode_all(const std::filesystem::path& file, const Input& input) 
   return picture;
 }
 
+/// Adds the planes of the parts after the first that have the same display window.
+void add_other_parts(const std::filesystem::path& file, Input& input, film::Picture& picture) {
+  for (input.part = 1;; ++input.part) {
+    input.spec = input.in->spec(input.part);
+    if (input.spec.format == TypeDesc::UNKNOWN) break;  // there is no such part
+    const ImageSpec& spec = input.spec;
+    if (spec.deep || spec.full_width != picture.width || spec.full_height != picture.height) continue;
+    check_spec(file, spec);
+    const std::string name = std::string(spec.get_string_attribute("oiio:subimagename"));
+    for (film::Plane& plane : decode_all(file, input).planes) {
+      if (picture.find(plane.name) != nullptr) plane.name = name + "." + plane.name;
+      if (picture.find(plane.name) == nullptr) picture.planes.push_back(std::move(plane));
+    }
+  }
+}
+
 }  // namespace
 
-film::Picture read(const std::filesystem::path& file) {
-  const Input input = open_input(file);
+film::Picture read(const std::filesystem::path& file, Parts parts) {
+  Input input = open_input(file);
   try {
     film::Picture picture = decode_all(file, input);
+    if (parts == Parts::kAll) add_other_parts(file, input, picture);
     picture.is_transparent = picture.is_transparent || has_holes(picture);
     input.in->geterror();  // OpenImageIO prints messages that are not fetched
     return picture;

@@ -61,7 +61,7 @@ Input open_map(const std::filesystem::path& file, MapFormats formats) {
   if (formats == MapFormats::kSceneLinear && (!format || is_display_format(*format)))
     fail_to_read(file, "an environment map must be an exr or hdr file");
   if (!format) fail_to_read(file, "a texture must be an exr, hdr, png, tiff, jpeg or ppm file");
-  Input input = open_input(file);
+  Input input = open_input(file, Alpha::kAsInFile);
   if (*format == Format::kJpeg && is_truncated_jpeg(file)) fail_to_read(file, "the file is truncated");
   return input;
 }

@@ -21,6 +21,7 @@ using EditPlanes = std::function<std::vector<Attribute>(film::Picture& planes)>;
 struct RewriteReport {
   std::uint64_t clamped = 0;             ///< values that were clamped to the range of half
   std::vector<std::string> other_parts;  ///< names of further parts with a channel R, which were copied
+  bool had_attributes = false;           ///< the file already had an attribute that `edit` adds
 };
 
 /// Copies an EXR with changed pixels. Parts, windows, channels, pixel types, compression and attributes are kept,

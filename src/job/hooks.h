@@ -27,6 +27,7 @@ struct Hooks {
   std::function<void(const PictureStart&)> on_start;         ///< called before rendering starts
   /// See render::Settings. Nothing is called for a merge.
   std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
+  std::function<void(const film::Picture&)> on_denoised;  ///< receives the denoised image
   bool develops_pixels = false;  ///< `on_pixels` applies the display transform, whose names are therefore checked
   std::function<void(const base::Diagnostic&)> on_warning;
   std::function<void(const std::string&)> on_note;  ///< answers to requests made by signal

@@ -158,7 +158,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
     base::check_creatable(manifest);
   }
   const image::Provenance provenance = provenance_of(job, compiled, layers);
-  const std::string stamp = stamp_of(job, provenance, display, report.display.config_id);
+  const std::string stamp = stamp_of(job, provenance, display, report.display);
   report.scene_hash = provenance.at("sceneHash");
   report.was_skipped = job.skip_existing && is_up_to_date(job, compiled, provenance, stamp);
   if (report.was_skipped) return;
@@ -204,6 +204,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.target_missed = missed_target(job, result.statistics);
   if (job.denoise && !is_shard(job)) {
     denoise::denoise(result.picture, settings.threads);
+    if (job.hooks.on_denoised) job.hooks.on_denoised(result.picture);
     const std::vector<std::string> requested = scene::requested_layers(read.scene);
     if (std::find(requested.begin(), requested.end(), scene::kHalvesLayer) == requested.end())
       denoise::remove_halves(result.picture);

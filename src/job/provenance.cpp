@@ -55,15 +55,15 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
 }
 
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
-                     const std::string& config_id) {
+                     const display::Choice& choice) {
   std::string all;
   for (const std::string& key : keys_of_checkpoints()) all += key + " " + provenance.at(key) + "\n";
   all += fmt::format("{:.17g} s, frame {}, {} bits, float {:d}, multipart {:d}, reproducible {:d}, exposure {:.17g}\n",
                      job.sampling.seconds, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
                      job.outputs.exr.multipart, job.outputs.reproducible, display.exposure.value_or(0));
   if (job.denoise) all += "denoised\n";
-  for (const std::string& word : {job.outputs.exr.compression, display.config, config_id, display.display, display.view,
-                                  display.look, display.working_space})
+  for (const std::string& word : {job.outputs.exr.compression, display.config, choice.config_id, choice.transform_id,
+                                  display.display, display.view, display.look, display.working_space})
     all += word + "\n";
   for (const format::Override& setting : job.scene.overrides)
     if (!setting.sets("render.accelerator")) all += setting.text + "\n";  // the accelerator changes no bits

@@ -17,9 +17,9 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
 
 /// Hash of everything that determines the images of a job. An image with this stamp in its header is up to date.
 ///
-/// `config_id`  OCIO's digest of the config, which changes with its contents
+/// `choice`   the display transform; empty if there is none
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
-                     const std::string& config_id);
+                     const display::Choice& choice);
 
 /// The first difference of two provenances, as text: "scene hash 1234, not 5678"; empty: none.
 ///

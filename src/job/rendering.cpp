@@ -61,17 +61,16 @@ image::WriteReport write_rendering(const Rendering& rendering, const Outputs& ou
   const display::Settings display = display_of(rendering, outputs.display);
   image::Header header = outputs.reproducible ? rendering.reproducible_header : rendering.header;
   int bits = outputs.bits;
-  std::string config_id;
+  display::Choice choice;
   if (outputs.has_display_format()) {
-    const display::Choice choice = display::choose(display);
+    choice = display::choose(display);
     require_bits(choice, outputs);
     if (bits == 0) bits = choice.default_bits();
-    config_id = choice.config_id;
-    add_config_id(config_id, header);
+    add_config_id(choice.config_id, header);
   }
   Job job = rendering.job;
   job.outputs = outputs;
-  header.stamp = stamp_of(job, rendering.provenance, display, config_id);
+  header.stamp = stamp_of(job, rendering.provenance, display, choice);
   return write_outputs(outputs, display, bits, rendering.picture, header, rendering.mattes);
 }
 

@@ -36,7 +36,8 @@ struct SceneAxes {
 SceneAxes scene_axes(const std::string& up) {
   if (up == "x") return {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
   if (up == "y") return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+  if (up == "z") return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+  throw base::Error(base::ErrorKind::kUsage, "--up: `" + up + "` is not an axis; write x, y or z");
 }
 
 /// Rounds away the residue of sines and cosines of right angles.
@@ -121,7 +122,8 @@ scene::Camera ViewExtent::camera(double aspect) const {
   // Parallel rays may start anywhere in front of all spheres.
   camera.look_from = camera.look_at + axes_.back * (2 * radius());
   const double width = std::max(high_[0] - low_[0], (high_[1] - low_[1]) * aspect);
-  camera.width = is_empty_ ? 2 : width / (1 - 2 * kMargin);
+  // A single point has no extent.
+  camera.width = is_empty_ || !(width > 0) ? 2 : width / (1 - 2 * kMargin);
   return camera;
 }
 

@@ -36,6 +36,16 @@ void Canvas::write(const film::Partial& state, const film::RenderedPixels& rende
           1, std::memory_order_release);
 }
 
+void Canvas::write(const film::Picture& picture) noexcept {
+  std::size_t c = 0;
+  for (const char* name : {"R", "G", "B"}) {
+    const std::vector<float>& plane = picture.find(name)->values;
+    for (std::size_t i = 0; i < plane.size(); ++i) values_[3 * i + c].store(plane[i], std::memory_order_relaxed);
+    ++c;
+  }
+  for (std::atomic<std::uint8_t>& changed : changed_) changed.fetch_or(1, std::memory_order_release);
+}
+
 std::vector<std::size_t> Canvas::take_changed() {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < changed_.size(); ++i)

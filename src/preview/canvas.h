@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/partial.h"
+#include "film/picture.h"
 
 namespace orrery::preview {
 
@@ -32,6 +33,11 @@ class Canvas {
   ///
   /// Domain     no two calls at a time have a pixel in common
   void write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept;
+
+  /// Copies an image, such as the denoised one.
+  ///
+  /// Domain     of the same size, with the planes R, G and B; no other call at the same time
+  void write(const film::Picture& picture) noexcept;
 
   /// The cells that have changed since the last call, as indices in row-major order. Called on one thread.
   std::vector<std::size_t> take_changed();

@@ -33,6 +33,9 @@ class Preview {
     canvas_->write(state, rendered);
   }
 
+  /// Replaces the image. Called after all pixels have been rendered, before end().
+  void write(const film::Picture& picture) noexcept { canvas_->write(picture); }
+
   /// Ends the image: shows the pixels that are still missing. Without an image, does nothing.
   void end();
 

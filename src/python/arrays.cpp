@@ -57,12 +57,19 @@ std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& colum
   return out;
 }
 
+py::str str_of(const std::string& bytes) {
+  PyObject* const text = PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace");
+  if (text == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(text);
+}
+
 py::object array_of(data::Values values) {
   return std::visit(
       [](auto& all) -> py::object {
         using Column = std::decay_t<decltype(all)>;
         if constexpr (std::is_same_v<Column, data::Words>) {
-          const py::list words = py::cast(all.words);
+          py::list words;
+          for (const std::string& word : all.words) words.append(str_of(word));
           py::list out(all.index.size());
           for (std::size_t i = 0; i < all.index.size(); ++i) out[i] = words[all.index[i]];
           return out;

@@ -22,6 +22,9 @@ using NamedArray = std::pair<std::string, pybind11::array>;
 /// Domain     one-dimensional arrays of one length, of native float64, float32, int64, int32, uint16 or uint8
 std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& columns);
 
+/// Returns a str. Bytes that are not UTF-8, as in older files and folders, are replaced.
+pybind11::str str_of(const std::string& bytes);
+
 /// Moves a column into a one-dimensional array without a copy of the numbers; texts become a list of str.
 pybind11::object array_of(data::Values values);
 

@@ -9,11 +9,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -71,7 +74,7 @@ void translate(std::exception_ptr thrown) {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const base::Error& error) {
     const py::object type = py::module_::import("orrery._errors").attr(class_of(error.kind()));
-    PyErr_SetObject(type.ptr(), py::str(text_of(error)).ptr());
+    PyErr_SetObject(type.ptr(), str_of(text_of(error)).ptr());
   }
 }
 
@@ -186,7 +189,22 @@ void bind_scene(py::module_& m) {
           ReleaseGil())
       .def("save", &save, ReleaseGil())
       .def("render", &render_scene);
-  py::class_<plot::ViewExtent>(m, "Extent").def(py::init(&extent_of)).def("camera", &camera_of);
+  // Pickled as its bytes, for processes on the same machine.
+  static_assert(std::is_trivially_copyable_v<plot::ViewExtent>);
+  const auto bytes_of = [](const plot::ViewExtent& extent) {
+    return py::bytes(reinterpret_cast<const char*>(&extent), sizeof extent);
+  };
+  const auto of_bytes = [](const py::bytes& state) {
+    const std::string_view view = state;
+    plot::ViewExtent extent(plot::view_axes("iso", "z"));
+    if (view.size() != sizeof extent) throw py::value_error("not a pickled Extent of this version");
+    std::memcpy(&extent, view.data(), sizeof extent);
+    return extent;
+  };
+  py::class_<plot::ViewExtent>(m, "Extent")
+      .def(py::init(&extent_of))
+      .def("camera", &camera_of)
+      .def(py::pickle(bytes_of, of_bytes));
 }
 
 void bind_picture(py::module_& m) {

@@ -69,7 +69,7 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
   return out;
 }
 
-py::object text_or_none(const std::string& text) { return text.empty() ? py::none() : py::object(py::str(text)); }
+py::object text_or_none(const std::string& text) { return text.empty() ? py::none() : py::object(str_of(text)); }
 
 py::list numbers(math::Vec3d v) {
   py::list out;
@@ -80,7 +80,7 @@ py::list numbers(math::Vec3d v) {
 py::dict described(const data::FrameInfo& info, int frames) {
   py::dict out;
   out["frames"] = frames;
-  out["title"] = info.title;
+  out["title"] = str_of(info.title);
   out["step"] = info.step ? py::object(py::float_(*info.step)) : py::none();
   out["position"] = std::vector<std::string>(info.roles.position.begin(), info.roles.position.end());
   out["radius"] = text_or_none(info.roles.radius);
@@ -102,7 +102,7 @@ py::tuple read_points(const std::filesystem::path& file, int frame, std::optiona
     points = read(file, frame, component, names);
   }
   py::dict columns;
-  for (data::Column& column : points.table.columns) columns[py::str(column.name)] = array_of(std::move(column.values));
+  for (data::Column& column : points.table.columns) columns[str_of(column.name)] = array_of(std::move(column.values));
   return py::make_tuple(columns, described(points.info, points.frames));
 }
 

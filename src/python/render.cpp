@@ -15,6 +15,7 @@
 
 #include "base/diagnostic.h"
 #include "job/rendering.h"
+#include "python/arrays.h"
 
 namespace py = pybind11;
 
@@ -63,7 +64,7 @@ class Messages {
 void deliver(const std::optional<render::Progress>& progress, const std::vector<std::string>& warnings,
              const py::object& on_progress, const py::object& on_warning) {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  for (const std::string& warning : warnings) on_warning(warning);
+  for (const std::string& warning : warnings) on_warning(str_of(warning));
   if (!progress || on_progress.is_none()) return;
   const double total = static_cast<double>(progress->samples_total);
   const double fraction = total > 0 ? static_cast<double>(progress->samples_done) / total : 0;
@@ -110,7 +111,7 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
   if (failure) std::rethrow_exception(failure);
   const std::uint64_t paths = rendering.report.render.paths;
   if (!on_progress.is_none()) on_progress(1.0, paths, paths, rendering.report.render.render_s, "");
-  if (!rendering.report.target_missed.empty()) on_warning(rendering.report.target_missed);
+  if (!rendering.report.target_missed.empty()) on_warning(str_of(rendering.report.target_missed));
   return Picture(std::move(rendering));
 }
 

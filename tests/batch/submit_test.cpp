@@ -147,6 +147,29 @@ TEST_F(BatchSubmit, PassesOutputOptionsOnAsTyped) {
       << text;
 }
 
+/// Two jobs of one scene with different settings must not find each other's shards.
+TEST_F(BatchSubmit, ShardsBelongToTheImage) {
+  const std::string a = submit("-o red.exr --shards 2 --slurm"),
+                    b = submit("-o blue.####.exr --frames 1-2 --shards 2 --openjd");
+  EXPECT_NE(a.find("-o red.exr.shards/%d.\"$shard\".shard.exr"), std::string::npos) << a;
+  EXPECT_NE(a.find("merge red.exr.shards/\"$frame\".1.shard.exr"), std::string::npos) << a;
+  EXPECT_NE(b.find("blue.____.exr.shards.%d."), std::string::npos) << b;
+}
+
+TEST_F(BatchSubmit, ParallelDoesNotSeeTheNamesOfFiles) {
+  const std::string text = submit("-o 'o{1}.exr' --shards 2 --parallel 2");
+  EXPECT_NE(text.find("'sh -c \"$ORRERY_render\" sh {1} {2}'"), std::string::npos) << text;
+  EXPECT_EQ(text.find("--resume-failed"), std::string::npos) << "which skips tasks by their number, whatever they do";
+}
+
+TEST_F(BatchSubmit, NamesCannotAddLinesToScripts) {
+  write("a\nrm -rf x.toml", kGoodScene);
+  const Outcome r = run("submit 'a\nrm -rf x.toml' -o s.exr --slurm");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(r.out.find("\nrm -rf x.toml,"), std::string::npos) << r.out;
+  EXPECT_EQ(run("submit good.toml -o 's\"x.exr' --slurm").status, 2);
+}
+
 TEST_F(BatchSubmit, InvalidJobsFailAtSubmission) {
   const auto expect = [&](const std::string& words, int status, const std::string& word) {
     const Outcome r = run("submit " + words);

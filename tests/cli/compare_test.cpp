@@ -63,6 +63,17 @@ TEST_F(CliCompare, HitLayersAndCryptomattesAreCompared) {
   EXPECT_LE(matte["max"], 1);
 }
 
+TEST_F(CliCompare, PartsAreCompared) {
+  ASSERT_EQ(run("render good.toml -o one.exr -q --layers Z,N").status, 0);
+  ASSERT_EQ(run("render good.toml -o parts.exr -q --layers Z,N --multipart").status, 0);
+  const Outcome all = run("compare one.exr parts.exr");
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_NE(all.out.find("differing   0 of"), std::string::npos) << all.out;
+  EXPECT_EQ(all.out.find("only"), std::string::npos) << all.out;
+  for (const char* layer : {"Z", "N"})
+    EXPECT_EQ(run(std::string("compare parts.exr parts.exr --layer ") + layer).status, 0);
+}
+
 TEST_F(CliCompare, ZTestDetectsABrighterScene) {
   ASSERT_EQ(run("render good.toml -o v.exr -q --layers variance --samples 64").status, 0);
   ASSERT_EQ(run("render good.toml -o w.exr -q --layers variance --samples 64 --seed 9").status, 0);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `orrery denoise` and --denoise: they agree, and whatever the program does to get an image does not matter.
+#include <nlohmann/json.hpp>
+
 #include "cli/program.h"
 
 namespace orrery::test {
@@ -44,7 +46,32 @@ TEST_F(CliDenoise, ShardsAreDenoisedWhenMerged) {
   ASSERT_EQ(run("render good.toml -q --samples 8 --shard 1/2 -o 3.exr").status, 0);
   ASSERT_EQ(run("render good.toml -q --samples 8 --shard 2/2 -o 4.exr").status, 0);
   EXPECT_EQ(run("merge 3.exr 4.exr --denoise -o no.ppm").status, 65);
-  EXPECT_EQ(run("merge 3.exr 4.exr --denoise -o no.exr").status, 65);
+  for (const char* output : {"no.ppm", "no.exr"})
+    EXPECT_NE(run(std::string("merge 3.exr 4.exr --denoise -o ") + output).err.find("have no halves to denoise from"),
+              std::string::npos);
+  EXPECT_NE(run("merge 1.exr 2.exr -o no.exr").err.find("merge them with --denoise"), std::string::npos);
+  EXPECT_EQ(run("merge 1.exr 2.exr -q -o noisy.ppm").status, 0) << "display formats have no layers";
+}
+
+TEST_F(CliDenoise, DeepSamplesAreNotDenoised) {
+  EXPECT_EQ(run("render good.toml -o a.exr --deep d.exr --denoise").status, 2);
+}
+
+TEST_F(CliDenoise, FilteringTwiceIsAWarning) {
+  ASSERT_EQ(run("render good.toml -q --samples 8 --denoise -o a.exr").status, 0);
+  EXPECT_NE(run("denoise a.exr -o b.exr").err.find("a.exr was denoised already"), std::string::npos);
+}
+
+/// One sample has no second half.
+TEST_F(CliDenoise, ASingleSampleIsFilteredWithoutHalves) {
+  const std::string render = "render good.toml -q --type float -o ";
+  ASSERT_EQ(run(render + "reference.exr --samples 4000 --seed 5").status, 0);
+  ASSERT_EQ(run(render + "noisy.exr --samples 1").status, 0);
+  ASSERT_EQ(run(render + "clean.exr --samples 1 --denoise").status, 0);
+  const auto error = [&](const std::string& file) {
+    return nlohmann::json::parse(run("compare " + file + " reference.exr --json").out)["display"].get<double>();
+  };
+  EXPECT_LT(error("clean.exr"), 1.05 * error("noisy.exr"));
 }
 
 TEST_F(CliDenoise, SkipExistingKnowsWhetherAnImageIsDenoised) {

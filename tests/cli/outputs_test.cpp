@@ -70,6 +70,37 @@ TEST_F(CliOutputs, OcioConfigIsAnInput) {
   EXPECT_EQ(text_of(folder_ / "my.ocio"), "a file that is not a config");
 }
 
+/// An image that was made with another config, or with another table of the config, is not up to date.
+TEST_F(CliOutputs, ContentsOfTheOcioConfigCount) {
+  const auto write_config = [&](const char* interpolation) {
+    write(
+        "my.ocio",
+        std::string("ocio_profile_version: 1\nsearch_path: .\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+                    "displays:\n  d:\n    - !<View> {name: v, colorspace: out}\nactive_displays: []\nactive_views: []\n"
+                    "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
+                    "  - !<ColorSpace> {name: out, from_reference: !<FileTransform> {src: out.cube, interpolation: ") +
+            interpolation + "}}\n");
+  };
+  const auto write_table = [&](const std::string& last) {
+    write("out.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n" + last + "\n");
+  };
+  const auto is_skipped = [&] {
+    const Outcome r = run("render good.toml -o a.png --skip-existing", "OCIO=my.ocio");
+    EXPECT_EQ(r.status, 0) << r.err;
+    return r.err.find("skipped") != std::string::npos;
+  };
+  write_config("linear");
+  write_table("1 1 1");
+  EXPECT_FALSE(is_skipped());
+  EXPECT_TRUE(is_skipped());
+  write_config("tetrahedral");
+  EXPECT_FALSE(is_skipped()) << "another config";
+  EXPECT_TRUE(is_skipped());
+  write_table("1 1 0.5");
+  EXPECT_FALSE(is_skipped()) << "another table";
+  EXPECT_TRUE(is_skipped());
+}
+
 TEST_F(CliOutputs, LutOfAnOcioConfigIsAnInput) {
   write("film.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
   write("my.ocio",

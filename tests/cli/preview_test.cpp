@@ -80,6 +80,8 @@ TEST_F(CliPreview, TheFileIsTheImageInTheEnd) {
     ASSERT_EQ(render("a.png", std::string("--preview p.png ") + options).status, 0);
     EXPECT_EQ(run("compare a.png p.png --fail-above max=0").status, 0) << options;
   }
+  ASSERT_EQ(run("render good.toml -q -o a.png --preview p.png --denoise").status, 0);
+  EXPECT_EQ(run("compare a.png p.png --fail-above max=0").status, 0) << "denoised";
 }
 
 TEST_F(CliPreview, TevHasTheImageInTheEnd) {

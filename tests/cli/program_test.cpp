@@ -142,6 +142,38 @@ TEST_F(CliProgram, SettingsShowTheirOrigin) {
   EXPECT_TRUE(contains(r.out, "default")) << r.out;
 }
 
+/// A track replaces what --set sets; the user must not believe otherwise.
+TEST_F(CliProgram, SettingAnAnimatedKeyIsAWarning) {
+  write("keys.toml", std::string(kGoodScene) +
+                         "\n[[key]]\ntarget = \"camera.vfov\"\nframes = [1, 2]\nvalues = [30, 10]\n"
+                         "[[key]]\ntarget = \"sphere[0].radius\"\nframes = [1, 2]\nvalues = [0.5, 1]\n");
+  const std::string warning = "is animated by key[0], which takes precedence";
+  EXPECT_TRUE(contains(run("render keys.toml -o a.png -q --set camera.vfov=90").err, warning) ||
+              contains(run("render keys.toml -o a.png --set camera.vfov=90").err, warning));
+  EXPECT_TRUE(
+      contains(run("check keys.toml --set 'sphere[0].radius=2'").err, "sphere[0].radius is animated by key[1]"));
+  const Outcome settings = run("info keys.toml --settings --set camera.vfov=90");
+  const std::size_t line = settings.out.find("camera.vfov");
+  ASSERT_NE(line, std::string::npos);
+  EXPECT_TRUE(contains(settings.out.substr(line, settings.out.find('\n', line) - line), "key[0]")) << settings.out;
+  EXPECT_FALSE(contains(run("check keys.toml --set camera.vfov=90 --set 'key=[]'").err, "animated"));
+}
+
+TEST_F(CliProgram, OneKeyIsSetOnce) {
+  const Outcome r = run("render good.toml -o a.png --samples 9 --set render.samples=5");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_TRUE(contains(r.err, "--samples and --set render.samples=5 set the same key")) << r.err;
+}
+
+TEST_F(CliProgram, OptionsWithoutEffectAreNamed) {
+  EXPECT_TRUE(contains(run("render good.toml -o a.exr --exposure 3 --bits 16").err,
+                       "warning: --exposure, --bits without effect: the display transform applies to PNG, TIFF, JPEG "
+                       "and PPM, and none is written\n"));
+  EXPECT_TRUE(contains(run("render good.toml -o a.png --type float --multipart").err,
+                       "warning: --type, --multipart without effect"));
+  EXPECT_FALSE(contains(run("render good.toml -o a.exr -o a.png --exposure 3 --type float").err, "without effect"));
+}
+
 TEST_F(CliProgram, InfoPrintsJson) {
   const Outcome r = run("info good.toml --json");
   ASSERT_EQ(r.status, 0) << r.err;

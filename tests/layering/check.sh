@@ -18,7 +18,11 @@ awk -v src="$2" '
     return ""
   }
 
-  BEGIN { FS = "|" }
+  BEGIN {
+    FS = "|"
+    split("dlfcn.h fcntl.h netdb.h poll.h pthread.h signal.h termios.h time.h unistd.h", p, " ")
+    for (i in p) posix[p[i]] = 1
+  }
   /^#/ { next }
   NF >= 4 {
     room = trim($1); rooms[room] = 1; room_count++
@@ -41,7 +45,7 @@ awk -v src="$2" '
         } else if (prefix != "") {
           if (!((room, prefix) in allowed)) complain(file, room " may not use " header)
           else if (!((room, prefix) in shown)) internal[path] = header
-        } else if (header ~ /\// && header !~ /^(sys|linux)\//) {
+        } else if (header !~ /^(sys|linux)\// && (header ~ /\// || (header ~ /\.h/ && !(header in posix)))) {
           complain(file, header " belongs to a library that no room declares")
         }
       }

@@ -34,6 +34,8 @@ tree; printf '#include "high/c.h"\nnamespace orrery::low {}\n' >"$work/src/low/a
 tree; printf '  #  include "low/a.h"\nnamespace orrery::high {}\n' >"$work/src/high/c.h"; must_say 'high may not include low/a.h'
 tree; printf '#include <lib/x.h>\nnamespace orrery::low {}\n' >"$work/src/low/a.h"; must_say 'low may not use lib/x.h'
 tree; printf '#include <other/x.h>\nnamespace orrery::low {}\n' >"$work/src/low/a.h"; must_say 'other/x.h belongs to a library that no room declares'
+tree; printf '#include <curl.h>\nnamespace orrery::low {}\n' >"$work/src/low/a.h"; must_say 'curl.h belongs to a library that no room declares'
+tree; printf '#include <unistd.h>\n#include <vector>\nnamespace orrery::low {}\n' >"$work/src/low/a.h"; check
 tree; printf '#include "middle/inner.h"\nnamespace orrery::high {}\n' >"$work/src/high/c.h"; must_say 'middle/inner.h includes lib/x.h'
 tree; printf '#include "middle/inner.h"\nnamespace orrery::middle {}\n' >"$work/src/middle/door.h"; must_say 'middle/door.h includes lib/x.h'
 tree; printf 'namespace orrery::high {}\n' >"$work/src/low/a.h"; must_say 'opens a namespace of another room'

@@ -52,6 +52,14 @@ class Layouts(unittest.TestCase):
                 with self.subTest(dtype=dtype, layout=name):
                     self.expect_same(array)
 
+    def test_masked_elements_are_refused(self):
+        masked = np.ma.masked_array(self.positions, mask=self.positions > 0.5)
+        with self.assertRaisesRegex(ValueError, "masked"):
+            small_scene(masked)
+        with self.assertRaisesRegex(ValueError, "masked"):
+            small_scene(self.positions, radius=np.ma.masked_array(np.ones(len(self.positions)), mask=[True] + [False] * (len(self.positions) - 1)))
+        self.expect_same(np.ma.masked_array(self.positions, mask=False))
+
     def test_read_only(self):
         p = self.positions.copy()
         p.flags.writeable = False

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: the same bits and the same errors as the program; loading, saving and settings."""
 
+import copy
 import os
+import pickle
 import unittest
 
 import numpy as np
@@ -40,6 +42,53 @@ def file_bytes(name):
 def write(name, text):
     with open(name, "w", encoding="utf-8") as file:
         file.write(text)
+
+
+class Cameras(unittest.TestCase):
+    def test_a_fitted_camera_is_copied_and_pickled(self):
+        scene = small_scene(positions())
+        scene.camera = orrery.Camera.fit(positions(), 0.3)
+        wanted = beauty(scene)
+        for other in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
+            self.assertEqual(beauty(other), wanted)
+
+    def test_arguments_of_fit_are_checked(self):
+        with self.assertRaises(orrery.Error):
+            orrery.Camera.fit(positions(), up="w")
+        for radius in (-1, float("nan"), float("inf")):
+            with self.assertRaisesRegex(ValueError, "radius"):
+                orrery.Camera.fit(positions(), radius)
+        self.assertGreater(orrery.Camera.fit([[1, 2, 3]]).keys["width"], 0)
+
+
+class Arguments(unittest.TestCase):
+    def test_whole_numbers(self):
+        scene = small_scene(positions())
+        for key in ("width", "height", "samples", "threads", "frame"):
+            for value in (1.5, "32"):
+                with self.subTest(key=key, value=value), self.assertRaisesRegex(TypeError, key):
+                    scene.render(**{key: value})
+        scene.render(np.int64(8), np.int32(8), threads=np.uint8(1))
+
+    def test_points_that_are_refused_leave_no_arrays(self):
+        scene = orrery.Scene()
+        before = repr(scene)
+        with self.assertRaises(TypeError):
+            scene.add_points(positions(), 1, select=object())
+        self.assertEqual(repr(scene), before)
+
+
+class Encodings(FolderTest):
+    def test_bytes_that_are_not_utf8_are_replaced(self):
+        with open("a.xyz", "wb") as file:
+            file.write(b"1\nlength in \xc5\nAr 1 2 3\n")
+        self.assertEqual(orrery.read_points("a.xyz").title, "length in \ufffd")
+        with open("a.csv", "wb") as file:
+            file.write(b"x,y,z,caf\xe9\n1,2,3,\xe9t\xe9\n")
+        self.assertEqual(list(orrery.read_points("a.csv")["caf\ufffd"]), ["\ufffdt\ufffd"])
+        os.mkdir(b"d\xe9")
+        with self.assertRaisesRegex(orrery.Error, "no_such"):
+            orrery.read_points(os.path.join(os.fsdecode(b"d\xe9"), "no_such.csv"))
 
 
 class SameAsTheProgram(FolderTest):

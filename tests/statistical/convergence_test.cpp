@@ -153,7 +153,7 @@ TEST(Adaptive, MeetsTheTargetNoiseWithoutBias) {
   settings.sampling.unlimited = true;
   settings.sampling.noise = 0.02;
   constexpr int kSeeds = 24;
-  double total = 0, true_total = 0, variance = 0;
+  double total = 0, true_total = 0, squares_of_differences = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
     s.render.seed = static_cast<std::uint32_t>(seed);
     const Result r = render(compile::compile(s), settings);
@@ -178,11 +178,13 @@ TEST(Adaptive, MeetsTheTargetNoiseWithoutBias) {
     EXPECT_GT(by_target, 0.8) << seed;
     total += light;
     true_total += true_light;
-    variance += (light - true_light) * (light - true_light);
+    squares_of_differences += (light - true_light) * (light - true_light);
   }
   // The error of the mean over seeds is at most four standard errors, estimated from the seeds themselves.
-  const double standard_error = std::sqrt(variance / kSeeds / kSeeds);
-  EXPECT_LT(std::abs(total - true_total) / kSeeds, 4 * standard_error);
+  const double bias = (total - true_total) / kSeeds;
+  const double variance = (squares_of_differences - kSeeds * bias * bias) / (kSeeds - 1);
+  const double standard_error = std::sqrt(variance / kSeeds);
+  EXPECT_LT(std::abs(bias), 4 * standard_error);
   EXPECT_LT(standard_error / (true_total / kSeeds), 2e-4);
 }
 

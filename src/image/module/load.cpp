@@ -36,7 +36,7 @@ void set_threads(int count) {
 
 std::string oiio_version() { return module().oiio_version(); }
 
-film::Picture read(const std::filesystem::path& file) { return module().read(file); }
+film::Picture read(const std::filesystem::path& file, Parts parts) { return module().read(file, parts); }
 
 MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats) {
   return module().read_map_header(file, formats);

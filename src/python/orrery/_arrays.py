@@ -8,6 +8,8 @@ _KEPT = {np.dtype(t) for t in ("float64", "float32", "int64", "int32", "uint16",
 
 def numbers(values, name):
     """Returns an array of one of the kept types; others are converted, integers to int64 if they fit."""
+    if np.ma.is_masked(values):
+        raise ValueError(f"{name} has masked elements; leave them out, or replace them, e.g. by .filled(np.nan)")
     array = np.asarray(values)
     if array.dtype.kind not in "fiub":
         raise TypeError(f"{name} must be an array of numbers, not of {array.dtype}")

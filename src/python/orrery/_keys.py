@@ -71,6 +71,8 @@ class Camera(Keys):
         look_from  "iso", "+x", "-x" .. "-z", or "azimuth,elevation" in degrees, as for `orrery plot`
         up         "x", "y" or "z"
         """
+        if not 0 <= radius < float("inf"):
+            raise ValueError(f"radius is {radius!r}; must be a finite number, at least 0")
         columns = [(axis, column) for axis, column in zip("xyz", _arrays.positions(positions).T)]
         camera = cls()
         camera._extent = Extent(columns, float(radius), look_from, up)

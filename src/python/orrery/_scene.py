@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: the text of a scene file, settings that override it, and arrays in place of data files."""
 
+import operator
 import os
 import re
 import tomllib
@@ -112,9 +113,9 @@ class Scene:
         if color is not None:
             keys["color"] = _color(color, rows, table)
         name = self._new_name()
-        self._arrays[name] = list(table.items())
         # Cryptomatte names spheres after their file, which is another one in a scene that was saved.
         self._add_table("points", {"file": name, "name": name, **keys})
+        self._arrays[name] = list(table.items())
 
     def check(self):
         """Reads the scene and checks everything that a render would reject. Returns the warnings."""
@@ -153,9 +154,10 @@ class Scene:
 
         Other Python threads run meanwhile. KeyboardInterrupt, and an exception in on_progress, stop the render.
         """
-        data = self._data(width, height, samples, frame)
+        sizes = [_whole("width", width), _whole("height", height)]
+        data = self._data(*sizes, _whole("samples", samples), _whole("frame", frame))
         limits = [_limit("noise", noise, 1e-6, 1), _limit("time", time, 1e-3, 1e9)]
-        threads = int(_limit("threads", threads, 1, 1024))
+        threads = _limit("threads", _whole("threads", threads), 1, 1024)
         memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
 
         def report(*values):
@@ -211,6 +213,14 @@ def _limit(name, value, low, high):
     if not _keys.is_number(value) or not low <= value <= high:
         raise ValueError(f"{name} is {value!r}; must be in [{low:g}, {high:g}]")
     return value
+
+
+def _whole(name, value):
+    """Returns an integer, or None."""
+    try:
+        return None if value is None else operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}; must be an integer") from None
 
 
 def _add_column(table, name, values):

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <CLI/CLI.hpp>
 
+#include "base/error.h"
+
 namespace orrery::cli {
 namespace {
 
@@ -31,8 +33,12 @@ TEST(CliSceneOptions, EveryShortFormSetsItsKey) {
 }
 
 TEST(CliSceneOptions, SetComesAfterShortForms) {
-  EXPECT_EQ(overrides_of({"--set", "render.samples=9", "--set", "camera.vfov=30", "--samples", "1"}),
-            (std::vector<std::string>{"render.samples=1", "render.samples=9", "camera.vfov=30"}));
+  EXPECT_EQ(overrides_of({"--set", "image.width=9", "--set", "camera.vfov=30", "--samples", "1"}),
+            (std::vector<std::string>{"render.samples=1", "image.width=9", "camera.vfov=30"}));
+}
+
+TEST(CliSceneOptions, AKeyIsNotSetTwiceByDifferentOptions) {
+  EXPECT_THROW(overrides_of({"--set", "render.samples=9", "--samples", "1"}), base::Error);
 }
 
 TEST(CliSceneOptions, TheLastShortFormCounts) {

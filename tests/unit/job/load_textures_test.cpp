@@ -75,6 +75,27 @@ TEST_F(JobLoadTextures, EncodedFilesAreSrgbUnlessTheSceneSaysOtherwise) {
   EXPECT_EQ(loaded[0].map.color_space, "srgb_texture");
 }
 
+/// Alpha beside colours is ignored: the colours are those of the file.
+TEST_F(JobLoadTextures, ColorsAreNotMultipliedByAlpha) {
+  film::EncodedPicture picture;
+  picture.width = 64;
+  picture.height = 32;
+  picture.channels = 4;
+  for (int i = 0; i < 64 * 32; ++i)
+    for (const int v : {200, 100, 50, i % 2 == 0 ? 128 : 0}) picture.values.push_back(static_cast<std::uint16_t>(v));
+  for (const char* name : {"a.png", "a.tif"}) {
+    image::write_encoded(folder_ / name, picture, "test");
+    scene_.materials.clear();
+    add(name, "raw");
+    const auto loaded = load();
+    ASSERT_NE(loaded.at(0).map.image, nullptr) << name;
+    for (const std::size_t x : {0, 1}) {
+      EXPECT_NEAR(loaded[0].map.image->row(3)[3 * x], 200 / 255.0, 0.002) << name << x;
+      EXPECT_NEAR(loaded[0].map.image->row(3)[3 * x + 2], 50 / 255.0, 0.002) << name << x;
+    }
+  }
+}
+
 TEST_F(JobLoadTextures, NumbersAreNotConverted) {
   write_flat("a.png", 0.5F);
   scene_.materials.push_back({"m", scene::Metal{{1, 1, 1}, 0, nullptr, map("a.png")}});
