@@ -25,8 +25,8 @@ float rounded_up(double x) { return -rounded_down(-x); }
 
 }  // namespace
 
-BoxFrame::BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids,
-                   const kernel::Sphere* motion, std::size_t moving_count) {
+BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion,
+                   std::size_t moving_count) {
   const auto at_closing = [&](std::uint32_t id) {
     const kernel::Sphere s = spheres[id], change = motion[id];
     return kernel::Sphere{s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
@@ -49,7 +49,10 @@ BoxFrame::BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::ui
       upper[axis] = std::max(upper[axis], center[axis] + s.radius);
     }
   });
-  for (int axis = 0; axis < 3; ++axis) middle[axis] = lower[axis] / 2 + upper[axis] / 2;
+  for (int axis = 0; axis < 3; ++axis) {
+    middle[axis] = lower[axis] / 2 + upper[axis] / 2;
+    if (spheres.in_single) middle[axis] = math::in_single_precision(middle[axis]);  // as rays are moved by it
+  }
   // Measured from the rounded centre, which far from the world's origin differs from that of the corners.
   double half = 0;
   each([&](const kernel::Sphere& s) {

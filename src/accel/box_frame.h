@@ -5,8 +5,27 @@
 #include <vector>
 
 #include "kernel/sphere_array.h"
+#include "math/single.h"
 
 namespace orrery::accel {
+
+/// The spheres that a BVH bounds: as the kernel intersects them.
+struct BoundedSpheres {
+  kernel::SphereArray spheres;
+  bool in_single = false;  ///< `fast` rounds them; far from the world's origin by more than boxes are padded
+
+  BoundedSpheres(const kernel::SphereArray& all, bool rounded = false)  // NOLINT(google-explicit-constructor)
+      : spheres(all), in_single(rounded) {}
+  BoundedSpheres(const kernel::Sphere* all) : spheres(all) {}  // NOLINT(google-explicit-constructor)
+
+  kernel::Sphere operator[](std::size_t id) const noexcept {
+    const kernel::Sphere s = spheres[id];
+    if (!in_single) return s;
+    using math::in_single_precision;
+    return {in_single_precision(s.x), in_single_precision(s.y), in_single_precision(s.z),
+            in_single_precision(s.radius)};
+  }
+};
 
 /// The space of a single-precision BVH: the spheres recentred on the origin and scaled by a power of two to order one,
 /// so that neither the scene's position nor its size costs precision.
@@ -19,8 +38,8 @@ class BoxFrame {
 
   /// `motion`   of the spheres below moving_count; the frame then encloses their whole motion
   /// Domain     `ids` not empty
-  BoxFrame(const kernel::SphereArray& spheres, const std::vector<std::uint32_t>& ids,
-           const kernel::Sphere* motion = nullptr, std::size_t moving_count = 0);
+  BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
+           std::size_t moving_count = 0);
 
   /// A sphere's padded bounding box.
   struct Box {

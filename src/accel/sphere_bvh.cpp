@@ -115,7 +115,7 @@ SphereBvh::Leaf make_leaf(const SphereItem* items, std::size_t count) {
 
 }  // namespace
 
-SphereBvh::SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32_t> all, const BoxFrame& frame,
+SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> all, const BoxFrame& frame,
                      const std::function<bool(double)>& monitor)
     : count(all.size()), ids(std::move(all)) {
   using Range = tbb::blocked_range<std::size_t>;

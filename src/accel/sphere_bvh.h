@@ -65,7 +65,7 @@ class SphereBvh {
   /// `monitor`  receives the progress, 0..1, on any thread; returns false to cancel
   /// Domain     1 <= ids.size() <= kMaxSpheres; all spheres lie in the frame
   /// Errors     base::Error(kStopped) if the monitor cancelled the build
-  SphereBvh(const kernel::SphereArray& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
+  SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
             const std::function<bool(double)>& monitor = {});
 
   bool empty() const noexcept { return ids.empty(); }

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <random>
 
 #include "compile/compile.h"
 #include "support/everything.h"
@@ -39,6 +40,31 @@ TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {
       s.render.accelerator = scene::Accelerator::kList;
       EXPECT_EQ(pixels(s), embree) << static_cast<int>(precision);
     }
+  }
+}
+
+/// Far from the world's origin, `fast` rounds spheres by more than boxes are padded: boxes must enclose rounded
+/// spheres.
+TEST(RenderRender, ListAndEmbreeGiveTheSameBitsFarFromTheOriginInFast) {
+  for (const int count : {300, 10'500}) {
+    std::mt19937 random(7);
+    const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
+    scene::Scene s;
+    s.image.width = 32;
+    s.image.height = 18;
+    s.render.samples = 2;
+    s.render.precision = scene::Precision::kFast;
+    const Vec3d offset{9e3, -6e3, 3e3};
+    s.camera.look_from = offset + Vec3d{0, 0, 3};
+    s.camera.look_at = offset;
+    s.camera.vfov = 25;
+    s.materials.push_back({"m", scene::Lambertian{{0.5, 0.5, 0.5}}});
+    for (int i = 0; i < count; ++i)
+      s.spheres.push_back({offset + Vec3d{uniform(), uniform(), uniform()}, 0.3 / std::cbrt(count), 0, ""});
+    s.render.accelerator = scene::Accelerator::kEmbree;
+    const auto embree = pixels(s);
+    s.render.accelerator = scene::Accelerator::kList;
+    EXPECT_EQ(pixels(s), embree) << count;
   }
 }
 
