@@ -10,11 +10,13 @@
 For each scene the first form prints closest hits per second of `orrery bench` (the accelerator of the scene, one Embree
 primitive per sphere, Embree's sphere points), seconds of the build, the ratio of the build's time to that of Embree's
 sphere points, and peak bytes per sphere of a small render. The base, which is what the program takes without spheres, is
-subtracted. --json FILE keeps the numbers.
+subtracted. --json FILE keeps the numbers. --isa avx2 limits the instruction set of orrery and, by a configuration file
+in a temporary home, that of Embree.
 """
 import argparse
 import array
 import json
+import os
 import pathlib
 import random
 import subprocess
@@ -129,9 +131,24 @@ def giant(folder, count):
     return with_radii(folder, "giant", count, lambda source, i: 100 * radius if i == 0 else radius)
 
 
+class Program:
+    """The orrery executable, with an instruction set."""
+
+    def __init__(self, path, isa, folder):
+        self.path, self.isa, self.folder = path, ["--isa", isa] if isa else [], folder
+        self.environment = {**os.environ, "HOME": str(folder)} if isa else None
+        for name in (".embree3", ".embree4"):
+            if isa:
+                (folder / name).write_text(f"isa={isa}\n")
+
+    def run(self, *words):
+        return subprocess.run([self.path, *words, *self.isa], check=True, capture_output=True, text=True,
+                              cwd=self.folder, env=self.environment).stdout
+
+
 def statistics(program, scene, folder, *options):
     stats = folder / "stats.json"
-    subprocess.run([program, "render", scene, "-o", folder / "out.png", "-q", "--stats", stats, *options], check=True)
+    program.run("render", scene, "-o", folder / "out.png", "-q", "--stats", stats, *options)
     return json.loads(stats.read_text())
 
 
@@ -142,8 +159,7 @@ def base_bytes(program, folder):
 
 
 def measure(program, scene, folder, rounds, base):
-    bench = json.loads(subprocess.run([program, "bench", scene, "-q", "--json", "--rounds", str(rounds)], check=True,
-                                      capture_output=True, text=True).stdout)
+    bench = json.loads(program.run("bench", scene, "-q", "--json", "--rounds", str(rounds)))
     stats = statistics(program, scene, folder, "--width", "64", "--height", "36", "--samples", "1")
     hits = {t["name"]: t["rays_per_s"]["median"] for t in bench["tracing"]}
     return {"scene": scene.stem, "spheres": stats["spheres"], "isa": bench["isa"],
@@ -160,23 +176,25 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--whole", type=int, metavar="COUNT")
     parser.add_argument("--radii", action="store_true", help="stars, grains and a cloud with a giant instead")
+    parser.add_argument("--isa", help="instruction set, e.g. avx2")
     parser.add_argument("--json")
     parser.add_argument("--folder", help="where the scenes are written; default: a temporary folder")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(dir=options.folder) as name:
         folder = pathlib.Path(name)
+        program = Program(pathlib.Path(options.program).resolve(), options.isa, folder)
         if options.whole:
             scene = uniform(folder, options.whole)
-            out = statistics(options.program, scene, folder, "--width", "1920", "--height", "1080", "--samples", "16")
+            out = statistics(program, scene, folder, "--width", "1920", "--height", "1080", "--samples", "16")
             print(json.dumps({k: out[k] for k in ("spheres", "seconds", "peak_memory_bytes", "traversal")}, indent=1))
             return
-        base = base_bytes(options.program, folder)
+        base = base_bytes(program, folder)
         results = []
         print("scene                single rays  packets  one by one  sphere points   ratio    build  its ratio  "
               "bytes/sphere")
         for count in map(int, options.counts.split(",")):
             for make in (stars, grains, giant) if options.radii else (uniform, crystal):
-                r = measure(options.program, make(folder, count), folder, options.rounds, base)
+                r = measure(program, make(folder, count), folder, options.rounds, base)
                 hits = {k: v / 1e6 for k, v in r["hits_per_second"].items()}
                 best = max(hits["single rays"], hits["packets"])
                 print(f"{r['scene']:20} {hits['single rays']:9.2f} M {hits['packets']:6.2f} M "

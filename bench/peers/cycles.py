@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders a scene file with Cycles from Blender's Python, and prints the rendering time in seconds.
 
-    blender --background --factory-startup --python-exit-code 1 --python cycles.py -- SCENE.toml WxH SAMPLES THREADS OUT.exr
+    blender --background --factory-startup --python-exit-code 1 --python cycles.py -- \\
+      SCENE.toml WxH SAMPLES THREADS OUT.exr [SEED]
 
 Spheres become points of point clouds, which Cycles intersects as spheres. Each point is a point cloud of its own, so
-that it can have its own material.
+that it can have its own material. Emitters become point lights of the same radius and radiance: Cycles does not sample
+emissive point clouds. The camera does not see them.
 """
 
+import math
 import os
 import sys
 import time
@@ -68,6 +71,18 @@ def add_sphere(group, center, radius, material):
     modifier[group.inputs[2].identifier] = material
 
 
+def add_light(center, radius, radiance):
+    """Adds a point light. Cycles divides its power by 4 pi and by the area of its disc."""
+    data = bpy.data.lights.new("light", "POINT")
+    data.shadow_soft_size = radius
+    data.energy = 4 * math.pi**2 * radius**2
+    data.color = radiance
+    data.cycles.use_multiple_importance_sampling = True
+    thing = bpy.data.objects.new("light", data)
+    thing.location = z_up(center)
+    bpy.context.scene.collection.objects.link(thing)
+
+
 def make_sky(scene):
     world = bpy.data.worlds.new("sky")
     world.use_nodes = True
@@ -109,15 +124,18 @@ def make_camera(scene):
     return camera
 
 
-def main(path, size, samples, threads, out):
+def main(path, size, samples, threads, out, seed=0):
     width, height = map(int, size.split("x"))
-    scene = Scene(path, width, height)
+    scene = Scene(path, width, height, lights=True)
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
-    materials = {name: make_material(name, m) for name, m in scene.materials.items()}
+    materials = {name: make_material(name, m) for name, m in scene.materials.items() if m["type"] != "emitter"}
     group = make_points_group()
     for center, radius, name in scene.spheres:
-        add_sphere(group, center, radius, materials[name])
+        if name in materials:
+            add_sphere(group, center, radius, materials[name])
+        else:
+            add_light(center, radius, scene.materials[name]["radiance"])
 
     target = bpy.context.scene
     target.world = make_sky(scene)
@@ -127,9 +145,10 @@ def main(path, size, samples, threads, out):
     target.render.resolution_percentage = 100
     target.render.threads_mode, target.render.threads = "FIXED", int(threads)
     target.render.image_settings.file_format = "OPEN_EXR"
+    target.render.image_settings.color_depth = "32"
     target.render.filepath = out
     cycles = target.cycles
-    cycles.device, cycles.samples = "CPU", int(samples)
+    cycles.device, cycles.samples, cycles.seed = "CPU", int(samples), int(seed)
     cycles.use_adaptive_sampling = cycles.use_denoising = False
     cycles.pixel_filter_type = "BOX"
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = scene.max_depth - 1

@@ -70,16 +70,12 @@ std::vector<TextureInfo> texture_infos(const scene::Scene& scene, const std::vec
   return out;
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// Whether the properties include colours under the names used by scanners and point cloud tools.
 bool has_colors(const std::vector<std::string>& properties) {
   static const std::vector<std::vector<std::string>> known = {
       {"red", "green", "blue"}, {"r", "g", "b"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}};
   return std::any_of(known.begin(), known.end(), [&](const std::vector<std::string>& names) {
-    return std::all_of(names.begin(), names.end(), [&](const auto& name) { return contains(properties, name); });
+    return std::all_of(names.begin(), names.end(), [&](const auto& name) { return base::contains(properties, name); });
   });
 }
 

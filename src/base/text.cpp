@@ -111,6 +111,10 @@ std::string did_you_mean(std::string_view wrong, const std::vector<std::string>&
   return best.empty() ? "" : "did you mean `" + best + "`?";
 }
 
+bool contains(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string out;
   for (const std::string& name : names) {

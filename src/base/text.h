@@ -30,6 +30,9 @@ std::string closest(std::string_view wrong, const std::vector<std::string>& cand
 /// Returns "did you mean `samples`?", or an empty string if no candidate is close.
 std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& candidates);
 
+/// Returns whether a list has a name.
+bool contains(const std::vector<std::string>& names, std::string_view name);
+
 /// Joins names with commas: "a, b, c".
 std::string joined(const std::vector<std::string>& names);
 

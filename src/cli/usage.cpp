@@ -8,10 +8,6 @@
 namespace orrery::cli {
 namespace {
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 std::vector<std::string> flag_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options())
@@ -45,7 +41,7 @@ std::string unexpected(const std::string& word, const CLI::App& command) {
   if (word.size() > 1 && word[0] == '-') return unknown_flag(word.substr(0, word.find('=')), command);
   if (!command_names(command).empty()) return unknown_command(word, command);
   return "unexpected argument `" + word + "`" +
-         (contains(flag_names(command), "--output") ? "; name output files with -o" : "");
+         (base::contains(flag_names(command), "--output") ? "; name output files with -o" : "");
 }
 
 /// The first long option that the command does not have. Reported before other errors, since a mistyped option often
@@ -55,7 +51,7 @@ std::string first_unknown_flag(const CLI::App& command, const std::vector<std::s
   for (const std::string& word : words) {
     if (word == "--") break;
     const std::string flag = word.substr(0, word.find('='));
-    if (flag.size() > 2 && flag.starts_with("--") && !contains(names, flag)) return flag;
+    if (flag.size() > 2 && flag.starts_with("--") && !base::contains(names, flag)) return flag;
   }
   return {};
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "data/lammps_frame.h"
 #include "data/readers.h"
 #include "data/text_cursor.h"
@@ -190,7 +191,7 @@ class LammpsData final : public DataFile {
   Table read(int, const std::vector<std::string>& columns) override {
     TextLayout layout = layout_;
     for (const ColumnInfo& column : info_.columns)
-      layout.columns.push_back({column.type, contains(columns, column.name)});
+      layout.columns.push_back({column.type, base::contains(columns, column.name)});
     Faults faults(bytes_->file());
     TextTable text = read_text_rows(*bytes_, layout, faults);
     require_end(TextCursor(*bytes_, {text.end, layout.first_line + text.rows}));
@@ -202,10 +203,6 @@ class LammpsData final : public DataFile {
   }
 
  private:
-  static bool contains(const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  }
-
   /// Checks that a section, or nothing, follows the atoms.
   void require_end(TextCursor cursor) const {
     std::string line;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "data/lammps_frame.h"
 #include "data/readers.h"
 #include "data/text_cursor.h"
@@ -27,12 +28,8 @@ const Axes kUnwrapped = {"xu", "yu", "zu"};
 const Axes kScaled = {"xs", "ys", "zs"};
 const Axes kScaledUnwrapped = {"xsu", "ysu", "zsu"};
 
-bool contains(const std::vector<std::string>& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool contains(const std::vector<std::string>& names, const Axes& axes) {
-  return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return contains(names, axis); });
+bool contain(const std::vector<std::string>& names, const Axes& axes) {
+  return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return base::contains(names, axis); });
 }
 
 ColumnType type_of(std::string_view column) {
@@ -44,9 +41,9 @@ ColumnType type_of(std::string_view column) {
 
 /// The scaled columns from which positions are computed; null if the file has positions.
 const Axes* scaled_position(const LammpsFrame& frame) {
-  if (contains(frame.columns, kAxes) || contains(frame.columns, kUnwrapped)) return nullptr;
-  if (contains(frame.columns, kScaled)) return &kScaled;
-  return contains(frame.columns, kScaledUnwrapped) ? &kScaledUnwrapped : nullptr;
+  if (contain(frame.columns, kAxes) || contain(frame.columns, kUnwrapped)) return nullptr;
+  if (contain(frame.columns, kScaled)) return &kScaled;
+  return contain(frame.columns, kScaledUnwrapped) ? &kScaledUnwrapped : nullptr;
 }
 
 FrameInfo described(const LammpsFrame& frame) {
@@ -57,21 +54,21 @@ FrameInfo described(const LammpsFrame& frame) {
   for (const std::string& column : frame.columns) info.columns.push_back({column, type_of(column)});
   if (scaled_position(frame) != nullptr)
     for (const std::string& axis : kAxes)
-      if (!contains(frame.columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
-  const auto if_there = [&](const char* name) { return contains(frame.columns, name) ? name : std::string(); };
+      if (!base::contains(frame.columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
+  const auto if_there = [&](const char* name) { return base::contains(frame.columns, name) ? name : std::string(); };
   Roles& roles = info.roles;
-  roles.position = scaled_position(frame) != nullptr || contains(frame.columns, kAxes) ? kAxes : kUnwrapped;
+  roles.position = scaled_position(frame) != nullptr || contain(frame.columns, kAxes) ? kAxes : kUnwrapped;
   roles.radius = if_there("radius");
-  if (roles.radius.empty() && contains(frame.columns, "diameter")) {
+  if (roles.radius.empty() && base::contains(frame.columns, "diameter")) {
     roles.radius = "diameter";
     roles.radius_scale = 0.5;
   }
   roles.element = if_there("element");
-  roles.type = contains(frame.columns, "type") ? "type" : if_there("typelabel");
+  roles.type = base::contains(frame.columns, "type") ? "type" : if_there("typelabel");
   roles.id = if_there("id");
   // Counts of periodic images apply to wrapped coordinates only.
-  const bool is_wrapped = contains(frame.columns, kAxes) || scaled_position(frame) == &kScaled;
-  if (is_wrapped && contains(frame.columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
+  const bool is_wrapped = contain(frame.columns, kAxes) || scaled_position(frame) == &kScaled;
+  if (is_wrapped && contain(frame.columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
   return info;
 }
 
@@ -103,7 +100,7 @@ Table taken(const std::vector<std::string>& columns, const LammpsFrame& frame, T
   // Computed columns first: the others are moved.
   if (const Axes* const names = scaled_position(frame); names != nullptr)
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-      if (!contains(columns, kAxes[axis])) continue;
+      if (!base::contains(columns, kAxes[axis])) continue;
       std::array<const double*, 3> scaled{};
       for (std::size_t i = 0; i < scaled.size(); ++i)
         scaled[i] = std::get<std::vector<double>>(values((*names)[i])).data();
@@ -135,7 +132,7 @@ class LammpsDump final : public TextFrames {
     layout.first_line = cursor.line();
     for (const std::string& name : frame.columns) {
       const bool is_scaled = needs_scaled && std::count(scaled->begin(), scaled->end(), name) > 0;
-      const bool is_wanted = !is_computed(name) && contains(columns, name);
+      const bool is_wanted = !is_computed(name) && base::contains(columns, name);
       layout.columns.push_back({type_of(name), is_wanted || is_scaled});
     }
     Faults faults(bytes().file());
@@ -158,7 +155,7 @@ class LammpsDump final : public TextFrames {
     Faults faults(bytes().file());
     LammpsFrame header = read_lammps_frame(cursor, faults);
     const std::uint64_t line = cursor.line() - 1;
-    if (!contains(header.columns, kAxes) && !contains(header.columns, kUnwrapped) && scaled_position(header) == nullptr)
+    if (!contain(header.columns, kAxes) && !contain(header.columns, kUnwrapped) && scaled_position(header) == nullptr)
       faults.fail(line, "no columns with positions", "write x y z, xu yu zu, xs ys zs or xsu ysu zsu");
     if (scaled_position(header) != nullptr && !header.box)
       faults.fail(line, "positions are scaled, but the frame has no item \"BOX BOUNDS\"");

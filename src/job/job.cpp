@@ -118,6 +118,25 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
   return out;
 }
 
+render::Settings settings_of(const Job& job, const film::LayerRequest& layers) {
+  render::Settings out;
+  out.threads = job.resources.threads > 0 ? job.resources.threads : default_threads();
+  out.traversal = job.resources.traversal;
+  out.layers = layers;
+  out.on_progress = job.hooks.on_progress;
+  out.on_build = job.hooks.on_build;
+  out.on_pixels = job.hooks.on_pixels;
+  out.cancel = job.hooks.cancel;
+  return out;
+}
+
+/// Denoises the image, and removes the halves unless the scene requests them.
+void denoise_picture(const Job& job, const scene::Scene& scene, int threads, film::Picture& picture) {
+  denoise::denoise(picture, threads);
+  if (job.hooks.on_denoised) job.hooks.on_denoised(picture);
+  if (!base::contains(scene::requested_layers(scene), scene::kHalvesLayer)) denoise::remove_halves(picture);
+}
+
 /// Keeps the image in memory instead of writing files.
 void keep(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled, const Layers& layers,
           const image::Provenance& provenance, const display::Settings& display, const base::FileSet& files,
@@ -175,14 +194,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.phases.compile_s = watch.lap();
   stop_if_cancelled(job);
 
-  render::Settings settings;
-  settings.threads = job.resources.threads > 0 ? job.resources.threads : default_threads();
-  settings.traversal = job.resources.traversal;
-  settings.layers = layers.request;
-  settings.on_progress = job.hooks.on_progress;
-  settings.on_build = job.hooks.on_build;
-  settings.on_pixels = job.hooks.on_pixels;
-  settings.cancel = job.hooks.cancel;
+  const render::Settings settings = settings_of(job, layers.request);
   if (job.hooks.on_start && job.merge.shards.empty())
     job.hooks.on_start(
         {job.scene.file.filename().string(), compiled.width, compiled.height, compiled.pixel_aspect, display});
@@ -203,11 +215,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
 
   report.target_missed = missed_target(job, result.statistics);
   if (job.denoise && !is_shard(job)) {
-    denoise::denoise(result.picture, settings.threads);
-    if (job.hooks.on_denoised) job.hooks.on_denoised(result.picture);
-    const std::vector<std::string> requested = scene::requested_layers(read.scene);
-    if (std::find(requested.begin(), requested.end(), scene::kHalvesLayer) == requested.end())
-      denoise::remove_halves(result.picture);
+    denoise_picture(job, read.scene, settings.threads, result.picture);
     report.phases.denoise_s = watch.lap();
   }
   count_bad_values(result.picture, report);

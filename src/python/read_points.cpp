@@ -29,10 +29,6 @@ struct ReadPoints {
   int frames = 1;
 };
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// Reads columns of a frame, and the columns that derived ones are computed from.
 ///
 /// `names`    empty: all
@@ -52,20 +48,20 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
   std::vector<std::string> known, wanted, sources;
   for (const data::ColumnInfo& column : out.info.columns) {
     known.push_back(column.name);
-    if (!names.empty() && !contains(names, column.name)) continue;
+    if (!names.empty() && !base::contains(names, column.name)) continue;
     if (column.is_derived) sources = points::sources_of(out.info, column.name);
     if (!column.is_derived) wanted.push_back(column.name);
   }
   for (const std::string& name : names)
-    if (!contains(known, name))
+    if (!base::contains(known, name))
       throw base::Error(base::ErrorKind::kUsage,
                         file.string() + " has no column `" + name + "`; its columns are " + base::joined(known));
   for (const std::string& source : sources)
-    if (!contains(wanted, source)) wanted.push_back(source);
+    if (!base::contains(wanted, source)) wanted.push_back(source);
   out.table = opened->read(frame - 1, wanted);
   if (!sources.empty()) points::compute_speed(sources, out.table);
   std::erase_if(out.table.columns,
-                [&](const data::Column& column) { return !names.empty() && !contains(names, column.name); });
+                [&](const data::Column& column) { return !names.empty() && !base::contains(names, column.name); });
   return out;
 }
 

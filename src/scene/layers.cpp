@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/text.h"
 #include "scene/limits.h"
 #include "scene/schema.h"
 
@@ -17,10 +18,6 @@ constexpr const char* kLobes[] = {
 
 /// Integers above this are not all exact in a float.
 constexpr std::size_t kMaxFloatId = std::size_t{1} << 24;
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 /// Returns all valid names of [output] layers.
 const std::vector<std::string>& layer_names() {
@@ -72,7 +69,7 @@ std::string light_group_fault(const std::string& name) {
     return "has " + std::to_string(name.size()) + " characters; the maximum is " + std::to_string(kLongestLightGroup);
   // The beauty's part of a multi-part file, and its channels.
   static const std::vector<std::string> reserved = {"rgba", "R", "G", "B", "A", "half_a", "half_b"};
-  bool is_layer = contains(reserved, name) || name.starts_with("Crypto");
+  bool is_layer = base::contains(reserved, name) || name.starts_with("Crypto");
   for (const std::string& layer : layer_names()) is_layer = is_layer || name == layer.substr(0, layer.find('.'));
   for (const char* lobe : kLobes) is_layer = is_layer || name == lobe;
   if (is_layer) return "is the name of another layer; choose a different one";
@@ -85,7 +82,7 @@ std::string light_group_fault(const std::string& name) {
 std::string layer_fault(const Scene& scene, const std::string& layer) {
   static const std::vector<std::string> light = {"diffuse",    "specular", "transmission",
                                                  "background", "emission", "light_groups"};
-  if (contains(light, layer) && scene.render.shading != Shading::kPath)
+  if (base::contains(light, layer) && scene.render.shading != Shading::kPath)
     return layer + " requires render.shading = \"path\"";
   if (layer == "object_id" && scene.sphere_count() >= kMaxFloatId)
     return "a float cannot represent the ids of " + std::to_string(scene.sphere_count()) +
@@ -106,11 +103,11 @@ std::vector<std::string> available_layers(const Scene& scene) {
 
 std::vector<std::string> requested_layers(const Scene& scene) {
   const std::vector<std::string>& requested = scene.output.layers;
-  if (!contains(requested, kAllLayers)) return requested;
+  if (!base::contains(requested, kAllLayers)) return requested;
   std::vector<std::string> out = available_layers(scene);
   std::erase(out, kHalvesLayer);
   for (const std::string& name : requested)
-    if (name != kAllLayers && !contains(out, name)) out.push_back(name);
+    if (name != kAllLayers && !base::contains(out, name)) out.push_back(name);
   return out;
 }
 

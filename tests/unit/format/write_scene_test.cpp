@@ -108,7 +108,11 @@ TEST(FormatWriteScene, DefaultsAreNotWritten) {
 
 TEST(FormatWriteScene, CommentsAcceptAnyFileName) {
   SceneFiles files;
-  files.read(scene_text({}, "made of a\rb\x1b[31m.toml \x7f"));
+  scene::Scene s;
+  s.camera.vfov = 33;
+  const std::string text = scene_text(s, "made of a\rb\x1b[31m.toml \x7f");
+  EXPECT_EQ(text.find_first_of("\r\x1b\x7f"), std::string::npos) << "control characters are not valid in a comment";
+  EXPECT_EQ(files.read(text).scene.camera.vfov, 33);
 }
 
 TEST(FormatWriteScene, WritesPointsFilesBesideTheScene) {
