@@ -11,14 +11,14 @@ namespace orrery::data {
 
 void ColumnSurvey::add(std::string_view value, bool value_is_quoted, std::uint64_t line) {
   constexpr std::int64_t kLargestExact = std::int64_t{1} << 53;
-  is_quoted = is_quoted && value_is_quoted;
   if (value.empty()) {
     has_missing = true;
     return;
   }
+  is_quoted = is_quoted && value_is_quoted;
   std::int64_t integer = 0;
   double number = 0;
-  if (parse_integer(value, integer)) {
+  if (value.find('.') == std::string_view::npos && parse_integer(value, integer)) {
     has_large_integers = has_large_integers || integer > kLargestExact || integer < -kLargestExact;
     number = static_cast<double>(integer);
   } else if (parse_number(value, number)) {

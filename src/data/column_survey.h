@@ -15,7 +15,7 @@ struct ColumnSurvey {
   bool has_large_integers = false;  ///< that a float64 cannot represent
   bool has_missing = false;         ///< empty values and markers
   bool has_markers = false;
-  bool is_quoted = true;                                      ///< all values are in quotes
+  bool is_quoted = true;                                      ///< all values that are not empty are in quotes
   double largest = -std::numeric_limits<double>::infinity();  ///< number
   std::uint64_t first_word_line = 0;                          ///< of the first other value; 0: there is none
   std::string first_word;
@@ -26,8 +26,8 @@ struct ColumnSurvey {
 
   /// Numbers with or without missing values, or no values at all.
   bool is_number() const { return first_word_line == 0 && (has_numbers || !has_markers); }
-  /// Integers, of which a float64 cannot represent some.
-  bool is_large_integer() const { return is_number() && has_large_integers && !has_fractions; }
+  /// Integers, of which a float64 cannot represent some. An int64 cannot represent missing values.
+  bool is_large_integer() const { return is_number() && has_large_integers && !has_fractions && !has_missing; }
 };
 
 /// Returns whether a word stands for a missing value: NA, N/A, n/a, #N/A, <NA>, null, NULL, None.

@@ -95,23 +95,24 @@ class CsvFile final : public SingleFrame {
   }
 
  private:
-  /// Without this, a column of radii with one word in it would be a column of strings, and the radius another.
-  void require_numbers(const std::vector<ColumnSurvey>& surveys, Faults& faults) const {
+  /// One word must not turn coordinates, radii or colours into strings, which would be replaced by defaults. In a
+  /// column of coordinates it is an error; the others remain numbers, so that it is one when they are read.
+  void require_numbers(const std::vector<ColumnSurvey>& surveys, Faults& faults) {
     std::vector<ColumnInfo> as_numbers = shape_.columns;
     for (ColumnInfo& column : as_numbers) column.type = ColumnType::kFloat64;
     const Roles roles = customary_roles(as_numbers);
-    std::vector<std::string> names = {roles.radius};
-    names.insert(names.end(), roles.position.begin(), roles.position.end());
-    names.insert(names.end(), roles.rgb.begin(), roles.rgb.end());
+    std::vector<std::string> coordinates(roles.position.begin(), roles.position.end());
     if (const auto stars = equatorial(as_numbers); stars && roles.position[0].empty())
-      names.insert(names.end(), {stars->ra, stars->dec, stars->distance});
+      coordinates = {stars->ra, stars->dec, stars->distance};
     for (std::size_t i = 0; i < surveys.size(); ++i) {
       const ColumnSurvey& survey = surveys[i];
-      if (survey.has_numbers && survey.first_word_line != 0 &&
-          std::find(names.begin(), names.end(), shape_.columns[i].name) != names.end())
-        faults.add(survey.first_word_line,
-                   "column " + shape_.columns[i].name + ": '" + survey.first_word + "' is not a number",
+      const std::string& name = shape_.columns[i].name;
+      if (!survey.has_numbers || survey.first_word_line == 0) continue;
+      if (std::find(coordinates.begin(), coordinates.end(), name) != coordinates.end())
+        faults.add(survey.first_word_line, "column " + name + ": '" + survey.first_word + "' is not a number",
                    "correct it, or leave it empty");
+      if (name == roles.radius || std::find(roles.rgb.begin(), roles.rgb.end(), name) != roles.rgb.end())
+        shape_.columns[i].type = ColumnType::kFloat64;
     }
     faults.raise_if_any();
   }

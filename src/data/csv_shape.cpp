@@ -6,6 +6,7 @@
 
 #include "data/customary.h"
 #include "data/text_cursor.h"
+#include "data/text_lines.h"
 #include "data/text_rows.h"
 
 namespace orrery::data {
@@ -49,13 +50,12 @@ Sample read_sample(const ByteSource& bytes) {
     }
     const std::string_view text = trimmed(line.text);
     if (text.empty()) continue;
-    // CloudCompare begins its header with two slashes.
-    const bool is_header_of_slashes = sample.lines.empty() && text.starts_with("//");
-    if (text[0] == '#' || text[0] == '%' || is_header_of_slashes) {
-      if (sample.lines.empty())
-        sample.comment = trimmed(text.substr(std::min(text.find_first_not_of("#%/"), text.size())));
+    // Above the rows, names may follow the sign at once; CloudCompare writes two slashes.
+    if (sample.lines.empty() && (text[0] == '#' || text[0] == '%' || text.starts_with("//"))) {
+      sample.comment = trimmed(text.substr(std::min(text.find_first_not_of("#%/"), text.size())));
       continue;
     }
+    if (is_comment((std::string(text) + "\n").c_str())) continue;
     if (sample.lines.empty()) begin = line.offset;
     sample.lines.push_back(line);
   }
@@ -124,7 +124,8 @@ void set_types(std::vector<ColumnInfo>& columns, const std::vector<ColumnSurvey>
   const bool may_quote_numbers =
       std::all_of(surveys.begin(), surveys.end(), [](const ColumnSurvey& survey) { return survey.is_quoted; });
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const bool is_string = !surveys[i].is_number() || (surveys[i].is_quoted && !may_quote_numbers);
+    const bool is_string =
+        !surveys[i].is_number() || (surveys[i].has_numbers && surveys[i].is_quoted && !may_quote_numbers);
     columns[i].type = is_string                       ? ColumnType::kText
                       : surveys[i].is_large_integer() ? ColumnType::kInt64
                                                       : ColumnType::kFloat64;

@@ -21,8 +21,7 @@ struct CsvShape {
   std::vector<ColumnInfo> columns;  ///< kFloat64, kInt64 or kText
 };
 
-/// Examines up to 1000 rows. Lines that begin with # or % are comments, and lines above the first row that begin with
-/// //.
+/// Examines up to 1000 rows after comments, which begin with #, % or //; those between rows are as in is_comment().
 ///
 /// - The separator is the first of tab, semicolon, comma and blank that divides all of these rows into equally many
 ///   values, at least two.

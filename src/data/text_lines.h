@@ -39,7 +39,7 @@ class TextLines {
   std::uint64_t count() const { return newline_count(begin(), end()); }
   /// Number of lines that contain more than white space.
   ///
-  /// `skips_comments`  without those that begin with # or %
+  /// `skips_comments`  without comments
   std::uint64_t filled_count(bool skips_comments) const;
 
  private:
@@ -59,10 +59,16 @@ inline const char* skip_blanks(const char* at) {
   return at;
 }
 
+/// Returns whether a line is a comment: # or %, followed by a blank, by the same sign or by nothing. A row may begin
+/// with #ff0000.
+inline bool is_comment(const char* line) {
+  const char* const sign = skip_blanks(line);
+  return (*sign == '#' || *sign == '%') && (is_blank(sign[1]) || sign[1] == '\n' || sign[1] == *sign);
+}
+
 /// Returns whether a line has no row: it is blank, or a comment where those are skipped.
 inline bool has_no_row(const char* line, bool skips_comments) {
-  const char first = *skip_blanks(line);
-  return first == '\n' || (skips_comments && (first == '#' || first == '%'));
+  return *skip_blanks(line) == '\n' || (skips_comments && is_comment(line));
 }
 
 }  // namespace orrery::data

@@ -149,10 +149,8 @@ Report denoise(film::Picture& picture, int threads) {
   return arena.execute([&] { return filter(picture); });
 }
 
-bool is_half(std::string_view plane) { return plane.starts_with("half_a.") || plane.starts_with("half_b."); }
-
 void remove_halves(film::Picture& picture) {
-  std::erase_if(picture.planes, [](const film::Plane& plane) { return is_half(plane.name); });
+  std::erase_if(picture.planes, [](const film::Plane& plane) { return film::is_half(plane.name); });
 }
 
 }  // namespace orrery::denoise

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "film/picture.h"
@@ -35,9 +34,6 @@ struct Report {
 /// Errors     base::Error(kBadData) if the image has no R, G and B
 /// Reference  rousselle2012, bitterli2016
 Report denoise(film::Picture& picture, int threads = 0);
-
-/// Returns whether a plane belongs to the layer `halves`.
-bool is_half(std::string_view plane);
 
 /// Removes the planes of the layer `halves`.
 void remove_halves(film::Picture& picture);

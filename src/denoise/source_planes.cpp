@@ -190,7 +190,7 @@ SourcePlanes source_planes(const film::Picture& picture) {
   out.variance = padded(out.has_halves ? variance_of(halves, frame, kBeautyNoiseRadius)
                                        : variance_without_halves(planes, has_variance, frame),
                         frame);
-  if (!out.has_halves) out.missing.push_back(has_planes ? "halves (one has no samples)" : "halves");
+  if (!out.has_halves) out.missing.push_back(has_planes ? "halves (one half has no samples)" : "halves");
   if (has_planes) {
     add_guides_of_halves(out, half_planes, frame);
   } else {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace orrery::film {
@@ -13,6 +14,11 @@ enum class PlaneKind : std::uint8_t {
   kVector,  ///< vectors: half precision, any sign
   kData,    ///< distances, ids, counts: single precision, stored losslessly
 };
+
+/// Returns whether a channel belongs to the layer `halves`. Its values are NaN where a half has no samples.
+inline bool is_half(std::string_view channel) {
+  return channel.starts_with("half_a.") || channel.starts_with("half_b.");
+}
 
 /// One channel of an image.
 struct Plane {

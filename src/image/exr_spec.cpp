@@ -19,9 +19,12 @@ std::vector<float> interleaved(const film::Picture& picture, const std::vector<c
   for (std::size_t c = 0; c < planes.size(); ++c) {
     if (planes[c]->values.size() != pixels)
       throw base::Error(base::ErrorKind::kInternal, "plane " + planes[c]->name + " does not have the image's size");
+    const bool may_be_nan = film::is_half(planes[c]->name);
     for (std::size_t i = 0; i < pixels; ++i) {
       float v = planes[c]->values[i];
-      if (!std::isfinite(v)) {
+      if (may_be_nan && std::isnan(v)) {
+        // Stays: 0 would be a measurement.
+      } else if (!std::isfinite(v)) {
         v = 0;
         ++report.not_finite;
       } else if (v < ranges[c].smallest || v > ranges[c].largest) {

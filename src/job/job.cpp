@@ -95,7 +95,7 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Comp
 
 void count_bad_values(const film::Picture& picture, JobReport& report) {
   for (const film::Plane& plane : picture.planes) {
-    if (denoise::is_half(plane.name)) continue;  // NaN without samples
+    if (film::is_half(plane.name)) continue;  // NaN without samples
     const film::BadValues bad = film::count_bad_values(plane);
     if (!bad.any()) continue;
     report.bad_values += bad;
@@ -132,7 +132,10 @@ render::Settings settings_of(const Job& job, const film::LayerRequest& layers) {
 
 /// Denoises the image, and removes the halves unless the scene requests them.
 void denoise_picture(const Job& job, const scene::Scene& scene, int threads, film::Picture& picture) {
-  denoise::denoise(picture, threads);
+  if (!denoise::denoise(picture, threads).missing.empty())
+    warn(job, base::file_diagnostic(base::Severity::kWarning, job.scene.file.string(),
+                                    "the noise cannot be measured, because one half of the samples is missing; the "
+                                    "image is hardly denoised. Render at least 2 samples per pixel"));
   if (job.hooks.on_denoised) job.hooks.on_denoised(picture);
   if (!base::contains(scene::requested_layers(scene), scene::kHalvesLayer)) denoise::remove_halves(picture);
 }

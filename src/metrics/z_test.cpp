@@ -31,7 +31,8 @@ std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance,
   for (int c = 0; c < 3; ++c) {
     for (int y0 = 0; y0 < picture.height; y0 += kTestedSide) {
       for (int x0 = 0; x0 < picture.width; x0 += kTestedSide) {
-        double sum = 0, expected = 0, magnitude = 0;
+        double sum = 0, expected = 0, magnitude = 0, light_of_picture = 0;
+        bool is_above = true, is_below = true;  // in every pixel
         for (int y = y0; y < std::min(y0 + kTestedSide, picture.height); ++y) {
           for (int x = x0; x < std::min(x0 + kTestedSide, picture.width); ++x) {
             const auto i =
@@ -46,11 +47,18 @@ std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance,
             squares += d * d;
             light += b;
             magnitude += std::abs(b);
+            light_of_picture += std::abs(b + d);
+            is_above = is_above && d > 0;
+            is_below = is_below && d < 0;
           }
         }
         differences += sum;
         variances += expected;
-        if (!(expected > 0) && std::abs(sum) <= kHalfPrecision * magnitude) continue;
+        // Without variance, a difference of all pixels in the same direction is certain. Others may be those of pixels
+        // whose variance is not known: with one sample, or where no path has found light yet.
+        const bool is_certain =
+            (is_above || is_below) && light_of_picture > 0 && std::abs(sum) > kHalfPrecision * magnitude;
+        if (!(expected > 0) && !is_certain) continue;
         const double z = expected > 0 ? sum / std::sqrt(expected) : std::copysign(kCertainZ, sum);
         zs.push_back(z);
         if (std::abs(z) <= std::abs(out.largest_z)) continue;

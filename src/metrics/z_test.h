@@ -32,8 +32,8 @@ struct ZTest {
 /// z of a block without variance whose means differ: no noise explains it.
 inline constexpr double kCertainZ = 1e6;
 
-/// Compares the means of blocks of kTestedSide px in each channel. Without variance, means may differ by the precision
-/// of half.
+/// Compares the means of blocks of kTestedSide px in each channel. A block without variance differs if all of its
+/// pixels do so in the same direction, by more than the precision of half, and it is not black.
 ///
 /// Domain     views of the same size; variances are those of the pixel means; a reference without variance is exact
 /// Result     empty if the image has no variance

@@ -163,21 +163,29 @@ PointColors colors_by_type(const data::Table& table, const Rows& rows, const Col
   return out;
 }
 
-/// The value of full intensity. Colours of floating point are from 0 to 1, but some programs write 0 to 255.
-double full_intensity(const data::Table& table, const Rows& rows, const ColorSource& source) {
-  constexpr double kMaxOvershoot = 2;
+/// The value of full intensity. Colours of floating point are from 0 to 1, but some programs write 0 to 255: then most
+/// values that are not 0 exceed 1.
+double full_intensity(const data::Table& table, const Rows& rows, const ColorSource& source, KeyFaults& faults) {
+  if (source.rgb_maximum != 1) return source.rgb_maximum;
+  std::uint64_t above = 0, positive = 0;
   double largest = 0;
   for (const std::string& name : source.columns)
     for_each_number(*table.find(name), rows, [&](std::size_t, double v) {
-      if (v > largest && std::isfinite(v)) largest = v;
+      above += v > 1 ? 1 : 0;
+      positive += v > 0 ? 1 : 0;
+      if (v > largest) largest = v;
     });
-  return source.rgb_maximum == 1 && largest > kMaxOvershoot ? largest > 255 ? 65535 : 255 : source.rgb_maximum;
+  constexpr double kMaxOvershoot = 2;
+  if (2 * above <= positive || largest <= kMaxOvershoot) return 1;
+  const double full = largest > 255 ? 65535 : 255;
+  faults.warning(".color.rgb", "most values exceed 1; full intensity is taken as " + scene::number_text(full));
+  return full;
 }
 
 /// The file's colours as 24 bits per sphere.
 std::vector<std::uint32_t> bytes_of(const data::Table& table, const Rows& rows, const ColorSource& source,
                                     KeyFaults& faults) {
-  const double full = full_intensity(table, rows, source);
+  const double full = full_intensity(table, rows, source, faults);
   std::vector<std::uint32_t> out(rows.size());
   std::uint64_t nan = 0, out_of_range = 0;
   for (const std::string& name : source.columns) {

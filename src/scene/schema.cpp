@@ -187,7 +187,7 @@ Table render_table() {
        choice<S>("accelerator", {"embree", "list"},
                  {"",
                   "`embree`: Embree's BVH. `list`: each ray tests every sphere, for comparison. The image is the same, "
-                  "bit for bit; in `fast` up to 10,000 times the scene's size from the origin",
+                  "bit for bit; in `fast` for static spheres up to 10,000 times the scene's size from the origin",
                   "`list`: time is proportional to the number of spheres"},
                  [](S& s) -> Accelerator& { return s.render.accelerator; }),
        choice<S>("direct_lighting", {"mis", "bsdf", "light"},

@@ -62,16 +62,22 @@ TEST_F(CliDenoise, FilteringTwiceIsAWarning) {
   EXPECT_NE(run("denoise a.exr -o b.exr").err.find("a.exr was denoised already"), std::string::npos);
 }
 
-/// One sample has no second half.
-TEST_F(CliDenoise, ASingleSampleIsFilteredWithoutHalves) {
-  const std::string render = "render good.toml -q --type float -o ";
-  ASSERT_EQ(run(render + "reference.exr --samples 4000 --seed 5").status, 0);
-  ASSERT_EQ(run(render + "noisy.exr --samples 1").status, 0);
-  ASSERT_EQ(run(render + "clean.exr --samples 1 --denoise").status, 0);
+/// One sample has no second half; in a file it is NaN.
+TEST_F(CliDenoise, ASingleSampleIsAWarning) {
+  const std::string render = "render good.toml -q --type float --samples ";
+  ASSERT_EQ(run(render + "4000 --seed 5 -o reference.exr").status, 0);
+  const Outcome one = run("render good.toml --type float --samples 1 --denoise -o clean.exr");
+  EXPECT_NE(one.err.find("Render at least 2 samples per pixel"), std::string::npos) << one.err;
+  EXPECT_EQ(run("render good.toml --type float --samples 2 --denoise -o two.exr").err.find("warning"),
+            std::string::npos);
+  const Outcome halves = run("render good.toml --type float --samples 1 --layers halves -o noisy.exr");
+  EXPECT_EQ(halves.err.find("not finite"), std::string::npos) << halves.err;
+  EXPECT_NE(run("denoise noisy.exr -o filtered.exr").err.find("halves (one half has no samples)"), std::string::npos);
   const auto error = [&](const std::string& file) {
     return nlohmann::json::parse(run("compare " + file + " reference.exr --json").out)["display"].get<double>();
   };
-  EXPECT_LT(error("clean.exr"), 1.05 * error("noisy.exr"));
+  EXPECT_LT(error("clean.exr"), 1.05 * error("noisy.exr")) << "not made worse";
+  EXPECT_LT(error("filtered.exr"), 1.05 * error("noisy.exr"));
 }
 
 TEST_F(CliDenoise, SkipExistingKnowsWhetherAnImageIsDenoised) {

@@ -167,11 +167,11 @@ TEST_F(CliProgram, OneKeyIsSetOnce) {
 
 TEST_F(CliProgram, OptionsWithoutEffectAreNamed) {
   EXPECT_TRUE(contains(run("render good.toml -o a.exr --exposure 3 --bits 16").err,
-                       "warning: --exposure, --bits without effect: the display transform applies to PNG, TIFF, JPEG "
+                       "warning: --exposure, --bits have no effect: the display transform applies to PNG, TIFF, JPEG "
                        "and PPM, and none is written\n"));
   EXPECT_TRUE(contains(run("render good.toml -o a.png --type float --multipart").err,
-                       "warning: --type, --multipart without effect"));
-  EXPECT_FALSE(contains(run("render good.toml -o a.exr -o a.png --exposure 3 --type float").err, "without effect"));
+                       "warning: --type, --multipart have no effect"));
+  EXPECT_FALSE(contains(run("render good.toml -o a.exr -o a.png --exposure 3 --type float").err, "no effect"));
 }
 
 TEST_F(CliProgram, InfoPrintsJson) {

@@ -141,10 +141,10 @@ TEST_F(DataCsv, ATextInAColumnOfNumbersIsAnErrorWithItsLine) {
 
 /// One word must not turn radii or colours into strings, which would be replaced by defaults.
 TEST_F(DataCsv, AWordInAColumnWithAMeaningIsAnError) {
-  EXPECT_EQ(faults("x,y,z,radius\n0,0,0,1\n1,0,0,broken\n"),
-            "3: column radius: 'broken' is not a number; correct it, or leave it empty\n");
-  EXPECT_EQ(faults("x,y,z,red,green,blue\n0,0,0,1,0,?\n0,0,0,1,0,0\n"),
-            "2: column blue: '?' is not a number; correct it, or leave it empty\n");
+  EXPECT_EQ(faults("x,y,z,radius\n0,0,0,1\n1,0,0,broken\n"), "3: column 4: 'broken' is not a number\n");
+  EXPECT_EQ(roles("x,y,z,radius\n0,0,0,1\n1,0,0,broken\n").radius, "radius") << "until it is read";
+  EXPECT_EQ(numbers(open("x,y,z,radius\n0,0,0,1\n1,0,0,broken\n")->read(0, {"x"}), "x")[1], 1) << "if it is not needed";
+  EXPECT_EQ(faults("x,y,z,red,green,blue\n0,0,0,1,0,?\n0,0,0,1,0,0\n"), "2: column 6: '?' is not a number\n");
   EXPECT_EQ(faults("ra,dec,parallax\n1,2,3\n1,2,-\n"),
             "3: column parallax: '-' is not a number; correct it, or leave it empty\n");
   EXPECT_EQ(columns("x,y,z,radius\n0,0,0,small\n"), "x:float64 y:float64 z:float64 radius:text") << "no number at all";
@@ -175,7 +175,12 @@ TEST_F(DataCsv, TheWholeFileDeterminesTypesAndRanges) {
   EXPECT_EQ(support::columns_text(file->describe(0)), "x:float64 y:float64 z:float64 id:int64");
   EXPECT_EQ(std::get<std::vector<std::int64_t>>(file->read(0, {"id"}).columns[0].values).back(), 9007199254740993);
   EXPECT_EQ(texts(read(words + "0,0,0,binary\n"), "note").back(), "binary");
-  EXPECT_EQ(columns(words + "0,0,0,\"1\"\n"), "x:float64 y:float64 z:float64 note:float64") << "not all are quoted";
+  EXPECT_EQ(columns("x,y,z,id\n0,0,0,9007199254740993\n0,0,0,\n"), "x:float64 y:float64 z:float64 id:float64")
+      << "an int64 cannot be missing";
+  EXPECT_EQ(columns("x,y,z,n\n\"1\",\"2\",\"3\",\"4\"\n\"1\",\"2\",\"3\",\n"),
+            "x:float64 y:float64 z:float64 n:float64")
+      << "an empty value needs no quotes";
+  EXPECT_EQ(columns(words + "0,0,0,\"1\"\n"), "x:float64 y:float64 z:float64 note:text") << "quoted, unlike the others";
 }
 
 TEST_F(DataCsv, CommentsAreSkippedAnywhere) {
@@ -185,6 +190,9 @@ TEST_F(DataCsv, CommentsAreSkippedAnywhere) {
   EXPECT_EQ(faults("x,y,z\n# comment\n1,2,three\n1,2,3\n"),
             "3: column z: 'three' is not a number; correct it, or leave it empty\n")
       << "comments count as lines";
+  EXPECT_EQ(texts(read("color,x,y,z\n#ff0000,1,2,3\n#00ff00,2,3,4\n"), "color"),
+            (std::vector<std::string>{"#ff0000", "#00ff00"}));
+  EXPECT_EQ(faults("x,y,z\n1,2,3\n#4,5,6\n"), "3: column x: '#4' is not a number; correct it, or leave it empty\n");
   EXPECT_EQ(roles("//X Y Z R G B\n1 2 3 255 0 0\n").rgb[0], "R") << "of CloudCompare";
 }
 

@@ -307,7 +307,7 @@ TEST(DenoiseDenoise, AHalfWithoutSamplesTellsNothing) {
   remove_halves(without);
   const double before = mean_squared_error(picture);
   const Report report = denoise(picture);
-  EXPECT_EQ(report.missing, std::vector<std::string>{"halves (one has no samples)"});
+  EXPECT_EQ(report.missing, std::vector<std::string>{"halves (one half has no samples)"});
   EXPECT_TRUE(report.has_guides);
   EXPECT_LT(mean_squared_error(picture), before / 3);
   double left = 0;
@@ -319,7 +319,7 @@ TEST(DenoiseDenoise, PixelsWithoutSamplesStayAsTheyAre) {
   film::Picture picture = noisy(0.1F);
   constexpr std::size_t kHole = 20 * kWidth + 30;
   for (film::Plane& plane : picture.planes)
-    if (is_half(plane.name)) plane.values[kHole] = std::numeric_limits<float>::quiet_NaN();
+    if (film::is_half(plane.name)) plane.values[kHole] = std::numeric_limits<float>::quiet_NaN();
   for (const char* name : {"R", "G", "B"}) values_of(picture, name)[kHole] = 0;
   const Report report = denoise(picture);
   EXPECT_TRUE(report.missing.empty());

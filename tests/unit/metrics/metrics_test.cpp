@@ -306,6 +306,10 @@ TEST(MetricsZTest, BlocksWithoutVarianceMustBeEqual) {
   EXPECT_TRUE(darker.differ());
   EXPECT_EQ(darker.rejected, 3) << "in each channel";
   EXPECT_EQ(darker.largest_z, -kCertainZ);
+  EXPECT_FALSE(test(0).differ()) << "black: perhaps no path has found light yet";
+  const Own noisy(48, 48, [](int x, int y, int) { return (x + y) % 3 == 0 ? 1.2 : 0.0; });
+  EXPECT_FALSE(z_test(noisy.view, none.view, grey.view, none.view)->differ())
+      << "one sample has noise, but no variance";
 }
 
 TEST(MetricsFalseColor, GoesFromBlackToPaleYellow) {

@@ -256,7 +256,9 @@ TEST_F(PointsPointColors, TheRangeOfFloatingPointColorsIsThatOfTheirValues) {
   roles.rgb_maximum = 1;
   expect_near(color_of(rgb_table<float>({0, 200}, {0, 100}, {0, 50}), 1), light(200, 100, 50));
   expect_near(color_of(rgb_table<float>({0, 25700}, {0, 257}, {0, 0}), 1), light(100, 1, 0));
-  EXPECT_EQ(diagnostics, "");
+  EXPECT_EQ(diagnostics, "warning points[0].color.rgb: most values exceed 1; full intensity is taken as 65535\n");
+  expect_near(color_of(rgb_table<float>({0.2F, 2.5F}, {0.4F, 0.2F}, {0.6F, 0.2F}), 0), light(51, 102, 153));
+  EXPECT_EQ(diagnostics, "warning points[0].color.rgb: 1 values are outside 0..1 and were clamped\n") << "one outlier";
 }
 
 TEST_F(PointsPointColors, ManyRgbColorsAreReduced) {
