@@ -10,13 +10,11 @@
 For each scene the first form prints closest hits per second of `orrery bench` (the accelerator of the scene, one Embree
 primitive per sphere, Embree's sphere points), seconds of the build, the ratio of the build's time to that of Embree's
 sphere points, and peak bytes per sphere of a small render. The base, which is what the program takes without spheres, is
-subtracted. --json FILE keeps the numbers. --isa avx2 limits the instruction set of orrery and, by a configuration file
-in a temporary home, that of Embree.
+subtracted. --json FILE keeps the numbers. --isa avx2 limits the instruction set of orrery and of Embree.
 """
 import argparse
 import array
 import json
-import os
 import pathlib
 import random
 import subprocess
@@ -134,16 +132,11 @@ def giant(folder, count):
 class Program:
     """The orrery executable, with an instruction set."""
 
-    def __init__(self, path, isa, folder):
-        self.path, self.isa, self.folder = path, ["--isa", isa] if isa else [], folder
-        self.environment = {**os.environ, "HOME": str(folder)} if isa else None
-        for name in (".embree3", ".embree4"):
-            if isa:
-                (folder / name).write_text(f"isa={isa}\n")
+    def __init__(self, path, isa):
+        self.path, self.isa = path, ["--isa", isa] if isa else []
 
     def run(self, *words):
-        return subprocess.run([self.path, *words, *self.isa], check=True, capture_output=True, text=True,
-                              cwd=self.folder, env=self.environment).stdout
+        return subprocess.run([self.path, *words, *self.isa], check=True, capture_output=True, text=True).stdout
 
 
 def statistics(program, scene, folder, *options):
@@ -182,7 +175,7 @@ def main():
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(dir=options.folder) as name:
         folder = pathlib.Path(name)
-        program = Program(pathlib.Path(options.program).resolve(), options.isa, folder)
+        program = Program(options.program, options.isa)
         if options.whole:
             scene = uniform(folder, options.whole)
             out = statistics(program, scene, folder, "--width", "1920", "--height", "1080", "--samples", "16")

@@ -14,6 +14,7 @@ struct BoundedSpheres {
   kernel::SphereArray spheres;
   bool in_single = false;  ///< `fast` rounds them; far from the world's origin by more than boxes are padded
 
+  BoundedSpheres() = default;
   BoundedSpheres(const kernel::SphereArray& all, bool rounded = false)  // NOLINT(google-explicit-constructor)
       : spheres(all), in_single(rounded) {}
   BoundedSpheres(const kernel::Sphere* all) : spheres(all) {}  // NOLINT(google-explicit-constructor)

@@ -112,7 +112,7 @@ BuildMonitor part_of(const BuildMonitor& whole, double begin, double end) {
 
 /// A sphere at Embree's time step 0 or 1.
 kernel::Sphere sphere_at_step(const EmbreeScene& scene, std::uint32_t id, unsigned step) {
-  const kernel::Sphere s = BoundedSpheres(scene.spheres, scene.rounds_spheres)[id];
+  const kernel::Sphere s = scene.bounded[id];
   if (step == 0 || id >= scene.moving_count) return s;
   const kernel::Sphere& change = scene.motion[id];
   return {s.x + change.x, s.y + change.y, s.z + change.z, s.radius + change.radius};
@@ -162,12 +162,11 @@ class Embree final : public Accel {
     const auto share = [primitives](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(primitives);
     };
-    const BoundedSpheres bounded(view.spheres, scene_.rounds_spheres);
-    scene_.frame = BoxFrame(bounded, ids, view.motion, view.moving_count);
+    scene_.frame = BoxFrame(scene_.bounded, ids, view.motion, view.moving_count);
     ids = take_for_bvh(view, std::move(ids), bvh_threshold);
     if (!ids.empty()) {
       const double end = share(ids.size());
-      bvh_ = SphereBvh(bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end));
+      bvh_ = SphereBvh(scene_.bounded, std::move(ids), scene_.frame, part_of(monitor, 0, end));
     }
     build(primitives, part_of(monitor, share(bvh_.count), 1));
   }
@@ -181,7 +180,7 @@ class Embree final : public Accel {
   static EmbreeScene make_scene(const kernel::SceneView& view, kernel::Precision precision) {
     EmbreeScene scene;
     scene.spheres = view.spheres;
-    scene.rounds_spheres = precision == kernel::Precision::kFast;
+    scene.bounded = {view.spheres, precision == kernel::Precision::kFast};
     scene.motion = view.motion;
     scene.moving_count = view.moving_count;
     scene.duplicates = duplicates(view, precision);

@@ -18,7 +18,7 @@ namespace orrery::accel {
 struct EmbreeScene {
   RTCScene scene = nullptr;  ///< null if every sphere is an outlier
   kernel::SphereArray spheres;
-  bool rounds_spheres = false;             ///< see BoundedSpheres
+  BoundedSpheres bounded;
   const kernel::Sphere* motion = nullptr;  ///< as in kernel::SceneView
   std::size_t moving_count = 0;
   /// If not 0, these are Embree's geometry 0, with two time steps, and geometry 1 has the rest. Else there is only one.

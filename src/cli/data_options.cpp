@@ -109,7 +109,7 @@ void add_look_options(Command& command, DataArguments& arguments, plot::DataOpti
       ->type_name("X|COLUMN");
   command
       .add_option("--radius-scale", points.radius.scale,
-                  "Factor for radii by column or element, e.g. 0.5 for diameters")
+                  "Factor for radii of the data and for the default radius, e.g. 0.5")
       ->check(real_number(1e-30, 1e30))
       ->type_name("X");
   command.add_option("--element-radii", points.radius.element, "Radii of the chemical elements: vdw, covalent or ball")

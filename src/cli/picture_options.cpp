@@ -63,7 +63,7 @@ std::string PictureOptions::unused_options(const job::Job& job, bool shows_displ
     warn({{"--type", type_ != "half"},
           {"--compression", outputs.exr.compression != job::Outputs().exr.compression},
           {"--multipart", outputs.exr.multipart}},
-         "these options apply to EXR");
+         "they apply to images in EXR");
   return out;
 }
 

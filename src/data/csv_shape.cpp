@@ -55,7 +55,7 @@ Sample read_sample(const ByteSource& bytes) {
       sample.comment = trimmed(text.substr(std::min(text.find_first_not_of("#%/"), text.size())));
       continue;
     }
-    if (is_comment((std::string(text) + "\n").c_str())) continue;
+    if (is_comment(line.text.c_str())) continue;
     if (sample.lines.empty()) begin = line.offset;
     sample.lines.push_back(line);
   }

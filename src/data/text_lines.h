@@ -61,9 +61,12 @@ inline const char* skip_blanks(const char* at) {
 
 /// Returns whether a line is a comment: # or %, followed by a blank, by the same sign or by nothing. A row may begin
 /// with #ff0000.
+///
+/// `line`     ends in a newline or a null character
 inline bool is_comment(const char* line) {
   const char* const sign = skip_blanks(line);
-  return (*sign == '#' || *sign == '%') && (is_blank(sign[1]) || sign[1] == '\n' || sign[1] == *sign);
+  const auto may_follow = [sign](char c) { return is_blank(c) || c == '\n' || c == '\0' || c == *sign; };
+  return (*sign == '#' || *sign == '%') && may_follow(sign[1]);
 }
 
 /// Returns whether a line has no row: it is blank, or a comment where those are skipped.

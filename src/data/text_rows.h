@@ -31,7 +31,7 @@ struct TextLayout {
   char comment = '\0';              ///< begins a comment behind the last value (only with separator ' '); 0: none
   bool allows_missing = false;      ///< an empty value (with a separator other than ' ') or a marker such as NA is NaN
   bool allows_comments = false;     ///< comments are skipped, see is_comment() (only up to the end of the file)
-  bool surveys = false;             ///< all columns are surveyed, none is stored
+  bool surveys = false;             ///< all columns are surveyed, also those that are not wanted
   /// Bytes that a thread parses at a time; the result does not depend on it.
   std::uint64_t chunk_bytes = std::uint64_t{1} << 18;
   std::vector<TextColumn> columns;

@@ -82,10 +82,10 @@ void finish_channel(film::Picture& picture, const LightChannel& channel, const P
 
 /// Index of the alpha plane, unless the whole image is opaque.
 std::optional<std::size_t> partial_alpha(const film::Picture& picture) {
-  for (std::size_t i = 0; i < picture.planes.size(); ++i)
-    if (const film::Plane& plane = picture.planes[i]; plane.name == "A")
-      if (std::any_of(plane.values.begin(), plane.values.end(), [](float a) { return a != 1; })) return i;
-  return {};
+  const film::Plane* const plane = picture.find("A");
+  if (plane == nullptr || std::all_of(plane->values.begin(), plane->values.end(), [](float a) { return a == 1; }))
+    return {};
+  return static_cast<std::size_t>(plane - picture.planes.data());
 }
 
 Report filter(film::Picture& picture) {

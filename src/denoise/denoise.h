@@ -17,8 +17,8 @@ struct Report {
   std::vector<std::string> layers;   ///< light layers that were filtered with the beauty
   std::vector<std::string> missing;  ///< layers that the image lacks; each would improve the result
   bool has_guides = false;           ///< albedo and normal guided the filter
-  std::uint64_t bad_pixels =
-      0;  ///< pixels without samples, or whose beauty is not finite or too large; left as they were
+  /// Pixels without samples, or whose beauty is not finite or too large. They are left as they were.
+  std::uint64_t bad_pixels = 0;
 };
 
 /// Filters the noise of an image's beauty, and applies the same weights to its light layers (lobe AOVs, light groups

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "image/format.h"
 #include "image/input.h"
 
 namespace orrery::image {
@@ -110,7 +111,8 @@ film::Picture read(const std::filesystem::path& file, Parts parts) {
   Input input = open_input(file);
   try {
     film::Picture picture = decode_all(file, input);
-    if (parts == Parts::kAll) add_other_parts(file, input, picture);
+    // Further pages of a TIFF are other images.
+    if (parts == Parts::kAll && format_of(file) == Format::kExr) add_other_parts(file, input, picture);
     picture.is_transparent = picture.is_transparent || has_holes(picture);
     input.in->geterror();  // OpenImageIO prints messages that are not fetched
     return picture;

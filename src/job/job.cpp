@@ -135,7 +135,8 @@ void denoise_picture(const Job& job, const scene::Scene& scene, int threads, fil
   if (!denoise::denoise(picture, threads).missing.empty())
     warn(job, base::file_diagnostic(base::Severity::kWarning, job.scene.file.string(),
                                     "the noise cannot be measured, because one half of the samples is missing; the "
-                                    "image is hardly denoised. Render at least 2 samples per pixel"));
+                                    "image is hardly denoised",
+                                    "render at least 2 samples per pixel"));
   if (job.hooks.on_denoised) job.hooks.on_denoised(picture);
   if (!base::contains(scene::requested_layers(scene), scene::kHalvesLayer)) denoise::remove_halves(picture);
 }

@@ -51,7 +51,7 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   std::iota(numbers_.begin(), numbers_.end(), 1);
 }
 
-/// Before anything is written, so that no film ends at the last frame of its file.
+/// Before anything is written, so that no animation ends at the last frame of its file.
 void DataFrames::require_frames() const {
   if (is_sequence_ || options_.points.frame || numbers_.size() < 2) return;
   const int count = file_->frame_count(), last = *std::max_element(numbers_.begin(), numbers_.end());

@@ -112,8 +112,8 @@ class PlotMaker {
                                   : "no dark colours, which shading would hide");
   }
 
-  /// Reads all frames once: the view contains all of them, and one range of the colour map holds for all, or a film
-  /// would flicker.
+  /// Reads all frames once: the view contains all of them, and one range of the colour map holds for all, or an
+  /// animation would flicker.
   void visit_frames(ViewExtent& extent, const math::Vec3d& up) {
     const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
     std::optional<scene::Interval> range;

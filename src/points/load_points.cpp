@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "data/data_file.h"
 #include "points/copies.h"
 #include "points/derived.h"
+#include "points/id_order.h"
 #include "points/point_colors.h"
 #include "points/point_radii.h"
 #include "points/read_memory.h"
@@ -200,56 +200,7 @@ class Loader {
     }
     const data::Column* const ids = table.find(info_.roles.id);
     if (ids == nullptr) return list.empty() ? Rows(table.rows) : Rows(std::move(list));
-    // As they are in the file: a double cannot represent all ids of 64 bits.
-    return std::visit(
-        [&](const auto& id) {
-          if constexpr (requires { is_before(id[0], id[0]); }) return in_order_of(id, std::move(list));
-          return Rows(std::move(list));  // ids are numbers
-        },
-        ids->values);
-  }
-
-  /// Order of ids. Missing ones come last.
-  template <class T>
-  static bool is_before(T a, T b) {
-    if constexpr (std::is_floating_point_v<T>)
-      if (std::isnan(a) || std::isnan(b)) return !std::isnan(a) && std::isnan(b);
-    return a < b;
-  }
-
-  template <class Ids>
-  static Rows in_order_of(const Ids& id, std::vector<std::uint32_t> list) {
-    bool is_sorted = true;
-    for (std::size_t i = 1; i < id.size() && is_sorted; ++i) is_sorted = !is_before(id[i], id[i - 1]);
-    if (is_sorted) return list.empty() ? Rows(id.size()) : Rows(std::move(list));
-    if (list.empty()) {
-      list.resize(id.size());
-      std::iota(list.begin(), list.end(), 0U);
-    }
-    sort_by_id(id, list);
-    return Rows(std::move(list));
-  }
-
-  /// Sorts rows by id. Ids are usually 1 to N in another order, which takes one pass.
-  template <class Ids>
-  static void sort_by_id(const Ids& id, std::vector<std::uint32_t>& list) {
-    constexpr std::uint32_t kFree = 0xffffffff;
-    std::vector<std::uint32_t> at(id.size() + 1, kFree);
-    bool is_permutation = true;
-    for (const std::uint32_t row : list) {
-      const auto n = static_cast<double>(id[row]);
-      is_permutation = n >= 0 && n <= static_cast<double>(id.size()) && n == std::floor(n) &&
-                       at[static_cast<std::size_t>(n)] == kFree;
-      if (!is_permutation) break;
-      at[static_cast<std::size_t>(n)] = row;
-    }
-    if (!is_permutation) {
-      std::stable_sort(list.begin(), list.end(), [&](auto a, auto b) { return is_before(id[a], id[b]); });
-      return;
-    }
-    list.clear();
-    for (const std::uint32_t row : at)
-      if (row != kFree) list.push_back(row);
+    return rows_by_id(*ids, std::move(list));
   }
 
   scene::PointArray centers_of(const data::Table& table, const Rows& rows) const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "points/selection_code.h"
+#include "points/selection_lexer.h"
 
 namespace orrery::points {
 namespace {
@@ -34,23 +34,6 @@ constexpr Function kFunctions[] = {{"abs", SelectionOp::kAbs, false},
                                    {"min", SelectionOp::kMin, true},
                                    {"max", SelectionOp::kMax, true}};
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-/// Bytes of UTF-8 beyond ASCII count as letters.
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || static_cast<unsigned char>(c) >= 0x80;
-}
-bool is_name(char c) { return is_letter(c) || is_digit(c) || c == '.'; }
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-enum class Kind { kEnd, kNumber, kText, kName, kQuotedName, kSymbol };
-
-struct Token {
-  Kind kind = Kind::kEnd;
-  Span span;
-  std::string_view text;  ///< of a text or name, without quotes; of a symbol, verbatim
-  double number = 0;
-};
-
 class Parser {
  public:
   explicit Parser(std::string_view text) {
@@ -62,9 +45,9 @@ class Parser {
   }
 
   SelectionCode parse() {
-    if (token_.kind != Kind::kEnd) {
+    if (token_.kind != TokenKind::kEnd) {
       parse_or();
-      if (token_.kind != Kind::kEnd) fail_at_token("expected an operator", remedy_for_operator());
+      if (token_.kind != TokenKind::kEnd) fail_at_token("expected an operator", remedy_for_operator());
     }
     return std::move(code_);
   }
@@ -72,91 +55,10 @@ class Parser {
  private:
   // Tokens.
 
-  void read() {
-    const std::string_view all = code_.text;
-    std::size_t at = next_;
-    while (at < all.size() && is_blank(all[at])) ++at;
-    token_ = {};
-    token_.span = {at, at};
-    next_ = at;
-    if (at == all.size()) return;
-    const char c = all[at];
-    if (is_digit(c) || (c == '.' && at + 1 < all.size() && is_digit(all[at + 1]))) {
-      read_number();
-    } else if (c == '"' || c == '\'' || c == '`') {
-      read_quoted(c);
-    } else if (is_letter(c)) {
-      read_name();
-    } else {
-      read_symbol();
-    }
-    next_ = token_.span.end;
-  }
+  void read() { token_ = lexer_.next(); }
 
-  void read_number() {
-    const char* begin = code_.text.data() + token_.span.begin;
-    const char* end = code_.text.data() + code_.text.size();
-    const auto [stop, status] = std::from_chars(begin, end, token_.number);
-    token_.kind = Kind::kNumber;
-    token_.span.end = token_.span.begin + static_cast<std::size_t>(stop - begin);
-    if (status != std::errc()) fail_at_token("number is out of range", "at most 1.8e308");
-    if (stop != end && is_name(*stop)) {
-      while (token_.span.end < code_.text.size() && is_name(code_.text[token_.span.end])) ++token_.span.end;
-      fail_at_token("malformed number " + std::string(verbatim(token_.span)),
-                    "a column whose name begins with a digit is written in backquotes");
-    }
-  }
-
-  void read_quoted(char quote) {
-    const std::size_t begin = token_.span.begin + 1, end = code_.text.find(quote, begin);
-    token_.span.end = code_.text.size();
-    if (end == std::string::npos) fail_at_token("quote is not closed", std::string("add ") + quote);
-    token_.kind = quote == '`' ? Kind::kQuotedName : Kind::kText;
-    token_.span.end = end + 1;
-    token_.text = verbatim({begin, end});
-    if (quote == '`' && end == begin) fail_at_token("no name between the backquotes", "write the name of a column");
-  }
-
-  void read_name() {
-    const std::string& all = code_.text;
-    std::size_t end = token_.span.begin;
-    while (end < all.size() && is_name(all[end])) ++end;
-    // The index of c_stress[1]; `in[` begins a list.
-    while (end < all.size() && all[end] == '[' && verbatim({token_.span.begin, end}) != "in") {
-      std::size_t close = end + 1;
-      while (close < all.size() && is_name(all[close])) ++close;
-      if (close == end + 1 || close >= all.size() || all[close] != ']') break;
-      end = close + 1;
-    }
-    token_.kind = Kind::kName;
-    token_.span.end = end;
-    token_.text = verbatim(token_.span);
-  }
-
-  void read_symbol() {
-    static constexpr std::string_view kSymbols[] = {"==", "!=", "<=", ">=", "&&", "||", "<", ">", "+",
-                                                    "-",  "*",  "/",  "!",  "(",  ")",  "[", "]", ","};
-    static constexpr std::pair<std::string_view, std::string_view> kForeign[] = {
-        {"=", "equality is =="}, {"&", "write &&"}, {"|", "write ||"}, {"^", "write x * x"}, {"~", "write !"}};
-    const std::string_view rest = std::string_view(code_.text).substr(token_.span.begin);
-    token_.kind = Kind::kSymbol;
-    for (const std::string_view symbol : kSymbols)
-      if (rest.substr(0, symbol.size()) == symbol) {
-        token_.span.end = token_.span.begin + symbol.size();
-        token_.text = verbatim(token_.span);
-        return;
-      }
-    token_.span.end = token_.span.begin + 1;
-    for (const auto& [symbol, remedy] : kForeign)
-      if (rest[0] == symbol[0]) fail_at_token("unknown operator " + std::string(symbol), std::string(remedy));
-    fail_at_token("unexpected character", "columns with such names are written in backquotes");
-  }
-
-  std::string_view verbatim(Span span) const {
-    return std::string_view(code_.text).substr(span.begin, span.end - span.begin);
-  }
-  bool is_symbol(std::string_view symbol) const { return token_.kind == Kind::kSymbol && token_.text == symbol; }
-  bool is_word(std::string_view word) const { return token_.kind == Kind::kName && token_.text == word; }
+  bool is_symbol(std::string_view symbol) const { return token_.kind == TokenKind::kSymbol && token_.text == symbol; }
+  bool is_word(std::string_view word) const { return token_.kind == TokenKind::kName && token_.text == word; }
 
   bool take(std::string_view symbol) {
     if (!is_symbol(symbol)) return false;
@@ -254,31 +156,32 @@ class Parser {
     } else if (take("-")) {
       parse_operand();
       emit(SelectionOp::kNegate, token.span);
-    } else if (token.kind == Kind::kNumber) {
+    } else if (token.kind == TokenKind::kNumber) {
       read();
       emit(SelectionOp::kNumber, token.span, token.number);
-    } else if (token.kind == Kind::kText) {
+    } else if (token.kind == TokenKind::kText) {
       read();
       emit(SelectionOp::kText, token.span, 0, code_.texts.size());
       code_.texts.emplace_back(token.text);
-    } else if (token.kind == Kind::kQuotedName || token.kind == Kind::kName) {
+    } else if (token.kind == TokenKind::kQuotedName || token.kind == TokenKind::kName) {
       parse_name();
     } else {
-      fail_at_token(token.kind == Kind::kEnd ? "the condition ends too early" : "expected a column, number or text",
-                    "e.g. type == 2 && z > 0");
+      fail_at_token(
+          token.kind == TokenKind::kEnd ? "the condition ends too early" : "expected a column, number or text",
+          "e.g. type == 2 && z > 0");
     }
     --depth_;
   }
 
   void parse_name() {
     const Token token = token_;
-    if (token.kind == Kind::kName) {
+    if (token.kind == TokenKind::kName) {
       for (const auto& [word, symbol] : kForeignWords)
         if (is_word(word)) fail_at_token("unknown word " + std::string(word), "write " + std::string(symbol));
       if (is_word("in")) fail_at_token("expected a column before `in`", "e.g. chain in [\"A\", \"B\"]");
     }
     read();
-    if (token.kind == Kind::kName && is_symbol("(")) {
+    if (token.kind == TokenKind::kName && is_symbol("(")) {
       parse_call(token);
     } else {
       emit(SelectionOp::kColumn, token.span, 0, column_index(token.text));
@@ -312,7 +215,7 @@ class Parser {
 
   void close(std::string_view what, Span open) {
     if (take(")")) return;
-    if (token_.kind == Kind::kEnd)
+    if (token_.kind == TokenKind::kEnd)
       fail_selection(code_.text, open, std::string(what == "(" ? "parenthesis" : what) + " is not closed", "add )");
     fail_at_token("expected ) or an operator", remedy_for_operator());
   }
@@ -325,9 +228,9 @@ class Parser {
     std::vector<std::string> texts;
     do {
       const bool negative = take("-");
-      if (token_.kind == Kind::kNumber) {
+      if (token_.kind == TokenKind::kNumber) {
         numbers.push_back(negative ? -token_.number : token_.number);
-      } else if (token_.kind == Kind::kText && !negative) {
+      } else if (token_.kind == TokenKind::kText && !negative) {
         texts.emplace_back(token_.text);
       } else {
         fail_at_token("expected a number or a string", "e.g. type in [1, 2], chain in [\"A\", \"B\"]");
@@ -347,8 +250,8 @@ class Parser {
   }
 
   SelectionCode code_;
+  SelectionLexer lexer_{code_.text};
   std::unordered_map<std::string, std::size_t> column_indices_;
-  std::size_t next_ = 0;  ///< first byte behind token_
   Token token_;
   int depth_ = 0;
 };

@@ -214,8 +214,10 @@ TEST_F(CliConvert, DamagedCompressionIsAnError) {
   ASSERT_EQ(std::system(("gzip -k " + (folder_ / "in.csv").string()).c_str()), 0);
   const std::string good = text_of(folder_ / "in.csv.gz");
   EXPECT_EQ(converted("in.csv.gz"), "x,y,z\n0,0,0\n2,0,0\n");
-  write("two.csv.gz", good + good + std::string(16, '\0'));
-  EXPECT_EQ(run("convert two.csv.gz -o two.csv").status, 65) << "two members: the second has a header as well";
+  write("more.csv", "4,0,0\n");
+  ASSERT_EQ(std::system(("gzip -k " + (folder_ / "more.csv").string()).c_str()), 0);
+  write("two.csv.gz", good + text_of(folder_ / "more.csv.gz") + std::string(16, '\0'));
+  EXPECT_EQ(converted("two.csv.gz"), "x,y,z\n0,0,0\n2,0,0\n4,0,0\n") << "two members, padded";
   for (const std::size_t from_end : {1, 5, 12}) {
     std::string damaged = good;
     damaged[damaged.size() - from_end] ^= 1;

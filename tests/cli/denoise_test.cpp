@@ -67,7 +67,7 @@ TEST_F(CliDenoise, ASingleSampleIsAWarning) {
   const std::string render = "render good.toml -q --type float --samples ";
   ASSERT_EQ(run(render + "4000 --seed 5 -o reference.exr").status, 0);
   const Outcome one = run("render good.toml --type float --samples 1 --denoise -o clean.exr");
-  EXPECT_NE(one.err.find("Render at least 2 samples per pixel"), std::string::npos) << one.err;
+  EXPECT_NE(one.err.find("render at least 2 samples per pixel"), std::string::npos) << one.err;
   EXPECT_EQ(run("render good.toml --type float --samples 2 --denoise -o two.exr").err.find("warning"),
             std::string::npos);
   const Outcome halves = run("render good.toml --type float --samples 1 --layers halves -o noisy.exr");

@@ -233,7 +233,7 @@ TEST_F(PointsLoadPoints, FrameOfTheFile) {
   EXPECT_TRUE(points.centers.empty());
 }
 
-TEST_F(PointsLoadPoints, AFileOfOneFrameIsTheSameInAFilm) {
+TEST_F(PointsLoadPoints, AFileOfOneFrameIsTheSameInAllFrames) {
   request.frame = 48;
   EXPECT_EQ(load("a.csv", kCsv), "");
   EXPECT_EQ(points.centers.size(), 3u);

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "points/selection_code.h"
+
+namespace orrery::points {
+
+enum class TokenKind { kEnd, kNumber, kText, kName, kQuotedName, kSymbol };
+
+struct Token {
+  TokenKind kind = TokenKind::kEnd;
+  Span span;
+  std::string_view text;  ///< of a string or name, without quotes; of a symbol, verbatim
+  double number = 0;
+};
+
+/// The tokens of a selection, one after the other.
+class SelectionLexer {
+ public:
+  /// `text`     outlives this and the tokens
+  explicit SelectionLexer(const std::string& text) : text_(text) {}
+
+  /// Returns the next token; at the end of the text kEnd.
+  ///
+  /// Errors     those of fail_selection()
+  Token next();
+
+ private:
+  void read_number(Token& token) const;
+  void read_quoted(char quote, Token& token) const;
+  void read_name(Token& token) const;
+  void read_symbol(Token& token) const;
+  std::string_view verbatim(Span span) const;
+  [[noreturn]] void fail(const Token& token, const std::string& text, const std::string& remedy) const;
+
+  const std::string& text_;
+  std::size_t next_ = 0;  ///< first byte behind the last token
+};
+
+}  // namespace orrery::points
