@@ -9,7 +9,8 @@
 #
 # A header is checked in one translation unit: the source of the same name, or the first source that includes it.
 #
-# ORRERY_BUILD         a configured build folder; default: build if it is configured, else build-tidy, which is created
+# ORRERY_BUILD         a configured build folder; default: build, if it is configured and no unity build, else build-tidy,
+#                      which is created
 # ORRERY_TIDY_MINUTES  time limit: files not started by then are listed and not checked; default: none
 # ORRERY_TIDY_JOBS     parallel processes; default: one per core
 set -euo pipefail
@@ -29,7 +30,9 @@ done
 git rev-parse --is-inside-work-tree >/dev/null 2>&1 || skip "not a git repository"
 
 build=${ORRERY_BUILD:-build}
-if [ -z "${ORRERY_BUILD:-}" ] && [ ! -f build/CMakeCache.txt ]; then build="build-tidy"; fi
+if [ -z "${ORRERY_BUILD:-}" ] && { [ ! -f build/CMakeCache.txt ] || grep -q '^CMAKE_UNITY_BUILD:.*=ON' build/CMakeCache.txt; }; then
+  build="build-tidy"
+fi
 commands=$build/compile_commands.json
 if [ ! -f "$commands" ]; then
   options=(-DCMAKE_EXPORT_COMPILE_COMMANDS=ON)

@@ -6,9 +6,13 @@
 #include <limits>
 
 #include "base/stop_point.h"
+#include "math/single.h"
 
 namespace orrery::accel {
 namespace {
+
+using math::rounded_down;
+using math::rounded_up;
 
 /// Padding of boxes as a fraction of the largest coordinate. The derived worst case is 14 x 2^-24, from the rounding of
 /// origin, direction, reciprocal and box in Embree's slab test; 2^-20 is the next power of two.
@@ -16,12 +20,6 @@ constexpr double kPadding = 0x1p-20;
 
 /// Bound on a ray origin's distance from the centre on each axis, in units of `reach` (box_ray): sqrt(2), rounded up.
 constexpr double kFarthestStart = 1.5;
-
-float rounded_down(double x) {
-  const auto f = static_cast<float>(x);
-  return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
-}
-float rounded_up(double x) { return -rounded_down(-x); }
 
 }  // namespace
 

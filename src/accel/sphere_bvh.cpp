@@ -18,9 +18,12 @@
 
 #include "accel/sphere_sort.h"
 #include "base/stop_point.h"
+#include "math/single.h"
 
 namespace orrery::accel {
 namespace {
+
+using math::rounded_up;
 
 constexpr std::size_t kArity = SphereBvh::kArity;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -44,11 +47,6 @@ struct Bounds {
   }
   void add(const Bounds& b) { add(b.lower, b.upper); }
 };
-
-float rounded_up(double x) {
-  const auto f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? std::nextafter(f, kInfinity) : f;
-}
 
 /// Returns memory to the operating system. The items are zero from then on.
 void release(SphereItem* begin, SphereItem* end) {

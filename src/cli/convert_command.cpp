@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/data_options.h"
 #include "cli/messages.h"
+#include "cli/option_checks.h"
 #include "job/memory.h"
 #include "plot/convert.h"
 
@@ -37,7 +38,7 @@ int run_convert(ConvertArguments& arguments) {
   plot::ConvertOptions& convert = arguments.convert;
   read_data_options(arguments.data, convert);
   if (convert.color_by.empty() && (convert.has_map || convert.points.color.range))
-    throw base::Error(base::ErrorKind::kUsage, "--map and --range need --color-by");
+    refuse("--map and --range need --color-by");
   convert.memory_limit = job::available_memory().value_or(0);
   plot::convert(convert, [&](const plot::ConvertedFile& written) { print_file(written, arguments.quiet); });
   return 0;

@@ -13,8 +13,6 @@
 namespace orrery::cli {
 namespace {
 
-[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
-
 /// Parses numbers with a separator: "0:12", "2,2,1".
 std::vector<double> numbers_of(const std::string& text, char separator, std::size_t count, const std::string& usage) {
   std::vector<double> out;

@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "base/error.h"
 #include "base/text.h"
 
 namespace orrery::cli {
@@ -24,6 +25,8 @@ bool parse(const std::string& text, Number& value) {
 }
 
 }  // namespace
+
+void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
 
 Check one_of(std::vector<std::string> names) {
   return [names = std::move(names)](std::string& word) -> std::string {

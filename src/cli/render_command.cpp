@@ -35,8 +35,6 @@ ProgressStyle style_of(const RenderOptions& options) {
   return options.quiet && style == ProgressStyle::kAuto ? ProgressStyle::kNone : style;
 }
 
-[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
-
 /// Parses two integers with a separator.
 template <class Number>
 std::optional<std::pair<Number, Number>> pair_of(const std::string& text, char separator) {

@@ -7,16 +7,11 @@
 namespace orrery::compile {
 namespace {
 
+using math::set;
 using math::Vec3d;
 
 double tangent_of_half(double angle_deg) {
   return static_cast<double>(std::tan(static_cast<long double>(angle_deg) / 360 * std::numbers::pi_v<long double>));
-}
-
-void set(double (&to)[3], Vec3d from) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 namespace orrery::compile {
 namespace {
 
+using math::set;
 using math::Vec3d;
 
 kernel::Sphere sphere_of(Vec3d center, double radius) { return {center.x, center.y, center.z, std::abs(radius)}; }

@@ -9,17 +9,16 @@
 
 #include "compile/atmosphere.h"
 #include "compile/scattering.h"
+#include "math/trigonometry.h"
 
 namespace orrery::compile {
 namespace {
 
+using math::cosine;
+using math::sine;
 using math::Vec3d;
 
 constexpr double kPi = std::numbers::pi;
-
-/// Sine and cosine of an angle in radians, rounded from long double.
-double sine(double angle) { return static_cast<double>(std::sin(static_cast<long double>(angle))); }
-double cosine(double angle) { return static_cast<double>(std::cos(static_cast<long double>(angle))); }
 
 /// Returns the color without negative components: mixed with the grey of the same luminance until none is left.
 Vec3d inside_gamut(Vec3d c) {

@@ -10,6 +10,8 @@
 namespace orrery::compile {
 namespace {
 
+using math::set;
+
 using scene::EnvironmentImage;
 
 /// Below this fraction of the map's power there is nothing to gain from sampling what exceeds the mean: it is mostly
@@ -17,12 +19,6 @@ using scene::EnvironmentImage;
 constexpr double kLeastExcess = 1e-6;
 
 constexpr double kFullSphere = 4 * std::numbers::pi;
-
-void set(double (&to)[3], math::Vec3d from) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
-}
 
 /// Rotates a vector about +y.
 ///

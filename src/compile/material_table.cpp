@@ -12,6 +12,7 @@
 namespace orrery::compile {
 namespace {
 
+using math::set;
 using math::Vec3d;
 
 /// Returns R0 of Schlick's approximation, the reflectance at normal incidence, for a ratio of refractive indices.

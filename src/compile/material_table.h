@@ -15,12 +15,6 @@
 
 namespace orrery::compile {
 
-inline void set(double (&to)[3], math::Vec3d from) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
-}
-
 /// Returns 2^stops.
 ///
 /// Precision  rounded from long double, so that it does not depend on the math library

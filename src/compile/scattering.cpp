@@ -6,11 +6,13 @@
 #include <numbers>
 
 #include "math/exponential.h"
+#include "math/trigonometry.h"
 
 namespace orrery::compile {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using math::cosine;
+using math::sine;
 
 /// Positive nodes and weights of Gauss-Legendre quadrature over -1..1 with eight nodes.
 constexpr std::array<double, 4> kGaussNodes{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
@@ -79,10 +81,6 @@ Ray march(const Atmosphere& air, double altitude, double sine, double length, in
 /// Far below the light of a moonless night sky.
 constexpr double kDarkest = 1e-20;
 
-// Rounded from long double, so that they do not depend on the math library.
-double sine(double angle) { return static_cast<double>(std::sin(static_cast<long double>(angle))); }
-double cosine(double angle) { return static_cast<double>(std::cos(static_cast<long double>(angle))); }
-
 }  // namespace
 
 Scattering::Scattering(const Atmosphere& air, const ColumnTable& columns, double sun_elevation,
@@ -97,7 +95,8 @@ Scattering::Scattering(const Atmosphere& air, const ColumnTable& columns, double
   // A ray from the ground leaves the atmosphere where the local elevation of the sun differs by at most this angle.
   const double reach =
       static_cast<double>(std::acos(static_cast<long double>(kGroundRadius) / (kGroundRadius + kAtmosphereThickness)));
-  const double lowest = std::max(sun_elevation - reach, -kPi / 2), highest = std::min(sun_elevation + reach, kPi / 2);
+  const double lowest = std::max(sun_elevation - reach, -std::numbers::pi / 2),
+               highest = std::min(sun_elevation + reach, std::numbers::pi / 2);
   lowest_sine_ = sine(lowest);
   highest_sine_ = sine(highest);
   tabulate(ground_albedo);
@@ -152,7 +151,7 @@ void Scattering::tabulate(const Spectrum& ground_albedo) {
   const int azimuths = (sun_sine_ < 0 ? 4 : 2) * refinement_, steps = 24 * refinement_;
   const auto suns = static_cast<std::size_t>(suns_);
   std::vector<double> azimuth_cosines;
-  for (int i = 0; i < azimuths; ++i) azimuth_cosines.push_back(cosine((i + 0.5) / azimuths * kPi));
+  for (int i = 0; i < azimuths; ++i) azimuth_cosines.push_back(cosine((i + 0.5) / azimuths * std::numbers::pi));
   std::vector<double> sun_sines, sun_cosines;
   for (int i = 0; i < suns_; ++i) {
     sun_sines.push_back(lowest_sine_ + (highest_sine_ - lowest_sine_) * i / (suns_ - 1));
@@ -180,7 +179,7 @@ void Scattering::tabulate(const Spectrum& ground_albedo) {
             const double local_sine = (radius * sun_sines[sun] + s.distance * toward_sun) / s.radius;
             const Spectrum light = sunlight(s.radius, local_sine);
             for (std::size_t b = 0; b < kBands; ++b)
-              row[sun][b] += part / azimuths / (4 * kPi) * s.diffuse[b] * light[b];
+              row[sun][b] += part / azimuths / (4 * std::numbers::pi) * s.diffuse[b] * light[b];
           }
         }
       }
@@ -203,7 +202,7 @@ void Scattering::tabulate(const Spectrum& ground_albedo) {
   Spectrum back{};
   for (const Node& node : gauss(0, 1)) {
     const Ray ray = march(air_, 0, node.x, distance_to_space(kGroundRadius, node.x), steps, from_ground);
-    const double projected = 2 * kPi * node.weight * node.x;
+    const double projected = 2 * std::numbers::pi * node.weight * node.x;
     for (const Ray::Segment& s : ray.segments) {
       const double x = std::sqrt((s.radius - kGroundRadius) / kAtmosphereThickness) * (altitudes_ - 1);
       const auto at = static_cast<std::size_t>(std::clamp(static_cast<int>(x), 0, altitudes_ - 2));
@@ -214,14 +213,15 @@ void Scattering::tabulate(const Spectrum& ground_albedo) {
         const Spectrum light = sunlight(s.radius, sun_sines[sun]);
         const Spectrum &low = multiple_[at * suns + sun], &high = multiple_[(at + 1) * suns + sun];
         for (std::size_t b = 0; b < kBands; ++b)
-          irradiance[sun][b] += projected * s.diffuse[b] * (light[b] / (4 * kPi) + low[b] * (1 - f) + high[b] * f);
+          irradiance[sun][b] +=
+              projected * s.diffuse[b] * (light[b] / (4 * std::numbers::pi) + low[b] * (1 - f) + high[b] * f);
       }
     }
   }
   for (std::size_t sun = 0; sun < suns; ++sun) {
     const Spectrum light = sunlight(kGroundRadius, sun_sines[sun]);
     for (std::size_t b = 0; b < kBands; ++b) {
-      const double direct = light[b] * std::max(sun_sines[sun], 0.0), albedo = ground_albedo[b] / kPi;
+      const double direct = light[b] * std::max(sun_sines[sun], 0.0), albedo = ground_albedo[b] / std::numbers::pi;
       const double radiance = albedo * (direct + irradiance[sun][b]) / (1 - albedo * back[b]);
       for (std::size_t i = 0; i < of_ground.size(); ++i) {
         double& value = multiple_[i * suns + sun][b];

@@ -10,13 +10,8 @@
 namespace orrery::compile {
 namespace {
 
+using math::set;
 using math::Vec3d;
-
-void set(double (&to)[3], Vec3d from) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
-}
 
 kernel::TextureKind kind_of(scene::TextureType type) {
   switch (type) {

@@ -6,16 +6,10 @@
 #include <cmath>
 #include <string>
 
+#include "data/text_cursor.h"
+
 namespace orrery::data {
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
-}
 
 std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> words;
@@ -55,7 +49,7 @@ void BiomtReader::take(std::string_view text, std::uint64_t line, Faults& faults
     for (const std::string_view name : split(text.substr(at + kChains.size()), ", \t"))
       part().chains.emplace_back(name);
   } else if (text.starts_with(kRow)) {
-    const std::vector<std::string_view> words = split(text, kBlanks);
+    const std::vector<std::string_view> words = words_of(text);
     const std::size_t row = static_cast<std::size_t>(row_);
     double values[4];
     bool is_good = words.size() == 6;

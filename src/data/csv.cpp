@@ -121,9 +121,9 @@ class CsvFile final : public SingleFrame {
   void find_positions(Faults& faults) {
     equatorial_ = equatorial(info_.columns);
     if (equatorial_) {
-      constexpr const char* kAxes[] = {"x", "y", "z"};
+      constexpr const char* kCoordinates[] = {"x", "y", "z"};
       for (std::size_t i = 0; i < 3; ++i) {
-        equatorial_->xyz[i] = unique_name(kAxes[i], info_.columns);
+        equatorial_->xyz[i] = unique_name(kCoordinates[i], info_.columns);
         info_.columns.push_back({equatorial_->xyz[i], ColumnType::kFloat64});
       }
       info_.roles.position = equatorial_->xyz;

@@ -28,12 +28,6 @@ struct Sample {
   std::vector<Line> lines;  ///< that are neither comments nor blank
 };
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
-}
-
 Sample read_sample(const ByteSource& bytes) {
   TextCursor cursor(bytes);
   Sample sample;

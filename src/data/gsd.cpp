@@ -10,14 +10,14 @@ namespace orrery::data {
 namespace {
 
 /// Columns from a chunk of the schema. Only positions, diameters and types are listed when a file lacks them.
-struct Source {
+struct ChunkColumns {
   const char* chunk;
   std::uint32_t components;
   std::array<const char*, 3> columns;
 };
 
-constexpr Source kPosition{"particles/position", 3, {"x", "y", "z"}};
-constexpr Source kOptional[] = {
+constexpr ChunkColumns kPosition{"particles/position", 3, {"x", "y", "z"}};
+constexpr ChunkColumns kOptional[] = {
     {"particles/velocity", 3, {"velocity[1]", "velocity[2]", "velocity[3]"}},
     {"particles/image", 3, {"image[1]", "image[2]", "image[3]"}},
     {"particles/mass", 1, {"mass"}},
@@ -160,14 +160,14 @@ FrameInfo GsdReader::describe(int index) {
   const auto frame = static_cast<std::uint64_t>(index);
   FrameInfo info;
   info.rows = rows_of(frame);
-  const auto add = [&](const GsdChunk* chunk, const Source& source) {
+  const auto add = [&](const GsdChunk* chunk, const ChunkColumns& source) {
     for (std::uint32_t i = 0; i < source.components; ++i)
       info.columns.push_back({source.columns[i], chunk != nullptr ? column_type(chunk->type) : ColumnType::kFloat32});
   };
   add(chunk_of(frame, kPosition.chunk, kPosition.components), kPosition);
   add(chunk_of(frame, kDiameter, 1), {kDiameter, 1, {"diameter"}});
   info.columns.push_back({"type", ColumnType::kText});
-  for (const Source& source : kOptional)
+  for (const ChunkColumns& source : kOptional)
     if (const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components)) {
       add(chunk, source);
       if (source.chunk == std::string("particles/image"))
@@ -187,7 +187,7 @@ Table GsdReader::read(int index, const std::vector<std::string>& columns) {
   const auto frame = static_cast<std::uint64_t>(index);
   Table table;
   table.rows = static_cast<std::size_t>(rows_of(frame));
-  const auto from = [&](const Source& source, const std::string& name) {
+  const auto from = [&](const ChunkColumns& source, const std::string& name) {
     for (std::uint32_t i = 0; i < source.components; ++i)
       if (name == source.columns[i]) {
         const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components);
@@ -203,7 +203,7 @@ Table GsdReader::read(int index, const std::vector<std::string>& columns) {
     } else {
       from(kPosition, name);
       from({kDiameter, 1, {"diameter"}}, name);
-      for (const Source& source : kOptional) from(source, name);
+      for (const ChunkColumns& source : kOptional) from(source, name);
     }
   }
   return table;

@@ -31,7 +31,7 @@ struct Part {
 };
 
 /// One column.
-struct Source {
+struct SourceColumn {
   ColumnInfo info;
   std::string dataset;
   std::uint64_t component = 0, components = 1;
@@ -57,7 +57,7 @@ class SnapshotReader final : public DataFile {
   std::uint64_t decompressed_limit_;
   std::vector<Part> parts_;
   int type_ = 0;
-  std::vector<Source> sources_;
+  std::vector<SourceColumn> sources_;
   FrameInfo info_;
 };
 
@@ -195,9 +195,9 @@ void SnapshotReader::list_columns() {
 Table SnapshotReader::read(int, const std::vector<std::string>& columns) {
   Table table;
   table.rows = static_cast<std::size_t>(info_.rows);
-  std::vector<const Source*> wanted;
+  std::vector<const SourceColumn*> wanted;
   for (const std::string& name : columns)
-    for (const Source& source : sources_)
+    for (const SourceColumn& source : sources_)
       if (source.info.name == name) {
         wanted.push_back(&source);
         table.columns.push_back({name, empty_values(source.info.type)});
@@ -211,7 +211,7 @@ Table SnapshotReader::read(int, const std::vector<std::string>& columns) {
     std::vector<bool> is_done(wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (is_done[i]) continue;
-      const Source& source = *wanted[i];
+      const SourceColumn& source = *wanted[i];
       const hdf5::Dataset dataset(group, source.dataset);
       if (!dataset || dataset.rows() != rows || dataset.components() != source.components ||
           dataset.type() != source.info.type)

@@ -38,16 +38,16 @@ constexpr Style kStyles[] = {
 /// A line without its comment.
 std::string_view content(std::string_view line) { return line.substr(0, line.find('#')); }
 
-ColumnType type_of(std::string_view column) {
+ColumnType type_of_style_column(std::string_view column) {
   constexpr std::string_view kIntegers[] = {"id", "mol", "type", "ix", "iy", "iz"};
   return std::find(std::begin(kIntegers), std::end(kIntegers), column) != std::end(kIntegers) ? ColumnType::kInt64
                                                                                               : ColumnType::kFloat64;
 }
 
 /// Reads the file up to the first atom.
-class Header {
+class DataHeader {
  public:
-  Header(const ByteSource& bytes, TextLayout& layout) : cursor_(bytes), faults_(bytes.file()), layout_(layout) {}
+  DataHeader(const ByteSource& bytes, TextLayout& layout) : cursor_(bytes), faults_(bytes.file()), layout_(layout) {}
 
   FrameInfo read() {
     std::string line;
@@ -142,7 +142,7 @@ class Header {
     for (const Style& s : kStyles)
       if (s.name == style) {
         for (const std::string_view name : words_of(s.columns))
-          info_.columns.push_back({std::string(name), type_of(name)});
+          info_.columns.push_back({std::string(name), type_of_style_column(name)});
         return true;
       }
     return false;
@@ -182,7 +182,7 @@ class Header {
 
 class LammpsData final : public DataFile {
  public:
-  explicit LammpsData(Bytes bytes) : bytes_(std::move(bytes)), info_(Header(*bytes_, layout_).read()) {}
+  explicit LammpsData(Bytes bytes) : bytes_(std::move(bytes)), info_(DataHeader(*bytes_, layout_).read()) {}
 
   Format format() const override { return Format::kLammpsData; }
   int frame_count() override { return 1; }

@@ -32,7 +32,7 @@ bool contain(const std::vector<std::string>& names, const Axes& axes) {
   return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return base::contains(names, axis); });
 }
 
-ColumnType type_of(std::string_view column) {
+ColumnType type_of_dump_column(std::string_view column) {
   constexpr std::string_view kIntegers[] = {"id", "type", "mol", "ix", "iy", "iz", "proc", "procp1"};
   if (column == "element" || column == "typelabel") return ColumnType::kText;
   return std::find(std::begin(kIntegers), std::end(kIntegers), column) != std::end(kIntegers) ? ColumnType::kInt64
@@ -51,7 +51,7 @@ FrameInfo described(const LammpsFrame& frame) {
   info.rows = frame.rows;
   info.box = frame.box;
   info.step = frame.step;
-  for (const std::string& column : frame.columns) info.columns.push_back({column, type_of(column)});
+  for (const std::string& column : frame.columns) info.columns.push_back({column, type_of_dump_column(column)});
   if (scaled_position(frame) != nullptr)
     for (const std::string& axis : kAxes)
       if (!base::contains(frame.columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
@@ -133,7 +133,7 @@ class LammpsDump final : public TextFrames {
     for (const std::string& name : frame.columns) {
       const bool is_scaled = needs_scaled && std::count(scaled->begin(), scaled->end(), name) > 0;
       const bool is_wanted = !is_computed(name) && base::contains(columns, name);
-      layout.columns.push_back({type_of(name), is_wanted || is_scaled});
+      layout.columns.push_back({type_of_dump_column(name), is_wanted || is_scaled});
     }
     Faults faults(bytes().file());
     TextTable text = read_text_rows(bytes(), layout, faults);

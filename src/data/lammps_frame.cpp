@@ -11,7 +11,7 @@
 namespace orrery::data {
 namespace {
 
-constexpr const char* kTruncated = "the file ends within the header of a frame";
+constexpr const char* kTruncatedHeader = "the file ends within the header of a frame";
 constexpr const char* kTruncatedRemedy = "remove the incomplete frame at the end of the file";
 
 class FrameReader {
@@ -51,7 +51,7 @@ class FrameReader {
 
   std::string next_line() {
     std::string line;
-    if (!cursor_.next(line)) faults_.fail(cursor_.line(), kTruncated, kTruncatedRemedy);
+    if (!cursor_.next(line)) faults_.fail(cursor_.line(), kTruncatedHeader, kTruncatedRemedy);
     return line;
   }
 

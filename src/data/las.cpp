@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::string_view kSignature = "LASF"sv;
+constexpr std::string_view kLasSignature = "LASF"sv;
 constexpr std::size_t kShortestHeader = 227;    ///< versions 1.0 to 1.2
 constexpr std::size_t kHeader14 = 375;          ///< version 1.4, with a count of 64 bits
 constexpr std::size_t kVariableRecord = 54;     ///< header of a variable-length record
@@ -121,9 +121,9 @@ std::vector<LasColumn> columns_of(const LasHeader& header) {
     column.scale = scale;
     column.offset = offset;
   };
-  constexpr const char* kAxes[] = {"x", "y", "z"};
+  constexpr const char* kCoordinates[] = {"x", "y", "z"};
   for (std::size_t i = 0; i < 3; ++i)
-    add_scaled(kAxes[i], NumberType::kInt32, 4 * i, header.scale[i], header.offset[i]);
+    add_scaled(kCoordinates[i], NumberType::kInt32, 4 * i, header.scale[i], header.offset[i]);
   add("intensity", NumberType::kUint16, 12);
   if (is_long) {
     constexpr double kScanAngleUnit_deg = 0.006;
@@ -237,7 +237,7 @@ class LasFile final : public SingleFrame {
 
 }  // namespace
 
-bool is_las(const Signature& signature) { return signature.head.starts_with(kSignature); }
+bool is_las(const Signature& signature) { return signature.head.starts_with(kLasSignature); }
 
 std::unique_ptr<DataFile> open_las(const Bytes& bytes) { return std::make_unique<LasFile>(bytes); }
 

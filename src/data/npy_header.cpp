@@ -14,7 +14,7 @@ namespace {
 using Kind = PythonLiteral::Kind;
 using namespace std::string_view_literals;
 
-constexpr std::string_view kSignature = "\x93NUMPY"sv;
+constexpr std::string_view kNpySignature = "\x93NUMPY"sv;
 /// NumPy's own limit.
 constexpr std::size_t kMostDimensions = 64;
 
@@ -121,11 +121,11 @@ std::string parse_shape(const PythonLiteral& source, NpyHeader& header) {
   return {};
 }
 
-std::uint64_t length_bytes(std::string_view head) { return head[kSignature.size()] == 1 ? 2 : 4; }
+std::uint64_t length_bytes(std::string_view head) { return head[kNpySignature.size()] == 1 ? 2 : 4; }
 
 }  // namespace
 
-bool has_npy_signature(std::string_view head) { return head.starts_with(kSignature); }
+bool has_npy_signature(std::string_view head) { return head.starts_with(kNpySignature); }
 
 std::uint64_t npy_header_end(std::string_view head) {
   constexpr std::uint64_t kLengthAt = 8;  // after signature and version
@@ -139,7 +139,7 @@ std::uint64_t npy_header_end(std::string_view head) {
 std::string parse_npy_header(std::string_view head, NpyHeader& header) {
   header.begin = npy_header_end(head);
   if (header.begin == 0) return "the file ends within the header";
-  const int version = head[kSignature.size()];
+  const int version = head[kNpySignature.size()];
   if (version < 1 || version > 3) return "version " + std::to_string(version) + " of the format; supported: 1 to 3";
   if (header.begin > kLongestNpyHeader)
     return "the header exceeds the limit of " + std::to_string(kLongestNpyHeader) + " bytes";

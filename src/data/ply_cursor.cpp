@@ -14,7 +14,7 @@ double binary_value(const char* at, NumberType type, bool is_big_endian) {
   return with_type(type, [=](auto number) { return static_cast<double>(load<decltype(number)>(at, is_big_endian)); });
 }
 
-bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool is_white_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 }  // namespace
 
@@ -79,11 +79,11 @@ std::string PlyCursor::fault() const {
 std::string PlyCursor::word() const {
   constexpr std::ptrdiff_t kLongestShown = 40;
   const char* const most = at_ + std::min(kLongestShown, row_end_ - at_);
-  return {at_, std::find_if(at_, most, is_blank)};
+  return {at_, std::find_if(at_, most, is_white_space)};
 }
 
 void PlyCursor::skip_blanks() {
-  while (at_ < row_end_ && is_blank(*at_)) ++at_;
+  while (at_ < row_end_ && is_white_space(*at_)) ++at_;
 }
 
 void PlyCursor::step_over_line_end() {
@@ -95,7 +95,7 @@ void PlyCursor::step_over_line_end() {
 
 bool PlyCursor::take_word(double& value) {
   skip_blanks();
-  const char* const end = std::find_if(at_, row_end_, is_blank);
+  const char* const end = std::find_if(at_, row_end_, is_white_space);
   if (!parse_number({at_, end}, value)) return false;
   at_ = end;
   return true;

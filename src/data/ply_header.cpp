@@ -4,21 +4,10 @@
 #include <algorithm>
 #include <charconv>
 
+#include "data/text_cursor.h"
+
 namespace orrery::data {
 namespace {
-
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  std::size_t i = 0;
-  while (i < line.size()) {
-    const std::size_t begin = line.find_first_not_of(" \t\r", i);
-    if (begin == std::string_view::npos) break;
-    const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
-    i = end;
-  }
-  return words;
-}
 
 bool parse_type(std::string_view word, NumberType& type) {
   struct Name {

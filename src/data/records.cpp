@@ -14,7 +14,7 @@ namespace orrery::data {
 namespace {
 
 /// Bytes read at a time: large enough for the system call, small enough for the second-level cache.
-constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 20;
+constexpr std::uint64_t kRecordBlockBytes = std::uint64_t{1} << 20;
 
 /// The element type of the column that stores numbers of type T; column_type() as a type.
 template <class T>
@@ -68,7 +68,7 @@ std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& la
         out.back());
   }
   if (rows == 0 || fields.empty()) return out;
-  const std::size_t block_rows = std::max<std::size_t>(1, kBlockBytes / stride);
+  const std::size_t block_rows = std::max<std::size_t>(1, kRecordBlockBytes / stride);
   const base::StopPoint stop;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (rows - 1) / block_rows + 1),
                     [&](const tbb::blocked_range<std::size_t>& blocks) {

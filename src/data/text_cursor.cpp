@@ -11,7 +11,7 @@
 namespace orrery::data {
 namespace {
 
-constexpr std::size_t kHeaderBytes = std::size_t{16} << 10;
+constexpr std::size_t kFirstReadBytes = std::size_t{16} << 10;
 constexpr std::size_t kSkipBytes = std::size_t{1} << 20;
 
 }  // namespace
@@ -31,7 +31,7 @@ bool TextCursor::next(std::string& text) {
   text.clear();
   const std::uint64_t start = place_.offset;
   for (bool is_complete = false; !is_complete;) {
-    if (begin_ == buffer_.size() && !fill(kHeaderBytes)) break;
+    if (begin_ == buffer_.size() && !fill(kFirstReadBytes)) break;
     const char* const begin = buffer_.data() + begin_;
     const char* const end = buffer_.data() + buffer_.size();
     const char* const newline = std::find(begin, end, '\n');
@@ -77,6 +77,11 @@ std::uint64_t TextCursor::skip(std::uint64_t count) {
   if (is_inside && skipped < count) ++skipped;  // the last line may lack its newline
   place_.line += skipped;
   return skipped;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
+  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {

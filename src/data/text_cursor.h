@@ -49,6 +49,9 @@ class TextCursor {
   std::size_t begin_ = 0;  ///< of the unread bytes in the buffer
 };
 
+/// A text without white space at its ends.
+std::string_view trimmed(std::string_view text);
+
 /// The words of a text, which are separated by blanks and tabs.
 std::vector<std::string_view> words_of(std::string_view text);
 

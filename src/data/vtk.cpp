@@ -30,7 +30,7 @@ struct VtkColumn {
   std::uint64_t component = 0;
 };
 
-std::optional<NumberType> type_of(std::string_view name) {
+std::optional<NumberType> vtk_number_type(std::string_view name) {
   struct Name {
     std::string_view name;
     NumberType type;
@@ -109,15 +109,16 @@ class VtkFile final : public SingleFrame {
     const std::uint64_t components = document_.integer(node, "NumberOfComponents", "1");
     if (!node) document_.fail("a piece has no <Points>");
     if (type == "String" || components == 0) return;
-    if (!type_of(type)) document_.fail("array " + quoted_word(name) + " has the unknown type " + quoted_word(type));
+    if (!vtk_number_type(type))
+      document_.fail("array " + quoted_word(name) + " has the unknown type " + quoted_word(type));
     auto array = std::find_if(arrays_.begin(), arrays_.end(), [&](const VtkArray& a) { return a.name == name; });
     if (array == arrays_.end()) {
       if (arrays_.size() == kMostColumns)
         document_.fail("there are more than " + std::to_string(kMostColumns) + " arrays");
-      arrays_.push_back({name, *type_of(type), components, {}});
+      arrays_.push_back({name, *vtk_number_type(type), components, {}});
       array = arrays_.end() - 1;
     }
-    if (array->type != *type_of(type) || array->components != components)
+    if (array->type != *vtk_number_type(type) || array->components != components)
       document_.fail("the pieces have arrays " + quoted_word(name) + " of different types or sizes");
     array->pieces.push_back(node);
   }

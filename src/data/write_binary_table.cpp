@@ -20,11 +20,11 @@ void append_little_endian(std::string& out, T value) {
   out.append(bytes, sizeof(T));
 }
 
-const Words* words_of(const Column& column) { return std::get_if<Words>(&column.values); }
+const Words* words_in(const Column& column) { return std::get_if<Words>(&column.values); }
 
 /// Appends the numbers of a row of a column in the column's type; `append_text(words, row)` appends a text.
 template <class AppendText>
-void append_value(std::string& out, const Column& column, std::size_t row, AppendText append_text) {
+void append_bytes(std::string& out, const Column& column, std::size_t row, AppendText append_text) {
   std::visit(
       [&](const auto& values) {
         if constexpr (requires { values.index; }) {
@@ -40,7 +40,7 @@ void append_value(std::string& out, const Column& column, std::size_t row, Appen
 enum class PlyOutput { kSame, kInt32, kUint32, kFloat64, kNone };
 
 PlyOutput ply_output(const base::OutputFile& out, const Column& column) {
-  if (words_of(column) != nullptr) return PlyOutput::kNone;
+  if (words_in(column) != nullptr) return PlyOutput::kNone;
   const auto* const integers = std::get_if<std::vector<std::int64_t>>(&column.values);
   if (integers == nullptr) return PlyOutput::kSame;
   if (integers->empty()) return PlyOutput::kInt32;
@@ -87,7 +87,7 @@ struct NpyText {
 
 NpyText npy_text(const base::OutputFile& out, const Column& column) {
   NpyText text;
-  for (const std::string& word : words_of(column)->words) {
+  for (const std::string& word : words_in(column)->words) {
     text.length = std::max(text.length, word.size());
     text.is_ascii = text.is_ascii && std::all_of(word.begin(), word.end(), [](char c) { return c > 0; });
     if (word.size() > kLongestNpyText || word.ends_with('\0'))
@@ -169,7 +169,7 @@ std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& tab
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const auto integer = [&] { return std::get<std::vector<std::int64_t>>(table.columns[c].values)[row]; };
       switch (outputs[c]) {
-        case PlyOutput::kSame: append_value(bytes, table.columns[c], row, [](const Words&, std::size_t) {}); break;
+        case PlyOutput::kSame: append_bytes(bytes, table.columns[c], row, [](const Words&, std::size_t) {}); break;
         case PlyOutput::kInt32: append_little_endian(bytes, static_cast<std::int32_t>(integer())); break;
         case PlyOutput::kUint32: append_little_endian(bytes, static_cast<std::uint32_t>(integer())); break;
         case PlyOutput::kFloat64: append_little_endian(bytes, static_cast<double>(integer())); break;
@@ -186,10 +186,10 @@ void write_npy_table(base::OutputFile& out, const Table& table) {
   bytes = npy_header(out, table);
   std::vector<NpyText> texts;
   for (const Column& column : table.columns)
-    texts.push_back(words_of(column) != nullptr ? npy_text(out, column) : NpyText());
+    texts.push_back(words_in(column) != nullptr ? npy_text(out, column) : NpyText());
   for (std::size_t row = 0; row < table.rows; ++row) {
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-      append_value(bytes, table.columns[c], row, [&](const Words& words, std::size_t r) {
+      append_bytes(bytes, table.columns[c], row, [&](const Words& words, std::size_t r) {
         const std::string& word = words.words[words.index[r]];
         const std::size_t padding = texts[c].length - word.size();
         if (texts[c].is_ascii) {

@@ -18,7 +18,7 @@ namespace orrery::data {
 namespace {
 
 constexpr std::size_t kMaxShown = 60;
-const std::array<std::string, 3> kAxes = {"x", "y", "z"};
+const std::array<std::string, 3> kXyz = {"x", "y", "z"};
 
 /// A line with nothing but a number of atoms.
 bool parse_count(std::string_view line, std::int64_t& count) {
@@ -26,18 +26,18 @@ bool parse_count(std::string_view line, std::int64_t& count) {
   return words.size() == 1 && parse_integer(words[0], count) && count >= 0;
 }
 
-struct Header {
+struct XyzHeader {
   FrameInfo info;
   bool is_extended = false;
   std::uint64_t count_line = 0;  ///< the line with the number of atoms
   TextCursor::Place rows;
 };
 
-class HeaderReader {
+class XyzHeaderReader {
  public:
-  HeaderReader(const ByteSource& bytes, TextCursor cursor) : cursor_(cursor), faults_(bytes.file()) {}
+  XyzHeaderReader(const ByteSource& bytes, TextCursor cursor) : cursor_(cursor), faults_(bytes.file()) {}
 
-  Header read() {
+  XyzHeader read() {
     std::string line;
     cursor_.next_filled(line);
     out_.count_line = cursor_.line() - 1;
@@ -90,7 +90,7 @@ class HeaderReader {
       if (p.name == "pos") {
         if (p.count != 3 || p.type != ColumnType::kFloat64)
           faults_.fail(comment_line_, "property \"pos\" is not of 3 real numbers", "write pos:R:3");
-        roles.position = add_three(kAxes, p.type);
+        roles.position = add_three(kXyz, p.type);
         continue;
       }
       if (p.name == "color" && p.count == 3 && p.type == ColumnType::kFloat64) {
@@ -122,7 +122,7 @@ class HeaderReader {
     } else {
       add("element", ColumnType::kText);
     }
-    out_.info.roles.position = add_three(kAxes, ColumnType::kFloat64);
+    out_.info.roles.position = add_three(kXyz, ColumnType::kFloat64);
     for (std::size_t i = 4; i < std::min<std::size_t>(first.size(), kMostColumns); ++i) {
       double ignored = 0;
       add("column" + std::to_string(i + 1), parse_number(first[i], ignored) ? ColumnType::kFloat64 : ColumnType::kText);
@@ -131,7 +131,7 @@ class HeaderReader {
 
   TextCursor cursor_;
   Faults faults_;
-  Header out_;
+  XyzHeader out_;
   std::uint64_t comment_line_ = 0;
 };
 
@@ -144,7 +144,7 @@ class Xyz final : public TextFrames {
   FrameInfo describe(int number) override { return header(number).info; }
 
   Table read(int number, const std::vector<std::string>& columns) override {
-    const Header header = this->header(number);
+    const XyzHeader header = this->header(number);
     TextLayout layout;
     layout.begin = header.rows.offset;
     layout.first_line = header.rows.line;
@@ -170,7 +170,7 @@ class Xyz final : public TextFrames {
   }
 
  private:
-  Header header(int number) { return HeaderReader(bytes(), frame(number)).read(); }
+  XyzHeader header(int number) { return XyzHeaderReader(bytes(), frame(number)).read(); }
 
   std::uint64_t skip_header(TextCursor& cursor) const override {
     std::string line;

@@ -5,7 +5,7 @@ namespace orrery::denoise {
 namespace {
 
 /// Squared differences of patches, in variances, from which on they have nothing in common.
-constexpr float kGuideTolerance = 4, kTolerance = 5;
+constexpr float kGuideTolerance = 4, kVarianceTolerance = 5;
 
 /// Radius of the windows, px. Guides are less noisy than the beauty. A larger window for the halves would blur shadows
 /// before the final weights can tell them apart.
@@ -57,7 +57,7 @@ FilteredHalves filtered_halves(const SourcePlanes& planes, const std::vector<Pad
                                Tiles& tiles) {
   WeightSource source;
   source.radius = kRadius;
-  source.tolerance = kTolerance;
+  source.tolerance = kVarianceTolerance;
   source.valid = &planes.valid;
   source.variance = &planes.variance;
   for (const PaddedPlane& guide : guides) source.guides.push_back(&guide);

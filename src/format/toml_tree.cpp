@@ -7,7 +7,7 @@
 namespace orrery::format {
 namespace {
 
-Place place_of(const toml::source_region& region) {
+Place place_of_region(const toml::source_region& region) {
   Place place;
   if (region.path) place.text_name = *region.path;
   place.line = static_cast<int>(region.begin.line);
@@ -19,11 +19,11 @@ Place place_of(const toml::source_region& region) {
 
 }  // namespace
 
-Place place_of(const toml::node& node) { return place_of(node.source()); }
-Place place_of(const toml::key& key) { return place_of(key.source()); }
+Place place_of(const toml::node& node) { return place_of_region(node.source()); }
+Place place_of(const toml::key& key) { return place_of_region(key.source()); }
 
 void add_parse_error(const toml::parse_error& error, const SourceText& source, Diagnostics& diagnostics) {
-  Place place = place_of(error.source());
+  Place place = place_of_region(error.source());
   place.width = 1;
   std::string text(error.description());
   constexpr std::string_view kPreface = "Error while parsing ";

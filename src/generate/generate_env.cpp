@@ -8,19 +8,18 @@
 #include "base/error.h"
 #include "compile/daylight.h"
 #include "generate/generate.h"
+#include "math/trigonometry.h"
 #include "scene/limits.h"
 #include "scene/value_text.h"
 
 namespace orrery::generate {
 namespace {
 
+using math::cosine;
+using math::sine;
 using math::Vec3d;
 
 constexpr double kPi = std::numbers::pi;
-
-// Rounded from long double, so that they do not depend on the math library.
-double sine(double angle) { return static_cast<double>(std::sin(static_cast<long double>(angle))); }
-double cosine(double angle) { return static_cast<double>(std::cos(static_cast<long double>(angle))); }
 
 void check_width(int width) {
   if (width < kSmallestEnvironment || width > kLargestEnvironment || width % 4 != 0)

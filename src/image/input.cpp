@@ -41,7 +41,7 @@ void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) 
   if (spec.deep) fail_to_read(file, "its pixels are deep; flatten them first");
 }
 
-int Input::row_step() const { return spec.tile_width == 0 ? kRowsAtATime : spec.tile_height; }
+int row_step(const OIIO::ImageSpec& spec) { return spec.tile_width == 0 ? kRowsAtATime : spec.tile_height; }
 
 bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const {
   if (spec.tile_width == 0) return in->read_scanlines(part, 0, begin, end, 0, first_channel, end_channel, type, out);

@@ -17,14 +17,16 @@ namespace orrery::image {
 /// Errors     base::Error(kBadData) if it is out of range or the pixels are deep
 void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec);
 
+/// Rows to decode at a time.
+int row_step(const OIIO::ImageSpec& spec);
+
 /// An open image file, and one part of it.
 struct Input {
   std::unique_ptr<OIIO::ImageInput> in;
   OIIO::ImageSpec spec;
   int part = 0;
 
-  /// Rows to decode at a time.
-  int row_step() const;
+  int row_step() const { return image::row_step(spec); }
   /// Decodes rows begin..end of a channel range; false if that fails.
   bool decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const;
   /// The reason why decoding failed.

@@ -55,8 +55,7 @@ NativePart read_part(const std::filesystem::path& file, const Input& input, int 
   NativePart out{input.in->spec(part), {}};
   const ImageSpec& spec = out.spec;
   const std::size_t row_bytes = spec.pixel_bytes(true) * static_cast<std::size_t>(spec.width);
-  constexpr int kRowsAtATime = 64;
-  const int step = spec.tile_width == 0 ? kRowsAtATime : spec.tile_height, last = spec.y + spec.height;
+  const int step = row_step(spec), last = spec.y + spec.height;
   for (int y = spec.y; y < last; y += step) {
     const int end = std::min(y + step, last);
     const std::size_t at = out.bytes.size();

@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "image/input.h"
 #include "image/library.h"
 #include "image/write.h"
 
@@ -17,12 +18,10 @@ namespace {
 using OIIO::ImageInput;
 using OIIO::ImageSpec;
 
-constexpr int kRowsAtATime = 64;
-
 bool decodes(ImageInput& in, int part, const ImageSpec& spec) {
   std::vector<float> rows;
-  for (int y = spec.y; y < spec.y + spec.height; y += kRowsAtATime) {
-    const int end = std::min(y + kRowsAtATime, spec.y + spec.height);
+  for (int y = spec.y; y < spec.y + spec.height; y += row_step(spec)) {
+    const int end = std::min(y + row_step(spec), spec.y + spec.height);
     if (spec.deep) {
       OIIO::DeepData deep;
       if (!in.read_native_deep_scanlines(part, 0, y, end, 0, 0, spec.nchannels, deep)) return false;

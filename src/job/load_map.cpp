@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kEncodedSpace = "srgb_texture";
 
 /// White may come out of a conversion brighter by this factor.
-constexpr float kSlack = 1 + 1e-5F;
+constexpr float kRoundingFactor = 1 + 1e-5F;
 
 /// Values of texels that were replaced.
 struct Replaced {
@@ -131,7 +131,7 @@ class Loader {
       float* const row = image->row(y);
       for (std::size_t i = 0; i < values; ++i) {
         const bool is_good = rgb[i] >= 0 && std::isfinite(rgb[i]);
-        if (!is_good || rgb[i] > request_.largest * kSlack) ++replaced_.out_of_range;
+        if (!is_good || rgb[i] > request_.largest * kRoundingFactor) ++replaced_.out_of_range;
         row[i] = is_good ? std::min(rgb[i], request_.largest) : 0.0F;
         out_.brightest = std::max(out_.brightest, row[i]);
       }

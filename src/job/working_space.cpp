@@ -13,7 +13,7 @@ namespace orrery::job {
 namespace {
 
 /// Tolerance for rounding in the conversion.
-constexpr double kSlack = 1e-6;
+constexpr double kMatchTolerance = 1e-6;
 
 /// A colour of the scene and the maximum of its components.
 struct BoundedColor {
@@ -47,7 +47,7 @@ int convert(const std::string& ocio, const std::string& from, const std::string&
     bool out_of_range = false;
     for (double& v : values[i]) {
       const double fit = std::clamp(v, 0.0, colors[i].maximum);
-      out_of_range = out_of_range || v < fit - kSlack || v > fit + kSlack;
+      out_of_range = out_of_range || v < fit - kMatchTolerance || v > fit + kMatchTolerance;
       v = fit;
     }
     *colors[i].color = {values[i][0], values[i][1], values[i][2]};

@@ -33,7 +33,7 @@ constexpr double kPixels = 96 * 54;
 constexpr int kRecordedRows = 4;
 
 /// Lists are skipped if the naive one would take longer than this for one sample per pixel.
-constexpr double kLongestList = 10;  // seconds
+constexpr double kLongestListSeconds = 10;
 /// Ray-sphere tests per second of the one-lane kernel.
 constexpr double kListTests = 1e8;
 
@@ -163,7 +163,7 @@ class Subject {
 
 bool lists_are_bearable(const compile::CompiledScene& compiled) {
   return 3.0 * compiled.width * compiled.height * static_cast<double>(compiled.spheres.size()) / kListTests <=
-         kLongestList;
+         kLongestListSeconds;
 }
 
 std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& out) {
@@ -178,7 +178,7 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
     cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, traversal, 1, {}, {}});
   if (!lists_are_bearable(compiled)) {
     out.left_out.push_back("lists: with this many spheres one sample per pixel would take more than " +
-                           std::to_string(static_cast<int>(kLongestList)) + " s");
+                           std::to_string(static_cast<int>(kLongestListSeconds)) + " s");
     return cases;
   }
   for (const auto& [name, accelerator] :

@@ -38,7 +38,7 @@ double srgb_from_linear(double light) {
   return light <= 0.0031308 ? light * 12.92 : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
 }
 
-double linear_from_srgb(double code) { return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4); }
+double linear_component(double code) { return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4); }
 
 }  // namespace
 
@@ -81,7 +81,7 @@ std::vector<Vec3d> palette(const ColorMap& map, std::size_t count) {
 }
 
 Vec3d linear_from_srgb(Vec3d srgb) {
-  return {linear_from_srgb(srgb.x), linear_from_srgb(srgb.y), linear_from_srgb(srgb.z)};
+  return {linear_component(srgb.x), linear_component(srgb.y), linear_component(srgb.z)};
 }
 
 Vec3d srgb_from_linear(Vec3d linear) {

@@ -11,7 +11,7 @@ namespace orrery::points {
 namespace {
 
 /// Distinct types and elements; a column with more is not one of types.
-constexpr std::size_t kMaxLabels = 65536;
+constexpr std::size_t kMaxTypes = 65536;
 
 ElementRadius kind_of(const std::string& name) {
   if (name == "covalent") return ElementRadius::kCovalent;
@@ -101,10 +101,10 @@ scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const Ra
     for_each_number(column, rows, [&](std::size_t, double v) { out.push_back(v * source.scale); });
     return out;
   }
-  const Labels labels = labels_of(column, rows, kMaxLabels);
+  const Labels labels = labels_of(column, rows, kMaxTypes);
   if (labels.of_rows.size() != rows.size()) {
     faults.error(".radius",
-                 "column `" + source.column + "` has more than " + std::to_string(kMaxLabels) + " distinct values");
+                 "column `" + source.column + "` has more than " + std::to_string(kMaxTypes) + " distinct values");
     return out;
   }
   const std::vector<double> of_labels = radii_of_labels(labels, source, radius, faults);

@@ -15,9 +15,9 @@ namespace orrery::points {
 namespace {
 
 /// Maximum number of colours. Longer files are not colour maps.
-constexpr std::size_t kMaxRows = 65'536;
+constexpr std::size_t kMaxColors = 65'536;
 /// Maximum size of a file: 128 bytes per row.
-constexpr std::size_t kMaxBytes = kMaxRows * 128;
+constexpr std::size_t kMaxBytes = kMaxColors * 128;
 
 constexpr const char* kForms = "a line is `r g b`, `t r g b` or `#rrggbb`";
 
@@ -107,7 +107,7 @@ class Reader {
   static constexpr std::size_t kHex = 1;  ///< as words per row
 
   void add_row(std::uint64_t line, std::size_t form, double t, Vec3d color) {
-    if (rows_.size() == kMaxRows) faults_.fail(line, "more than " + std::to_string(kMaxRows) + " colours");
+    if (rows_.size() == kMaxColors) faults_.fail(line, "more than " + std::to_string(kMaxColors) + " colours");
     if (form_ == 0) form_ = form;
     const bool is_out_of_range =
         std::min({color.x, color.y, color.z}) < 0 || std::max({color.x, color.y, color.z}) > 255;

@@ -12,12 +12,12 @@ Selection::Selection() : code_(std::make_shared<const SelectionCode>()) {}
 
 const std::vector<std::string>& Selection::columns() const { return code_->columns; }
 
-void Selection::check(const std::vector<data::ColumnInfo>& columns) const { bind(*code_, columns); }
+void Selection::check(const std::vector<data::ColumnInfo>& columns) const { points::bind(*code_, columns); }
 
 std::vector<std::uint8_t> Selection::evaluate(const data::Table& table) const {
   std::vector<data::ColumnInfo> columns;
   for (const data::Column& column : table.columns) columns.push_back({column.name, column.type()});
-  const SelectionProgram program = bind(*code_, columns);
+  const SelectionProgram program = points::bind(*code_, columns);
   return run(program, *code_, table);
 }
 

@@ -49,7 +49,7 @@ void SelectionLexer::read_number(Token& token) const {
   if (stop != end && is_name(*stop)) {
     while (token.span.end < text_.size() && is_name(text_[token.span.end])) ++token.span.end;
     fail(token, "malformed number " + std::string(verbatim(token.span)),
-                  "a column whose name begins with a digit is written in backquotes");
+         "a column whose name begins with a digit is written in backquotes");
   }
 }
 

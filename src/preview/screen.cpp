@@ -20,7 +20,7 @@ constexpr int kCellWidth = 6, kCellHeight = 12;
 constexpr int kOtherRows = 2;
 
 /// A terminal that has read nothing for this time hangs.
-constexpr std::chrono::seconds kHanging{1};
+constexpr std::chrono::seconds kHangingTerminal{1};
 
 /// Text with the line ends of a terminal, whatever its mode.
 std::string with_returns(const std::string& text) {
@@ -149,7 +149,7 @@ void Screen::finish() {
     const bool fits = rows_ <= tty_.size().rows - kOtherRows;
     return is_idle() && notes_.empty() && (is_drawn_ || !fits) && !bar_changed_;
   };
-  while (!is_done() && !tty_.is_in_background() && Clock::now() - last < kHanging) {
+  while (!is_done() && !tty_.is_in_background() && Clock::now() - last < kHangingTerminal) {
     const std::size_t before = sent_, size = output_.size();
     poll();
     if (sent_ != before || output_.size() != size) last = Clock::now();

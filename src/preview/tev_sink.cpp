@@ -18,7 +18,7 @@ constexpr std::size_t kCellsPerPacket = 32;
 constexpr auto kRetry = 2s;
 
 /// A viewer that has read nothing for this time hangs.
-constexpr auto kHanging = 1s;
+constexpr auto kHangingViewer = 1s;
 
 /// Maximum time to send the last pixels of an image.
 constexpr auto kLongestFinish = 10s;
@@ -51,12 +51,13 @@ void TevSink::poll() {
 void TevSink::finish() {
   const auto end = Clock::now() + kLongestFinish;
   if (connection_.state() == Connection::State::kOpen && packet_.empty()) last_sent_ = Clock::now();
-  const auto connects_until = Clock::now() + kHanging;
+  const auto connects_until = Clock::now() + kHangingViewer;
   for (;;) {
     poll();
     const auto now = Clock::now();
     if (connection_.state() == Connection::State::kClosed || now > end) break;
-    if (connection_.state() == Connection::State::kConnecting ? now > connects_until : now - last_sent_ > kHanging)
+    if (connection_.state() == Connection::State::kConnecting ? now > connects_until
+                                                              : now - last_sent_ > kHangingViewer)
       break;
     if (connection_.state() == Connection::State::kOpen && is_done()) break;
     connection_.wait(50);

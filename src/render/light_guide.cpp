@@ -9,23 +9,23 @@ namespace {
 
 /// Side of a block, px. Windows extend beyond its edges, so larger blocks repeat less work; this size stays in the
 /// cache.
-constexpr int kSide = 128;
+constexpr int kBlockSide = 128;
 
 /// Windows extend 2^1 .. 2^kRadii pixels to each side.
 constexpr int kRadii = 4;
-constexpr int kReach = 1 << kRadii;
+constexpr int kGuideReach = 1 << kRadii;
 
 /// Added to squared radiance in denominators; a thousandth of white, squared.
 constexpr float kNoLight = 1e-12f;
 
-/// A block with a border of kReach pixels; 0 outside the image and in the excluded class.
+/// A block with a border of kGuideReach pixels; 0 outside the image and in the excluded class.
 struct Padded {
   int width, height;
   std::vector<float> values;
 
   explicit Padded(const PixelBlock& b)
-      : width(b.width + 2 * kReach),
-        height(b.height + 2 * kReach),
+      : width(b.width + 2 * kGuideReach),
+        height(b.height + 2 * kGuideReach),
         values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
   float* row(int y) { return values.data() + static_cast<std::ptrdiff_t>(y) * width; }
@@ -38,7 +38,7 @@ struct Padded {
 using RowSums = std::array<std::vector<float>, kRadii>;
 
 RowSums sums_along_rows(const Padded& p, int radii) {
-  const int inner = p.width - 2 * kReach;
+  const int inner = p.width - 2 * kGuideReach;
   RowSums out;
   for (int k = 0; k < radii; ++k)
     out[static_cast<std::size_t>(k)].resize(static_cast<std::size_t>(inner) * static_cast<std::size_t>(p.height));
@@ -54,8 +54,8 @@ RowSums sums_along_rows(const Padded& p, int radii) {
       }
       const int radius = 2 << k;
       float* const sums = out[static_cast<std::size_t>(k)].data() + static_cast<std::ptrdiff_t>(y) * inner;
-      const float* const first = run.data() + kReach - radius;
-      const float* const last = in + kReach + radius;
+      const float* const first = run.data() + kGuideReach - radius;
+      const float* const last = in + kGuideReach + radius;
       for (int x = 0; x < inner; ++x) sums[x] = first[x] + last[x];
     }
   }
@@ -64,16 +64,16 @@ RowSums sums_along_rows(const Padded& p, int radii) {
 
 /// The same along the columns: sums over whole windows of the inner pixels.
 std::vector<float> sums_down_columns(const std::vector<float>& rows, int width, int height, int k) {
-  const int radius = 2 << k, inner = height - 2 * kReach;
+  const int radius = 2 << k, inner = height - 2 * kGuideReach;
   const auto w = static_cast<std::ptrdiff_t>(width);
-  std::vector<float> run(rows.begin() + w * (kReach - radius), rows.begin() + w * (kReach + radius + inner));
+  std::vector<float> run(rows.begin() + w * (kGuideReach - radius), rows.begin() + w * (kGuideReach + radius + inner));
   std::ptrdiff_t end = inner + 2 * radius;
   for (std::ptrdiff_t length = 1; length < 2 * radius; length *= 2) {
     end -= length;
     for (std::ptrdiff_t i = 0; i < end * w; ++i)
       run[static_cast<std::size_t>(i)] += run[static_cast<std::size_t>(i + length * w)];
   }
-  const float* const last = rows.data() + w * (kReach + radius);
+  const float* const last = rows.data() + w * (kGuideReach + radius);
   run.resize(static_cast<std::size_t>(w * inner));
   for (std::ptrdiff_t i = 0; i < w * inner; ++i) run[static_cast<std::size_t>(i)] += last[i];
   return run;
@@ -90,9 +90,9 @@ PixelStatistics::PixelStatistics(int width_px, int height_px)
 
 std::vector<PixelBlock> blocks_of(int width_px, int height_px) {
   std::vector<PixelBlock> out;
-  for (int y = 0; y < height_px; y += kSide)
-    for (int x = 0; x < width_px; x += kSide)
-      out.push_back({x, y, std::min(kSide, width_px - x), std::min(kSide, height_px - y)});
+  for (int y = 0; y < height_px; y += kBlockSide)
+    for (int x = 0; x < width_px; x += kBlockSide)
+      out.push_back({x, y, std::min(kBlockSide, width_px - x), std::min(kBlockSide, height_px - y)});
   return out;
 }
 
@@ -124,9 +124,9 @@ std::vector<float> LightGuide::of(const PixelBlock& b) const {
   const int excluded_y = excluded_class_ == kNoClass ? -1 : excluded_class_ / 3;
 
   Padded light(b), variance(b), squares(b);
-  for (int y = std::max(b.y - kReach, 0); y < std::min(b.y + b.height + kReach, s.height); ++y) {
-    const int x0 = std::max(b.x - kReach, 0), x1 = std::min(b.x + b.width + kReach, s.width);
-    const int row = y - b.y + kReach, column = x0 - b.x + kReach;
+  for (int y = std::max(b.y - kGuideReach, 0); y < std::min(b.y + b.height + kGuideReach, s.height); ++y) {
+    const int x0 = std::max(b.x - kGuideReach, 0), x1 = std::min(b.x + b.width + kGuideReach, s.width);
+    const int row = y - b.y + kGuideReach, column = x0 - b.x + kGuideReach;
     float* const l = light.row(row) + column;
     float* const v = variance.row(row) + column;
     std::copy_n(s.light.data() + s.at(x0, y), x1 - x0, l);
@@ -173,8 +173,8 @@ std::vector<float> LightGuide::of(const PixelBlock& b) const {
     const auto down = static_cast<float>(count_within(b.y + y, 2, s.height));
     const auto own_down = static_cast<float>(count_within(b.y + y, 2, s.height, excluded_y));
     const std::size_t row = static_cast<std::size_t>(y) * width;
-    const float* const own = light.row(y + kReach) + kReach;
-    const float* const own_noise = variance.row(y + kReach) + kReach;
+    const float* const own = light.row(y + kGuideReach) + kGuideReach;
+    const float* const own_noise = variance.row(y + kGuideReach) + kGuideReach;
     for (std::size_t x = 0; x < width; ++x) {
       const float share = 1 / (across[x] * down - own_across[x] * own_down);
       const float mean = light_sums[row + x] * share, noise = variance_sums[row + x] * share;

@@ -16,6 +16,9 @@ namespace orrery::scene {
 /// Ranges of a reflectance, probability or fuzz, and of a radiance without exposure.
 inline constexpr Range kUnit{0, 1};
 inline constexpr Range kLight{0, kBrightestBackground};
+/// Ranges of a coordinate and of a length, scene units.
+inline constexpr Range kAnyLength{-kLargestLength, kLargestLength};
+inline constexpr Range kLength{kSmallestRadius, kLargestLength};
 
 /// Documentation of a key.
 struct KeyDoc {

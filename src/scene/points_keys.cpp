@@ -11,8 +11,6 @@ namespace {
 using P = Points;
 
 constexpr Range kAnyValue{-kLargestValue, kLargestValue};
-constexpr Range kAnyLength{-kLargestLength, kLargestLength};
-constexpr Range kLength{kSmallestRadius, kLargestLength};
 constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
 constexpr int kMaxCopies = 1000;
 

@@ -10,9 +10,6 @@
 namespace orrery::scene {
 namespace {
 
-constexpr Range kAnyLength{-kLargestLength, kLargestLength};
-constexpr Range kLength{kSmallestRadius, kLargestLength};
-
 using S = Scene;
 
 Table image_table() {

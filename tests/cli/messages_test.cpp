@@ -5,13 +5,13 @@
 namespace orrery::test {
 namespace {
 
-struct Case {
+struct MessageCase {
   const char* arguments;
   int status;
   const char* message;  ///< all of stderr
 };
 
-const Case kCases[] = {
+const MessageCase kCases[] = {
     {"", 2,
      "orrery: no command given; use one of render, plot, merge, submit, check, info, compare, bench, study, generate, "
      "convert, develop, denoise, bake\n"
@@ -95,10 +95,10 @@ const Case kCases[] = {
      "orrery: --fail-above psnr=40: psnr decreases with the error; limit rmse or flip instead\n"},
 };
 
-class CliMessages : public ProgramTest, public testing::WithParamInterface<Case> {};
+class CliMessages : public ProgramTest, public testing::WithParamInterface<MessageCase> {};
 
 TEST_P(CliMessages, MatchTheGoldenText) {
-  const Case& c = GetParam();
+  const MessageCase& c = GetParam();
   // A case's own redirection comes last on the command line, so it overrides the test's.
   const std::string arguments = c.arguments;
   const std::size_t to = arguments.find(" > ");
@@ -109,7 +109,7 @@ TEST_P(CliMessages, MatchTheGoldenText) {
   EXPECT_EQ(file_count(), 0);
 }
 
-std::string name_of(const testing::TestParamInfo<Case>& info) { return std::to_string(info.index); }
+std::string name_of(const testing::TestParamInfo<MessageCase>& info) { return std::to_string(info.index); }
 
 INSTANTIATE_TEST_SUITE_P(Table, CliMessages, testing::ValuesIn(kCases), name_of);
 

@@ -15,6 +15,8 @@ namespace orrery::test {
 
 inline std::string text_of(const std::filesystem::path& file) { return support::file_bytes(file); }
 
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
 /// Exit status and output of one run.
 struct Outcome {
   int status = -1;

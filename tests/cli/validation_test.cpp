@@ -13,8 +13,6 @@
 namespace orrery::test {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 struct Broken {
   const char* name;     ///< of the scene file
   const char* text;     ///< appended to the good scene

@@ -11,6 +11,7 @@
 #include "compile/compile.h"
 #include "film/picture.h"
 #include "format/read_scene.h"
+#include "image/render_scene.h"
 #include "math/vec3.h"
 #include "render/render.h"
 
@@ -24,11 +25,8 @@ constexpr int kWidth = 160, kHeight = 90;
 film::Picture picture_of(const std::string& name, std::vector<format::Override> overrides = {}) {
   overrides.push_back("image.width=" + std::to_string(kWidth));
   overrides.push_back("image.height=" + std::to_string(kHeight));
-  const auto read = format::read_scene(std::filesystem::path(ORRERY_SCENES) / "book" / (name + ".toml"), overrides);
-  render::Result result = render::render(compile::compile(read.scene), {});
-  EXPECT_TRUE(result.completed);
-  EXPECT_EQ(result.statistics.bad_samples, 0u);
-  return std::move(result.picture);
+  return test::render_scene(
+      format::read_scene(std::filesystem::path(ORRERY_SCENES) / "book" / (name + ".toml"), overrides));
 }
 
 /// Mean colour of a block of 7 x 7 pixels.

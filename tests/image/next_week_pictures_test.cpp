@@ -15,6 +15,7 @@
 #include "film/picture.h"
 #include "format/read_scene.h"
 #include "generate/generate.h"
+#include "image/render_scene.h"
 #include "render/render.h"
 #include "scene/environment_image.h"
 #include "scene/textures.h"
@@ -22,7 +23,7 @@
 namespace orrery {
 namespace {
 
-constexpr int kWidth = 96, kHeight = 54;
+constexpr int kSceneWidth = 96, kSceneHeight = 54;
 
 /// Gives the scene's image texture a map that is generated here, so that the test needs no file.
 void set_planet(scene::Scene& scene) {
@@ -37,20 +38,18 @@ void set_planet(scene::Scene& scene) {
   scene::modify_textures(scene, [&](scene::Texture& texture, scene::TextureUse) { texture.image = image; });
 }
 
-film::Picture picture_of(const std::string& name, std::vector<format::Override> overrides = {}) {
-  overrides.push_back("image.width=" + std::to_string(kWidth));
-  overrides.push_back("image.height=" + std::to_string(kHeight));
+film::Picture picture_of_scene(const std::string& name, std::vector<format::Override> overrides = {}) {
+  overrides.push_back("image.width=" + std::to_string(kSceneWidth));
+  overrides.push_back("image.height=" + std::to_string(kSceneHeight));
   auto read = format::read_scene(std::filesystem::path(ORRERY_SCENES) / "next-week" / (name + ".toml"), overrides);
   if (name == "03-planet") set_planet(read.scene);
-  render::Result result = render::render(compile::compile(read.scene, read.closing ? &*read.closing : nullptr), {});
-  EXPECT_TRUE(result.completed);
-  EXPECT_EQ(result.statistics.bad_samples, 0u);
-  return std::move(result.picture);
+  return test::render_scene(read);
 }
 
 using Rgb = std::tuple<float, float, float>;
 Rgb pixel(const film::Picture& p, double u, double v) {
-  const auto at = static_cast<std::size_t>(static_cast<int>(v * kHeight) * kWidth + static_cast<int>(u * kWidth));
+  const auto at =
+      static_cast<std::size_t>(static_cast<int>(v * kSceneHeight) * kSceneWidth + static_cast<int>(u * kSceneWidth));
   return {p.planes[0].values[at], p.planes[1].values[at], p.planes[2].values[at]};
 }
 double brightness(const Rgb& c) { return static_cast<double>(std::get<0>(c) + std::get<1>(c) + std::get<2>(c)) / 3; }
@@ -62,8 +61,8 @@ struct Spread {
 Spread spread(const film::Picture& p, double left, double top, double right, double bottom) {
   double sum = 0, squares = 0;
   int count = 0;
-  for (double v = top; v < bottom; v += 1.0 / kHeight)
-    for (double u = left; u < right; u += 1.0 / kWidth, ++count) {
+  for (double v = top; v < bottom; v += 1.0 / kSceneHeight)
+    for (double u = left; u < right; u += 1.0 / kSceneWidth, ++count) {
       const double b = brightness(pixel(p, u, v));
       sum += b;
       squares += b * b;
@@ -75,7 +74,7 @@ Spread spread(const film::Picture& p, double left, double top, double right, dou
 const std::vector<format::Override> kFlat = {"render.shading=flat", "render.samples=1"};
 
 TEST(ImageNextWeekPictures, ACheckerHasTwoColours) {
-  const film::Picture p = picture_of("02-checkered-spheres", kFlat);
+  const film::Picture p = picture_of_scene("02-checkered-spheres", kFlat);
   std::set<Rgb> colors;
   for (std::size_t i = 0; i < p.planes[0].values.size(); ++i)
     colors.insert({p.planes[0].values[i], p.planes[1].values[i], p.planes[2].values[i]});
@@ -84,12 +83,12 @@ TEST(ImageNextWeekPictures, ACheckerHasTwoColours) {
 }
 
 TEST(ImageNextWeekPictures, ThePlanetHasIceAtTheTopAndSeaBelow) {
-  const film::Picture p = picture_of("03-planet", {"render.shading=flat", "render.samples=16"});
+  const film::Picture p = picture_of_scene("03-planet", {"render.shading=flat", "render.samples=16"});
   EXPECT_GT(brightness(pixel(p, 0.5, 0.03)), 0.6);
   int sea = 0, land = 0;
-  for (int y = kHeight / 3; y < kHeight * 2 / 3; ++y)
-    for (int x = kWidth * 2 / 5; x < kWidth * 3 / 5; ++x) {
-      const auto [r, g, b] = pixel(p, (x + 0.5) / kWidth, (y + 0.5) / kHeight);
+  for (int y = kSceneHeight / 3; y < kSceneHeight * 2 / 3; ++y)
+    for (int x = kSceneWidth * 2 / 5; x < kSceneWidth * 3 / 5; ++x) {
+      const auto [r, g, b] = pixel(p, (x + 0.5) / kSceneWidth, (y + 0.5) / kSceneHeight);
       sea += b > 2 * r ? 1 : 0;
       land += r > 1.2F * b ? 1 : 0;
     }
@@ -99,7 +98,7 @@ TEST(ImageNextWeekPictures, ThePlanetHasIceAtTheTopAndSeaBelow) {
 
 TEST(ImageNextWeekPictures, NoiseIsGreyTurbulenceIsDarkerAndMarbleReachesBothEnds) {
   const auto ball = [](const std::string& name) {
-    return spread(picture_of(name, {"render.shading=flat", "render.samples=16"}), 0.4, 0.05, 0.6, 0.4);
+    return spread(picture_of_scene(name, {"render.shading=flat", "render.samples=16"}), 0.4, 0.05, 0.6, 0.4);
   };
   const Spread noise = ball("04-perlin-noise"), turbulence = ball("05-turbulence"), marble = ball("06-marble");
   EXPECT_NEAR(noise.mean, 0.5, 0.1);
@@ -109,26 +108,26 @@ TEST(ImageNextWeekPictures, NoiseIsGreyTurbulenceIsDarkerAndMarbleReachesBothEnd
 }
 
 TEST(ImageNextWeekPictures, TheLampLightsTheFloorBesideIt) {
-  const film::Picture p = picture_of("07-lamp");
+  const film::Picture p = picture_of_scene("07-lamp");
   EXPECT_EQ(brightness(pixel(p, 0.05, 0.05)), 0);
   EXPECT_GT(spread(p, 0.77, 0.75, 0.87, 0.79).mean, 4 * spread(p, 0.02, 0.75, 0.15, 0.79).mean);
 }
 
 TEST(ImageNextWeekPictures, SmallSpheresMoveAndTheGroundDoesNot) {
-  const film::Picture moving = picture_of("01-bouncing-spheres", {"render.samples=32"});
-  const film::Picture still = picture_of("01-bouncing-spheres", {"render.samples=32", "camera.shutter_close=0"});
+  const film::Picture moving = picture_of_scene("01-bouncing-spheres", {"render.samples=32"});
+  const film::Picture still = picture_of_scene("01-bouncing-spheres", {"render.samples=32", "camera.shutter_close=0"});
   double changed = 0;
-  for (int y = kHeight / 2; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      const double u = (x + 0.5) / kWidth, v = (y + 0.5) / kHeight;
+  for (int y = kSceneHeight / 2; y < kSceneHeight; ++y)
+    for (int x = 0; x < kSceneWidth; ++x) {
+      const double u = (x + 0.5) / kSceneWidth, v = (y + 0.5) / kSceneHeight;
       changed += std::abs(brightness(pixel(moving, u, v)) - brightness(pixel(still, u, v))) > 0.1 ? 1 : 0;
     }
-  EXPECT_GT(changed / (kWidth * kHeight / 2), 0.05);
-  EXPECT_LT(changed / (kWidth * kHeight / 2), 0.5);
+  EXPECT_GT(changed / (kSceneWidth * kSceneHeight / 2), 0.05);
+  EXPECT_LT(changed / (kSceneWidth * kSceneHeight / 2), 0.5);
 }
 
 TEST(ImageNextWeekPictures, RoughGlassBlursWhatIsBehindIt) {
-  const film::Picture p = picture_of("08-rough-glass", {"render.samples=256"});
+  const film::Picture p = picture_of_scene("08-rough-glass", {"render.samples=256"});
   EXPECT_LT(spread(p, 0.335, 0.36, 0.425, 0.46).deviation, 0.6 * spread(p, 0.09, 0.36, 0.18, 0.46).deviation);
 }
 

@@ -49,7 +49,7 @@ compile::CompiledScene with(scene::Scene scene, scene::DirectLighting mode, int 
 }
 
 /// With 2 x 15 degrees of freedom a correct renderer exceeds this about once in 50,000 blocks.
-constexpr double kLargestT = 5;
+constexpr double kLargestBlockT = 5;
 
 void expect_agreement(const NamedScene& s, int samples, int seeds) {
   const BlockMeans mis = block_means(with(s.scene, scene::DirectLighting::kMis, samples), seeds);
@@ -61,7 +61,7 @@ void expect_agreement(const NamedScene& s, int samples, int seeds) {
     const BlockMeans other = block_means(with(s.scene, mode, samples), seeds);
     for (std::size_t b = 0; b < kBlocks; ++b) {
       const double error = std::sqrt(mis.error2[b] + other.error2[b]);
-      EXPECT_LT(std::abs(mis.mean[b] - other.mean[b]), kLargestT * error + least)
+      EXPECT_LT(std::abs(mis.mean[b] - other.mean[b]), kLargestBlockT * error + least)
           << s.name << ", block " << b << ": " << mis.mean[b] << " against " << other.mean[b] << " ("
           << (mode == scene::DirectLighting::kBsdf ? "bsdf" : "light") << "), error " << error;
     }

@@ -41,6 +41,12 @@ inline std::vector<double> numbers(const data::Table& table, std::string_view na
   return out;
 }
 
+/// The numbers of a column in its own type, which must be T.
+template <class T>
+const std::vector<T>& values(const data::Table& table, std::string_view name) {
+  return std::get<std::vector<T>>(table.find(name)->values);
+}
+
 /// The texts of a column; fails if there are none.
 inline std::vector<std::string> texts(const data::Table& table, std::string_view name) {
   const data::Column* const column = table.find(name);

@@ -2,11 +2,20 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 
 #include "support/data_tables.h"
 
 namespace orrery::support {
+
+/// Bytes of numbers in a file.
+template <class T>
+std::string sequence(std::initializer_list<T> values, bool is_big_endian = false) {
+  std::string out;
+  for (const T v : values) out += number_bytes(v, is_big_endian);
+  return out;
+}
 
 /// An array in NumPy's format.
 ///

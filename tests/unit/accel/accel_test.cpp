@@ -18,6 +18,7 @@
 #include "kernel/isa.h"
 #include "math/single.h"
 #include "support/accel_rays.h"
+#include "support/accelerators.h"
 #include "support/intersect_batch.h"
 
 namespace orrery::accel {
@@ -27,35 +28,19 @@ using kernel::kNoSphere;
 using kernel::kPacketSize;
 using kernel::Sphere;
 using test::aim;
+using test::kWaysBesideTheList;
 using test::normalize;
 using test::Random;
 using test::scattered;
 using test::Scene;
 using test::scenes;
 using test::step_back;
+using test::Way;
 
 long ray_count() {
   const char* wanted = std::getenv("ORRERY_ACCEL_RAYS");
   return wanted != nullptr ? static_cast<long>(std::atof(wanted)) : 1'000'000;
 }
-
-/// An accelerator and traversal whose hits must agree with the list's.
-struct Way {
-  const char* name;
-  std::unique_ptr<Accel> (*make)(const kernel::SceneView&, kernel::Precision);
-  Traversal traversal;
-};
-std::unique_ptr<Accel> embree(const kernel::SceneView& view, kernel::Precision precision) {
-  return make_embree(view, precision);
-}
-std::unique_ptr<Accel> bvh(const kernel::SceneView& view, kernel::Precision precision) {
-  return make_embree(view, precision, {}, 1);
-}
-constexpr Way kWays[] = {{"packet", embree, Traversal::kPacket},
-                         {"single", embree, Traversal::kSingle},
-                         {"sphere BVH, packet", bvh, Traversal::kPacket},
-                         {"sphere BVH, single", bvh, Traversal::kSingle},
-                         {"SIMD list", make_simd_list, Traversal::kPacket}};
 
 /// Counts over rays traced by the list and by another accelerator.
 struct Differences {
@@ -100,10 +85,10 @@ Differences differences(const Scene& scene, const Way& way, long ray_count) {
 TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
   const std::vector<std::string> isas = kernel::available_isas();
   const std::vector<Scene> all = scenes();
-  const long parts = static_cast<long>(all.size() * isas.size() * std::size(kWays));
+  const long parts = static_cast<long>(all.size() * isas.size() * std::size(kWaysBesideTheList));
   for (const std::string& isa : isas) {
     ASSERT_TRUE(kernel::limit_isa(isa));
-    for (const Way& way : kWays) {
+    for (const Way& way : kWaysBesideTheList) {
       kernel::SceneView view;
       view.spheres = all[0].spheres.data();
       view.sphere_count = 1;
@@ -113,7 +98,7 @@ TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
       }
     }
     for (const Scene& scene : all)
-      for (const Way& way : kWays) {
+      for (const Way& way : kWaysBesideTheList) {
         const Differences found = differences(scene, way, ray_count() / parts);
         EXPECT_EQ(found.different, 0) << scene.name << ", " << isa << ", " << way.name << ": " << found.lost
                                       << " lost of " << found.hits << " hits";
@@ -160,8 +145,8 @@ struct Compact {
 
 TEST(AccelAccel, CompactSpheresAreHitAsPlainOnes) {
   for (const Scene& scene : scenes())
-    for (int way_and_kind = 0; way_and_kind < 2 * static_cast<int>(std::size(kWays)); ++way_and_kind) {
-      const Way& way = kWays[way_and_kind / 2];
+    for (int way_and_kind = 0; way_and_kind < 2 * static_cast<int>(std::size(kWaysBesideTheList)); ++way_and_kind) {
+      const Way& way = kWaysBesideTheList[way_and_kind / 2];
       const Compact spheres(scene.spheres, scene.spheres.size() / 3, way_and_kind % 2 != 0);
       kernel::SceneView plain;
       plain.spheres = spheres.plain.data();
@@ -217,7 +202,7 @@ TEST(AccelAccel, PacketsCanBePartlyFilled) {
   kernel::SceneView view;
   view.spheres = spheres.data();
   view.sphere_count = 2;
-  for (const Way& way : kWays) {
+  for (const Way& way : kWaysBesideTheList) {
     const auto embree = way.make(view, kernel::Precision::kExact);
     embree->use({way.traversal, way.traversal});
     for (int count = 1; count <= kPacketSize; ++count) {

@@ -11,6 +11,7 @@
 #include "accel/accel.h"
 #include "kernel/isa.h"
 #include "support/accel_rays.h"
+#include "support/accelerators.h"
 #include "support/intersect_batch.h"
 
 namespace orrery::accel {
@@ -20,25 +21,9 @@ using kernel::kNoSphere;
 using kernel::kPacketSize;
 using kernel::Precision;
 using kernel::Sphere;
+using test::kWays;
 using test::Random;
-
-struct Way {
-  const char* name;
-  std::unique_ptr<Accel> (*make)(const kernel::SceneView&, Precision);
-  Traversal traversal;
-};
-std::unique_ptr<Accel> embree(const kernel::SceneView& view, Precision precision) {
-  return make_embree(view, precision);
-}
-std::unique_ptr<Accel> bvh(const kernel::SceneView& view, Precision precision) {
-  return make_embree(view, precision, {}, 1);
-}
-constexpr Way kWays[] = {{"packet", embree, Traversal::kPacket},
-                         {"single", embree, Traversal::kSingle},
-                         {"sphere BVH, packet", bvh, Traversal::kPacket},
-                         {"sphere BVH, single", bvh, Traversal::kSingle},
-                         {"SIMD list", make_simd_list, Traversal::kPacket},
-                         {"list", make_list, Traversal::kPacket}};
+using test::Way;
 
 template <class To, class From>
 void copy_rays(const From& from, To& to) {

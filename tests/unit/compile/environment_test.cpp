@@ -15,7 +15,7 @@ namespace {
 
 using scene::EnvironmentImage;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 std::shared_ptr<EnvironmentImage> uniform_image(int width, int height, float radiance) {
   auto image = std::make_shared<EnvironmentImage>(width, height);
@@ -27,9 +27,9 @@ TEST(CompileEnvironment, PowerIsTheIntegralOfTheRadiance) {
   EnvironmentSettings settings;
   settings.scale = 0.5;
   const auto image = uniform_image(10, 5, 3);
-  EXPECT_NEAR(EnvironmentMap(image, settings).view().power, 4 * kPi * 1.5, 1e-12);
+  EXPECT_NEAR(EnvironmentMap(image, settings).view().power, 4 * pi * 1.5, 1e-12);
   image->sun = {{0, 1, 0}, 1e-5, {6e5, 3e5, 0}};
-  EXPECT_NEAR(EnvironmentMap(image, settings).view().power, 4 * kPi * 1.5 + 2 * kPi * 1e-5 * 1.5e5, 1e-9);
+  EXPECT_NEAR(EnvironmentMap(image, settings).view().power, 4 * pi * 1.5 + 2 * pi * 1e-5 * 1.5e5, 1e-9);
 }
 
 TEST(CompileEnvironment, AUniformMapIsNotSampledBesideBsdfs) {

@@ -5,11 +5,14 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
+#include "support/data_tables.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {
 namespace {
 
+using support::texts;
+using support::values;
 // Codes of value types.
 constexpr int kUint8 = 1, kUint32 = 3, kUint64 = 4, kInt8 = 5, kInt32 = 7, kFloat = 9;
 
@@ -111,18 +114,6 @@ class DataGsd : public testing::Test {
 
   support::TempDir folder_;
 };
-
-template <typename T>
-const std::vector<T>& values(const Table& table, const std::string& name) {
-  return std::get<std::vector<T>>(table.find(name)->values);
-}
-
-std::vector<std::string> texts(const Table& table, const std::string& name) {
-  const auto& words = std::get<Words>(table.find(name)->values);
-  std::vector<std::string> out;
-  for (const std::uint32_t i : words.index) out.push_back(words.words[i]);
-  return out;
-}
 
 TEST_F(DataGsd, FrameHasItsOwnChunks) {
   for (const unsigned version : {1U, 2U}) {

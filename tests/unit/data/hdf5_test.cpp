@@ -7,11 +7,13 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
+#include "support/data_tables.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {
 namespace {
 
+using support::values;
 using Strings = std::vector<std::string>;
 
 /// Writes snapshots with the HDF5 library.
@@ -86,11 +88,6 @@ class DataHdf5 : public testing::Test {
 
   support::TempDir folder_;
 };
-
-template <typename T>
-const std::vector<T>& values(const Table& table, const std::string& name) {
-  return std::get<std::vector<T>>(table.find(name)->values);
-}
 
 TEST_F(DataHdf5, ColumnsKeepTheirStoredTypes) {
   {

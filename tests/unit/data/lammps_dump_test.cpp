@@ -20,7 +20,7 @@ using support::column_texts;
 using support::data_errors;
 using Numbers = std::vector<double>;
 
-const std::string kHead = "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\n";
+const std::string kFrameHead = "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\n";
 const std::string kBox = "ITEM: BOX BOUNDS pp ff mm\n-1 3\n0 10\n2 4\n";
 
 class DataLammpsDump : public testing::Test {
@@ -36,7 +36,7 @@ class DataLammpsDump : public testing::Test {
 };
 
 TEST_F(DataLammpsDump, ReadsColumnsWithTheirTypesAndRoles) {
-  const auto file = open("ITEM: UNITS\nlj\nITEM: TIME\n0.5\n" + kHead + kBox +
+  const auto file = open("ITEM: UNITS\nlj\nITEM: TIME\n0.5\n" + kFrameHead + kBox +
                          "ITEM: ATOMS id type element x y z radius c_stress[1] ix iy iz \n"
                          "2 1 Na 0.5 1 3 0.25 -1e-3 0 -1 1 \n1 2 Cl 1 2 4 0.5 nan 0 0 0 \n");
   EXPECT_EQ(file->format(), Format::kLammpsDump);
@@ -68,7 +68,7 @@ TEST_F(DataLammpsDump, ReadsColumnsWithTheirTypesAndRoles) {
 }
 
 TEST_F(DataLammpsDump, BoxIsOrthogonal) {
-  const auto box = open(kHead + kBox + "ITEM: ATOMS x y z\n0 0 0\n0 0 0\n")->describe(0).box;
+  const auto box = open(kFrameHead + kBox + "ITEM: ATOMS x y z\n0 0 0\n0 0 0\n")->describe(0).box;
   ASSERT_TRUE(box);
   EXPECT_EQ(box->origin.x, -1);
   EXPECT_EQ(box->edges[0].x, 4);
@@ -79,13 +79,13 @@ TEST_F(DataLammpsDump, BoxIsOrthogonal) {
 }
 
 TEST_F(DataLammpsDump, DiameterIsTwiceTheRadius) {
-  const Roles roles = open(kHead + kBox + "ITEM: ATOMS x y z diameter\n0 0 0 1\n0 0 0 1\n")->describe(0).roles;
+  const Roles roles = open(kFrameHead + kBox + "ITEM: ATOMS x y z diameter\n0 0 0 1\n0 0 0 1\n")->describe(0).roles;
   EXPECT_EQ(roles.radius, "diameter");
   EXPECT_EQ(roles.radius_scale, 0.5);
 }
 
 TEST_F(DataLammpsDump, ScaledPositionsBecomePositions) {
-  const auto file = open(kHead + kBox + "ITEM: ATOMS xs ys zs\n0 0 0\n0.5 0.25 1\n");
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS xs ys zs\n0 0 0\n0.5 0.25 1\n");
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(info.roles.position[0], "x");
   EXPECT_EQ(column_names(info), (std::vector<std::string>{"xs", "ys", "zs", "x", "y", "z"}));
@@ -98,12 +98,12 @@ TEST_F(DataLammpsDump, ScaledPositionsBecomePositions) {
 }
 
 TEST_F(DataLammpsDump, ScaledUnwrappedPositionsBecomePositions) {
-  const auto file = open(kHead + kBox + "ITEM: ATOMS xsu ysu zsu\n0 0 0\n1.5 -0.25 1\n");
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS xsu ysu zsu\n0 0 0\n1.5 -0.25 1\n");
   EXPECT_EQ(column_numbers(file->read(0, {"x", "y"}), "y"), (Numbers{0, -2.5}));
 }
 
 TEST_F(DataLammpsDump, UnwrappedPositionsStayAsTheyAre) {
-  const auto file = open(kHead + kBox + "ITEM: ATOMS xu yu zu xs ys zs\n1 2 3 0 0 0\n4 5 6 0 0 0\n");
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS xu yu zu xs ys zs\n1 2 3 0 0 0\n4 5 6 0 0 0\n");
   EXPECT_EQ(file->describe(0).roles.position, (std::array<std::string, 3>{"xu", "yu", "zu"}));
   EXPECT_EQ(column_numbers(file->read(0, {"yu"}), "yu"), (Numbers{2, 5}));
 }
@@ -112,7 +112,7 @@ TEST_F(DataLammpsDump, UnwrappedPositionsStayAsTheyAre) {
 /// xlo + min(0, xy, xz, xy + xz).
 TEST_F(DataLammpsDump, ImageCountsApplyToWrappedPositionsOnly) {
   const auto image = [&](const std::string& columns) {
-    return open(kHead + kBox + "ITEM: ATOMS " + columns + " ix iy iz\n1 2 3 0 0 0\n1 2 3 0 0 0\n")
+    return open(kFrameHead + kBox + "ITEM: ATOMS " + columns + " ix iy iz\n1 2 3 0 0 0\n1 2 3 0 0 0\n")
         ->describe(0)
         .roles.image[0];
   };
@@ -123,12 +123,12 @@ TEST_F(DataLammpsDump, ImageCountsApplyToWrappedPositionsOnly) {
 }
 
 TEST_F(DataLammpsDump, ColumnsOfOneNameAreNumbered) {
-  const auto file = open(kHead + kBox + "ITEM: ATOMS x y z v v v\n1 2 3 4 5 6\n1 2 3 7 8 9\n");
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS x y z v v v\n1 2 3 4 5 6\n1 2 3 7 8 9\n");
   EXPECT_EQ(column_names(file->describe(0)), (std::vector<std::string>{"x", "y", "z", "v", "v_2", "v_3"}));
   EXPECT_EQ(column_numbers(file->read(0, {"v_3"}), "v_3"), (Numbers{6, 9}));
   std::string many = "ITEM: ATOMS x y z";
   for (int i = 0; i < 4094; ++i) many += " v";
-  EXPECT_EQ(errors(kHead + kBox + many + "\n"), "9: there are more than 4096 columns\n");
+  EXPECT_EQ(errors(kFrameHead + kBox + many + "\n"), "9: there are more than 4096 columns\n");
 }
 
 TEST_F(DataLammpsDump, TiltedBoxIsRecoveredFromItsBounds) {
@@ -141,7 +141,7 @@ TEST_F(DataLammpsDump, TiltedBoxIsRecoveredFromItsBounds) {
     };
     const double least = std::min({0.0, t.xy, t.xz, t.xy + t.xz});
     const double most = std::max({0.0, t.xy, t.xz, t.xy + t.xz});
-    const auto file = open(kHead + "ITEM: BOX BOUNDS xy xz yz pp pp ff\n" + row(-1 + least, 3 + most, t.xy) +
+    const auto file = open(kFrameHead + "ITEM: BOX BOUNDS xy xz yz pp pp ff\n" + row(-1 + least, 3 + most, t.xy) +
                            row(2 + std::min(0.0, t.yz), 7 + std::max(0.0, t.yz), t.xz) + row(3, 9, t.yz) +
                            "ITEM: ATOMS xs ys zs\n0 0 0\n1 1 1\n");
     const Box box = file->describe(0).box.value();
@@ -163,7 +163,7 @@ TEST_F(DataLammpsDump, TiltedBoxIsRecoveredFromItsBounds) {
 }
 
 TEST_F(DataLammpsDump, BoxMayBeGeneral) {
-  const auto file = open(kHead + "ITEM: BOX BOUNDS abc origin pp fs pp\n1 2 3 10\n-2 1 0 20\n0 0.5 4 30\n" +
+  const auto file = open(kFrameHead + "ITEM: BOX BOUNDS abc origin pp fs pp\n1 2 3 10\n-2 1 0 20\n0 0.5 4 30\n" +
                          "ITEM: ATOMS xs ys zs\n0 0 0\n1 1 0.5\n");
   const Box box = file->describe(0).box.value();
   EXPECT_EQ(box.origin.y, 20);
@@ -212,14 +212,14 @@ TEST_F(DataLammpsDump, FramesBeforeATruncatedOneAreUsable) {
 
 TEST_F(DataLammpsDump, ErrorsHaveLines) {
   const std::string atoms = "ITEM: ATOMS x y z\n";
-  EXPECT_EQ(errors(kHead + kBox + atoms + "0 0 0\n0 0 a\n"), "11: column 3: 'a' is not a number\n");
-  EXPECT_EQ(errors(kHead + kBox + atoms + "0 0 0\n0 0 0\n0 0 0\n"),
+  EXPECT_EQ(errors(kFrameHead + kBox + atoms + "0 0 0\n0 0 a\n"), "11: column 3: 'a' is not a number\n");
+  EXPECT_EQ(errors(kFrameHead + kBox + atoms + "0 0 0\n0 0 0\n0 0 0\n"),
             "12: expected a line \"ITEM: ...\", found '0 0 0'\n");
-  EXPECT_EQ(errors(kHead + kBox + "ITEM: ATOMS id vx\n0 0\n0 0\n"), "9: no columns with positions\n");
-  EXPECT_EQ(errors(kHead + "ITEM: ATOMS xs ys zs\n0 0 0\n0 0 0\n"),
+  EXPECT_EQ(errors(kFrameHead + kBox + "ITEM: ATOMS id vx\n0 0\n0 0\n"), "9: no columns with positions\n");
+  EXPECT_EQ(errors(kFrameHead + "ITEM: ATOMS xs ys zs\n0 0 0\n0 0 0\n"),
             "5: positions are scaled, but the frame has no item \"BOX BOUNDS\"\n");
-  EXPECT_EQ(errors(kHead), "5: the file ends within the header of a frame\n");
-  EXPECT_EQ(errors(kHead + "ITEM: BOX BOUNDS pp pp pp\n1 0\n0 1\n0 1\n" + atoms + "0 0 0\n0 0 0\n"),
+  EXPECT_EQ(errors(kFrameHead), "5: the file ends within the header of a frame\n");
+  EXPECT_EQ(errors(kFrameHead + "ITEM: BOX BOUNDS pp pp pp\n1 0\n0 1\n0 1\n" + atoms + "0 0 0\n0 0 0\n"),
             "8: a lower bound of the box exceeds the upper bound\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n-1\n"), "4: expected a number of atoms, found '-1'\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\n"),
@@ -231,7 +231,7 @@ TEST_F(DataLammpsDump, ErrorsHaveLines) {
 }
 
 TEST_F(DataLammpsDump, RowsBehindTheFrameAreNotIgnored) {
-  const auto file = open(kHead + kBox + "ITEM: ATOMS x y z\n0 0 0\n0 0 0\n0 0 0\n");
+  const auto file = open(kFrameHead + kBox + "ITEM: ATOMS x y z\n0 0 0\n0 0 0\n0 0 0\n");
   try {
     file->read(0, {"x"});
     FAIL();

@@ -5,11 +5,14 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
+#include "support/data_tables.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {
 namespace {
 
+using support::numbers;
+using support::texts;
 using Strings = std::vector<std::string>;
 
 /// The columns of the PDB's files that matter.
@@ -56,17 +59,6 @@ class DataMmcif : public testing::Test {
 
   support::TempDir folder_;
 };
-
-std::vector<std::string> texts(const Table& table, const std::string& name) {
-  const auto& words = std::get<Words>(table.find(name)->values);
-  std::vector<std::string> out;
-  for (const std::uint32_t i : words.index) out.push_back(words.words[i]);
-  return out;
-}
-
-const std::vector<double>& numbers(const Table& table, const std::string& name) {
-  return std::get<std::vector<double>>(table.find(name)->values);
-}
 
 TEST_F(DataMmcif, ReadsTheColumnsOfAtoms) {
   const auto file = opened("# comment\ndata_1ABC\n_struct.title 'A virus''s coat'\n" + kLoop + kCarbon +

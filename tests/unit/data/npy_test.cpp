@@ -12,6 +12,7 @@ namespace {
 using support::npy_bytes;
 using support::number_bytes;
 using support::numbers;
+using support::sequence;
 
 class DataNpy : public testing::Test {
  protected:
@@ -26,13 +27,6 @@ class DataNpy : public testing::Test {
   }
   support::TempDir folder_;
 };
-
-template <class T>
-std::string sequence(std::initializer_list<T> values, bool is_big_endian = false) {
-  std::string out;
-  for (const T v : values) out += number_bytes(v, is_big_endian);
-  return out;
-}
 
 TEST_F(DataNpy, ThreeColumnsArePositionsAndAFourthIsTheRadius) {
   const auto three = open(npy_bytes("'<f8'", false, "(2, 3)", sequence<double>({1, 2, 3, 4, 5, 6})));

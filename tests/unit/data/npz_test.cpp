@@ -15,6 +15,7 @@ namespace {
 using support::npy_bytes;
 using support::number_bytes;
 using support::numbers;
+using support::sequence;
 
 using Members = std::vector<std::pair<std::string, std::string>>;
 
@@ -36,13 +37,6 @@ std::string zip(const Members& members, const char* compression) {
   }
   archive_write_close(writer.get());
   out.resize(used);
-  return out;
-}
-
-template <class T>
-std::string sequence(std::initializer_list<T> values) {
-  std::string out;
-  for (const T v : values) out += number_bytes(v);
   return out;
 }
 

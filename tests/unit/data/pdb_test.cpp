@@ -7,12 +7,15 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
+#include "support/data_tables.h"
 #include "support/shared_data.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {
 namespace {
 
+using support::numbers;
+using support::texts;
 /// An ATOM record. `element` may be empty, as in many files.
 std::string atom(const std::string& name, const std::string& residue, char chain, int number, Vec3d p,
                  const std::string& element, char altloc = ' ', double occupancy = 1) {
@@ -40,17 +43,6 @@ class DataPdb : public testing::Test {
 
   support::TempDir folder_;
 };
-
-std::vector<std::string> texts(const Table& table, const std::string& name) {
-  const auto& words = std::get<Words>(table.find(name)->values);
-  std::vector<std::string> out;
-  for (const std::uint32_t i : words.index) out.push_back(words.words[i]);
-  return out;
-}
-
-const std::vector<double>& numbers(const Table& table, const std::string& name) {
-  return std::get<std::vector<double>>(table.find(name)->values);
-}
 
 using Strings = std::vector<std::string>;
 

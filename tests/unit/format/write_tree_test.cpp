@@ -14,7 +14,7 @@ using support::SceneFiles;
 
 std::string same(const std::string& file) { return file; }
 
-constexpr const char* kScene = R"(# a comment
+constexpr const char* kCommentedScene = R"(# a comment
 [image]
 width = 20
 [render]
@@ -43,8 +43,8 @@ TEST(FormatWriteTree, ReadsBackToTheSameScene) {
   SceneFiles files;
   const std::vector<Override> overrides = {"image.width=33", "material.copper={type=\"metal\",albedo=[1,0,0]}",
                                            "sphere[1].radius=0.25", "camera.vfov=30"};
-  const std::string text = merged_text("scene.toml", kScene, overrides, same);
-  const scene::Scene a = files.read(kScene, overrides).scene, b = files.read(text).scene;
+  const std::string text = merged_text("scene.toml", kCommentedScene, overrides, same);
+  const scene::Scene a = files.read(kCommentedScene, overrides).scene, b = files.read(text).scene;
   for (const scene::Table& table : scene::tables())
     for (const auto& key : table.keys) EXPECT_EQ(key.text(a), key.text(b)) << key.name;
   ASSERT_EQ(b.materials.size(), 3u);

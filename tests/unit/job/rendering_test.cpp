@@ -11,7 +11,7 @@
 namespace orrery::job {
 namespace {
 
-constexpr const char* kScene = R"(
+constexpr const char* kSceneWithLayers = R"(
 [image]
 width = 24
 height = 16
@@ -32,7 +32,7 @@ class JobRendering : public testing::Test {
  protected:
   JobRendering() {
     ::unsetenv("OCIO");
-    support::write_bytes(folder_ / "scene.toml", kScene);
+    support::write_bytes(folder_ / "scene.toml", kSceneWithLayers);
     job_.scene.file = folder_ / "scene.toml";
     job_.keep = &rendering_;
   }

@@ -34,7 +34,7 @@ scene::Points two() {
   return points;
 }
 
-void expect_near(Vec3d a, Vec3d b) { EXPECT_LT(math::length(a - b), 1e-12) << a.x << ' ' << a.y << ' ' << a.z; }
+void expect_close(Vec3d a, Vec3d b) { EXPECT_LT(math::length(a - b), 1e-12) << a.x << ' ' << a.y << ' ' << a.z; }
 
 TEST(PointsCopies, UnwrapMovesByTheEdgesOfATriclinicBox) {
   data::FrameInfo info;
@@ -178,7 +178,7 @@ TEST(PointsCopies, OrderOfTheTransform) {
   points.transform.translate = {10, 20, 30};
   make_copies({{}}, {}, points);
   // (2, 4, 6) about x: (2, -6, 4); about y: (4, -6, -2); about z: (6, 4, -2)
-  expect_near(points.centers[0], {16, 24, 28});
+  expect_close(points.centers[0], {16, 24, 28});
   EXPECT_EQ(points.radii[0], 1);
 }
 
@@ -192,11 +192,11 @@ TEST(PointsCopies, RotationsFollowOneAnother) {
     return points.centers[0];
   };
   const double c = std::sqrt(0.75), s = 0.5;
-  expect_near(turned({1, 2, 3}, {30, 0, 0}), {1, 2 * c - 3 * s, 2 * s + 3 * c});
-  expect_near(turned({1, 2, 3}, {0, 30, 0}), {1 * c + 3 * s, 2, 3 * c - 1 * s});
-  expect_near(turned({1, 2, 3}, {0, 0, 30}), {1 * c - 2 * s, 1 * s + 2 * c, 3});
+  expect_close(turned({1, 2, 3}, {30, 0, 0}), {1, 2 * c - 3 * s, 2 * s + 3 * c});
+  expect_close(turned({1, 2, 3}, {0, 30, 0}), {1 * c + 3 * s, 2, 3 * c - 1 * s});
+  expect_close(turned({1, 2, 3}, {0, 0, 30}), {1 * c - 2 * s, 1 * s + 2 * c, 3});
   const Vec3d after_x = turned({1, 2, 3}, {25, 0, 0}), after_y = turned(after_x, {0, -40, 0});
-  expect_near(turned({1, 2, 3}, {25, -40, 110}), turned(after_y, {0, 0, 110}));
+  expect_close(turned({1, 2, 3}, {25, -40, 110}), turned(after_y, {0, 0, 110}));
 }
 
 TEST(PointsCopies, CopiesAreTransformedAfterwards) {

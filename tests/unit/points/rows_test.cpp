@@ -14,21 +14,21 @@ namespace {
 using data::Column;
 using data::Words;
 using Names = std::vector<std::string>;
-using Indices = std::vector<std::uint32_t>;
+using RowList = std::vector<std::uint32_t>;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 TEST(PointsRows, AllRowsOrTheListedOnes) {
   EXPECT_EQ(Rows(3).size(), 3u);
   EXPECT_EQ(Rows(3)[2], 2u);
-  const Rows listed(Indices{5, 1});
+  const Rows listed(RowList{5, 1});
   EXPECT_EQ(listed.size(), 2u);
   EXPECT_EQ(listed[0], 5u);
-  EXPECT_EQ(Rows(Indices{}).size(), 0u) << "an empty list is not all rows";
+  EXPECT_EQ(Rows(RowList{}).size(), 0u) << "an empty list is not all rows";
 }
 
 TEST(PointsRows, NumbersOfEveryType) {
-  const Rows rows(Indices{2, 0});
+  const Rows rows(RowList{2, 0});
   const auto numbers = [&](data::Values values) {
     std::vector<double> out(2, -1);
     for_each_number({"c", std::move(values)}, rows, [&](std::size_t i, double v) { out[i] = v; });
@@ -49,16 +49,16 @@ TEST(PointsRows, LabelsOfNumbersAscendByValue) {
   const Labels labels = labels_of(column, Rows(5), 4);
   EXPECT_EQ(labels.names, (Names{"-1", "0.5", "9", "10"})) << "10 sorts after 9";
   EXPECT_EQ(labels.values, (std::vector<double>{-1, 0.5, 9, 10}));
-  EXPECT_EQ(labels.of_rows, (Indices{3, 2, 1, 3, 0}));
+  EXPECT_EQ(labels.of_rows, (RowList{3, 2, 1, 3, 0}));
   EXPECT_TRUE(labels_of(column, Rows(5), 3).of_rows.empty()) << "more than the limit";
 }
 
 TEST(PointsRows, LabelsOfNanAreTheLast) {
-  const Column column{"type", std::vector<double>{kNan, 2, kNan, kNan, 1}};
+  const Column column{"type", std::vector<double>{kNotANumber, 2, kNotANumber, kNotANumber, 1}};
   const Labels labels = labels_of(column, Rows(5), 5);
   EXPECT_EQ(labels.names, (Names{"1", "2", "nan"}));
   EXPECT_TRUE(std::isnan(labels.values.back()));
-  EXPECT_EQ(labels.of_rows, (Indices{2, 1, 2, 2, 0}));
+  EXPECT_EQ(labels.of_rows, (RowList{2, 1, 2, 2, 0}));
 }
 
 TEST(PointsRows, LabelsOfLargeNumbersAreNotRounded) {
@@ -70,10 +70,10 @@ TEST(PointsRows, LabelsOfLargeNumbersAreNotRounded) {
 
 TEST(PointsRows, LabelsOfTextsAreThoseOfTheRows) {
   const Column column{"chain", Words{{"B", "unused", "A", "C"}, {0, 2, 3, 0}}};
-  const Labels labels = labels_of(column, Rows(Indices{3, 0, 1}), 2);
+  const Labels labels = labels_of(column, Rows(RowList{3, 0, 1}), 2);
   EXPECT_EQ(labels.names, (Names{"A", "B"}));
   EXPECT_TRUE(labels.values.empty());
-  EXPECT_EQ(labels.of_rows, (Indices{1, 1, 0}));
+  EXPECT_EQ(labels.of_rows, (RowList{1, 1, 0}));
   EXPECT_TRUE(labels_of(column, Rows(4), 2).of_rows.empty()) << "more than the limit";
 }
 

@@ -15,14 +15,14 @@ using data::Column;
 using data::Table;
 using data::Words;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// Six atoms with all types of columns.
-Table atoms() {
+/// Six six_atoms with all types of columns.
+Table six_atoms() {
   Table table;
   table.rows = 6;
   table.columns = {
-      Column{"x", std::vector<double>{0, 1, 2, 3, kNan, -5}},
+      Column{"x", std::vector<double>{0, 1, 2, 3, kMissing, -5}},
       Column{"z", std::vector<float>{1, -1, 0.5f, 2, 7, 8}},
       Column{"type", std::vector<std::int32_t>{1, 2, 2, 1, 2, 3}},
       Column{"id", std::vector<std::int64_t>{10, 20, 30, 40, 50, 60}},
@@ -38,7 +38,7 @@ Table atoms() {
 }
 
 /// The selected rows as digits: "024".
-std::string rows(const std::string& text, const Table& table = atoms()) {
+std::string rows(const std::string& text, const Table& table = six_atoms()) {
   const auto mask = parse_selection(text).evaluate(table);
   EXPECT_EQ(mask.size(), table.rows) << text;
   std::string out;
@@ -54,7 +54,7 @@ base::Diagnostic fault(const std::string& text) {
   try {
     parse_selection(text).check([] {
       std::vector<data::ColumnInfo> columns;
-      for (const Column& column : atoms().columns) columns.push_back({column.name, column.type()});
+      for (const Column& column : six_atoms().columns) columns.push_back({column.name, column.type()});
       return columns;
     }());
   } catch (const base::Error& error) {
@@ -140,7 +140,7 @@ TEST(PointsSelect, EmptySelectsAll) {
   EXPECT_EQ(rows(""), "012345");
   EXPECT_EQ(rows(" \t\n"), "012345");
   EXPECT_TRUE(parse_selection("").columns().empty());
-  EXPECT_EQ(Selection().evaluate(atoms()).size(), 6u);
+  EXPECT_EQ(Selection().evaluate(six_atoms()).size(), 6u);
 }
 
 TEST(PointsSelect, EvaluatesEveryBlock) {

@@ -68,7 +68,7 @@ TEST(RenderLayers, ThreadsAndAcceleratorsGiveTheSameBits) {
 }
 
 /// A scene with emitters in two light groups, and a background in the default group.
-scene::Scene with_lamps(scene::Scene s) {
+scene::Scene with_light_groups(scene::Scene s) {
   s.materials.push_back({"key", scene::Emitter{{15, 14, 12}, 0, "key"}});
   s.materials.push_back({"rim", scene::Emitter{{0.1, 0.2, 7}, 0, "rim"}});
   const auto key = static_cast<std::uint32_t>(s.materials.size() - 2);
@@ -79,7 +79,7 @@ scene::Scene with_lamps(scene::Scene s) {
 
 TEST(RenderLayers, LobesAndLightGroupsAddUpToTheBeauty) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
-    for (const scene::Scene& scene : {test::everything(), with_lamps(test::everything())}) {
+    for (const scene::Scene& scene : {test::everything(), with_light_groups(test::everything())}) {
       scene::Scene s = scene;
       s.render.precision = precision;
       film::LayerRequest request = all_layers();

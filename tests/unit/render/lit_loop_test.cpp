@@ -31,7 +31,8 @@ struct Rendered {
 
 enum class Kind { kPlain, kLit };
 
-void render(const compile::CompiledScene& compiled, kernel::SceneView view, Kind kind, bool records, Rendered& out) {
+void render_tile(const compile::CompiledScene& compiled, kernel::SceneView view, Kind kind, bool records,
+                 Rendered& out) {
   view.features.lit = kind == Kind::kLit;
   const auto accel = accel::make_embree(compiled.view(), compiled.precision);
   out.sums.assign(static_cast<std::size_t>(compiled.width * compiled.height), {});
@@ -103,8 +104,8 @@ TEST(RenderLitLoop, SameBitsWhereNothingEmits) {
           kernel::SceneView view = compiled.view();
           view.background_visible = background_visible;
           Rendered plain, lit;
-          render(compiled, view, Kind::kPlain, records, plain);
-          render(compiled, view, Kind::kLit, records, lit);
+          render_tile(compiled, view, Kind::kPlain, records, plain);
+          render_tile(compiled, view, Kind::kLit, records, lit);
           expect_same(plain, lit);
           EXPECT_GT(plain.counts.rays, plain.sums.size());
         }
@@ -147,7 +148,7 @@ TEST(RenderLitLoop, AFurnaceHasItsSeries) {
       const Furnace furnace(precision, rays, 4);
       for (const bool records : {false, true}) {
         Rendered out;
-        render(furnace.compiled, furnace.view, Kind::kLit, records, out);
+        render_tile(furnace.compiled, furnace.view, Kind::kLit, records, out);
         EXPECT_EQ(out.counts.bad_samples, 0u);
         // Powers of two: exact in either precision.
         const double red = 8 - std::ldexp(8, -rays);
@@ -177,7 +178,7 @@ TEST(RenderLitLoop, AFurnaceHasItsSeries) {
 TEST(RenderLitLoop, AbsorbedPathsKeepTheirLight) {
   const Furnace furnace(scene::Precision::kExact, 10, 4, scene::Metal{{0.5, 0.5, 0.5}, 1});
   Rendered out;
-  render(furnace.compiled, furnace.view, Kind::kLit, true, out);
+  render_tile(furnace.compiled, furnace.view, Kind::kLit, true, out);
   EXPECT_LT(out.counts.rays, 10 * out.records.size()) << "some are absorbed";
   std::vector<double> of_path(out.records.size()), of_pixel(out.sums.size());
   for (const kernel::LightEvent& e : out.all_events()) of_path[e.path] += e.value[0];
@@ -193,7 +194,7 @@ TEST(RenderLitLoop, AbsorbedPathsKeepTheirLight) {
 TEST(RenderLitLoop, LobesAddUpToTheBeauty) {
   const Furnace furnace(scene::Precision::kExact, 5, 4);
   Rendered out;
-  render(furnace.compiled, furnace.view, Kind::kLit, true, out);
+  render_tile(furnace.compiled, furnace.view, Kind::kLit, true, out);
   film::LayerRequest request;
   request.diffuse = request.background = true;
   std::vector<film::LayerPixel> layers(out.sums.size());
@@ -211,7 +212,7 @@ TEST(RenderLitLoop, ABadValueCostsAPathItsWeightOnce) {
     for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
       const Furnace furnace(precision, 7, bad);
       Rendered out;
-      render(furnace.compiled, furnace.view, Kind::kLit, true, out);
+      render_tile(furnace.compiled, furnace.view, Kind::kLit, true, out);
       EXPECT_EQ(out.counts.bad_samples, out.records.size());
       for (const kernel::PixelSum& sum : out.sums) {
         ASSERT_EQ(sum.weight, 0);

@@ -8,15 +8,10 @@
 #include "render/render.h"
 #include "scene/animation.h"
 #include "support/everything.h"
+#include "support/plane_values.h"
 
 namespace orrery::render {
 namespace {
-
-std::vector<float> values(const film::Picture& picture) {
-  std::vector<float> all;
-  for (const film::Plane& plane : picture.planes) all.insert(all.end(), plane.values.begin(), plane.values.end());
-  return all;
-}
 
 /// A scene with moving, growing and static spheres, one a ground outside the BVH, and a moving camera.
 struct Moving {
@@ -35,7 +30,7 @@ struct Moving {
   compile::CompiledScene compiled() const { return compile::compile(opening, &closing); }
 };
 
-Settings with_layers() {
+Settings with_data_layers() {
   Settings settings;
   settings.layers.z = settings.layers.position = settings.layers.normal = settings.layers.variance = true;
   return settings;
@@ -45,16 +40,16 @@ TEST(RenderMotion, EveryAcceleratorThreadCountAndTraversalGivesTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
     Moving moving;
     moving.opening.render.precision = precision;
-    const std::vector<float> expected = values(render(moving.compiled(), with_layers()).picture);
+    const std::vector<float> expected = test::plane_values(render(moving.compiled(), with_data_layers()).picture);
     for (const accel::Traversal traversal : {accel::Traversal::kPacket, accel::Traversal::kSingle}) {
-      Settings settings = with_layers();
+      Settings settings = with_data_layers();
       settings.threads = 3;
       settings.traversal = traversal;
-      EXPECT_EQ(values(render(moving.compiled(), settings).picture), expected);
+      EXPECT_EQ(test::plane_values(render(moving.compiled(), settings).picture), expected);
     }
     compile::CompiledScene list = moving.compiled();
     list.accelerator = compile::Accelerator::kList;
-    EXPECT_EQ(values(render(list, with_layers()).picture), expected);
+    EXPECT_EQ(test::plane_values(render(list, with_data_layers()).picture), expected);
   }
 }
 
@@ -63,7 +58,8 @@ TEST(RenderMotion, StaticSceneRendersAsWithoutMotion) {
   const compile::CompiledScene compiled = compile::compile(scene, &scene);
   EXPECT_FALSE(compiled.features.motion);
   EXPECT_TRUE(compiled.motion.empty());
-  EXPECT_EQ(values(render(compiled, {}).picture), values(render(compile::compile(scene), {}).picture));
+  EXPECT_EQ(test::plane_values(render(compiled, {}).picture),
+            test::plane_values(render(compile::compile(scene), {}).picture));
 }
 
 TEST(RenderMotion, MotionArrayEndsAtTheLastMovingSphere) {
@@ -84,7 +80,7 @@ void expect_mean_of_moments(const Moving& moving) {
   const film::Picture blurred = render(compile::compile(scene, &moving.closing), {}).picture;
 
   constexpr int kMoments = 64;
-  std::vector<double> mean(values(blurred).size());
+  std::vector<double> mean(test::plane_values(blurred).size());
   for (int m = 0; m < kMoments; ++m) {
     const double t = (m + 0.5) / kMoments;
     scene::Scene at = moving.opening;
@@ -99,10 +95,10 @@ void expect_mean_of_moments(const Moving& moving) {
     at.camera.vfov = between(moving.opening.camera.vfov, moving.closing.camera.vfov);
     at.render.samples = 64;
     at.render.seed = static_cast<std::uint32_t>(m) + 100;
-    const std::vector<float> picture = values(render(compile::compile(at), {}).picture);
+    const std::vector<float> picture = test::plane_values(render(compile::compile(at), {}).picture);
     for (std::size_t i = 0; i < picture.size(); ++i) mean[i] += static_cast<double>(picture[i]) / kMoments;
   }
-  const std::vector<float> found = values(blurred);
+  const std::vector<float> found = test::plane_values(blurred);
   double bias = 0, square = 0, worst = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double difference = static_cast<double>(found[i]) - mean[i];

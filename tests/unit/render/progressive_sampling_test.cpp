@@ -17,16 +17,11 @@
 #include "film/partial_words.h"
 #include "render/render.h"
 #include "support/everything.h"
+#include "support/plane_values.h"
 #include "support/tile_functions.h"
 
 namespace orrery::render {
 namespace {
-
-std::vector<float> values(const film::Picture& picture) {
-  std::vector<float> all;
-  for (const film::Plane& plane : picture.planes) all.insert(all.end(), plane.values.begin(), plane.values.end());
-  return all;
-}
 
 /// Renders an image in squares of `side` pixels and `shards` sample ranges, in reverse order.
 std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, int side, int shards,
@@ -55,7 +50,7 @@ std::vector<float> rendered_in_pieces(const compile::CompiledScene& compiled, in
                                              ? test::one_lane_tile_function(view.features, compiled.precision)
                                              : kernel::render_tile_function(view.features, compiled.precision);
   for (const kernel::Tile& piece : pieces) render_tile(view, accel->tracer(), piece, *stream);
-  return values(film.picture());
+  return test::plane_values(film.picture());
 }
 
 compile::CompiledScene world_of_everything() {
@@ -82,7 +77,7 @@ Settings in_rounds(Settings settings = {}) {
 }
 
 void expect_same(const Result& a, const Result& b) {
-  EXPECT_EQ(values(a.picture), values(b.picture));
+  EXPECT_EQ(test::plane_values(a.picture), test::plane_values(b.picture));
   EXPECT_EQ(a.statistics.paths, b.statistics.paths);
   EXPECT_EQ(a.statistics.rays, b.statistics.rays);
   EXPECT_EQ(a.statistics.fewest_samples, b.statistics.fewest_samples);
@@ -236,13 +231,14 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
     }
     const Result expected = render(compiled, whole);
     EXPECT_EQ(sum.work.rays, expected.statistics.rays);
-    EXPECT_EQ(values(finished(compiled, whole.layers, std::move(sum), 2).picture), values(expected.picture));
+    EXPECT_EQ(test::plane_values(finished(compiled, whole.layers, std::move(sum), 2).picture),
+              test::plane_values(expected.picture));
   }
 }
 
 TEST(RenderProgressiveSampling, AnySplitGivesTheSameBits) {
   const compile::CompiledScene compiled = world_of_everything();
-  const std::vector<float> whole = values(render(compiled, {}).picture);
+  const std::vector<float> whole = test::plane_values(render(compiled, {}).picture);
   for (const int side : {1, 5, 32, 128})
     for (const int shards : {1, 2, 3, 17})
       EXPECT_EQ(rendered_in_pieces(compiled, side, shards, kernel::Lanes::kAll), whole)
@@ -251,7 +247,7 @@ TEST(RenderProgressiveSampling, AnySplitGivesTheSameBits) {
 
 TEST(RenderProgressiveSampling, OneLaneGivesTheSameBitsAsAll) {
   const compile::CompiledScene compiled = world_of_everything();
-  EXPECT_EQ(rendered_in_pieces(compiled, 32, 1, kernel::Lanes::kOne), values(render(compiled, {}).picture));
+  EXPECT_EQ(rendered_in_pieces(compiled, 32, 1, kernel::Lanes::kOne), test::plane_values(render(compiled, {}).picture));
 }
 
 }  // namespace

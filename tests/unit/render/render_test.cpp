@@ -10,6 +10,7 @@
 #include "compile/compile.h"
 #include "support/everything.h"
 #include "support/lit_scenes.h"
+#include "support/plane_values.h"
 
 namespace orrery::render {
 namespace {
@@ -25,10 +26,7 @@ std::vector<float> pixels(const scene::Scene& scene, int threads = 0) {
   const Result result = render(compiled, settings);
   EXPECT_TRUE(result.completed);
   EXPECT_EQ(result.statistics.bad_samples, 0u);
-  std::vector<float> all;
-  for (const film::Plane& plane : result.picture.planes)
-    all.insert(all.end(), plane.values.begin(), plane.values.end());
-  return all;
+  return test::plane_values(result.picture);
 }
 
 TEST(RenderRender, ListAndEmbreeGiveTheSameBits) {

@@ -8,27 +8,25 @@
 
 #include "compile/compile.h"
 #include "support/everything.h"
+#include "support/plane_values.h"
 
 namespace orrery::render {
 namespace {
 
-std::vector<float> pixels(const scene::Scene& scene, std::optional<accel::Traversal> traversal) {
+std::vector<float> pixels_by(const scene::Scene& scene, std::optional<accel::Traversal> traversal) {
   Settings settings;
   settings.traversal = traversal;
   const Result result = render(compile::compile(scene), settings);
-  std::vector<float> all;
-  for (const film::Plane& plane : result.picture.planes)
-    all.insert(all.end(), plane.values.begin(), plane.values.end());
-  return all;
+  return test::plane_values(result.picture);
 }
 
 TEST(RenderTraversals, AllGiveTheSameBits) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast, scene::Precision::kBook}) {
     scene::Scene scene = test::everything();
     scene.render.precision = precision;
-    const auto packet = pixels(scene, accel::Traversal::kPacket);
-    EXPECT_EQ(pixels(scene, accel::Traversal::kSingle), packet) << static_cast<int>(precision);
-    EXPECT_EQ(pixels(scene, std::nullopt), packet) << static_cast<int>(precision);
+    const auto packet = pixels_by(scene, accel::Traversal::kPacket);
+    EXPECT_EQ(pixels_by(scene, accel::Traversal::kSingle), packet) << static_cast<int>(precision);
+    EXPECT_EQ(pixels_by(scene, std::nullopt), packet) << static_cast<int>(precision);
   }
 }
 

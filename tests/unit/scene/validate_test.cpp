@@ -9,7 +9,7 @@ namespace orrery::scene {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotFinite = std::numeric_limits<double>::infinity();
 
 Scene with_sphere(Vec3d center, double radius) {
   Scene scene;
@@ -170,7 +170,7 @@ TEST(SceneValidate, UpMustNotBeZeroTinyOrParallel) {
 TEST(SceneValidate, CameraVectorsMustBeFinite) {
   Scene scene;
   scene.camera.look_from = {kNan, 0, 0};
-  scene.camera.up = {0, kInfinity, 0};
+  scene.camera.up = {0, kNotFinite, 0};
   EXPECT_EQ(told(scene), (Told{"camera.look_from: [nan, 0, 0] is not finite or exceeds 1e+18",
                                "camera.up: [0, inf, 0] is not finite or exceeds 1e+18"}));
 }
@@ -183,7 +183,7 @@ TEST(SceneValidate, LensMustBeInTheDomain) {
   EXPECT_EQ(told(scene)[0].rfind("camera.defocus_angle: the lens radius would be 1.14", 0), 0u) << told(scene)[0];
   scene.camera.focus_distance = 1e10;
   EXPECT_EQ(told(scene), Told{});
-  scene.camera.defocus_angle = kInfinity;
+  scene.camera.defocus_angle = kNotFinite;
   EXPECT_EQ(told(scene).size(), 1u);
 }
 
@@ -195,7 +195,8 @@ TEST(SceneValidate, RadiusMustBeInTheDomain) {
   EXPECT_EQ(told(with_sphere({}, -2e18)),
             Told{"sphere[0].radius: radius is -2e+18; its magnitude must be in 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, kNan)), Told{"sphere[0].radius: radius is not finite; must be in 1e-30..1e+18"});
-  EXPECT_EQ(told(with_sphere({}, -kInfinity)), Told{"sphere[0].radius: radius is not finite; must be in 1e-30..1e+18"});
+  EXPECT_EQ(told(with_sphere({}, -kNotFinite)),
+            Told{"sphere[0].radius: radius is not finite; must be in 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, 1e-30)), Told{});
   EXPECT_EQ(told(with_sphere({}, -1e18)), Told{});
 }
