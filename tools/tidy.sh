@@ -30,7 +30,7 @@ done
 git rev-parse --is-inside-work-tree >/dev/null 2>&1 || skip "not a git repository"
 
 build=${ORRERY_BUILD:-build}
-if [ -z "${ORRERY_BUILD:-}" ] && { [ ! -f build/CMakeCache.txt ] || grep -q '^CMAKE_UNITY_BUILD:.*=ON' build/CMakeCache.txt; }; then
+if [ -z "${ORRERY_BUILD:-}" ] && ! awk '/^CMAKE_UNITY_BUILD:.*=ON/ { exit 1 }' build/CMakeCache.txt 2>/dev/null; then
   build="build-tidy"
 fi
 commands=$build/compile_commands.json

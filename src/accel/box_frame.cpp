@@ -61,6 +61,11 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
   reach = half * scale * 1.8;  // sqrt(3) for the box's corners, plus room for the padding
   // Embree also interpolates motion-blurred bounds in single precision, which costs some more bits.
   padding = kPadding * reach * kFarthestStart * (moving_count > 0 ? 2 : 1);
+  if (!spheres.in_single || moving_count == 0) return;
+  // The kernel rounds the interpolated sphere, of which each coordinate is the sum of two rounded numbers.
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(lower[axis]), std::abs(upper[axis])});
+  padding += 0x1p-22 * largest * scale;
 }
 
 BoxFrame::Box BoxFrame::box(const kernel::Sphere& sphere) const noexcept {

@@ -292,7 +292,7 @@ std::size_t spheres_in_bvh(const kernel::SceneView& scene) {
   const double limit = giant_radius(scene);
   std::size_t count = 0;
   for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) count += scene.spheres[id].radius <= limit;
-  return count < kBvhThreshold ? 0 : count;
+  return count < kBvhThreshold || count > SphereBvh::kMaxSpheres ? 0 : count;
 }
 
 std::string embree_version() { return RTC_VERSION_STRING; }

@@ -64,6 +64,7 @@ void add_summaries(data::DataFile& file, int frame, const std::vector<std::strin
 DataInfo data_info(const DataInfoRequest& request) {
   data::OpenOptions options;
   options.component = request.component;
+  options.limit_memory(job::available_memory().value_or(0));
   const std::unique_ptr<data::DataFile> file = data::open(request.file, options);
   DataInfo info;
   info.file = request.file;

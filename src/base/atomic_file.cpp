@@ -66,7 +66,7 @@ std::filesystem::path renamed_onto(const std::filesystem::path& path) {
     cannot_create(path, std::strerror(errno));
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (path.filename().empty() || std::filesystem::is_directory(status)) cannot_create(path, "it is a directory");
-  if (!std::filesystem::exists(status)) return path;
+  if (!std::filesystem::exists(status)) return link_target(path);
   if (!std::filesystem::is_regular_file(status)) cannot_create(path, "it is not a regular file");
   if (!std::filesystem::is_symlink(path, ignored)) return path;
   std::filesystem::path target = std::filesystem::canonical(path, ignored);
@@ -108,6 +108,8 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
     file.slot = take_slot(file.name);
     const int descriptor = ::open(file.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0) {
+      struct stat replaced {};
+      if (::stat(target.c_str(), &replaced) == 0) ::fchmod(descriptor, replaced.st_mode & 07777);  // keeps the mode
       ::close(descriptor);
       return file;
     }
@@ -119,6 +121,14 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
 }
 
 }  // namespace
+
+std::filesystem::path link_target(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as in the kernel
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, error); ++i)
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
+  return path;
+}
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), target_(renamed_onto(path_)) {
   const NewFile file = create_beside(path_, target_);

@@ -5,6 +5,9 @@
 
 namespace orrery::base {
 
+/// Returns the file that a symbolic link names, also if it does not exist; other paths as they are.
+std::filesystem::path link_target(std::filesystem::path path);
+
 /// A file that appears under its name complete, or not at all.
 ///
 /// The caller writes to a temporary file in the same directory, which commit() syncs and renames. A file that is not

@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 
 namespace orrery::base {
@@ -30,6 +31,8 @@ std::vector<FileSet::Key> FileSet::keys_of(const fs::path& file) {
     keys.push_back({{status.st_dev, status.st_ino}, ""});
     std::error_code ignored;
     if (fs::is_symlink(file, ignored)) entry = fs::canonical(file, ignored);
+  } else {
+    entry = link_target(file);
   }
   // The name is a key of existing files, too: a file may be replaced, and get another inode, before the next lookup.
   const Folder& folder = folder_of(entry);

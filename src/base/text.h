@@ -16,6 +16,8 @@ std::string bytes_text(std::uint64_t bytes);
 
 /// Replaces control characters, which could control the terminal, by question marks; a tab stays.
 std::string printable(std::string_view text);
+/// The same for a text of several lines: ends of lines stay, too.
+std::string printable_lines(std::string_view text);
 
 /// Quotes a word for a POSIX shell; a word without special characters stays as it is.
 std::string shell_quoted(const std::string& word);

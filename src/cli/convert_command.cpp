@@ -8,6 +8,7 @@
 #include "cli/data_options.h"
 #include "cli/messages.h"
 #include "cli/option_checks.h"
+#include "cli/signals.h"
 #include "job/memory.h"
 #include "plot/convert.h"
 
@@ -35,6 +36,7 @@ void print_file(const plot::ConvertedFile& written, bool quiet) {
 }
 
 int run_convert(ConvertArguments& arguments) {
+  end_on_signals();
   plot::ConvertOptions& convert = arguments.convert;
   read_data_options(arguments.data, convert);
   if (convert.color_by.empty() && (convert.has_map || convert.points.color.range))

@@ -53,6 +53,11 @@ void log_message(const std::string& text) {
 }
 
 void open_log(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  // Opening a pipe would wait for its reader.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw base::Error(base::ErrorKind::kCannotCreate, "cannot create " + file.string() + ": it is not a regular file");
   log_file = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   if (log_file < 0)
     throw base::Error(base::ErrorKind::kCannotCreate, "cannot create " + file.string() + ": " + std::strerror(errno));

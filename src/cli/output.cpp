@@ -6,12 +6,14 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "cli/messages.h"
 
 namespace orrery::cli {
 
-void print_result(const std::string& text) {
-  // Buffered output fails only when it is flushed.
+void print_result(const std::string& unchecked) {
+  const std::string text = base::printable_lines(unchecked);
+  // Names in files may contain control characters. Buffered output fails only when it is flushed.
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
   if (errno == EPIPE) throw ReaderLeft();
   throw base::Error(base::ErrorKind::kIo, std::string("writing to standard output failed: ") + std::strerror(errno));
@@ -20,7 +22,7 @@ void print_result(const std::string& text) {
 std::string error_text(const base::Error& error) {
   std::string out;
   for (const base::Diagnostic& diagnostic : error.diagnostics()) out += base::formatted(diagnostic);
-  return out + "orrery: " + error.what() + "\n";
+  return out + "orrery: " + base::printable_lines(error.what()) + "\n";
 }
 
 int print_error(const base::Error& error) {

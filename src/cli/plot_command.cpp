@@ -120,6 +120,7 @@ int run_plot(PlotArguments& arguments) {
   } else {
     job.scene.text = std::make_shared<const std::string>(made.text);
     job.scene.is_generated = true;
+    job.scene.has_file = false;
     render.batch.scenes = {plot.file};
   }
   return run_render(render);

@@ -22,12 +22,10 @@
 #include "cli/render_options.h"
 #include "cli/render_report.h"
 #include "cli/signals.h"
+#include "job/provenance.h"
 
 namespace orrery::cli {
 namespace {
-
-/// More shards than are worth a process each.
-constexpr int kMaxShards = 65536;
 
 /// --quiet does not suppress progress in an explicit style, which a farm manager parses.
 ProgressStyle style_of(const RenderOptions& options) {
@@ -61,7 +59,7 @@ void read_shard(const RenderOptions& options, job::Job& job) {
   }
   if (options.shard.empty()) return;
   const auto shard = pair_of<int>(options.shard, '/');
-  if (!shard || shard->first < 1 || shard->first > shard->second || shard->second > kMaxShards)
+  if (!shard || shard->first < 1 || shard->first > shard->second || shard->second > job::kMaxShards)
     refuse(fmt::format("--shard: `{}` is not a shard; write I/N, e.g. 1/2 and 2/2 for two shards", options.shard));
   job.sampling.shard = {shard->first - 1, shard->second};
   job.as_shard = true;

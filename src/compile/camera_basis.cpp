@@ -2,6 +2,7 @@
 #include "compile/camera_basis.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 namespace orrery::compile {
@@ -26,7 +27,14 @@ double focus_distance(const scene::Camera& camera) {
   return camera.focus_distance.value_or(math::length(camera.look_from - camera.look_at));
 }
 
-kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& image) {
+double view_scale(const scene::Camera& camera) {
+  constexpr int kHarmless = 40;
+  if (camera.defocus_angle > 0 || camera.projection == scene::Projection::kOrthographic) return 1;
+  const int exponent = std::ilogb(focus_distance(camera));
+  return std::abs(exponent) <= kHarmless ? 1 : std::ldexp(1.0, -exponent);
+}
+
+kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& image, double view_scale) {
   const CameraAxes axes = camera_axes(camera);
   const double focus = focus_distance(camera);
   const bool is_orthographic = camera.projection == scene::Projection::kOrthographic;
@@ -35,9 +43,9 @@ kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& i
   const double lens_radius = camera.defocus_angle > 0 ? tangent_of_half(camera.defocus_angle) * focus : 0;
   kernel::Camera out;
   set(out.origin, camera.look_from);
-  set(out.forward, axes.z * -focus);
-  set(out.right, axes.x * (pixel * image.pixel_aspect));
-  set(out.down, axes.y * -pixel);
+  set(out.forward, axes.z * -focus * view_scale);
+  set(out.right, axes.x * (pixel * image.pixel_aspect) * view_scale);
+  set(out.down, axes.y * -pixel * view_scale);
   set(out.lens_u, axes.x * lens_radius);
   set(out.lens_v, axes.y * lens_radius);
   out.is_orthographic = is_orthographic;

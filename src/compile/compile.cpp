@@ -65,7 +65,7 @@ Bounds bounds_of(const SphereStore& spheres) {
 }
 
 /// Adds the motion of the camera and of [[sphere]] tables from shutter open to shutter close.
-void add_motion(const scene::Scene& opening, const scene::Scene& closing, CompiledScene& compiled) {
+void add_motion(const scene::Scene& opening, const scene::Scene& closing, double view_scale, CompiledScene& compiled) {
   for (std::size_t i = opening.spheres.size(); i-- > 0;) {
     const scene::Sphere &from = opening.spheres[i], &to = closing.spheres[i];
     const Vec3d displacement = to.center - from.center;
@@ -75,7 +75,7 @@ void add_motion(const scene::Scene& opening, const scene::Scene& closing, Compil
     if (compiled.motion.empty() && !rests) compiled.motion.resize(i + 1, kernel::Sphere{0, 0, 0, 0});
     if (!rests) compiled.motion[i] = change;
   }
-  const kernel::Camera last = compile_camera(closing.camera, closing.image);
+  const kernel::Camera last = compile_camera(closing.camera, closing.image, view_scale);
   kernel::Camera& change = compiled.camera_motion;
   bool camera_moves = false;
   const auto subtract = [&](const double(&to)[3], const double(&from)[3], double(&out)[3]) {
@@ -205,8 +205,9 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
     case scene::Shading::kFlat: compiled.shading = kernel::Shading::kFlat; break;
   }
   compiled.accelerator = scene.render.accelerator;
-  compiled.camera = compile_camera(scene.camera, scene.image);
   compiled.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
+  const double scale = compiled.features.lens ? 1 : view_scale(scene.camera);
+  compiled.camera = compile_camera(scene.camera, scene.image, scale);
   compiled.light_groups = {""};
   compiled.filter = compile_filter(scene.render);
   add_spheres(scene, compiled);
@@ -216,7 +217,7 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   const auto is_dark = [](const kernel::Material& m) { return m.kind != kernel::MaterialKind::kEmitter; };
   if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
   compiled.features.lit = !compiled.emission.empty() || compiled.environment != nullptr;
-  if (closing != nullptr) add_motion(scene, *closing, compiled);
+  if (closing != nullptr) add_motion(scene, *closing, scale, compiled);
   switch (scene.render.direct_lighting) {
     case scene::DirectLighting::kMis: compiled.direct_lighting = kernel::DirectLighting::kMis; break;
     case scene::DirectLighting::kBsdf: compiled.direct_lighting = kernel::DirectLighting::kBsdf; break;

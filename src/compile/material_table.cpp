@@ -142,7 +142,9 @@ std::uint32_t MaterialTable::colored_index(std::uint32_t authored, bool inside_o
                                            std::uint16_t color, Vec3d rgb) {
   const std::uint32_t plain = index(authored, inside_out);
   if (out_.materials[plain].kind == kernel::MaterialKind::kDielectric) return plain;  // has no colour
-  const std::uint64_t key = (std::uint64_t{plain} << 32 | points << 16) | color;
+  if (points != points_) colored_.clear();
+  points_ = points;
+  const std::uint64_t key = std::uint64_t{plain} << 16 | color;
   const auto [at, is_new] = colored_.try_emplace(key, static_cast<std::uint32_t>(out_.materials.size()));
   if (!is_new) return at->second;
   kernel::Material m = out_.materials[plain];

@@ -35,7 +35,7 @@ class MaterialTable {
 
   /// Returns the index of a material whose colour is replaced by one of a palette.
   ///
-  /// `points`   index of the points table that the palette belongs to
+  /// `points`   index of the points table that the palette belongs to; the spheres of a table follow each other
   std::uint32_t colored_index(std::uint32_t authored, bool inside_out, std::size_t points, std::uint16_t color,
                               math::Vec3d rgb);
 
@@ -45,7 +45,8 @@ class MaterialTable {
   const scene::Scene& scene_;
   CompiledScene& out_;
   std::vector<std::array<std::uint32_t, 2>> compiled_;
-  std::unordered_map<std::uint64_t, std::uint32_t> colored_;  ///< by plain material, points table and colour
+  std::size_t points_ = 0;
+  std::unordered_map<std::uint64_t, std::uint32_t> colored_;  ///< of one points table, by plain material and colour
 };
 
 }  // namespace orrery::compile

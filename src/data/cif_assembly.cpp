@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <unordered_map>
 
 namespace orrery::data {
 namespace {
@@ -100,17 +101,15 @@ std::vector<Transform> CifAssemblies::transforms_of(const Part& part, Faults& fa
 std::vector<Assembly> CifAssemblies::finish(Faults& faults) const {
   std::vector<Assembly> assemblies;
   if (operators_.empty()) return assemblies;
+  std::unordered_map<std::string, std::size_t> index_of;
   std::size_t total = 0;
   for (const Part& part : parts_) {
     AssemblyPart out{split(part.chains), transforms_of(part, faults)};
     if ((total += out.transforms.size()) > kMaxTransforms)
       faults.fail(part.line, "the assemblies have more than " + std::to_string(kMaxTransforms) + " transforms");
-    const auto same =
-        std::find_if(assemblies.begin(), assemblies.end(), [&](const Assembly& a) { return a.name == part.assembly; });
-    if (same == assemblies.end())
-      assemblies.push_back({part.assembly, {std::move(out)}});
-    else
-      same->parts.push_back(std::move(out));
+    const auto [same, is_new] = index_of.try_emplace(part.assembly, assemblies.size());
+    if (is_new) assemblies.push_back({part.assembly, {}});
+    assemblies[same->second].parts.push_back(std::move(out));
   }
   return assemblies;
 }

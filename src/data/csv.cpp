@@ -122,8 +122,9 @@ class CsvFile final : public SingleFrame {
     equatorial_ = equatorial(info_.columns);
     if (equatorial_) {
       constexpr const char* kCoordinates[] = {"x", "y", "z"};
+      UniqueNames names(info_.columns);
       for (std::size_t i = 0; i < 3; ++i) {
-        equatorial_->xyz[i] = unique_name(kCoordinates[i], info_.columns);
+        equatorial_->xyz[i] = names.add(kCoordinates[i]);
         info_.columns.push_back({equatorial_->xyz[i], ColumnType::kFloat64});
       }
       info_.roles.position = equatorial_->xyz;

@@ -101,9 +101,10 @@ CsvShape csv_shape(const ByteSource& bytes) {
   const Line& first = sample.lines[0];
   shape.first_line = first.number + (is_first_row ? 1 : 0);
   shape.begin = is_first_row ? first.end : first.offset;
+  UniqueNames unique_names;
   for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), kMostColumns + 1); ++i) {
     const std::string name = names[i].text.empty() ? "column" + std::to_string(i + 1) : names[i].text;
-    shape.columns.push_back({unique_name(name, shape.columns), ColumnType::kFloat64});
+    shape.columns.push_back({unique_names.add(name), ColumnType::kFloat64});
   }
   std::vector<ColumnSurvey> surveys(shape.columns.size());
   for (const auto& row : rows)

@@ -127,12 +127,13 @@ std::vector<std::string> component_names(const std::string& name, std::size_t co
   return out;
 }
 
-std::string unique_name(const std::string& name, const std::vector<ColumnInfo>& columns) {
-  // Counting first keeps the cost quadratic if thousands of columns have one name.
-  const auto is_derived = [&](const ColumnInfo& c) { return c.name == name || c.name.starts_with(name + "_"); };
-  auto number = has_column(columns, name) ? std::count_if(columns.begin(), columns.end(), is_derived) : 0;
+std::string UniqueNames::add(const std::string& name) {
   std::string out = name;
-  while (has_column(columns, out)) out = name + "_" + std::to_string(++number);
+  if (names_.insert(out).second) return out;
+  int& number = numbers_[name];
+  number = std::max(number, 1);
+  do out = name + "_" + std::to_string(++number);
+  while (!names_.insert(out).second);
   return out;
 }
 

@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "data/faults.h"
@@ -49,8 +51,22 @@ bool is_position_name(std::string_view name);
 std::vector<std::string> component_names(const std::string& name, std::size_t components,
                                          const std::vector<ColumnInfo>& columns);
 
-/// Returns the name, or with an underscore and a number if a column has this name.
-std::string unique_name(const std::string& name, const std::vector<ColumnInfo>& columns);
+/// Gives columns unique names.
+class UniqueNames {
+ public:
+  UniqueNames() = default;
+  /// The names of these columns are taken.
+  explicit UniqueNames(const std::vector<ColumnInfo>& columns) {
+    for (const ColumnInfo& column : columns) names_.insert(column.name);
+  }
+
+  /// Returns the name, or with an underscore and a number from 2 on if a column has this name.
+  std::string add(const std::string& name);
+
+ private:
+  std::unordered_set<std::string> names_;
+  std::unordered_map<std::string, int> numbers_;  ///< the last one that was tried
+};
 
 /// Returns whether a column exists.
 bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name);

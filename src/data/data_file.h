@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -24,8 +25,13 @@ constexpr const char* format_name(Format format) {
 
 struct OpenOptions {
   std::optional<int> component = {};  ///< HDF5: particle type, N of /PartTypeN; default: the only one that is not empty
-  /// Maximum size of decompressed data, bytes.
+  /// Maximum size of decompressed data, bytes. They are in memory while they are read.
   std::uint64_t decompressed_limit = std::uint64_t{16} << 30;
+
+  /// Limits the decompressed data to the memory that may be used, bytes; 0: no further limit.
+  void limit_memory(std::uint64_t bytes) {
+    if (bytes > 0) decompressed_limit = std::min(decompressed_limit, bytes);
+  }
 };
 
 /// An opened data file. Not thread-safe; reading uses several threads where that pays.

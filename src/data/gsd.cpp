@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_map>
 
 #include "data/gsd_file.h"
 
@@ -138,6 +139,7 @@ Words GsdReader::types_of(std::uint64_t frame, std::uint64_t rows) {
   if (chunk != nullptr) ids.values = file_.component(*chunk, 0);
   constexpr auto kUnused = static_cast<std::uint32_t>(-1);
   std::vector<std::uint32_t> word_of(names.size(), kUnused);
+  std::unordered_map<std::string, std::uint32_t> number_of;
   Words out;
   out.index.reserve(ids.size());
   for (std::size_t row = 0; row < ids.size(); ++row) {
@@ -147,9 +149,10 @@ Words GsdReader::types_of(std::uint64_t frame, std::uint64_t rows) {
            " has a type without a name; there are " + std::to_string(names.size()) + " types");
     std::uint32_t& word = word_of[static_cast<std::size_t>(id)];
     if (word == kUnused) {
-      const auto same = std::find(out.words.begin(), out.words.end(), names[static_cast<std::size_t>(id)]);
-      word = static_cast<std::uint32_t>(same - out.words.begin());
-      if (same == out.words.end()) out.words.push_back(names[static_cast<std::size_t>(id)]);
+      const std::string& name = names[static_cast<std::size_t>(id)];
+      const auto [same, is_new] = number_of.try_emplace(name, static_cast<std::uint32_t>(out.words.size()));
+      if (is_new) out.words.push_back(name);
+      word = same->second;
     }
     out.index.push_back(word);
   }

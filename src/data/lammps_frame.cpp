@@ -115,9 +115,8 @@ class FrameReader {
     const auto words = words_of(name);
     if (words.size() > kMostColumns)
       faults_.fail(item_line(), "there are more than " + std::to_string(kMostColumns) + " columns");
-    std::vector<ColumnInfo> columns;
-    for (std::size_t i = 1; i < words.size(); ++i) columns.push_back({unique_name(std::string(words[i]), columns)});
-    for (ColumnInfo& column : columns) frame_.columns.push_back(std::move(column.name));
+    UniqueNames names;
+    for (std::size_t i = 1; i < words.size(); ++i) frame_.columns.push_back(names.add(std::string(words[i])));
   }
 
   LammpsFrame finished() {

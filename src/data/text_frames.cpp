@@ -29,7 +29,7 @@ void TextFrames::require_end(TextCursor rows_end, std::uint64_t count_line) cons
 /// Result     false if there are no more frames
 bool TextFrames::add_frame() {
   std::string line;
-  TextCursor ahead = end_;
+  TextCursor ahead(*bytes_, end_.place());
   if (!ahead.next_filled(line)) {
     if (frames_.empty()) Faults(bytes_->file()).fail(0, "the file has no frames");
     return false;

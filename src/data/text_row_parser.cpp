@@ -163,7 +163,10 @@ const char* RowParser::quoted_value(const char* at, std::string_view& value) {
     text += value[i];
     if (value[i] == '"') ++i;
   }
-  value = unescaped_.emplace_back(std::move(text));
+  // The scanners of numbers read beyond the value.
+  const std::size_t size = text.size();
+  text.append(kTextPadding, '\n');
+  value = std::string_view(unescaped_.emplace_back(std::move(text))).substr(0, size);
   return at + 1;
 }
 

@@ -129,7 +129,7 @@ class VtkFile final : public SingleFrame {
       document_.fail("there are more than " + std::to_string(kMostColumns) + " columns");
     const auto names = component_names(array.name, static_cast<std::size_t>(array.components), info_.columns);
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const std::string name = unique_name(names[i], info_.columns);
+      const std::string name = names_.add(names[i]);
       columns_.push_back({name, index, i});
       info_.columns.push_back({name, column_type(array.type)});
     }
@@ -166,6 +166,7 @@ class VtkFile final : public SingleFrame {
   VtkDocument document_;
   std::vector<std::uint64_t> pieces_;  ///< number of points of each
   std::vector<VtkArray> arrays_;
+  UniqueNames names_;
   std::vector<VtkColumn> columns_;
 };
 

@@ -70,7 +70,7 @@ class XyzHeaderReader {
 
   /// Adds a column, under another name if there is one with this name. Returns its name.
   std::string add(const std::string& name, ColumnType type) {
-    out_.info.columns.push_back({unique_name(name, out_.info.columns), type});
+    out_.info.columns.push_back({names_.add(name), type});
     return out_.info.columns.back().name;
   }
   std::array<std::string, 3> add_three(const std::array<std::string, 3>& names, ColumnType type) {
@@ -131,6 +131,7 @@ class XyzHeaderReader {
 
   TextCursor cursor_;
   Faults faults_;
+  UniqueNames names_;
   XyzHeader out_;
   std::uint64_t comment_line_ = 0;
 };

@@ -9,6 +9,7 @@
 #include <exception>
 #include <new>
 
+#include "base/stop_point.h"
 #include "data/faults.h"
 
 namespace orrery::data {
@@ -87,8 +88,10 @@ bool ZipReader::next() {
 }
 
 std::vector<char> ZipReader::read(std::uint64_t count) {
+  const base::StopPoint stop;
   std::vector<char> out;
   while (out.size() < count) {
+    stop.check();
     // Grows only by what was decompressed: the headers may declare any size.
     const std::size_t at = out.size();
     out.resize(at + static_cast<std::size_t>(std::min<std::uint64_t>(count - at, State::kBlockBytes)));

@@ -33,6 +33,15 @@ bool is_hdr(const ocio::Config& config, const std::string& space) {
   return space.find("2100") != std::string::npos || space.find("ST2084") != std::string::npos;
 }
 
+/// Whether images in this space may be tagged as sRGB.
+bool is_srgb(const ocio::Config& config, const std::string& space) {
+  if (space.find("sRGB") == std::string::npos) return false;
+  const ocio::ConstColorSpaceRcPtr found = config.getColorSpace(space.c_str());
+  const std::string encoding = found ? found->getEncoding() : "";
+  if (!encoding.empty()) return encoding == "sdr-video";
+  return space.find("inear") == std::string::npos;  // "Linear Rec.709 (sRGB)"
+}
+
 ocio::ConstProcessorRcPtr transform(const ocio::Config& config, const Settings& settings, const Choice& choice) {
   auto group = ocio::GroupTransform::Create();
   if (!settings.look.empty()) {
@@ -92,7 +101,7 @@ View find_view(const Config& source, const Settings& settings) {
     out.processor = out.transform->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
     out.choice.transform_id = out.processor->getCacheID();
     const std::string space = final_space(*source.config, out.choice);
-    out.is_srgb = space.find("sRGB") != std::string::npos;
+    out.is_srgb = is_srgb(*source.config, space);
     out.choice.is_hdr = is_hdr(*source.config, space);
   } catch (const ocio::ExceptionMissingFile& error) {
     throw base::Error(base::ErrorKind::kMissingInput,

@@ -5,6 +5,7 @@
 
 #include "base/frames.h"
 #include "job/job_files.h"
+#include "points/open_once.h"
 
 namespace orrery::farm {
 namespace {
@@ -64,6 +65,7 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   common.files = std::make_shared<base::FileSet>();
   common.background_cache = std::make_shared<job::BackgroundCache>();
   common.texture_cache = std::make_shared<job::TextureCache>();
+  if (frames.size() > 1 && !common.scene.open_data) common.scene.open_data = points::open_once();
   base::FileSet& files = *common.files;
   if (!batch.log.empty()) files.add_output(batch.log, "--log");
   if (!batch.preview.empty()) files.add_output(batch.preview, "--preview");

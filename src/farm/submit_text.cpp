@@ -139,6 +139,11 @@ std::string openjd_text(const Submission& s, const Commands& c) {
     return ordered_json{{"name", name}, {"type", "INT"}, {"range", values}};
   };
   const auto step = [&](const char* name, const Words& words, ordered_json parameters) {
+    // Braces of a name would begin a format string, which has no way to escape them.
+    for (const std::string& word : words)
+      if (word.find("{{") != std::string::npos)
+        throw base::Error(base::ErrorKind::kUsage,
+                          base::printable(word) + ": Open Job Description cannot pass on {{; " + "choose another name");
     Words arguments = with_numbers(words, frame, shard);
     const std::string command = arguments.front();
     arguments.erase(arguments.begin());

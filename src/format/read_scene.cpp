@@ -199,6 +199,21 @@ void add_problems(Reading& reading, const toml::table& root, const std::vector<s
   }
 }
 
+/// The errors of the pose at shutter close that the pose at shutter open does not have. Only camera and spheres move
+/// while the shutter is open.
+std::vector<scene::SceneDiagnostic> errors_at_close(const scene::Scene& opening, const scene::Scene& closing) {
+  std::vector<scene::SceneDiagnostic> found = scene::validate(closing);
+  std::erase_if(found, [](const scene::SceneDiagnostic& d) {
+    return d.severity == base::Severity::kWarning || !(d.key.starts_with("camera.") || d.key.starts_with("sphere["));
+  });
+  if (found.empty()) return found;
+  const std::vector<scene::SceneDiagnostic> known = scene::validate(opening);
+  std::erase_if(found, [&](const scene::SceneDiagnostic& d) {
+    return std::any_of(known.begin(), known.end(), [&](const auto& k) { return k.key == d.key && k.text == d.text; });
+  });
+  return found;
+}
+
 /// Poses the scene at the frame; with motion blur, at shutter open and at shutter close.
 void pose(Reading& reading, const toml::table& root, const std::string& file, int frame, ReadResult& result) {
   scene::Scene& scene = result.scene;
@@ -209,18 +224,17 @@ void pose(Reading& reading, const toml::table& root, const std::string& file, in
     check_tracks(reading, *root.get("key")->as_array(), scene, opens);
     if (is_open) check_tracks(reading, *root.get("key")->as_array(), scene, closes);
   }
-  if (is_open) {
-    result.closing = scene::posed(scene, closes);
-    for (const scene::SceneDiagnostic& diagnostic : scene::validate(*result.closing)) {
-      if (diagnostic.severity == base::Severity::kWarning) continue;
-      add_problem(reading, root, file, diagnostic, diagnostic.key + " when the shutter closes: " + diagnostic.text);
-    }
-  }
+  if (is_open) result.closing = scene::posed(scene, closes);
   scene = scene::posed(scene, opens);
-  for (std::size_t i = 0; is_open && i < scene.spheres.size(); ++i)
-    if ((scene.spheres[i].radius < 0) != (result.closing->spheres[i].radius < 0))
-      reading.error(Place{file, 0, 0, 1},
-                    "sphere[" + std::to_string(i) + "].radius changes sign while the shutter is open");
+  if (!is_open) return;
+  for (const scene::SceneDiagnostic& diagnostic : errors_at_close(scene, *result.closing))
+    add_problem(reading, root, file, diagnostic, diagnostic.key + " when the shutter closes: " + diagnostic.text);
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
+    if ((scene.spheres[i].radius < 0) != (result.closing->spheres[i].radius < 0)) {
+      const std::string key = "sphere[" + std::to_string(i) + "].radius";
+      add_problem(reading, root, file, {base::Severity::kError, key, ""},
+                  key + " changes sign while the shutter is open; keep it positive or negative");
+    }
 }
 
 /// Whether an override sets what a track animates; the names of a sphere, by index and by name, are the same.

@@ -43,7 +43,7 @@ struct ReadOptions {
   int frame = kFirstFrame;          ///< selects the values of animated keys, and the files and frames of data
   SceneCheck also = {};             ///< called if [color] has no errors
   std::uint64_t memory_limit = 0;   ///< bytes that the spheres of a data file may take while they are read; 0: no limit
-  points::OpenData open_data = {};  ///< replaces data::open(), for data in memory
+  points::OpenData open_data = {};  ///< see points::LoadRequest
   bool is_generated = false;        ///< `text` was written by a program: diagnostics omit its lines
 };
 

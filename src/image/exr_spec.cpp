@@ -53,6 +53,7 @@ void add_header(ImageSpec& spec, const Header& header) {
     leave_out_date(spec);
   } else {
     spec.attribute("DateTime", header.capture_date);  // written as capDate
+    spec.attribute("utcOffset", header.utc_offset_s);
   }
   if (header.frames_per_second) spec.attribute("framesPerSecond", rational, header.frames_per_second->data());
   // OpenImageIO translates the lower-case name worldtocamera into OpenEXR's spelling, but not that of worldToNDC.

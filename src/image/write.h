@@ -29,6 +29,7 @@ inline constexpr const char* kStampName = "orrery/stamp";
 struct Header {
   std::string software;
   std::string capture_date;                             ///< "YYYY:MM:DD hh:mm:ss", local time
+  float utc_offset_s = 0;                               ///< UTC - local time, seconds
   std::optional<std::array<int, 2>> frames_per_second;  ///< numerator, denominator
   /// 4x4, row vector times matrix as in OpenEXR; see docs/output.md.
   std::optional<std::array<float, 16>> world_to_camera, world_to_ndc;

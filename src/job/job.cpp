@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -160,6 +161,20 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
   out.files = files;
 }
 
+/// Ends a job whose image could not be written: writes a checkpoint, so that the samples are not lost.
+[[noreturn]] void save_samples(const base::Error& error, const film::Partial& partial, Checkpoint& checkpoint,
+                               JobReport& report) {
+  try {
+    checkpoint.write(partial);
+  } catch (const base::Error& also) {
+    throw base::Error(error.kind(),
+                      std::string(error.what()) + "; the checkpoint cannot be written, either: " + also.what());
+  }
+  report.checkpoint = checkpoint.file();
+  throw base::Error(error.kind(), std::string(error.what()) + "; " + checkpoint.file().string() +
+                                      " holds the samples; when the cause is removed, continue with --resume");
+}
+
 /// Read, check, compile, render or merge, develop, write.
 void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
@@ -232,8 +247,13 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
     header.stamp = stamp;
     if (job.denoise) header.attributes.push_back({denoise::kAttribute, "orrery " + program_version()});
     const int bits = job.outputs.bits != 0 ? job.outputs.bits : report.display.default_bits();
-    report.written = write_outputs(job.outputs, display, bits, result.picture, header, layers.mattes);
-    if (!job.outputs.deep.empty()) image::write_deep(job.outputs.deep, result.deep, result.picture, header);
+    try {
+      report.written = write_outputs(job.outputs, display, bits, result.picture, header, layers.mattes);
+      if (!job.outputs.deep.empty()) image::write_deep(job.outputs.deep, result.deep, result.picture, header);
+    } catch (const base::Error& error) {
+      if (!result.partial) throw;  // of a merge: the shards still exist
+      save_samples(error, *result.partial, checkpoint, report);
+    }
   }
   checkpoint.remove();
   report.phases.write_s = watch.lap();
@@ -283,6 +303,11 @@ JobReport run_job(const Job& job) {
   } catch (const base::Error& error) {
     if (may_report(job, report, error, files)) write_failure(job, report, error);
     throw;
+  } catch (const std::bad_alloc&) {
+    const base::Error error(base::ErrorKind::kNoMemory,
+                            "out of memory; orrery info SCENE prints how much a scene needs");
+    if (may_report(job, report, error, files)) write_failure(job, report, error);
+    throw error;
   }
   if (!job.outputs.statistics.empty() && !report.was_skipped) write_statistics(job.outputs.statistics, report, {});
   return report;

@@ -31,7 +31,7 @@ std::vector<OutputFile> outputs_of(const Job& job) {
 }
 
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner) {
-  if (!job.scene.text) files.add_input(job.scene.file, "scene");
+  if (job.scene.has_file) files.add_input(job.scene.file, "scene");
   for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
   add_ocio_configs(job.outputs.display.config, files);
   for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);

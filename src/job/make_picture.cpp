@@ -59,7 +59,7 @@ film::Picture preview(const compile::CompiledScene& compiled, const film::Partia
   film::Partial shown(0, 0);
   shown.film = partial.film;
   shown.second = partial.second;
-  return render::finished(compiled, {}, std::move(shown), 1).picture;
+  return render::finished(compiled, {}, shown, 1).picture;
 }
 
 render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,
@@ -93,7 +93,7 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   if ((settings.layers.records() && merged.partial.layers.empty()) ||
       (settings.layers.guides() && merged.partial.halves.empty()))
     throw base::Error(base::ErrorKind::kBadData, "the shards were rendered without the requested layers");
-  render::Result result = render::finished(compiled, settings.layers, std::move(merged.partial), settings.threads);
+  render::Result result = render::finished(compiled, settings.layers, merged.partial, settings.threads);
   result.statistics = statistics;
   return result;
 }
@@ -118,7 +118,6 @@ bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const
 render::Result render_job(const Job& job, const compile::CompiledScene& compiled, render::Settings settings,
                           Checkpoint& checkpoint, double seconds_so_far, JobReport& report) {
   settings.sampling = limits_of(job, seconds_so_far);
-  settings.keep_partial = is_shard(job);
   settings.snapshot_is_due = [&] { return checkpoint.is_due(); };
   settings.on_snapshot = [&](const film::Partial& partial) { checkpoint.write_snapshot(partial); };
   std::optional<film::Partial> from = checkpoint.load(compiled.width, compiled.height);

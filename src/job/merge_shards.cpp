@@ -127,6 +127,8 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
       wrong = "has " + wrong + " as " + shards.front().file.string();
     } else if (range.begin >= range.end || pixels.count < 1 || pixels.index < 0 || pixels.index >= pixels.count) {
       wrong = "does not name its samples";
+    } else if (!shard.provenance.count("noise") || !shard.provenance.count("time")) {
+      wrong = "does not name how its samples were chosen";
     } else if (shard.provenance.at("noise") != "0" || shard.provenance.at("time") != "no") {
       wrong = "is a checkpoint of a render with --noise or --time, which has no shards";
     }
@@ -134,7 +136,7 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
     only_missing = false;
     diagnostics.push_back(error_in(file, wrong));
   }
-  if (shards.empty()) diagnostics = std::move(left_out);
+  if (shards.empty() && on_left_out) diagnostics = std::move(left_out);
   if (!diagnostics.empty())
     refuse(only_missing ? ErrorKind::kMissingInput : ErrorKind::kBadData, std::move(diagnostics));
   for (const base::Diagnostic& diagnostic : left_out) on_left_out(as_left_out(diagnostic));

@@ -16,13 +16,14 @@
 namespace orrery::job {
 namespace {
 
-std::string local_time() {
+void set_capture_date(image::Header& header) {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
   localtime_r(&now, &local);
   char text[32];
   std::strftime(text, sizeof(text), "%Y:%m:%d %H:%M:%S", &local);
-  return text;
+  header.capture_date = text;
+  header.utc_offset_s = static_cast<float>(-local.tm_gmtoff);
 }
 
 /// All settings as lines of a scene file: "camera.vfov = 20".
@@ -94,7 +95,7 @@ image::Header picture_header(const format::ReadResult& read, const compile::Comp
   header.attributes.push_back({"orrery/settings", settings_lines(read.settings, reproducible)});
   if (!report.missing.empty()) header.attributes.push_back({"orrery/missing", report.missing});
   if (reproducible) return header;
-  header.capture_date = local_time();
+  set_capture_date(header);
   header.attributes.push_back({"orrery/renderSeconds", static_cast<float>(report.phases.render_s)});
   if (report.render.accelerator.empty()) return header;  // merged from shards, which may differ
   header.attributes.push_back({"orrery/accelerator", report.render.accelerator});

@@ -118,6 +118,7 @@ render::PixelShard pixel_shard(const image::Provenance& provenance) {
   const auto found = provenance.find("shard");
   if (found != provenance.end() && std::sscanf(found->second.c_str(), "%d/%d", &out.index, &out.count) == 2)
     --out.index;
+  if (out.count > kMaxShards) out.count = 0;  // no program wrote this
   return out;
 }
 

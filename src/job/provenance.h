@@ -38,6 +38,11 @@ struct SampleRange {
   std::uint32_t begin = 0, end = 0;
 };
 SampleRange sample_range(const image::Provenance& provenance);
+
+/// More shards than are worth a process each.
+inline constexpr int kMaxShards = 65536;
+
+/// The shard of pixels that a file holds; a count of 0 if the file names none that exists.
 render::PixelShard pixel_shard(const image::Provenance& provenance);
 
 }  // namespace orrery::job

@@ -16,7 +16,8 @@ struct SceneSource {
   std::filesystem::path file;
   std::vector<format::Override> overrides;  ///< "camera.vfov=30"
   int frame = 1;
-  std::shared_ptr<const std::string> text = {};  ///< of the scene, if `file` is only its name; null: read the file
+  std::shared_ptr<const std::string> text = {};             ///< of the scene; null: read the file
+  bool has_file = true;                                     ///< false: `file` is only a name
   decltype(format::ReadOptions::open_data) open_data = {};  ///< see format::ReadOptions
   bool is_generated = false;                                ///< see format::ReadOptions
 };

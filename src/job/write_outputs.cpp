@@ -26,7 +26,7 @@ image::WriteReport write_outputs(const Outputs& outputs, const display::Settings
     report.clamped += one.clamped;
     report.not_finite += one.not_finite;
   };
-  for (const auto& [output, format] : outputs.images) {
+  const auto write = [&](const std::filesystem::path& output, image::Format format) {
     switch (format) {
       case image::Format::kExr: {
         image::Header own = header;
@@ -41,8 +41,19 @@ image::WriteReport write_outputs(const Outputs& outputs, const display::Settings
       case image::Format::kJpeg:
       case image::Format::kPpm: developed.write(output, header.software, header.stamp); break;
     }
+  };
+  std::vector<base::Error> errors;
+  for (const auto& [output, format] : outputs.images) {
+    try {
+      write(output, format);
+    } catch (const base::Error& error) {
+      errors.push_back(error);
+    }
   }
-  return report;
+  if (errors.empty()) return report;
+  std::string text = errors.front().what();
+  for (std::size_t i = 1; i < errors.size(); ++i) text += std::string("; ") + errors[i].what();
+  throw base::Error(errors.front().kind(), text);
 }
 
 }  // namespace orrery::job

@@ -158,7 +158,8 @@ HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& spher
     const auto hits = discriminant >= zero;
     if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hits)) return {zero, hits};
     const auto root = hn::Sqrt(hn::Max(discriminant, zero));
-    const auto t_min = hn::Set(d, static_cast<T>(kBookShortestDistance));
+    // In lengths of the direction, which is a unit vector except in shadow rays.
+    const auto t_min = hn::Set(d, static_cast<T>(kBookShortestDistance)) * hn::Sqrt(ray.inverse_square);
     const auto entry = (hn::Neg(half_b) - root) / a;
     const auto exit = (root - half_b) / a;
     const auto t = hn::IfThenElse(entry >= t_min, entry, exit);

@@ -15,6 +15,7 @@
 #include "kernel/gather-inl.h"
 #include "kernel/random-inl.h"
 #include "kernel/texture.h"
+#include "math/functions-inl.h"
 #include "math/vec3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,7 +55,8 @@ HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> lattice_cell(D d, hn::Vec<D> whole) 
   }
 }
 
-/// The lattice position of frequency (base + rest). Both products keep their precision, however far `base` is.
+/// The lattice position of frequency (base + rest). The rounding error of the product is
+/// carried along, however far `base` is.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE LatticePoint<D> lattice_point(D d, const Vec3<V>& base, const Vec3<V>& rest, V frequency) {
   LatticePoint<D> out;
@@ -62,7 +64,7 @@ HWY_INLINE LatticePoint<D> lattice_point(D d, const Vec3<V>& base, const Vec3<V>
   const auto mask = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kLatticePeriod - 1));
   const auto along = [&](int axis, V from, V to) {
     const V product = from * frequency;
-    const V lost = hn::MulSub(from, frequency, product);
+    const V lost = math::HWY_NAMESPACE::product_error(d, from, frequency, product);
     const V whole = hn::Floor(product);
     const V beyond = hn::MulAdd(to, frequency, (product - whole) + lost);
     const V more = hn::Floor(beyond);

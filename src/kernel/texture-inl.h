@@ -48,7 +48,7 @@ HWY_INLINE V marble(D d, const Texture& texture, const TexturePoint<D>& at) {
   const V half = hn::Set(d, static_cast<T>(0.5));
   const V turns_per_unit = hn::Set(d, static_cast<T>(texture.scale * kInverseTurn));
   const V product = at.base.z * turns_per_unit;
-  const V lost = hn::MulSub(at.base.z, turns_per_unit, product);
+  const V lost = math::HWY_NAMESPACE::product_error(d, at.base.z, turns_per_unit, product);
   const V phase = hn::MulAdd(at.rest.z, turns_per_unit, (product - hn::Floor(product)) + lost);
   const V turmoil = turbulence(d, texture, lattice_point(d, at.base, at.rest, hn::Set(d, T(1))));
   const V turns = hn::MulAdd(turmoil, hn::Set(d, static_cast<T>(10 * kInverseTurn)), phase);

@@ -11,6 +11,7 @@
 
 #include "kernel/intersect-inl.h"
 #include "kernel/precision.h"
+#include "math/functions-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
@@ -21,22 +22,6 @@ struct TexturePoint {
   Vec3<hn::Vec<D>> base, rest;  ///< their sum is the point in world space
   Vec3<hn::Vec<D>> outward;     ///< unit, from the sphere's centre
 };
-
-/// Returns the rounding error of a * a rounded to `square`.
-///
-/// Reference  dekker1971
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V square_error(D d, V a, V square) {
-#if HWY_NATIVE_FMA
-  (void)d;
-  return hn::MulSub(a, a, square);
-#else
-  using T = hn::TFromD<D>;
-  const V scaled = a * hn::Set(d, static_cast<T>(sizeof(T) == 8 ? 0x1p27 + 1 : 0x1p12 + 1));
-  const V high = scaled - (scaled - a), low = a - high;
-  return ((high * high - square) + hn::Set(d, T(2)) * high * low) + low * low;
-#endif
-}
 
 /// The distance to the nearer of the two points where a ray's line intersects a sphere whose surface is close to the
 /// ray's origin, in comparison with its radius.
@@ -56,10 +41,10 @@ HWY_INLINE V refined_distance(D d, const Rays<D>& ray, const Spheres<D>& sphere,
   };
   const auto add_square = [&](V a) {
     const V square = a * a;
-    add(square, square_error(d, a, square));
+    add(square, math::HWY_NAMESPACE::product_error(d, a, a, square));
   };
   const V radius2 = sphere.radius * sphere.radius;
-  add(hn::Neg(radius2), hn::Neg(square_error(d, sphere.radius, radius2)));
+  add(hn::Neg(radius2), hn::Neg(math::HWY_NAMESPACE::product_error(d, sphere.radius, sphere.radius, radius2)));
   add_square(from_center.x);
   add_square(from_center.y);
   add_square(from_center.z);

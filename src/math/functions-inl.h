@@ -16,6 +16,24 @@ namespace orrery::math::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Returns the rounding error of a b rounded to `product`.
+///
+/// Reference  dekker1971
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V product_error(D d, V a, V b, V product) {
+#if HWY_NATIVE_FMA
+  (void)d;
+  return hn::MulSub(a, b, product);
+#else
+  using T = hn::TFromD<D>;
+  const V splitter = hn::Set(d, static_cast<T>(sizeof(T) == 8 ? 0x1p27 + 1 : 0x1p12 + 1));
+  const V scaled_a = a * splitter, scaled_b = b * splitter;
+  const V high_a = scaled_a - (scaled_a - a), low_a = a - high_a;
+  const V high_b = scaled_b - (scaled_b - b), low_b = b - high_b;
+  return (((high_a * high_b - product) + high_a * low_b) + low_a * high_b) + low_a * low_b;
+#endif
+}
+
 template <class V>
 struct SinCos {
   V sin, cos;

@@ -48,12 +48,12 @@ template <class V>
 HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
   return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, a.x * b.x));
 }
-/// Returns a s + b; each component is rounded once.
+/// Returns a s + b; each component is rounded once, except without fused multiply-add (SSE4).
 template <class V>
 HWY_INLINE Vec3<V> mul_add(const Vec3<V>& a, V s, const Vec3<V>& b) {
   return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};
 }
-/// Returns b - a s; each component is rounded once.
+/// Returns b - a s; rounded as by mul_add().
 template <class V>
 HWY_INLINE Vec3<V> neg_mul_add(const Vec3<V>& a, V s, const Vec3<V>& b) {
   return {hn::NegMulAdd(a.x, s, b.x), hn::NegMulAdd(a.y, s, b.y), hn::NegMulAdd(a.z, s, b.z)};

@@ -35,8 +35,9 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
       numbers_(options.frames) {
   data::OpenOptions open_options;
   open_options.component = options.points.component;
+  open_options.limit_memory(options.memory_limit);
   const int first = all().front();
-  file_ = data::open(file_of(first), open_options);
+  file_ = open_(file_of(first), open_options);
   const int frame = options.points.frame ? *options.points.frame : is_sequence_ ? 1 : first;
   if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
   info_ = file_->describe(described_ - 1);
@@ -72,6 +73,7 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   request.is_sequence = is_sequence_;
   request.memory_limit = options_.memory_limit;
   request.source = source;
+  request.open = open_;
   LoadedFrame out{keys, {}};
   if (keys.file.empty()) out.points.file = request.file;
   std::vector<base::Diagnostic> errors;

@@ -11,6 +11,7 @@
 #include "data/data_file.h"
 #include "plot/data_options.h"
 #include "points/load_points.h"
+#include "points/open_once.h"
 
 namespace orrery::plot {
 
@@ -55,6 +56,7 @@ class DataFrames {
   const DataOptions& options_;
   std::filesystem::path folder_;
   bool is_sequence_;
+  points::OpenData open_ = points::open_once();
   std::unique_ptr<data::DataFile> file_;
   data::FrameInfo info_;
   int described_ = 1;

@@ -111,7 +111,8 @@ Vec3d ViewExtent::center() const {
 }
 
 double ViewExtent::radius() const {
-  return is_empty_ ? 1 : std::hypot(high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]) / 2;
+  const double radius = is_empty_ ? 0 : std::hypot(high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]) / 2;
+  return radius > 0 ? radius : 1;  // a single point has no extent
 }
 
 scene::Camera ViewExtent::camera(double aspect) const {

@@ -19,6 +19,7 @@
 #include "points/read_memory.h"
 #include "points/rows.h"
 #include "points/select.h"
+#include "scene/limits.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {
@@ -38,7 +39,9 @@ class Loader {
   std::vector<scene::SceneDiagnostic> run() {
     data::OpenOptions options;
     options.component = points_.component;
-    file_ = request_.open ? request_.open(request_.file, options) : data::open(request_.file, options);
+    options.limit_memory(request_.memory_limit);
+    file_ = request_.open && !request_.is_sequence ? request_.open(request_.file, options)
+                                                   : data::open(request_.file, options);
     if (const std::optional<int> frame = choose_frame()) {
       info_ = file_->describe(*frame);
       add_derived_columns(info_);
@@ -141,6 +144,10 @@ class Loader {
     need.images = n.x * n.y * n.z;
     need.spheres = static_cast<double>(count) * need.images;
     need.copies = copies_.size();
+    if (need.spheres > static_cast<double>(scene::kMostSpheres))
+      throw base::Error(base::ErrorKind::kBadData, request_.file.string() + " and its copies are " +
+                                                       scene::number_text(need.spheres) + " spheres; the maximum is " +
+                                                       std::to_string(scene::kMostSpheres));
     points::require_memory(need, request_.memory_limit, request_.file);
   }
 

@@ -34,7 +34,7 @@ struct LoadRequest {
   std::size_t materials = 0;       ///< number of materials of the scene
   SourceRows* source = nullptr;    ///< if not null, receives the rows of the spheres
   std::uint64_t memory_limit = 0;  ///< bytes that the spheres may take; 0: no limit
-  OpenData open = {};              ///< replaces data::open(), for data in memory
+  OpenData open = {};              ///< replaces data::open(), except in a sequence of files
 };
 
 /// Reads the spheres of a data file into `points`, as its keys say: selects rows, determines radii and colours, copies

@@ -74,7 +74,9 @@ void translate(std::exception_ptr thrown) {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const base::Error& error) {
     const py::object type = py::module_::import("orrery._errors").attr(class_of(error.kind()));
-    PyErr_SetObject(type.ptr(), str_of(text_of(error)).ptr());
+    const py::object raised = type(str_of(text_of(error)));
+    raised.attr("exit_status") = base::exit_status(error.kind());
+    PyErr_SetObject(type.ptr(), raised.ptr());
   }
 }
 
@@ -225,6 +227,7 @@ void bind_picture(py::module_& m) {
 PYBIND11_MODULE(_orrery, m) {
   py::register_exception_translator(&translate);
   export_symbols();
+  py::module_::import("atexit").attr("register")(py::cpp_function(&stop_renders));
   bind_scene(m);
   bind_picture(m);
   bind_read_points(m);

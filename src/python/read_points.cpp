@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "data/data_file.h"
+#include "job/memory.h"
 #include "points/derived.h"
 #include "python/arrays.h"
 
@@ -35,6 +36,7 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
                 const std::vector<std::string>& names) {
   data::OpenOptions options;
   options.component = component;
+  options.limit_memory(job::available_memory().value_or(0));
   const std::unique_ptr<data::DataFile> opened = data::open(file, options);
   ReadPoints out;
   out.frames = opened->frame_count();

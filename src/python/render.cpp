@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -23,15 +24,14 @@ namespace orrery::python {
 namespace {
 
 /// Interval at which the calling thread looks for signals.
-constexpr std::chrono::milliseconds kPoll{50};
+constexpr std::chrono::milliseconds kPoll{100};
 
 /// What the render has to say to the calling thread.
 class Messages {
  public:
   void set_progress(const render::Progress& progress) {
     const std::scoped_lock lock(mutex_);
-    progress_ = progress;
-    changed_.notify_one();
+    progress_ = progress;  // delivered at the next kPoll
   }
   void add_warning(const base::Diagnostic& warning) {
     const std::scoped_lock lock(mutex_);
@@ -46,7 +46,7 @@ class Messages {
   /// Waits for the next message, but not longer than kPoll. Returns true if the render has ended.
   bool take(std::optional<render::Progress>& progress, std::vector<std::string>& warnings) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kPoll, [this] { return ended_ || progress_ || !warnings_.empty(); });
+    changed_.wait_for(lock, kPoll, [this] { return ended_ || !warnings_.empty(); });
     progress = std::exchange(progress_, {});
     warnings = std::exchange(warnings_, {});
     return ended_;
@@ -58,6 +58,36 @@ class Messages {
   std::optional<render::Progress> progress_;
   std::vector<std::string> warnings_;
   bool ended_ = false;
+};
+
+/// The renders of this process. A daemon thread that wants the GIL while the interpreter finalizes is ended, so that
+/// renders must have ended before.
+struct Renders {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::set<std::atomic<bool>*> cancels;
+};
+Renders& renders() {
+  static auto* const all = new Renders;  // outlives all threads
+  return *all;
+}
+
+class RenderEntry {
+ public:
+  explicit RenderEntry(std::atomic<bool>& cancel) : cancel_(&cancel) {
+    const std::scoped_lock lock(renders().mutex);
+    renders().cancels.insert(cancel_);
+  }
+  ~RenderEntry() {
+    const std::scoped_lock lock(renders().mutex);
+    renders().cancels.erase(cancel_);
+    renders().changed.notify_all();
+  }
+  RenderEntry(const RenderEntry&) = delete;
+  RenderEntry& operator=(const RenderEntry&) = delete;
+
+ private:
+  std::atomic<bool>* cancel_;
 };
 
 /// Passes messages on to Python. Errors of Python are thrown.
@@ -77,6 +107,7 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
   job::Rendering rendering;
   Messages messages;
   std::atomic<bool> cancel{false};
+  const RenderEntry entry(cancel);
   job.keep = &rendering;
   job.hooks.cancel = &cancel;
   job.hooks.on_progress = [&](const render::Progress& p) { messages.set_progress(p); };
@@ -113,6 +144,13 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
   if (!on_progress.is_none()) on_progress(1.0, paths, paths, rendering.report.render.render_s, "");
   if (!rendering.report.target_missed.empty()) on_warning(str_of(rendering.report.target_missed));
   return Picture(std::move(rendering));
+}
+
+void stop_renders() {
+  const py::gil_scoped_release released;
+  std::unique_lock lock(renders().mutex);
+  for (std::atomic<bool>* const cancel : renders().cancels) *cancel = true;
+  renders().changed.wait(lock, [] { return renders().cancels.empty(); });
 }
 
 }  // namespace orrery::python

@@ -46,6 +46,7 @@ job::SceneSource SceneData::source() const {
   job::SceneSource out;
   out.file = file;
   out.text = std::make_shared<const std::string>(text);
+  out.has_file = is_file;
   out.overrides.assign(overrides.begin(), overrides.end());
   out.frame = frame;
   if (!tables.empty())

@@ -84,12 +84,14 @@ std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings&
                                           : static_cast<std::uint32_t>(compiled.samples);
 }
 
-Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, film::Partial partial,
+Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& request, const film::Partial& partial,
                 int threads) {
   Result result;
   result.completed = true;
-  if (partial.is_adaptive()) partial.film.add(partial.second);
-  result.picture = partial.film.picture();
+  std::optional<film::Film> both_halves;
+  if (partial.is_adaptive()) both_halves.emplace(partial.film).add(partial.second);
+  const film::Film& film = both_halves ? *both_halves : partial.film;
+  result.picture = film.picture();
   result.picture.x = compiled.window_x;
   result.picture.y = compiled.window_y;
   result.picture.frame_width = compiled.frame_width;
@@ -102,7 +104,7 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   const auto set_pixels = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
       layers.set(i, partial.layers.empty() ? no_layers : partial.layers[i],
-                 partial.halves.empty() ? no_halves : partial.halves[i], partial.film.sums()[i]);
+                 partial.halves.empty() ? no_halves : partial.halves[i], film.sums()[i]);
   };
   TilePool(threads > 0 ? threads : available_threads()).execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, partial.pixel_count(), 1024), set_pixels);
@@ -142,14 +144,8 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
 
   const auto rendered = Clock::now();
   Result result;
-  if (!completed) {
-    result.partial = std::move(state);
-  } else if (settings.keep_partial) {
-    result = finished(compiled, settings.layers, state, statistics.threads);
-    result.partial = std::move(state);
-  } else {
-    result = finished(compiled, settings.layers, std::move(state), statistics.threads);
-  }
+  if (completed) result = finished(compiled, settings.layers, state, statistics.threads);
+  result.partial = std::move(state);
   statistics.finish_s = seconds_since(rendered);
   result.statistics = std::move(statistics);
   return result;

@@ -40,7 +40,6 @@ struct Settings {
   /// Called on the rendering threads for pixels that have received samples, and for those of an earlier run when a
   /// resumed render begins. During the call nobody changes these pixels; others change.
   std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
-  bool keep_partial = false;  ///< also return the partial in the result
 };
 
 /// Result of a render.
@@ -49,7 +48,7 @@ struct Result {
   film::DeepPicture deep;  ///< empty unless requested
   Statistics statistics;
   bool completed = false;  ///< false: stopped by `cancel`
-  /// If stopped while rendering, the state to resume from; if completed, present on request (keep_partial).
+  /// All sums; if stopped while rendering, the state to resume from. Absent if stopped earlier, and in finished().
   std::optional<film::Partial> partial;
 };
 
@@ -84,7 +83,7 @@ std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings&
 /// Converts a partial to an image; pixels without samples are black.
 ///
 /// `threads`  0: all available
-Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, film::Partial partial,
+Result finished(const compile::CompiledScene& compiled, const film::LayerRequest& layers, const film::Partial& partial,
                 int threads);
 
 /// The version of oneTBB in use.

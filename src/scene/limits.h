@@ -22,6 +22,12 @@ inline constexpr double kLargestValue = 1e300;
 /// full precision.
 inline constexpr double kSmallestRadius = 1e-30;
 
+/// The same for spheres in precision `fast`: the square of the radius is a normal number of single precision.
+inline constexpr double kSmallestFastRadius = 1e-18;
+
+/// Maximum number of spheres of a scene: ids have 32 bits, and the last one means none.
+inline constexpr std::size_t kMostSpheres = 0xFFFFFFFF;
+
 /// Minimum sine of the angle between the view direction and `up`: below it, the camera roll would be rounding error.
 inline constexpr double kSmallestUpSine = 1e-9;
 

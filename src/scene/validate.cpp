@@ -152,11 +152,14 @@ void check_lens(const Camera& camera, Problems& diagnostics) {
 }
 
 /// Returns what is wrong with a radius; empty if it is valid.
-std::string radius_fault(double radius) {
+std::string radius_fault(double radius, Precision precision) {
   if (!std::isfinite(radius)) return "radius is not finite; must be in " + length_range();
   if (radius == 0) return "radius is 0; must be in " + length_range() + ", or negative for an inward normal";
   if (std::abs(radius) < kSmallestRadius || std::abs(radius) > kLargestLength)
     return "radius is " + number_text(radius) + "; its magnitude must be in " + length_range();
+  if (precision == Precision::kFast && std::abs(radius) < kSmallestFastRadius)
+    return "radius is " + number_text(radius) + ", too small for precision `fast`, which needs " +
+           number_text(kSmallestFastRadius) + " at least; use `exact`";
   return {};
 }
 
@@ -171,7 +174,7 @@ template <class Report>
 void check_sphere(Vec3d center, double radius, std::uint32_t material, const Scene& scene, Report report) {
   if (!in_domain(center))
     report(".center", "center " + vector_text(center) + " is not finite or exceeds " + number_text(kLargestLength));
-  if (const std::string fault = radius_fault(radius); !fault.empty()) report(".radius", fault);
+  if (const std::string fault = radius_fault(radius, scene.render.precision); !fault.empty()) report(".radius", fault);
   if (const std::string fault = material_fault(material, scene); !fault.empty()) report(".material", fault);
 }
 
@@ -255,6 +258,9 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_spheres(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p)
     check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, diagnostics);
+  if (scene.sphere_count() > kMostSpheres)
+    diagnostics.error(
+        "", "has " + std::to_string(scene.sphere_count()) + " spheres; the maximum is " + std::to_string(kMostSpheres));
   check_light_groups(scene, diagnostics);
   check_layers(scene, diagnostics);
   return diagnostics.take();

@@ -159,6 +159,30 @@ TEST_F(BatchCrash, RemovedOutputFolderIsReported) {
   EXPECT_TRUE(status == 73 || status == 74) << status;
 }
 
+TEST_F(BatchCrash, SamplesOutliveAFailedOutput) {
+  std::filesystem::create_directory(folder_ / "out");
+  const std::vector<const char*> words = {"render",    "scene.toml", "-o",     "a.exr",          "-o",
+                                          "out/b.png", "-o",         "c.png",  "--reproducible", "-t",
+                                          "1",         "--progress", "arnold", "--resume"};
+  PacedProgram render = start(words);
+  ASSERT_TRUE(render.run_to(50));
+  std::filesystem::remove_all(folder_ / "out");
+  EXPECT_EQ(render.wait(), 73);
+  EXPECT_NE(render.text().find("a.checkpoint.exr holds the samples"), std::string::npos) << render.text();
+  const std::string first = picture();
+  support::write_bytes(folder_ / "right.exr", right_);
+  EXPECT_EQ(run("compare a.exr right.exr -q --fail-above max=0").status, 0) << "an output before the failed one";
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "c.png")) << "an output after the failed one";
+
+  put_old();
+  std::filesystem::create_directory(folder_ / "out");
+  PacedProgram again = start(words);
+  EXPECT_EQ(again.wait(), 0) << again.text();
+  EXPECT_TRUE(picture() == first);
+  EXPECT_TRUE(text_of(folder_ / "out/b.png") == text_of(folder_ / "c.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
+}
+
 TEST_F(BatchCrash, TwoProcessesWithOneOutputLeaveACompleteImage) {
   for (const int percent : {0, 50, 90}) {
     put_old();

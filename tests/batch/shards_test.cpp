@@ -125,6 +125,12 @@ TEST_F(BatchShards, MissingSamplesCanBeAllowed) {
   EXPECT_EQ(run("compare merged.exr whole.exr -q --fail-above bias=0.01").status, 0);
 }
 
+TEST_F(BatchShards, FilesThatAreNoShardsAreReportedIfThereAreNoOthers) {
+  expect_refused(merge({"missing.exr"}), 66, {"missing.exr"});
+  expect_refused(merge({"whole.exr"}), 65, {"whole.exr"});
+  expect_refused(merge({"missing.exr"}, "--allow-missing"), 66, {"missing.exr"});
+}
+
 TEST_F(BatchShards, DamagedShardsCanBeTreatedAsMissing) {
   render("a.exr", "--samples 0:10");
   render("b.exr", "--samples 10:35");

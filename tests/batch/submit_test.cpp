@@ -168,6 +168,7 @@ TEST_F(BatchSubmit, NamesCannotAddLinesToScripts) {
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(r.out.find("\nrm -rf x.toml,"), std::string::npos) << r.out;
   EXPECT_EQ(run("submit good.toml -o 's\"x.exr' --slurm").status, 2);
+  EXPECT_EQ(run("submit good.toml -o '{{Param.x}}.exr' --openjd").status, 2);
 }
 
 TEST_F(BatchSubmit, InvalidJobsFailAtSubmission) {

@@ -119,6 +119,8 @@ TEST_F(CliOutputs, OutputsMustBeDistinctFiles) {
   expect_refused("render good.toml -o a.exr -o a.checkpoint.exr", "a.checkpoint.exr (checkpoint)");
   expect_refused("render good.toml ./good.toml -o {scene}.png", "./good.toml is given twice");
   std::filesystem::create_directory(folder_ / "sub");
+  std::filesystem::create_symlink("sub/new.exr", folder_ / "link.exr");
+  expect_refused("render good.toml -o link.exr -o sub/new.exr", "are the same file");
   write("sub/good.toml", kGoodScene);
   expect_refused("render good.toml sub/good.toml -o {scene}.png", "good.png (-o of good.toml)");
 }

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 import unittest
 
 import numpy as np
@@ -33,6 +34,8 @@ class Arrays(FolderTest):
         self.assertNotIn("depth", p)
         np.testing.assert_array_equal(p["R"], p.beauty[..., 0])
         np.testing.assert_array_equal(p["N.Y"], p["N"][..., 1])
+        with self.assertRaises(KeyError):
+            p["Z.Z"]
         with self.assertRaisesRegex(KeyError, "no layer `depth`; the layers are Z, N"):
             p["depth"]
         with self.assertRaises(KeyError):
@@ -87,6 +90,11 @@ class Arrays(FolderTest):
         with open("a.png", "rb") as file:
             self.assertEqual(png, file.read())
         self.assertTrue(png.startswith(b"\x89PNG"))
+
+    def test_errors_have_the_exit_status_of_the_program(self):
+        with self.assertRaises(orrery.OutputError) as caught:
+            self.picture.write("/missing/folder/x.exr")
+        self.assertEqual(caught.exception.exit_status, 73)
 
     def test_bad_files(self):
         for names in (["a.gif"], ["none/a.exr"], ["a.exr", "a.exr"], ["a.exr", "./a.exr"], []):
@@ -176,6 +184,26 @@ class LongRender(FolderTest):
         with self.assertRaises(Done):
             self.scene.render(**self.long, on_progress=progress)
         thread.join()
+
+    def test_a_daemon_thread_renders_when_the_interpreter_ends(self):
+        script = (
+            "import threading, numpy as np, orrery\n"
+            "scene = orrery.Scene(camera=orrery.Camera.fit(np.zeros((1, 3))), background=orrery.Constant(1))\n"
+            "scene.add_points(np.zeros((1, 3)), radius=0.5)\n"
+            "begun = threading.Event()\n"
+            "render = lambda: scene.render(64, 36, samples=10**8, on_progress=lambda p: begun.set())\n"
+            "threading.Thread(target=render, daemon=True).start()\n"
+            "assert begun.wait(60)\n"
+        )
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_progress_comes_at_most_ten_times_a_second(self):
+        calls = []
+        begin = time.monotonic()
+        small_scene(positions()).render(64, 36, noise=0.004, threads=1, on_progress=calls.append)
+        # One call each 100 ms, and one at the end.
+        self.assertLessEqual(len(calls), 10 * (time.monotonic() - begin) + 2)
 
     def test_renders_in_several_threads(self):
         wanted = self.scene.render(*SIZE).beauty.tobytes()

@@ -305,6 +305,17 @@ class Files(FolderTest):
             loaded.render(4, 4).write("link.exr")
         scene.save("scene.toml")  # its own files
 
+    def test_images_do_not_replace_their_scene(self):
+        small_scene(positions()).save("scene.toml")
+        with open("scene.toml", "rb") as file:
+            text = file.read()
+        os.symlink("scene.toml", "link.png")
+        picture = orrery.load("scene.toml").render(16, 9, samples=1)
+        with self.assertRaisesRegex(orrery.UsageError, r"scene.toml \(scene\)"):
+            picture.write("link.png")
+        with open("scene.toml", "rb") as file:
+            self.assertEqual(file.read(), text)
+
     def test_other_files_are_not_replaced(self):
         write("scene.positions-1.ply", "not from orrery")
         with self.assertRaisesRegex(orrery.OutputError, "was not written by orrery"):

@@ -27,7 +27,7 @@ class MissingInputError(Error, FileNotFoundError):
 
 
 class OutputError(Error, OSError):
-    """An output cannot be created, or reading or writing failed."""
+    """An output cannot be created (exit_status 73), or reading or writing failed (74)."""
 
     exit_status = 74
 

@@ -58,8 +58,9 @@ class Picture:
             return array
         layer, _, channel = name.rpartition(".")
         channels = self._native.channels(layer)
-        if channel in channels:
-            return self._native.array(layer)[..., channels.index(channel)]
+        if channel in channels and channel != layer:
+            array = self._native.array(layer)
+            return array if array.ndim == 2 else array[..., channels.index(channel)]
         raise KeyError(f"no layer `{name}`; the layers are {', '.join(self.layers) or 'none: set output.layers'}")
 
     def __contains__(self, name):

@@ -116,9 +116,7 @@ void compare(const test::Scene& scene, const View& view, Precision precision, co
       shadow.distance[lane] = limit;
       shadow.target[lane] = has_target ? target : static_cast<Id>(kNoSphere);
       shadow.occluded[lane] = 7;
-      // The book's epsilon is in lengths of the direction.
-      if (precision != Precision::kBook && limit < std::numeric_limits<T>::max())
-        lengthen(shadow, lane, static_cast<int>(random.uniform(-9, 9)));
+      if (limit < std::numeric_limits<T>::max()) lengthen(shadow, lane, static_cast<int>(random.uniform(-9, 9)));
     }
     kernel::occlude(other->tracer(), shadow);
     for (int lane = 0; lane < shadow.count; ++lane) {

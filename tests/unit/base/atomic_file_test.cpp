@@ -76,6 +76,18 @@ TEST(BaseAtomicFile, ModeFollowsTheUmask) {
   EXPECT_EQ(status.st_mode & 0777u, 0640u);
 }
 
+TEST(BaseAtomicFile, AReplacedFileKeepsItsMode) {
+  const TempDir folder;
+  for (const mode_t mode : {mode_t{0600}, mode_t{0664}}) {
+    write_bytes(folder / "a.txt", "old");
+    ASSERT_EQ(::chmod((folder / "a.txt").c_str(), mode), 0);
+    write_text_file(folder / "a.txt", "new");
+    struct stat status {};
+    ASSERT_EQ(::stat((folder / "a.txt").c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777u, mode);
+  }
+}
+
 TEST(BaseAtomicFile, MissingFolderIsNamed) {
   const TempDir folder;
   const Error error = error_of([&] { AtomicFile file(folder / "none" / "a.txt"); });
@@ -107,6 +119,18 @@ TEST(BaseAtomicFile, WritesTheTargetOfALink) {
   write_text_file(folder / "link.txt", "new");
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
   EXPECT_EQ(file_bytes(folder / "target.txt"), "new");
+}
+
+TEST(BaseAtomicFile, CreatesTheTargetOfADanglingLink) {
+  const TempDir folder;
+  std::filesystem::create_directory(folder / "scratch");
+  std::filesystem::create_symlink("scratch/target.txt", folder / "link.txt");
+  write_text_file(folder / "link.txt", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(file_bytes(folder / "scratch/target.txt"), "new");
+
+  std::filesystem::create_symlink("missing/target.txt", folder / "lost.txt");
+  EXPECT_THROW(write_text_file(folder / "lost.txt", "new"), Error) << "the folder of the target does not exist";
 }
 
 TEST(BaseAtomicFile, AcceptsANameOfMaximumLength) {

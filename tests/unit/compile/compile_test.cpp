@@ -20,6 +20,24 @@ scene::Scene one_of_each() {
   return s;
 }
 
+TEST(CompileCamera, ViewVectorsFitIntoSinglePrecision) {
+  const auto length_of = [](const kernel::Camera& c) { return std::hypot(c.forward[0], c.forward[1], c.forward[2]); };
+  for (const double distance : {1e-25, 1e18}) {
+    scene::Scene scene;
+    scene.camera.look_from = {0, 0, distance};
+    scene.camera.look_at = {0, 0, 0};
+    const double length = length_of(compile(scene).camera);
+    EXPECT_GE(length, 1) << distance;
+    EXPECT_LE(length, 2) << distance;
+    EXPECT_EQ(std::ldexp(length, std::ilogb(distance)), distance) << "scaled by a power of two";
+    scene.camera.defocus_angle = 1;
+    EXPECT_EQ(length_of(compile(scene).camera), distance) << "a lens has a size";
+  }
+  scene::Scene usual;
+  usual.camera.look_from = {0, 0, 999};  // looks at z = -1
+  EXPECT_EQ(length_of(compile(usual).camera), 1000);
+}
+
 TEST(CompileCompile, LeavesOutUnusedMaterials) {
   const CompiledScene compiled = compile(one_of_each());
   EXPECT_FALSE(compiled.features.hemisphere);
@@ -127,7 +145,7 @@ TEST(CompileCameraBasis, SpansTheImageOnTheFocusPlane) {
   camera.vfov = 90;
   camera.defocus_angle = 90;
   camera.focus_distance = 2;
-  const kernel::Camera c = compile_camera(camera, {200, 100});
+  const kernel::Camera c = compile_camera(camera, {200, 100}, 1);
   EXPECT_DOUBLE_EQ(c.forward[2], -2);
   EXPECT_DOUBLE_EQ(c.right[0] * 100, 4);  // 2 tan(45 degrees) at distance 2, divided by the height in pixels
   EXPECT_DOUBLE_EQ(c.down[1] * 100, -4);
@@ -142,7 +160,7 @@ TEST(CompileCameraBasis, AnOrthographicImageHasItsWidthAtAnyDistance) {
   for (const double distance : {1e-3, 7.0, 1e9}) {
     camera.look_from = {0, 0, distance};
     camera.look_at = {0, 0, 0};
-    const kernel::Camera c = compile_camera(camera, {200, 100, 2});
+    const kernel::Camera c = compile_camera(camera, {200, 100, 2}, 1);
     EXPECT_TRUE(c.is_orthographic);
     EXPECT_DOUBLE_EQ(c.right[0] * 200, 3);
     EXPECT_DOUBLE_EQ(c.down[1] * 100, -0.75) << "pixels are twice as wide as high";

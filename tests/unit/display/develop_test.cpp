@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "support/temp_dir.h"
 
 namespace orrery::display {
 namespace {
@@ -255,6 +256,16 @@ TEST_F(DisplayDevelop, ReportsWhetherTheResultIsSrgb) {
   EXPECT_FALSE(develop(picture, on("sRGB", "Raw"), 8).is_srgb);
   EXPECT_FALSE(develop(picture, on("Gamma 2.0 Rec.709"), 8).is_srgb);
   EXPECT_FALSE(develop(picture, on("Display P3"), 8).is_srgb);
+
+  const support::TempDir folder;
+  support::write_bytes(folder / "linear.ocio",
+                       "ocio_profile_version: 2\nenvironment: {}\nroles: {default: Linear Rec.709 (sRGB)}\n"
+                       "displays:\n  monitor:\n    - !<View> {name: Plain, colorspace: Linear Rec.709 (sRGB)}\n"
+                       "colorspaces:\n  - !<ColorSpace> {name: Linear Rec.709 (sRGB)}\n");
+  Settings settings;
+  settings.config = (folder / "linear.ocio").string();
+  settings.working_space = "Linear Rec.709 (sRGB)";
+  EXPECT_FALSE(develop(picture, settings, 8).is_srgb) << "linear, in spite of its name";
 }
 
 TEST_F(DisplayDevelop, RefusesAnImageWithoutColour) {

@@ -470,5 +470,26 @@ TEST(FormatReadScene, BookScenesReadWithoutDiagnostics) {
   EXPECT_GE(count, 20);
 }
 
+TEST(FormatReadScene, OnlyWhatMovesIsCheckedAtShutterClose) {
+  SceneFiles files;
+  const std::string text = R"([camera]
+shutter_close = 0.5
+[material.lamp]
+type = "emitter"
+radiance = [1, 1, 1]
+[[sphere]]
+name = "ball"
+center = [0, 0, -1]
+radius = 1
+material = "lamp"
+[[key]]
+frames = [1, 2]
+)";
+  EXPECT_EQ(files.diagnostics(text + "target = \"material.lamp.exposure\"\nvalues = [0, 90]\n", {}), "");
+  EXPECT_NE(files.diagnostics(text + "target = \"sphere.ball.radius\"\nvalues = [1, -3]\n", {})
+                .find("error: sphere[0].radius changes sign while the shutter is open"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace orrery::format

@@ -85,6 +85,7 @@ TEST_F(ImageWrite, ExrHasTheStandardAttributes) {
   Header header;
   header.software = "orrery 1.2";
   header.capture_date = "2020:01:02 03:04:05";
+  header.utc_offset_s = -32400;
   header.frames_per_second = {24000, 1001};
   header.world_to_camera.emplace();
   header.world_to_ndc.emplace();
@@ -104,6 +105,7 @@ TEST_F(ImageWrite, ExrHasTheStandardAttributes) {
   };
   expect_text("software", "orrery 1.2");
   expect_text("capDate", "2020:01:02 03:04:05");
+  EXPECT_EQ(exr["utcOffset"].numbers<float>(), std::vector<float>{-32400});
   expect_text("colorInteropID", "lin_rec709_scene");
   expect_text("orrery/seed", "18446744073709551615");
   EXPECT_EQ(exr["framesPerSecond"].type, "rational");

@@ -80,7 +80,7 @@ TEST(JobCameraMatrices, PointsProjectToThePixelWhoseRaysHitThem) {
   const scene::Camera camera = book_camera();
   const scene::Image image{1200, 675};
   const CameraMatrices m = camera_matrices(camera, image);
-  const kernel::Camera rays = compile::compile_camera(camera, image);
+  const kernel::Camera rays = compile::compile_camera(camera, image, 1);
   for (const double px : {0.0, 17.5, 600.0, 1199.0}) {
     for (const double py : {0.0, 337.5, 674.0}) {
       const double x = px - rays.half_width, y = py - rays.half_height;
@@ -100,7 +100,7 @@ TEST(JobCameraMatrices, OrthographicPointsProjectToThePixelWhoseRaysHitThem) {
   camera.width = 5;
   const scene::Image image{1200, 675, 1.5};
   const CameraMatrices m = camera_matrices(camera, image);
-  const kernel::Camera rays = compile::compile_camera(camera, image);
+  const kernel::Camera rays = compile::compile_camera(camera, image, 1);
   for (const double px : {0.0, 17.5, 1199.0}) {
     for (const double py : {0.0, 674.0}) {
       const double x = px - rays.half_width, y = py - rays.half_height;

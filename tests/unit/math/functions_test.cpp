@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <random>
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
@@ -35,6 +37,16 @@ void angle_all(const T* x, const T* y, T* turn, std::size_t count) {
 }
 void angle_double(const double* x, const double* y, double* turn, std::size_t n) { angle_all(x, y, turn, n); }
 void angle_float(const float* x, const float* y, float* turn, std::size_t n) { angle_all(x, y, turn, n); }
+template <class T>
+void product_errors(const T* a, const T* b, T* error, std::size_t count) {
+  const hn::ScalableTag<T> d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto x = hn::LoadU(d, a + i), y = hn::LoadU(d, b + i);
+    hn::StoreU(product_error(d, x, y, x * y), d, error + i);
+  }
+}
+void product_errors_double(const double* a, const double* b, double* e, std::size_t n) { product_errors(a, b, e, n); }
+void product_errors_float(const float* a, const float* b, float* e, std::size_t n) { product_errors(a, b, e, n); }
 void sin_cos_double(const double* u, double* s, double* c, std::size_t n) { sin_cos_all(u, s, c, n); }
 void sin_cos_float(const float* u, float* s, float* c, std::size_t n) { sin_cos_all(u, s, c, n); }
 
@@ -49,6 +61,8 @@ HWY_EXPORT(sin_cos_double);
 HWY_EXPORT(sin_cos_float);
 HWY_EXPORT(angle_double);
 HWY_EXPORT(angle_float);
+HWY_EXPORT(product_errors_double);
+HWY_EXPORT(product_errors_float);
 
 constexpr std::size_t kCount = 1 << 16;
 constexpr long double kTwoPi = 6.283185307179586476925286766559005768L;
@@ -77,6 +91,32 @@ double worst_turn_error(Function function) {
 TEST(MathFunctions, SineAndCosineOfATurn) {
   EXPECT_LE(worst_turn_error<double>(ORRERY_BEST(sin_cos_double)), 2.3e-16);
   EXPECT_LE(worst_turn_error<float>(ORRERY_BEST(sin_cos_float)), 1.2e-7);
+}
+
+template <class T, class Function>
+void expect_exact_product_errors(Function function, std::int64_t target) {
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> fraction(1, 2);
+  std::uniform_int_distribution<int> exponent(-30, 30);
+  std::vector<T> a(1024), b(1024), error(1024);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    a[i] = static_cast<T>(std::ldexp(fraction(engine), exponent(engine)));
+    b[i] = static_cast<T>(-std::ldexp(fraction(engine), exponent(engine)));
+  }
+  function(a.data(), b.data(), error.data(), a.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_EQ(error[i], std::fma(a[i], b[i], -(a[i] * b[i]))) << "target " << target << ": " << a[i] << " * " << b[i];
+}
+
+TEST(MathFunctions, ErrorsOfProductsAreExactOnEveryTarget) {
+  std::int64_t targets = target_choice().available();
+  for (; targets != 0; targets &= targets - 1) {
+    const std::int64_t target = targets & -targets;
+    target_choice().limit(target);
+    expect_exact_product_errors<double>(ORRERY_BEST(product_errors_double), target);
+    expect_exact_product_errors<float>(ORRERY_BEST(product_errors_float), target);
+  }
+  target_choice().limit(-1);
 }
 
 struct WorstErrors {

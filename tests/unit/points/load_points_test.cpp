@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "points/color_map.h"
+#include "points/open_once.h"
 #include "points/read_memory.h"
 #include "points_file.h"
 
@@ -57,6 +58,45 @@ TEST_F(PointsLoadPoints, MoreSpheresThanIdsAreRefusedBeforeTheyAreRead) {
     return std::make_unique<ClaimsRows>(data::open(file, options), std::uint64_t{1} << 32);
   };
   EXPECT_EQ(load(), "error points[0].file: has 4294967296 rows; the maximum is 4294967295\n");
+}
+
+TEST_F(PointsLoadPoints, DecompressedDataCountAsMemory) {
+  write("a.csv", "x,y,z,radius\n1,2,3,0.5\n");
+  std::uint64_t limit = 0;
+  request.open = [&](const std::filesystem::path& file, const data::OpenOptions& options) {
+    limit = options.decompressed_limit;
+    return data::open(file, options);
+  };
+  load();
+  EXPECT_EQ(limit, data::OpenOptions().decompressed_limit);
+  request.memory_limit = 1 << 20;
+  load();
+  EXPECT_EQ(limit, request.memory_limit);
+}
+
+TEST_F(PointsLoadPoints, AFileStaysOpenForItsOtherFrames) {
+  const std::string first = frame("x y z radius", {"1 0 0 1"}), second = frame("x y z radius", {"2 0 0 1"});
+  request.open = open_once();
+  request.frame = 2;
+  EXPECT_EQ(load("a.dump", first + second), "");
+  EXPECT_EQ(x(), Numbers{2});
+  // What was read is not read again: a file of the same size and time is the same file.
+  const auto time = std::filesystem::last_write_time(request.file);
+  std::string other = first;
+  other[0] = '#';
+  write("a.dump", other + second);
+  std::filesystem::last_write_time(request.file, time);
+  EXPECT_EQ(load(), "");
+  EXPECT_EQ(x(), Numbers{2});
+  request.open = {};
+  EXPECT_THROW(load(), base::Error) << "the first frame is damaged";
+}
+
+TEST_F(PointsLoadPoints, AFileThatHasChangedIsOpenedAgain) {
+  request.open = open_once();
+  EXPECT_EQ(load("a.csv", "x,y,z,radius\n1,0,0,1\n"), "");
+  EXPECT_EQ(load("a.csv", "x,y,z,radius\n12,0,0,1\n"), "");
+  EXPECT_EQ(x(), Numbers{12});
 }
 
 TEST_F(PointsLoadPoints, CentersAndRadii) {

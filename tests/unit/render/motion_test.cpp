@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "compile/compile.h"
@@ -51,6 +52,28 @@ TEST(RenderMotion, EveryAcceleratorThreadCountAndTraversalGivesTheSameBits) {
     list.accelerator = compile::Accelerator::kList;
     EXPECT_EQ(test::plane_values(render(list, with_data_layers()).picture), expected);
   }
+}
+
+TEST(RenderMotion, FastLosesNoHitsFarFromTheOrigin) {
+  scene::Scene opening;
+  opening.image = {160, 90};
+  opening.render.samples = 4;
+  opening.render.precision = scene::Precision::kFast;
+  opening.materials.push_back({"grey", scene::Lambertian{{0.5, 0.5, 0.5}}});
+  std::minstd_rand random(7);
+  std::uniform_real_distribution<double> across(-5, 5);
+  for (int i = 0; i < 100; ++i)
+    opening.spheres.push_back({{1e6 + across(random), across(random), across(random)}, 0.4, 0, ""});
+  opening.camera.look_from = {1e6, 0, 20};
+  opening.camera.look_at = {1e6, 0, 0};
+  opening.camera.vfov = 40;
+  opening.camera.shutter_close = 1;
+  scene::Scene closing = opening;
+  for (scene::Sphere& sphere : closing.spheres) sphere.center.x += 0.4;
+  compile::CompiledScene compiled = compile::compile(opening, &closing);
+  const std::vector<float> expected = test::plane_values(render(compiled, {}).picture);
+  compiled.accelerator = compile::Accelerator::kList;
+  EXPECT_EQ(test::plane_values(render(compiled, {}).picture), expected);
 }
 
 TEST(RenderMotion, StaticSceneRendersAsWithoutMotion) {

@@ -151,7 +151,6 @@ TEST(RenderProgressiveSampling, ReportedPixelsAreThoseOfTheImageInTheEnd) {
 TEST(RenderProgressiveSampling, AResumedRenderReportsTheEarlierPixels) {
   const compile::CompiledScene compiled = world_of_everything();
   Settings settings;
-  settings.keep_partial = true;
   Result finished = render(compiled, settings);  // nothing is left to render
   ReportedPixels reported(compiled);
   reported.attach(settings);
@@ -223,7 +222,6 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
         settings.sampling.shard = {i, count};
         settings.sampling.sample_begin = begin;
         settings.sampling.sample_end = begin == 0 ? 6 : 19;
-        settings.keep_partial = true;
         const Result part = render(compiled, settings);
         EXPECT_EQ(part.statistics.fewest_samples, settings.sampling.sample_end - begin);
         sum.add(*part.partial);

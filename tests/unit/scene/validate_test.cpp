@@ -199,6 +199,12 @@ TEST(SceneValidate, RadiusMustBeInTheDomain) {
             Told{"sphere[0].radius: radius is not finite; must be in 1e-30..1e+18"});
   EXPECT_EQ(told(with_sphere({}, 1e-30)), Told{});
   EXPECT_EQ(told(with_sphere({}, -1e18)), Told{});
+  Scene fast = with_sphere({}, 1e-19);
+  fast.render.precision = Precision::kFast;
+  EXPECT_EQ(told(fast), Told{"sphere[0].radius: radius is 1e-19, too small for precision `fast`, which needs 1e-18 at "
+                             "least; use `exact`"});
+  fast.spheres[0].radius = 1e-18;
+  EXPECT_EQ(told(fast), Told{});
 }
 
 TEST(SceneValidate, CenterMustBeInTheDomain) {
