@@ -48,8 +48,8 @@ HWY_INLINE BoxRays<D> to_box_space(D d, const k::Rays<D>& ray, const BoxFrame& f
 
   const auto closest = hn::Neg(dot(origin, ray.direction));
   const auto passing = mul_add(ray.direction, closest, origin) + low;
-  // The margin covers the rounding of `closest` for a ray from 1e12 reaches away.
-  const auto nearest_square = reach * reach * hn::Set(d, static_cast<T>(1.001));
+  // The margin covers the rounding of `passing` for a ray from 1e12 reaches away, in single precision from 1e6.
+  const auto nearest_square = reach * reach * hn::Set(d, static_cast<T>(sizeof(T) == 8 ? 1.001 : 1.1));
   const auto misses = hn::Or(dot(passing, passing) > nearest_square, closest < zero);
   const auto start = hn::IfThenElseZero(outside, hn::Max(closest - reach, zero));
   return {mul_add(ray.direction, start, origin) + low, start, hn::Not(hn::And(outside, misses))};

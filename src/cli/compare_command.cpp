@@ -98,9 +98,10 @@ void add_compare(Command& program, Action& action) {
   command.add_option("A", options->picture, "Image to compare")->required()->type_name("FILE");
   command.add_option("B", options->reference, "Reference image")->required()->type_name("FILE");
   command
-      .add_option("--fail-above", options->limits,
-                  "Exit with 1 if a metric exceeds the value: rmse, relmse, mae, max, display, flip, bias or z; can be "
-                  "repeated")
+      .add_option(
+          "--fail-above", options->limits,
+          "Exit with status 1 if a metric exceeds the value: rmse, relmse, mae, max, display, flip, bias or z; can be "
+          "repeated")
       ->type_name("METRIC=VALUE")
       ->repeatable();
   command

@@ -107,7 +107,7 @@ void add_sky_options(Command& command, GenerateOptions& options) {
                   "Reflectance of the ground; default: " + scene::number_text(options.ground_albedo))
       ->check(real_number(0, 1))
       ->type_name("A");
-  command.add_flag("--no-sun", options.no_sun, "Leave out the sun's disc");
+  command.add_flag("--no-sun", options.no_sun, "Omit the sun's disc");
 }
 
 void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {

@@ -228,7 +228,7 @@ void add_render(Command& program, Action& action) {
   add_render_options(command, *options, true);
   command
       .add_option("--shard", options->shard,
-                  "Render shard I of N (I from 1), every N-th 16 x 16 tile; combine with orrery merge")
+                  "Render shard I of N (I from 1): every N-th 16 x 16 tile; combine the shards with orrery merge")
       ->type_name("I/N");
   command
       .add_option("--frames", options->frames,

@@ -25,8 +25,8 @@ TableFormat table_format(const std::filesystem::path& file);
 /// - .npy: a structured array.
 /// - .csv: a header row; texts are quoted, numbers have as many digits as needed.
 ///
-/// Text formats have fewer types of numbers, and reading returns float64 or int64. A 64-bit integer in a CSV file is
-/// read as a float64 unless the first rows show that this is too small.
+/// Text formats have fewer types of numbers, and reading returns float64 or int64. An integer column of a CSV file
+/// is read as int64 only if float64 cannot represent all of its values.
 ///
 /// Domain     columns x, y, z of numbers; all columns have table.rows rows and different names
 /// Result     names of the columns that were left out because the format has no such texts

@@ -54,8 +54,7 @@ void begin_buffer(j_compress_ptr info) {
 }
 
 /// Errors     libjpeg's, through on_error. A result of FALSE would not be one: it suspends the encoder, whose caller
-/// then
-///            offers the same row for ever.
+///            then offers the same row for ever.
 boolean empty_buffer(j_compress_ptr info) {
   Destination& out = destination_of(info);
   if (out.file->write(out.buffer.data(), out.buffer.size()) != out.buffer.size()) ERREXIT(info, JERR_FILE_WRITE);

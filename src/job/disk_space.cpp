@@ -83,7 +83,7 @@ void require_disk_space(const Outputs& outputs, bool is_shard, const ImageSize& 
     throw base::Error(
         base::ErrorKind::kCannotCreate,
         limit > 0
-            ? fmt::format("the images need about {}, and --disk-limit allows {}; raise it", need,
+            ? fmt::format("the images need about {}, but --disk-limit allows only {}; raise the limit", need,
                           base::bytes_text(allowed))
             : fmt::format("the images need about {}, and {} has {} free; free some, or override with --disk-limit",
                           need, folder.string(), base::bytes_text(allowed)));

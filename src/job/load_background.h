@@ -41,8 +41,7 @@ LoadedBackground load_background(const BackgroundRequest& request, const scene::
 /// `ocio_config`  in the form of display::Settings
 /// Domain         the background is a sky
 /// Errors         an OCIO config without linear Rec.709, in which the sky is computed, becomes a diagnostic;
-/// base::Error
-///                as for display::pixel_conversion
+///                base::Error as for display::pixel_conversion
 LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& scene);
 
 }  // namespace orrery::job

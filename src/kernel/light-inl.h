@@ -168,7 +168,8 @@ HWY_INLINE ChosenLights<D> choose_light(D d, const SceneView& scene, const Verte
   return {hn::Load(IdTag<D>(), ids), probability};
 }
 
-/// The probability with which choose_light chooses given emitters; 1 in lanes whose sphere is no leaf of the tree.
+/// The probability with which choose_light chooses given emitters. Meaningless in lanes whose sphere is not a leaf of
+/// the tree.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V choice_probability(D d, const SceneView& scene, const Vertex<D>& at, hn::Vec<IdTag<D>> spheres) {
   using T = hn::TFromD<D>;

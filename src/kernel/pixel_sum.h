@@ -11,7 +11,7 @@ __extension__ using Int128 = __int128;
 /// The sum of a pixel's samples in fixed point (units of 2^-60), so that the order of addition changes no bit.
 ///
 /// A floating-point sum depends on the order, and with it on threads, tiles, shards and resumption; an integer sum does
-/// not. The maximum is 2^67: 2^31 samples of kLargestSample.
+/// not. A sum is less than 2^67; 2^31 samples of kLargestSample are 2^66, in each of two halves.
 struct PixelSum {
   Int128 rgb[3] = {0, 0, 0};
   std::int64_t weight = 0;  ///< of all samples but bad ones: 1 each, or -1 in a PixelFilter's negative lobes

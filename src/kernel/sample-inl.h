@@ -66,7 +66,8 @@ struct SubtendedCone {
   V one_minus_cos;  ///< does not cancel, at any distance
 };
 
-/// The cone that a sphere subtends from a point outside. Lanes from inside have no meaning; see is_outside.
+/// The cone that a sphere subtends from a point outside. Meaningless from inside (distance <= radius),
+/// which callers exclude.
 ///
 /// Precision  1 - cos from sin^2 / (1 + cos), and cos from the difference (distance - radius) (distance + radius)
 template <class D, class V = hn::Vec<D>>

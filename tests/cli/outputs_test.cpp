@@ -191,7 +191,7 @@ TEST_F(CliOutputs, LongestFileNamesWorkAndLongerOnesExit73) {
 TEST_F(CliOutputs, DiskLimitIsEnforced) {
   const Outcome r = run("render good.toml -o a.exr --samples 1000000000 --disk-limit 1K");
   EXPECT_EQ(r.status, 73) << r.err;
-  EXPECT_NE(r.err.find("--disk-limit allows 1.0 KiB; raise it"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("--disk-limit allows only 1.0 KiB; raise the limit"), std::string::npos) << r.err;
   EXPECT_EQ(run("render good.toml -o a.exr -q --disk-limit 1G").status, 0);
 }
 
