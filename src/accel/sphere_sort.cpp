@@ -20,7 +20,8 @@ namespace {
 using Item = SphereItem;
 using Cell = SphereBvh::Cell;
 
-constexpr float kUnbounded = std::numeric_limits<float>::infinity();
+constexpr std::size_t kArity = SphereBvh::kArity;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Ranges larger than this are binned from a sample.
 constexpr std::size_t kSampleSize = 1 << 14;
@@ -40,8 +41,8 @@ constexpr Four kFour;
 
 /// Bounds and number of the centres in one bin.
 struct alignas(16) Bin {
-  float lower[4] = {kUnbounded, kUnbounded, kUnbounded, kUnbounded};
-  float upper[4] = {-kUnbounded, -kUnbounded, -kUnbounded, -kUnbounded};
+  float lower[4] = {kInfinity, kInfinity, kInfinity, kInfinity};
+  float upper[4] = {-kInfinity, -kInfinity, -kInfinity, -kInfinity};
   std::size_t count = 0;
 
   void add(hn::Vec<Four> low, hn::Vec<Four> high, std::size_t more) {
@@ -74,16 +75,15 @@ class Sorter {
 
   /// Sorts all items into the order of the leaves.
   void sort() {
-    std::size_t unit = SphereBvh::kArity;
-    while (unit * SphereBvh::kArity < items_.size()) unit *= SphereBvh::kArity;
-    std::size_t level_unit = SphereBvh::kArity * SphereBvh::kArity;
+    std::size_t unit = kArity;
+    while (unit * kArity < items_.size()) unit *= kArity;
+    std::size_t level_unit = kArity * kArity;
     for (std::vector<Cell>& level : cells) {
       level.resize((items_.size() + level_unit - 1) / level_unit);
-      level_unit *= SphereBvh::kArity;
+      level_unit *= kArity;
       if (level.size() == 1) break;
     }
-    divide(0, items_.size(), unit * SphereBvh::kArity,
-           {{-kUnbounded, -kUnbounded, -kUnbounded}, {kUnbounded, kUnbounded, kUnbounded}});
+    divide(0, items_.size(), unit * kArity, {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}});
     if (stopped_) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
   }
 
@@ -93,10 +93,10 @@ class Sorter {
   void divide(std::size_t begin, std::size_t end, std::size_t unit, Cell cell) {
     if (stopped_.load(std::memory_order_relaxed)) return;
     stop_.check();
-    for (; end - begin <= unit && unit > SphereBvh::kArity; unit /= SphereBvh::kArity) {
+    for (; end - begin <= unit && unit > kArity; unit /= kArity) {
       // The range is one node.
       std::size_t level = 0;
-      for (std::size_t u = SphereBvh::kArity * SphereBvh::kArity; u < unit; u *= SphereBvh::kArity) ++level;
+      for (std::size_t u = kArity * kArity; u < unit; u *= kArity) ++level;
       if (begin / unit < cells[level].size()) cells[level][begin / unit] = cell;
     }
     if (end - begin <= unit) {
@@ -132,7 +132,7 @@ class Sorter {
     const std::size_t count = end - begin, stride = std::max<std::size_t>(1, count / kSampleSize);
     const int bin_count = count <= kSmallRange ? kFewBins : kBins;
     // The fourth lane is an item's id, and is ignored.
-    auto low = hn::Set(kFour, kUnbounded), high = hn::Set(kFour, -kUnbounded);
+    auto low = hn::Set(kFour, kInfinity), high = hn::Set(kFour, -kInfinity);
     for (std::size_t i = begin; i < end; i += stride) {
       const auto center = hn::LoadU(kFour, items_[i].center);
       low = hn::Min(low, center);
@@ -158,7 +158,7 @@ class Sorter {
     const std::size_t units = (count + unit - 1) / unit, sampled = (count + stride - 1) / stride;
     const float items_per_sample = static_cast<float>(count) / static_cast<float>(sampled);
     Split best;
-    float least = kUnbounded;
+    float least = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {
       if (per_width[axis] == 0) continue;
       float right_area[kBins];
@@ -184,7 +184,7 @@ class Sorter {
         }
       }
     }
-    if (least == kUnbounded) best.left = units / 2 * unit;  // all centres coincide
+    if (least == kInfinity) best.left = units / 2 * unit;  // all centres coincide
     return best;
   }
 
