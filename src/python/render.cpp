@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "python/render.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -60,12 +62,12 @@ class Messages {
   bool ended_ = false;
 };
 
-/// The renders of this process. A daemon thread that wants the GIL while the interpreter finalizes is ended, so that
-/// renders must have ended before.
+/// The renders of this process.
 struct Renders {
   std::mutex mutex;
   std::condition_variable changed;
   std::set<std::atomic<bool>*> cancels;
+  std::thread::id exiting;  // the thread that ends the interpreter; its own renders are not stopped
 };
 Renders& renders() {
   static auto* const all = new Renders;  // outlives all threads
@@ -77,18 +79,37 @@ class RenderEntry {
   explicit RenderEntry(std::atomic<bool>& cancel) : cancel_(&cancel) {
     const std::scoped_lock lock(renders().mutex);
     renders().cancels.insert(cancel_);
+    *cancel_ = is_exiting();
   }
-  ~RenderEntry() {
+  ~RenderEntry() { remove(); }
+  RenderEntry(const RenderEntry&) = delete;
+  RenderEntry& operator=(const RenderEntry&) = delete;
+
+  /// Whether stop_renders() has been called and stops this render.
+  bool stopped_at_exit() const {
+    const std::scoped_lock lock(renders().mutex);
+    return is_exiting();
+  }
+  void remove() {
     const std::scoped_lock lock(renders().mutex);
     renders().cancels.erase(cancel_);
     renders().changed.notify_all();
   }
-  RenderEntry(const RenderEntry&) = delete;
-  RenderEntry& operator=(const RenderEntry&) = delete;
 
  private:
+  static bool is_exiting() {
+    return renders().exiting != std::thread::id() && renders().exiting != std::this_thread::get_id();
+  }
   std::atomic<bool>* cancel_;
 };
+
+/// Ends a daemon thread as CPython 3.14 does while the interpreter finalizes: it never runs again. If it returned to
+/// Python instead, it would print a traceback, and a thread that holds the lock of sys.stderr at that moment aborts the
+/// process.
+[[noreturn]] void hang_thread(RenderEntry& entry) {
+  entry.remove();
+  for (;;) pause();
+}
 
 /// Passes messages on to Python. Errors of Python are thrown.
 void deliver(const std::optional<render::Progress>& progress, const std::vector<std::string>& warnings,
@@ -107,7 +128,7 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
   job::Rendering rendering;
   Messages messages;
   std::atomic<bool> cancel{false};
-  const RenderEntry entry(cancel);
+  RenderEntry entry(cancel);
   job.keep = &rendering;
   job.hooks.cancel = &cancel;
   job.hooks.on_progress = [&](const render::Progress& p) { messages.set_progress(p); };
@@ -127,7 +148,7 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
       std::optional<render::Progress> progress;
       std::vector<std::string> warnings;
       ended = messages.take(progress, warnings);
-      if (python_failure) continue;
+      if (python_failure || entry.stopped_at_exit()) continue;
       const py::gil_scoped_acquire acquired;
       try {
         deliver(progress, warnings, on_progress, on_warning);
@@ -137,6 +158,7 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
       }
     }
     worker.join();
+    if (entry.stopped_at_exit()) hang_thread(entry);
   }
   if (python_failure) std::rethrow_exception(python_failure);
   if (failure) std::rethrow_exception(failure);
@@ -149,6 +171,7 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
 void stop_renders() {
   const py::gil_scoped_release released;
   std::unique_lock lock(renders().mutex);
+  renders().exiting = std::this_thread::get_id();
   for (std::atomic<bool>* const cancel : renders().cancels) *cancel = true;
   renders().changed.wait(lock, [] { return renders().cancels.empty(); });
 }

@@ -17,8 +17,8 @@ namespace orrery::python {
 /// Errors         those of job::run_job; those of the callbacks
 Picture render(job::Job job, const pybind11::object& on_progress, const pybind11::object& on_warning);
 
-/// Stops all renders of the process and waits for their ends. Called before the interpreter finalizes: it would end
-/// daemon threads in the middle of a render.
+/// Stops the renders of all other threads and waits until they have ended. Their threads, which are daemon threads, do
+/// not return to Python. Called before the interpreter finalizes: it would end them in the middle of a render.
 ///
 /// Domain     the calling thread holds the GIL
 void stop_renders();

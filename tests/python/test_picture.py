@@ -196,7 +196,7 @@ class LongRender(FolderTest):
             "assert begun.wait(60)\n"
         )
         done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_progress_comes_at_most_ten_times_a_second(self):
         calls = []
