@@ -8,6 +8,7 @@
 #
 # KEEP=1          keep the root and print its path
 # ORRERY_DEBS=DIR package cache, kept between runs
+# ORRERY_CCACHE=DIR  compiler cache to fill, for a later build with the same compiler outside the root
 #
 # Exit status: 0 success; 77 this machine cannot create the root (the reason is printed); otherwise a command failed.
 set -euo pipefail
@@ -32,7 +33,7 @@ mkdir -p "$debs/partial"
 work=$(mktemp -d "${TMPDIR:-/var/tmp}/orrery-root.XXXXXX")
 root="$work/root"
 cleanup() {
-  for mount in "$root/var/cache/apt/archives" "$root/dev/shm" "$root/proc"; do
+  for mount in "$root/var/cache/apt/archives" "$root/var/cache/ccache" "$root/dev/shm" "$root/proc"; do
     if mountpoint -q "$mount"; then umount "$mount" || umount -l "$mount"; fi
   done
   if [ -n "${KEEP:-}" ]; then
@@ -66,12 +67,18 @@ mount -t tmpfs tmpfs "$root/dev/shm" 2>/dev/null || true
 # git refuses to read a checkout of another owner without this.
 HOME=$work git config --global --add safe.directory '*'
 HOME=$work git clone -q --no-hardlinks "file://$repository" "$root/orrery"
+environment=(HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 ORRERY_WERROR=ON)
 in_root() {
-  chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 ORRERY_WERROR=ON \
-    /bin/sh -c "cd /orrery && $1" </dev/null
+  chroot "$root" env -i "${environment[@]}" /bin/sh -c "cd /orrery && $1" </dev/null
 }
 
 in_root 'apt-get update -qq' >"$work/update.log" 2>&1 || skip "the root cannot reach the mirror"
+if [ -n "${ORRERY_CCACHE:-}" ]; then
+  mkdir -p "$ORRERY_CCACHE" "$root/var/cache/ccache"
+  mount --bind "$ORRERY_CCACHE" "$root/var/cache/ccache"
+  in_root 'apt-get install -y -qq --no-install-recommends ccache' >"$work/ccache.log" 2>&1
+  environment+=(CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_DIR=/var/cache/ccache CCACHE_BASEDIR=/orrery)
+fi
 
 say "./run.sh"
 # The default scene at a size that renders in seconds. The second call must have nothing left to build.

@@ -15,6 +15,7 @@
 #include "image/read.h"
 #include "image/write.h"
 #include "job/machine.h"
+#include "job/memory.h"
 #include "job/text.h"
 #include "job/version.h"
 #include "metrics/color_view.h"
@@ -209,7 +210,10 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
   check_files(picture, reference, pictures);
   if (!layer.empty() && !pictures.flip.empty())
     throw base::Error(base::ErrorKind::kUsage, "--flip covers colours only; remove --layer");
-  const film::Picture a = image::read(picture, image::Parts::kAll), b = image::read(reference, image::Parts::kAll);
+  const auto read = [](const std::filesystem::path& file) {
+    return image::read(file, image::Parts::kAll, job::available_memory().value_or(0));
+  };
+  const film::Picture a = read(picture), b = read(reference);
   for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})
     if (!file.empty()) image::check_size(file, a.width, a.height);
   Comparison out = compare(a, b, developed ? Encoding::kDisplay : Encoding::kLight, layer, threads);

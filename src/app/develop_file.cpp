@@ -8,6 +8,7 @@
 #include "image/write.h"
 #include "job/display_writer.h"
 #include "job/job_files.h"
+#include "job/memory.h"
 #include "job/outputs.h"
 #include "job/version.h"
 
@@ -37,7 +38,8 @@ DevelopReport develop_file(const Development& development) {
     base::check_creatable(output);
   }
   DevelopReport report;
-  const film::Picture picture = image::read(development.input);
+  const film::Picture picture =
+      image::read(development.input, image::Parts::kFirst, job::available_memory().value_or(0));
   for (const auto& output : development.outputs) image::check_size(output, picture.width, picture.height);
   display::Settings display = development.display;
   if (display.working_space.empty()) display.working_space = picture.color_interop_id;

@@ -75,38 +75,44 @@ Command* Command::add_subcommand(const std::string& name, const std::string& des
 
 void Command::require_subcommand() { app_->require_subcommand(1); }
 
+Option* Command::added(CLI::Option& option) {
+  // "--frames=$frames" with an unset variable would otherwise be the same as no option.
+  option.check(validator([](const std::string& value) { return value.empty() ? "the value is empty" : ""; }));
+  return &options_.emplace_back(option);
+}
+
 Option* Command::add_option(const std::string& names, std::string& variable, const std::string& description) {
-  return &options_.emplace_back(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description));
 }
 
 Option* Command::add_option(const std::string& names, std::filesystem::path& variable, const std::string& description) {
-  return &options_.emplace_back(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description));
 }
 
 Option* Command::add_option(const std::string& names, int& variable, const std::string& description) {
-  return &options_.emplace_back(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description));
 }
 
 Option* Command::add_option(const std::string& names, std::uint64_t& variable, const std::string& description) {
-  return &options_.emplace_back(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description));
 }
 
 Option* Command::add_option(const std::string& names, double& variable, const std::string& description) {
-  return &options_.emplace_back(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description));
 }
 
 Option* Command::add_option(const std::string& names, std::optional<double>& variable, const std::string& description) {
-  return &options_.emplace_back(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description));
 }
 
 Option* Command::add_option(const std::string& names, std::vector<std::string>& variable,
                             const std::string& description) {
-  return &options_.emplace_back(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description));
 }
 
 Option* Command::add_option(const std::string& names, std::vector<std::filesystem::path>& variable,
                             const std::string& description) {
-  return &options_.emplace_back(*app_->add_option(names, variable, description));
+  return added(*app_->add_option(names, variable, description));
 }
 
 Option* Command::add_flag(const std::string& names, bool& variable, const std::string& description) {

@@ -62,7 +62,8 @@ class Command {
   Command* add_subcommand(const std::string& name, const std::string& description);
   void require_subcommand();
 
-  // `names` are "-o,--output", or "SCENE" for a positional argument. Parsing writes the value to `variable`.
+  // `names` are "-o,--output", or "SCENE" for a positional argument. Parsing writes the value to `variable`. Empty
+  // values are errors.
   Option* add_option(const std::string& names, std::string& variable, const std::string& description);
   Option* add_option(const std::string& names, std::filesystem::path& variable, const std::string& description);
   Option* add_option(const std::string& names, int& variable, const std::string& description);
@@ -86,6 +87,8 @@ class Command {
 
  private:
   friend class OptionGroup;
+
+  Option* added(CLI::Option& option);
 
   CLI::App* app_;
   std::string heading_;

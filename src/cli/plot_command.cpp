@@ -112,7 +112,7 @@ int run_plot(PlotArguments& arguments) {
   if (!arguments.legend.empty()) {
     display::Settings display = job.outputs.display;
     if (display.view.empty()) display.view = "Un-tone-mapped";
-    plot::write_legend(arguments.legend, made.points, display);
+    plot::write_legend(arguments.legend, made.legend, display);
   }
   if (saves) {
     base::write_text_file(arguments.save_scene, saved_text(made.text, overrides, job.outputs.display));

@@ -132,7 +132,7 @@ int run_render(RenderOptions& options) {
   if (const std::string unused = options.picture.unused_options(job, options.shows_display || !options.preview.empty());
       !unused.empty())
     note(unused);
-  job.hooks.on_note = [&](const std::string& text) { printer.note(text + "\n"); };
+  job.hooks.on_note = [&](const std::string& text) { note(text + "\n"); };
   const auto preview = start_preview(target, screen.get(), note, job.hooks);
   batch.on_begin = [&](const job::Job& one, std::size_t index, std::size_t count) {
     progress.begin(index, count);

@@ -57,6 +57,8 @@ std::string heading(const Submission& s, const Commands& c, const char* engine) 
 
 // ---------------------------------------------------------------------------------------------------- Slurm
 
+constexpr std::size_t kSlurmArray = 1001;  ///< tasks that Slurm's default MaxArraySize allows
+
 std::string slurm_array(const Commands& c, const std::string& kind, std::size_t count) {
   return fmt::format(
       "#SBATCH --job-name={0}.{1}\n#SBATCH --array=0-{2}\n#SBATCH --output=\"{3}/{1}.%a.log\"\n"
@@ -76,6 +78,9 @@ std::string slurm_text(const Submission& s, const Commands& c) {
       "set -eu\nmkdir -p {}\n\nrender=$(sbatch --parsable <<'END'\n#!/bin/sh\n",
       base::shell_quoted(c.folder.string()));
   out += slurm_array(c, "render", render_tasks(s, c));
+  if (render_tasks(s, c) > kSlurmArray)
+    out += fmt::format("# More than {} tasks need a larger MaxArraySize than Slurm's default; or submit parts.\n",
+                       kSlurmArray);
   out +=
       "#SBATCH --requeue\n"
       "# One minute before the time limit, a signal stops the render, which writes its checkpoint.\n"

@@ -9,7 +9,7 @@
 #include "film/film.h"
 #include "film/half_sums.h"
 #include "film/layer_pixel.h"
-#include "kernel/render_tile.h"
+#include "kernel/pixel_place.h"
 
 namespace orrery::film {
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "base/error.h"
+#include "base/text.h"
 #include "image/format.h"
 #include "image/input.h"
 
@@ -60,9 +62,20 @@ bool has_holes(const film::Picture& picture) {
   return alpha != nullptr && std::any_of(alpha->values.begin(), alpha->values.end(), [](float a) { return a != 1.0f; });
 }
 
-/// Decodes all rows. Memory grows with the decoded rows, so that a damaged header cannot exhaust it.
-film::Picture decode_all(const std::filesystem::path& file, const Input& input) {
+std::uint64_t plane_bytes(const ImageSpec& spec) {
+  return sizeof(float) * static_cast<std::uint64_t>(spec.full_width) * static_cast<std::uint64_t>(spec.full_height) *
+         static_cast<std::uint64_t>(spec.nchannels);
+}
+
+/// Decodes all rows. Memory grows with the decoded rows, so that a truncated file does not need that of its header.
+film::Picture decode_all(const std::filesystem::path& file, const Input& input, std::uint64_t memory_limit) {
   const ImageSpec& spec = input.spec;
+  if (memory_limit > 0 && plane_bytes(spec) > memory_limit)
+    throw base::Error(base::ErrorKind::kNoMemory,
+                      "cannot read image " + file.string() + ": " + std::to_string(spec.full_width) + " x " +
+                          std::to_string(spec.full_height) + " pixels of " + std::to_string(spec.nchannels) +
+                          " channels need " + base::bytes_text(plane_bytes(spec)) + ", and " +
+                          base::bytes_text(memory_limit) + " is free");
   film::Picture picture;
   picture.width = spec.full_width;
   picture.height = spec.full_height;
@@ -90,7 +103,8 @@ film::Picture decode_all(const std::filesystem::path& file, const Input& input) 
 }
 
 /// Adds the planes of the parts after the first that have the same display window.
-void add_other_parts(const std::filesystem::path& file, Input& input, film::Picture& picture) {
+void add_other_parts(const std::filesystem::path& file, Input& input, std::uint64_t memory_limit,
+                     film::Picture& picture) {
   for (input.part = 1;; ++input.part) {
     input.spec = input.in->spec(input.part);
     if (input.spec.format == TypeDesc::UNKNOWN) break;  // there is no such part
@@ -98,7 +112,7 @@ void add_other_parts(const std::filesystem::path& file, Input& input, film::Pict
     if (spec.deep || spec.full_width != picture.width || spec.full_height != picture.height) continue;
     check_spec(file, spec);
     const std::string name = std::string(spec.get_string_attribute("oiio:subimagename"));
-    for (film::Plane& plane : decode_all(file, input).planes) {
+    for (film::Plane& plane : decode_all(file, input, memory_limit).planes) {
       if (picture.find(plane.name) != nullptr) plane.name = name + "." + plane.name;
       if (picture.find(plane.name) == nullptr) picture.planes.push_back(std::move(plane));
     }
@@ -107,12 +121,12 @@ void add_other_parts(const std::filesystem::path& file, Input& input, film::Pict
 
 }  // namespace
 
-film::Picture read(const std::filesystem::path& file, Parts parts) {
+film::Picture read(const std::filesystem::path& file, Parts parts, std::uint64_t memory_limit) {
   Input input = open_input(file);
   try {
-    film::Picture picture = decode_all(file, input);
+    film::Picture picture = decode_all(file, input, memory_limit);
     // Further pages of a TIFF are other images.
-    if (parts == Parts::kAll && format_of(file) == Format::kExr) add_other_parts(file, input, picture);
+    if (parts == Parts::kAll && format_of(file) == Format::kExr) add_other_parts(file, input, memory_limit, picture);
     picture.is_transparent = picture.is_transparent || has_holes(picture);
     input.in->geterror();  // OpenImageIO prints messages that are not fetched
     return picture;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "film/picture.h"
@@ -16,8 +17,9 @@ enum class Parts { kFirst, kAll };
 /// padded with zeros, a larger one is cropped. Integers of display formats are scaled to 0..1 and stay
 /// display-encoded; integers of EXR keep their values.
 ///
-/// Errors     base::Error: kUsage for an unknown extension, kMissingInput if the file cannot be opened, kBadData if it
-///            is not of the format of its extension, truncated or too large
-film::Picture read(const std::filesystem::path& file, Parts parts = Parts::kFirst);
+/// `memory_limit`  of the planes, bytes; 0: none. A display window costs memory where the file has no pixels, too
+/// Errors          base::Error: kUsage for an unknown extension, kMissingInput if the file cannot be opened, kBadData
+///                 if it is not of the format of its extension, truncated or too large, kNoMemory
+film::Picture read(const std::filesystem::path& file, Parts parts = Parts::kFirst, std::uint64_t memory_limit = 0);
 
 }  // namespace orrery::image

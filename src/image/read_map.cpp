@@ -80,6 +80,8 @@ MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats)
   const OIIO::ImageSpec& spec = input.spec;
   channels_of(file, spec);
   MapHeader out{spec.full_width, spec.full_height};
+  out.is_padded = spec.x > spec.full_x || spec.x + spec.width < spec.full_x + spec.full_width || spec.y > spec.full_y ||
+                  spec.y + spec.height < spec.full_y + spec.full_height;
   out.color_interop_id = std::string(spec.get_string_attribute("colorInteropID"));
   out.color_space = std::string(spec.get_string_attribute("oiio:ColorSpace"));
   out.is_encoded = is_display_format(*known_format(file)) && spec.format != TypeDesc::FLOAT;

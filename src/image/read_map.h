@@ -22,6 +22,7 @@ struct MapHeader {
   std::optional<std::array<float, 8>> chromaticities{};  ///< x, y of red, green, blue, white
   std::string color_space = {};                          ///< as OpenImageIO's tools declare it; empty: not declared
   bool is_encoded = false;                               ///< of a display format: values are not scene-linear
+  bool is_padded = false;                                ///< pixels of the display window without data are black
 };
 
 /// Reads the header of an image file, without its pixels.

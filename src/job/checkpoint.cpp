@@ -31,7 +31,14 @@ Checkpoint::Checkpoint(std::filesystem::path file, const CheckpointSettings& set
       next_(Clock::now() + interval(settings)) {}
 
 std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
-  if (!settings_.resume || !std::filesystem::exists(file_)) return {};
+  if (!std::filesystem::exists(file_)) return {};
+  if (!settings_.resume) {
+    if (hooks_.on_warning)
+      hooks_.on_warning(base::file_diagnostic(base::Severity::kWarning, file_.string(),
+                                              "checkpoint of an earlier render, replaced if this one is stopped; "
+                                              "--resume continues from it"));
+    return {};
+  }
   try {
     const image::Provenance found = image::read_provenance(file_);
     if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())

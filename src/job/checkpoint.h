@@ -34,7 +34,8 @@ class Checkpoint {
 
   const std::filesystem::path& file() const { return file_; }
 
-  /// Reads the checkpoint of an earlier run, if the job resumes and the file exists.
+  /// Reads the checkpoint of an earlier run, if the job resumes and the file exists. Warns if it exists and the job
+  /// does not resume, because a checkpoint of this run will replace it.
   ///
   /// Errors     base::Error(kBadData) if it is damaged or from another scene, setting or version
   std::optional<film::Partial> load(int width_px, int height_px);

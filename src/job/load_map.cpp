@@ -41,6 +41,8 @@ class Loader {
       if (header.width != 2 * header.height)
         warn(request_.file_key, fmt::format("{} x {} texels; a latitude-longitude map is twice as wide as high",
                                             header.width, header.height));
+      if (header.is_padded)
+        warn(request_.file_key, "its data window does not cover its display window; the rest is black");
       const display::PixelConversion convert = conversion(header);
       if (has_errors() || !fits()) return std::move(out_);
       read(header, convert);

@@ -123,15 +123,13 @@ class PlotMaker {
       for (std::size_t i = 0; i < points.centers.size(); ++i)
         lowest_ = std::min(lowest_, math::dot(points.centers[i], up) - std::abs(points.radii[i]));
       if (points.centers.empty()) continue;
-      if (out_.points.palette.empty()) {
-        out_.points.palette = points.palette;
-        out_.points.palette_rec709 = points.palette_rec709;
-        out_.points.color_names = points.color_names;
-        out_.points.colors = points.colors;
-      }
+      out_.legend.add(points);
       widen(range, points);
     }
-    out_.points.color_range = out_.points.color.range ? out_.points.color.range : range;
+    out_.legend.range = out_.points.color.range ? out_.points.color.range : range;
+    if (out_.legend.has_conflict)
+      out_.warnings.push_back("colour by " + out_.legend.title + ": the frames do not have the same values, and one " +
+                              "value has different colours in different frames; colour by a column of integers");
     if (!needs_range || !range) return;
     if (range->low < range->high) out_.points.color.range = range;
     chose("range " + number_text(range->low) + ":" + number_text(range->high),

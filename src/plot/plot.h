@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plot/data_options.h"
+#include "plot/write_legend.h"
 #include "scene/scene.h"
 
 /// A scene for a data file: what the user did not choose is chosen from the data, and every choice is reported.
@@ -26,7 +27,8 @@ struct PlotScene {
   std::vector<std::string> choices;  ///< "radius 0.53: half the median distance to the nearest neighbour"
   std::vector<std::string> warnings;
   std::vector<int> frames;  ///< to render; empty: one still image
-  scene::Points points;     ///< keys of the scene's points, and the colours of the first frame with spheres
+  scene::Points points;     ///< keys of the scene's points
+  LegendColors legend;
 };
 
 /// Reads the data and writes a scene for it.

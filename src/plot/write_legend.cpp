@@ -2,6 +2,9 @@
 #include "plot/write_legend.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <system_error>
 #include <vector>
 
 #include "base/error.h"
@@ -37,24 +40,19 @@ std::vector<points::Srgb8> developed(const std::vector<math::Vec3d>& colors, dis
   return out;
 }
 
-points::Legend legend_of(const scene::Points& points, const display::Settings& display) {
+points::Legend legend_of(const LegendColors& colors, const display::Settings& display) {
   points::Legend legend;
-  legend.title = !points.color.column.empty() ? points.color.column : points.color.element.empty() ? "type" : "element";
-  std::vector<points::Srgb8> colors = developed(points.palette, display);
-  if (!points.color_names.empty()) {
-    for (std::size_t i = 0; i < std::min(colors.size(), points.color_names.size()); ++i)
-      legend.patches.push_back({points.color_names[i], colors[i]});
+  legend.title = colors.title;
+  if (!colors.labels.empty()) {
+    for (const auto& [label, color] : colors.labels) legend.patches.push_back({label, developed({color}, display)[0]});
     return legend;
   }
-  if (!points.color_range)
+  if (!colors.range)
     throw base::Error(base::ErrorKind::kUsage, "--legend: the colours are not those of a column, types or elements");
-  // The last colour stands for values that are not numbers.
-  const bool has_nan = std::find(points.colors.begin(), points.colors.end(), colors.size() - 1) != points.colors.end();
-  if (has_nan) legend.nan_color = colors.back();
-  colors.pop_back();
-  legend.bar = std::move(colors);
-  legend.first = points.color_range->low;
-  legend.last = points.color_range->high;
+  legend.bar = developed(colors.bar, display);
+  if (colors.nan_color) legend.nan_color = developed({*colors.nan_color}, display)[0];
+  legend.first = colors.range->low;
+  legend.last = colors.range->high;
   return legend;
 }
 
@@ -70,10 +68,37 @@ void write_bar(const std::filesystem::path& file, const points::Legend& legend) 
   image::write_encoded(file, picture, "orrery");
 }
 
+std::optional<double> number_of(std::string_view label) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(label.data(), label.data() + label.size(), value);
+  if (error != std::errc() || end != label.data() + label.size() || std::isnan(value)) return {};
+  return value;
+}
+
 }  // namespace
 
-void write_legend(const std::filesystem::path& file, const scene::Points& points, const display::Settings& display) {
-  const points::Legend legend = legend_of(points, display);
+bool LabelOrder::operator()(std::string_view a, std::string_view b) const {
+  const std::optional<double> x = number_of(a), y = number_of(b);
+  if (x && y && *x != *y) return *x < *y;
+  return x.has_value() != y.has_value() ? x.has_value() : a < b;
+}
+
+void LegendColors::add(const scene::Points& frame) {
+  const scene::PointsColor& key = frame.color;
+  title = !key.column.empty() ? key.column : key.element.empty() ? "type" : "element";
+  for (std::size_t i = 0; i < std::min(frame.palette.size(), frame.color_names.size()); ++i) {
+    const auto [label, is_new] = labels.try_emplace(frame.color_names[i], frame.palette[i]);
+    has_conflict = has_conflict || (!is_new && label->second != frame.palette[i]);
+  }
+  if (!frame.color_names.empty() || key.column.empty() || frame.palette.empty()) return;
+  // The last colour stands for values that are not numbers.
+  const std::size_t last = frame.palette.size() - 1;
+  bar.assign(frame.palette.begin(), frame.palette.end() - 1);
+  if (std::find(frame.colors.begin(), frame.colors.end(), last) != frame.colors.end()) nan_color = frame.palette[last];
+}
+
+void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display) {
+  const points::Legend legend = legend_of(colors, display);
   if (file.extension() == ".svg") return base::write_text_file(file, points::legend_svg(legend));
   if (!image::is_display_format(image::format_of(file)))
     throw base::Error(base::ErrorKind::kUsage, "--legend: name an .svg or .png file");

@@ -2,20 +2,41 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "display/develop.h"
 #include "scene/scene.h"
 
 namespace orrery::plot {
 
+/// Numbers by value, before other texts.
+struct LabelOrder {
+  bool operator()(std::string_view a, std::string_view b) const;
+};
+
+/// The colours of a plot, collected over its frames. All are linear Rec.709.
+struct LegendColors {
+  std::string title;                                      ///< the column, "type" or "element"
+  std::map<std::string, math::Vec3d, LabelOrder> labels;  ///< of types, elements and categories
+  std::vector<math::Vec3d> bar;                           ///< of a colour map; empty: there is none
+  std::optional<math::Vec3d> nan_color;                   ///< set if a value is NaN
+  std::optional<scene::Interval> range;                   ///< of the colour map
+  bool has_conflict = false;                              ///< a label has different colours in different frames
+
+  /// Adds the colours of a loaded frame.
+  void add(const scene::Points& frame);
+};
+
 /// Writes the legend of a plot's colours: a complete one as SVG, or the bar of the colour map alone as an image. The
 /// colours go through the display transform of the image, so that they match it.
 ///
-/// `points`   loaded spheres with a colour map, or with colours by type or element
 /// `display`  of the image; its working space is not used
-/// Errors     base::Error: kUsage for another extension, and if the points have no colours that a legend can explain;
+/// Errors     base::Error: kUsage for another extension, and if there are neither labels nor a colour map with a range;
 ///            those of display::develop; kCannotCreate, kIo
-void write_legend(const std::filesystem::path& file, const scene::Points& points, const display::Settings& display);
+void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display);
 
 }  // namespace orrery::plot

@@ -17,6 +17,7 @@ struct ExrFile {
   std::vector<float> rgb;             ///< width * height * 3, rows from the top
   std::string color_interop_id = {};  ///< empty: none
   std::vector<float> chromaticities{};
+  int display_width = 0;  ///< of the display window, from the same corner; 0: width
 
   static ExrFile constant(int width, int height, std::array<float, 3> color) {
     ExrFile out{width, height, {}};
@@ -43,14 +44,14 @@ struct ExrFile {
       channels += name + std::string(1, '\0');
       channels += packed(std::array<std::int32_t, 4>{2, 0, 1, 1});  // float, not linear, every pixel
     }
-    const std::string window = packed(std::array<std::int32_t, 4>{0, 0, width - 1, height - 1});
+    const auto window = [&](int right) { return packed(std::array<std::int32_t, 4>{0, 0, right - 1, height - 1}); };
     const std::string one = packed(std::array<float, 1>{1});
     attribute("channels", "chlist", channels + '\0');
     if (!chromaticities.empty()) attribute("chromaticities", "chromaticities", packed(chromaticities));
     if (!color_interop_id.empty()) attribute("colorInteropID", "string", color_interop_id);
     attribute("compression", "compression", std::string(1, '\0'));
-    attribute("dataWindow", "box2i", window);
-    attribute("displayWindow", "box2i", window);
+    attribute("dataWindow", "box2i", window(width));
+    attribute("displayWindow", "box2i", window(display_width > 0 ? display_width : width));
     attribute("lineOrder", "lineOrder", std::string(1, '\0'));
     attribute("pixelAspectRatio", "float", one);
     attribute("screenWindowCenter", "v2f", packed(std::array<float, 2>{0, 0}));

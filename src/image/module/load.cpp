@@ -3,6 +3,7 @@
 // OpenImageIO's 260 libraries takes longer than most commands, so commands without image I/O do not load them.
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <future>
 
 #include "base/module.h"
@@ -36,7 +37,9 @@ void set_threads(int count) {
 
 std::string oiio_version() { return module().oiio_version(); }
 
-film::Picture read(const std::filesystem::path& file, Parts parts) { return module().read(file, parts); }
+film::Picture read(const std::filesystem::path& file, Parts parts, std::uint64_t memory_limit) {
+  return module().read(file, parts, memory_limit);
+}
 
 MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats) {
   return module().read_map_header(file, formats);

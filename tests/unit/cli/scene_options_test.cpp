@@ -45,14 +45,14 @@ TEST(CliSceneOptions, TheLastShortFormCounts) {
   EXPECT_EQ(overrides_of({"--samples", "1", "--samples", "2"}), (std::vector<std::string>{"render.samples=2"}));
 }
 
-TEST(CliSceneOptions, AnEmptyValueIsAnOverride) {
-  EXPECT_EQ(overrides_of({"--samples", ""}), (std::vector<std::string>{"render.samples="}));
+TEST(CliSceneOptions, AnEmptyValueIsAnError) {
+  for (const char* option : {"--samples", "--layers"})
+    EXPECT_THROW(overrides_of({option, ""}), CLI::ValidationError) << option;
 }
 
 TEST(CliSceneOptions, LayersAreSeparatedByCommas) {
   EXPECT_EQ(overrides_of({"--layers", "Z,denoise.albedo"}),
             (std::vector<std::string>{"output.layers=[Z,denoise.albedo]"}));
-  EXPECT_EQ(overrides_of({"--layers", ""}), (std::vector<std::string>{"output.layers=[]"}));
 }
 
 }  // namespace

@@ -86,6 +86,7 @@ TEST_F(ImageReadMap, CoversTheDisplayWindow) {
     spec.full_x = 0, spec.full_y = 0, spec.full_width = 4, spec.full_height = 3;
     if (tiled) spec.tile_width = spec.tile_height = 2;
     write_foreign("a.exr", spec);
+    EXPECT_TRUE(read_map_header(folder_ / "a.exr").is_padded);
     EXPECT_EQ(values_of(folder_ / "a.exr"), (std::vector<float>{0,  0,  0,  0,  0,  0,  0, 0, 0, 0, 0, 0,  //
                                                                 3,  4,  5,  6,  7,  8,  0, 0, 0, 0, 0, 0,  //
                                                                 12, 13, 14, 15, 16, 17, 0, 0, 0, 0, 0, 0}));
@@ -98,6 +99,7 @@ TEST_F(ImageReadMap, ReadsRadianceFiles) {
   write_hdr(folder_ / "a.hdr", picture);
   EXPECT_EQ(values_of(folder_ / "a.hdr"), std::vector<float>(24, 0.5F));
   EXPECT_EQ(read_map_header(folder_ / "a.hdr").color_space, "") << "assumed, not declared";
+  EXPECT_FALSE(read_map_header(folder_ / "a.hdr").is_padded);
 }
 
 TEST_F(ImageReadMap, ReportsTheDeclaredColourSpace) {

@@ -85,6 +85,14 @@ TEST_F(ImageRead, ADataWindowOutsideTheDisplayWindowGivesZeros) {
   }
 }
 
+TEST_F(ImageRead, ALargeDisplayWindowNeedsItsMemory) {
+  OIIO::ImageSpec spec = grey(4, 3);
+  spec.full_width = 60000, spec.full_height = 60000;
+  write_foreign(folder_ / "a.exr", spec);
+  expect_error(ErrorKind::kNoMemory, {"a.exr", "60000 x 60000", "13.4 GiB", "1.0 GiB is free"},
+               [&] { read(folder_ / "a.exr", Parts::kFirst, std::uint64_t{1} << 30); });
+}
+
 TEST_F(ImageRead, TiledFilesReadLikeScanlines) {
   OIIO::ImageSpec spec = grey(75, 150);
   write_foreign(folder_ / "rows.exr", spec);

@@ -137,6 +137,16 @@ TEST_F(JobLoadBackground, OtherProportionsAreAWarning) {
             Texts{"background.file: 3 x 2 texels; a latitude-longitude map is twice as wide as high"});
 }
 
+TEST_F(JobLoadBackground, TexelsOutsideTheDataWindowAreAWarning) {
+  ExrFile exr = ExrFile::constant(2, 2, {1, 1, 1});
+  exr.display_width = 4;
+  const LoadedBackground loaded = load(exr);
+  EXPECT_EQ(texts(loaded), Texts{"background.file: its data window does not cover its display window; the rest is "
+                                 "black"});
+  EXPECT_EQ(std::vector<float>(loaded.image->row(1), loaded.image->row(1) + 12),
+            (std::vector<float>{1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0}));
+}
+
 TEST_F(JobLoadBackground, MemoryIsCheckedBeforePixelsAreRead) {
   support::write_bytes(folder_ / "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 65536\n");
   request_.file = folder_ / "a.hdr";

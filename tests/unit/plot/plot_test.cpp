@@ -28,6 +28,8 @@ std::string frame(const std::string& columns, const std::vector<std::string>& ro
 const std::string kCorners =
     "x,y,z,mass\n0,0,0,1\n4,0,0,2\n0,4,0,3\n4,4,0,4\n0,0,4,5\n4,0,4,6\n0,4,4,7\n4,4,4,8\n1,0,0,9\n";
 
+using Labels = decltype(LegendColors::labels);
+
 class PlotPlot : public testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) {
@@ -149,8 +151,7 @@ TEST_F(PlotPlot, TypesAreCategories) {
   const scene::Points points = read().points[0];
   EXPECT_EQ(points.color.map, "tab10");
   EXPECT_EQ(points.palette, points::palette(*points::find_color_map("tab10"), 2));
-  EXPECT_EQ(made.points.palette, points.palette) << "for the legend";
-  EXPECT_EQ(made.points.color_names, (std::vector<std::string>{"1", "2"}));
+  EXPECT_EQ(made.legend.labels, (Labels{{"1", points.palette[0]}, {"2", points.palette[1]}}));
   options.points.color.map = "viridis";
   options.has_map = true;
   make();
@@ -172,7 +173,7 @@ TEST_F(PlotPlot, ColorByAColumn) {
   options.has_map = true;
   make();
   EXPECT_EQ(read().points[0].color.range->high, 100);
-  EXPECT_EQ(made.points.color_range->high, 100) << "for the legend";
+  EXPECT_EQ(made.legend.range->high, 100) << "for the legend";
   EXPECT_EQ(read().points[0].color.map, "magma");
   EXPECT_EQ(choices().find("map "), std::string::npos) << choices();
   EXPECT_EQ(choices().find("range "), std::string::npos) << choices();
@@ -205,13 +206,39 @@ TEST_F(PlotPlot, OneRangeAndOneViewForAllFrames) {
   EXPECT_EQ(read(1).points[0].centers.size(), 0u) << "a frame without particles is rendered";
 }
 
+TEST_F(PlotPlot, TheLegendExplainsAllFrames) {
+  options.all_frames = true;
+  make("a.dump", frame("x y z radius type", {"0 0 0 1 2"}) + frame("x y z radius type", {"0 0 0 1 10", "1 0 0 1 1"}));
+  const std::vector<Vec3d> tab10 = points::palette(*points::find_color_map("tab10"), 10);
+  EXPECT_EQ(made.legend.labels, (Labels{{"1", tab10[0]}, {"2", tab10[1]}, {"10", tab10[9]}}));
+  EXPECT_EQ(made.legend.labels.rbegin()->first, "10") << "numbers by value";
+  EXPECT_FALSE(made.legend.has_conflict);
+  EXPECT_TRUE(made.warnings.empty());
+  options.color_by = "vx";
+  make("a.dump", frame("x y z radius vx", {"0 0 0 1 2"}) + frame("x y z radius vx", {"0 0 0 1 nan", "1 0 0 1 1"}));
+  EXPECT_EQ(made.legend.bar.size(), 256u);
+  EXPECT_EQ(made.legend.nan_color, read().points[0].palette.back()) << "of the second frame";
+  make("a.dump", frame("x y z radius vx", {"0 0 0 1 2"}) + frame("x y z radius vx", {"0 0 0 1 3"}));
+  EXPECT_FALSE(made.legend.nan_color);
+}
+
+TEST_F(PlotPlot, OneValueWithTwoColorsIsReported) {
+  options.all_frames = true;
+  options.color_by = "vx";
+  options.points.color.map = "tab10";
+  options.has_map = true;
+  make("a.dump", frame("x y z radius vx", {"0 0 0 1 0.5"}) + frame("x y z radius vx", {"0 0 0 1 0.25", "1 0 0 1 0.5"}));
+  EXPECT_TRUE(made.legend.has_conflict);
+  EXPECT_EQ(made.warnings.size(), 1u);
+}
+
 TEST_F(PlotPlot, ChosenFramesOnly) {
   write("a.dump", frame("x y z radius vx", {"0 0 0 1 100"}) + frame("x y z radius vx", {"1 0 0 1 1"}) +
                       frame("x y z radius vx", {"2 0 0 1 2"}));
   options.color_by = "vx";
   options.frames = {2, 3};
   make();
-  EXPECT_EQ(made.points.color_range->high, 2);
+  EXPECT_EQ(made.legend.range->high, 2);
   EXPECT_EQ(made.frames, (std::vector<int>{2, 3}));
   options.frames = {2, 4};
   EXPECT_EQ(error(), "--frames: there is no frame 4; " + (folder_ / "a.dump").string() + " has 3 frames");

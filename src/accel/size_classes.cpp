@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "accel/size_classes.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+
+#include "accel/accel.h"
+#include "accel/box_frame.h"
+#include "accel/sphere_bvh.h"
+#include "base/stop_point.h"
+
+namespace orrery::accel {
+namespace {
+
+/// Maximum number of outliers: every ray tests each of them.
+constexpr std::size_t kMaxOutliers = 4;
+
+/// A sphere is an outlier if it is this many times larger than the bounds of all smaller ones, such as a ground under a
+/// scene. Its box would enclose every other sphere, and its size would determine their padding.
+constexpr double kOutlierRatio = 4;
+
+/// Spheres this many times larger than the median stay out of a SphereBvh: they would enlarge all boxes around them.
+constexpr double kGiantRatio = 16;
+
+}  // namespace
+
+std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, std::size_t count) {
+  std::vector<std::uint32_t> rest;
+  rest.reserve(count - without.size());
+  auto next = without.begin();
+  for (std::uint32_t id = 0; id < count; ++id) {
+    if (next != without.end() && *next == id) {
+      ++next;
+    } else {
+      rest.push_back(id);
+    }
+  }
+  return rest;
+}
+
+std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std::size_t count,
+                                         const std::vector<std::uint32_t>& duplicates) {
+  struct Large {
+    double radius;
+    std::uint32_t id;
+  };
+  std::vector<Large> largest;  // descending, at most one more than there can be outliers
+  auto duplicate = duplicates.begin();
+  const base::StopPoint stop;
+  for (std::uint32_t id = 0; id < count; ++id) {
+    stop.check(id);
+    if (duplicate != duplicates.end() && *duplicate == id) {
+      ++duplicate;
+      continue;
+    }
+    const double radius = spheres[id].radius;
+    if (largest.size() > kMaxOutliers && !(radius > largest.back().radius)) continue;
+    const auto at = std::find_if(largest.begin(), largest.end(), [&](const Large& l) { return l.radius < radius; });
+    largest.insert(at, {radius, id});
+    if (largest.size() > kMaxOutliers + 1) largest.pop_back();
+  }
+  // Take the largest set whose smallest member dwarfs the rest.
+  for (std::size_t n = std::min(largest.size(), kMaxOutliers); n > 0; --n) {
+    // The rest has a frame at least as large as its largest sphere.
+    if (n == largest.size() || !(largest[n - 1].radius > kOutlierRatio * largest[n].radius)) continue;
+    std::vector<std::uint32_t> outliers;
+    for (std::size_t i = 0; i < n; ++i) outliers.push_back(largest[i].id);
+    std::sort(outliers.begin(), outliers.end());
+    std::vector<std::uint32_t> without;
+    std::set_union(outliers.begin(), outliers.end(), duplicates.begin(), duplicates.end(), std::back_inserter(without));
+    const BoxFrame frame(spheres, all_but(without, count));
+    if (largest[n - 1].radius * frame.scale > kOutlierRatio * frame.reach) return outliers;
+  }
+  return {};
+}
+
+double giant_radius(const kernel::SceneView& view) {
+  const std::size_t stride = (view.sphere_count - view.moving_count) / 4096 + 1;
+  std::vector<double> radii;
+  for (std::size_t id = view.moving_count; id < view.sphere_count; id += stride)
+    radii.push_back(view.spheres[id].radius);
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return kGiantRatio * *middle;
+}
+
+std::size_t spheres_in_bvh(const kernel::SceneView& scene) {
+  if (scene.sphere_count - scene.moving_count < kBvhThreshold) return 0;
+  const double limit = giant_radius(scene);
+  std::size_t count = 0;
+  for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) count += scene.spheres[id].radius <= limit;
+  return count < kBvhThreshold || count > SphereBvh::kMaxSpheres ? 0 : count;
+}
+
+}  // namespace orrery::accel

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kernel/scene_view.h"
+#include "kernel/sphere_array.h"
+
+/// Which spheres stay out of the BVHs because of their size.
+namespace orrery::accel {
+
+/// Ids of all spheres except those in `without`.
+///
+/// Domain     `without` is ascending
+std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, std::size_t count);
+
+/// Ids, ascending, of the outliers: a few spheres that are much larger than the bounds of all smaller ones, such as a
+/// ground. Duplicates count neither as outliers nor as the rest.
+std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std::size_t count,
+                                         const std::vector<std::uint32_t>& duplicates);
+
+/// The radius above which a static sphere stays out of a SphereBvh, by the median of a sample.
+///
+/// Domain     at least one static sphere
+double giant_radius(const kernel::SceneView& view);
+
+}  // namespace orrery::accel
