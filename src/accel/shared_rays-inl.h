@@ -33,7 +33,7 @@ class SharedRays {
   HWY_INLINE SharedRays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid, RTCRayN* rays)
       : bvh_(bvh),
         query_(query),
-        prefetcher_(bvh),
+        prefetcher_(bvh, query.scene->spheres),
         shortest_(shortest_certain<kPrecision>(bvh, query.scene->frame)),
         direction_{&RTCRayN_dir_x(rays, kWidth, 0), &RTCRayN_dir_y(rays, kWidth, 0), &RTCRayN_dir_z(rays, kWidth, 0)},
         origin_{&RTCRayN_org_x(rays, kWidth, 0), &RTCRayN_org_y(rays, kWidth, 0), &RTCRayN_org_z(rays, kWidth, 0)} {
@@ -171,7 +171,7 @@ class SharedRays {
     const auto zero = hn::Zero(d_), growth = hn::Set(d_, kGrowth);
     const auto infinite = hn::Set(d_, std::numeric_limits<float>::infinity());
     auto limit = hn::Load(d_, limit_);
-    const std::uint32_t* const ids = &bvh_.ids[std::size_t{index} * SphereBvh::kArity];
+    const std::uint32_t* const ids = leaf.ids;
     for (unsigned rest = entered_by_any(bound, bvh_.count_in(index)); rest != 0; rest &= rest - 1) {
       const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
       const auto x = hn::Set(d_, center[0][i]) - ox, y = hn::Set(d_, center[1][i]) - oy,
@@ -195,7 +195,7 @@ class SharedRays {
         limit = hn::Min(limit, hn::IfThenElse(pierced, certain, limit));
       }
       const float nearest = hn::GetLane(hn::MinOfLanes(d_, hn::IfThenElse(may_hit, begin, infinite)));
-      prefetch_sphere(query_.scene->spheres, ids[i]);
+      prefetcher_.prefetch_sphere(ids[i]);
       insert(candidates_, 0, candidate_count_, SharedVisit{nearest, ids[i], hitting});
     }
     hn::Store(limit, d_, limit_);

@@ -87,6 +87,7 @@ SphereBvh::Node make_node(const Bounds* children, std::size_t count, std::uint32
     const float origin = all.lower[axis], step = step_between(origin, all.upper[axis]);
     node.origin[axis] = origin;
     node.step[axis] = step;
+    std::fill_n(node.bound[0][axis], kArity, std::uint8_t{255});
     for (std::size_t i = 0; i < count; ++i) {
       node.bound[0][axis][i] = code_below(children[i].lower[axis], origin, step);
       node.bound[1][axis][i] = code_above(children[i].upper[axis], origin, step);
@@ -104,18 +105,21 @@ SphereBvh::Leaf make_leaf(const SphereItem* items, std::size_t count) {
     leaf.origin[axis] = all.lower[axis];
     leaf.step = std::max(leaf.step, step_between(all.lower[axis], all.upper[axis]));
   }
-  for (std::size_t i = 0; i < count; ++i)
+  std::fill_n(leaf.ids, kArity, kernel::kNoSphere);
+  for (std::size_t i = 0; i < count; ++i) {
+    leaf.ids[i] = items[i].id;
     for (int axis = 0; axis < 3; ++axis)
       leaf.center[axis][i] = static_cast<std::uint8_t>(
           std::clamp(std::lround((items[i].center[axis] - leaf.origin[axis]) / leaf.step), 0L, 255L));
+  }
   return leaf;
 }
 
 }  // namespace
 
-SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> all, const BoxFrame& frame,
+SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
                      const std::function<bool(double)>& monitor)
-    : count(all.size()), ids(std::move(all)) {
+    : count(ids.size()) {
   using Range = tbb::blocked_range<std::size_t>;
   const std::size_t leaf_count = (count + kArity - 1) / kArity;
   padding = rounded_up(kSpherePadding * frame.reach);
@@ -132,7 +136,10 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> a
   const std::size_t id_count = std::size_t{*std::max_element(ids.begin(), ids.end())} + 1;
 
   stop.check();
-  auto storage = std::make_unique_for_overwrite<SphereItem[]>(count);  // its pages are first touched in parallel
+  using Allocator = base::HugePageAllocator<SphereItem>;
+  const auto free_items = [n = count](SphereItem* p) { Allocator().deallocate(p, n); };
+  // Its pages are first touched in parallel.
+  std::unique_ptr<SphereItem[], decltype(free_items)> storage(Allocator().allocate(count), free_items);
   const std::span<SphereItem> items(storage.get(), count);
   tbb::parallel_for(Range(0, count, 4096), [&](const Range& range) {
     stop.check();
@@ -152,7 +159,6 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> a
   leaves.reserve(leaf_count);
   last_leaf = static_cast<std::uint32_t>(leaf_count - 1);
   places.assign(id_count, kernel::kNoSphere);
-  ids.reserve(leaf_count * kArity);
   if (own_radii) radii.reserve(leaf_count);
   std::vector<Bounds> below;
   below.reserve(leaf_count);
@@ -163,7 +169,6 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> a
       leaves[l] = make_leaf(in_leaf, n);
       float r[kArity], most = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        ids[l * kArity + i] = in_leaf[i].id;
         places[in_leaf[i].id] = static_cast<std::uint32_t>(l * kArity + i);
         r[i] = own_radii ? rounded_up(spheres[in_leaf[i].id].radius * frame.scale) : radius;
         most = std::max(most, r[i]);
@@ -184,7 +189,6 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> a
     stop.check();
     const std::size_t end = std::min(leaf_count, begin + kReleasedLeaves);
     leaves.resize(end);
-    ids.resize(end * kArity, kernel::kNoSphere);
     if (own_radii) radii.resize(end);
     below.resize(end);
     tbb::parallel_for(Range(begin, end, 256), make_leaves);
@@ -215,7 +219,7 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> a
 }
 
 std::size_t SphereBvh::bytes() const noexcept {
-  return (ids.size() + places.size()) * sizeof(ids[0]) + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) +
+  return places.size() * sizeof(places[0]) + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) +
          radii.size() * sizeof(LeafRadii) + nodes.size() * sizeof(Node);
 }
 

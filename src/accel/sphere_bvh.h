@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "accel/box_frame.h"
+#include "base/huge_pages.h"
 #include "kernel/sphere_array.h"
 
 namespace orrery::accel {
@@ -28,6 +29,7 @@ class SphereBvh {
     std::uint8_t center[3][kArity];
     float origin[3];
     float step;
+    std::uint32_t ids[kArity];  ///< of the spheres; kNoSphere beyond the last one
   };
 
   /// Radii of a leaf's spheres, if they differ between spheres: at most step * radius, box space.
@@ -36,18 +38,20 @@ class SphereBvh {
     float step;
   };
 
-  /// Boxes of the children, in box space: origin + step * bound.
+  /// Boxes of the children, in box space: origin + step * bound. Beyond the last child, lower bounds are 255 and upper
+  /// bounds 0, so that no ray enters.
   struct alignas(64) Node {
     std::uint8_t bound[2][3][kArity];  ///< lower and upper
     float origin[3];
-    float step[3];
     std::uint32_t first;  ///< the first child: a reference as `root()`
+    float step[3];
     std::uint32_t count;  ///< of children
   };
 
-  /// A region of box space that no sphere below any other node reaches into. Empty if lower > upper.
+  /// A region of box space that no sphere below any other node reaches into. Empty if lower > upper. The fourth
+  /// dimension is unbounded: a vector of four floats holds a bound.
   struct Cell {
-    float lower[3], upper[3];
+    float lower[4], upper[4];
   };
 
   /// Set in references to leaves; the other bits are the index of the leaf or node.
@@ -68,7 +72,7 @@ class SphereBvh {
   SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> ids, const BoxFrame& frame,
             const std::function<bool(double)>& monitor = {});
 
-  bool empty() const noexcept { return ids.empty(); }
+  bool empty() const noexcept { return leaves.empty(); }
   std::uint32_t root() const noexcept { return static_cast<std::uint32_t>(nodes.size() - 1); }
   std::size_t bytes() const noexcept;
 
@@ -84,13 +88,13 @@ class SphereBvh {
     return rest < kArity ? static_cast<unsigned>(rest) : kArity;
   }
 
-  std::size_t count = 0;              ///< of spheres
-  std::vector<std::uint32_t> ids;     ///< of the spheres, in the order of the leaves; kNoSphere up to a full leaf
-  std::vector<std::uint32_t> places;  ///< of each sphere of the scene in `ids`; kNoSphere: it is not in the tree
-  std::vector<Leaf> leaves;
-  std::vector<LeafRadii> radii;                        ///< one per leaf; empty if all spheres have `radius`
-  std::vector<Node> nodes;                             ///< level by level, those above the leaves first
-  std::vector<Cell> cells;                             ///< one per node
+  std::size_t count = 0;  ///< of spheres
+  base::HugeVector<std::uint32_t>
+      places;  ///< of each sphere of the scene: leaf * kArity + index; kNoSphere: not in the tree
+  base::HugeVector<Leaf> leaves;
+  base::HugeVector<LeafRadii> radii;                   ///< one per leaf; empty if all spheres have `radius`
+  base::HugeVector<Node> nodes;                        ///< level by level, those above the leaves first
+  base::HugeVector<Cell> cells;                        ///< one per node
   std::array<std::uint32_t, kMaxDepth> level_begin{};  ///< index of the first node of each level
   std::uint32_t last_leaf = 0;                         ///< the only one that may have fewer than kArity spheres
   float radius = 0;                                    ///< box space, rounded up

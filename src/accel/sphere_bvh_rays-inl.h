@@ -57,29 +57,35 @@ static_assert(SphereBvh::kLeafBit == std::uint32_t{kLeaf} << kIndexWidth);
 /// The cache lines of nodes and leaves. Which kind a ray visits next is hard to predict, so nothing branches on it.
 class Prefetcher {
  public:
-  explicit Prefetcher(const SphereBvh& bvh) : has_radii_(!bvh.radii.empty()) {
+  Prefetcher(const SphereBvh& bvh, const kernel::SphereArray& spheres) : has_radii_(!bvh.radii.empty()) {
+    // Spheres of the rarer kind are not prefetched.
+    const bool plain = spheres.all_plain();
+    sphere_stride_ = plain ? sizeof(kernel::Sphere) : 3 * sizeof(float);
+    spheres_ = reinterpret_cast<std::uintptr_t>(spheres.address(plain ? 0 : spheres.plain_count)) -
+               (plain ? 0 : spheres.plain_count * sphere_stride_);
     const auto at = [](const auto* p) { return reinterpret_cast<const std::uint8_t*>(p); };
-    first_[kNode] = second_[kNode] = third_[kNode] = at(bvh.nodes.data());
-    second_[kNode] += 64;
-    first_[kEnd] = second_[kEnd] = third_[kEnd] = first_[kNode];
+    first_[kNode] = first_[kEnd] = at(bvh.nodes.data());
     first_[kLeaf] = at(bvh.leaves.data());
-    second_[kLeaf] = at(bvh.ids.data());
-    third_[kLeaf] = at(bvh.radii.data());
+    radii_[kNode] = radii_[kEnd] = radii_[kLeaf] = at(bvh.radii.data());
   }
   HWY_INLINE void prefetch(std::uint32_t reference) const {
-    static constexpr std::size_t kFirst[kKinds] = {sizeof(SphereBvh::Node), 0, sizeof(SphereBvh::Leaf)};
-    static constexpr std::size_t kSecond[kKinds] = {sizeof(SphereBvh::Node), 0,
-                                                    SphereBvh::kArity * sizeof(std::uint32_t)};
-    static constexpr std::size_t kThird[kKinds] = {0, 0, sizeof(SphereBvh::LeafRadii)};
+    static_assert(sizeof(SphereBvh::Node) == 128 && sizeof(SphereBvh::Leaf) == 128);
+    static constexpr std::size_t kRadii[kKinds] = {0, 0, sizeof(SphereBvh::LeafRadii)};
     const unsigned kind = reference >> kIndexWidth;
     const std::size_t index = reference & kIndexMask;
-    hwy::Prefetch(first_[kind] + index * kFirst[kind]);
-    hwy::Prefetch(second_[kind] + index * kSecond[kind]);
-    if (has_radii_) hwy::Prefetch(third_[kind] + index * kThird[kind]);
+    const std::uint8_t* const at = first_[kind] + index * 128;
+    hwy::Prefetch(at);
+    hwy::Prefetch(at + 64);
+    if (has_radii_) hwy::Prefetch(radii_[kind] + index * kRadii[kind]);
+  }
+  HWY_INLINE void prefetch_sphere(std::uint32_t id) const {
+    hwy::Prefetch(reinterpret_cast<const std::uint8_t*>(spheres_ + id * sphere_stride_));
   }
 
  private:
-  const std::uint8_t *first_[kKinds], *second_[kKinds], *third_[kKinds];
+  std::uintptr_t spheres_;
+  std::size_t sphere_stride_;
+  const std::uint8_t *first_[kKinds], *radii_[kKinds];
   bool has_radii_;
 };
 
@@ -115,10 +121,6 @@ template <kernel::Precision kPrecision>
 HWY_INLINE float shortest_certain(const SphereBvh& bvh, const BoxFrame& frame) {
   if (kPrecision != kernel::Precision::kBook) return 0;
   return static_cast<float>(kernel::kBookShortestDistance * frame.scale) * kLonger + bvh.padding;
-}
-
-HWY_INLINE void prefetch_sphere(const kernel::SphereArray& spheres, std::uint32_t id) {
-  hwy::Prefetch(static_cast<const std::uint8_t*>(spheres.address(id)));
 }
 
 }  // namespace orrery::accel::HWY_NAMESPACE

@@ -83,7 +83,8 @@ class Sorter {
       level_unit *= kArity;
       if (level.size() == 1) break;
     }
-    divide(0, items_.size(), unit * kArity, {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}});
+    divide(0, items_.size(), unit * kArity,
+           {{-kInfinity, -kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity, kInfinity}});
     if (stopped_) throw base::Error(base::ErrorKind::kStopped, "stopped while building");
   }
 

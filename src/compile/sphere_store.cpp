@@ -44,7 +44,7 @@ void append_indices(const scene::NumberArray& radii, const std::vector<double>& 
   for (const std::uint8_t i : radii.palette_indices()) out.push_back(of_palette[i]);
 }
 
-void append_singles(const scene::NumberArray& numbers, std::vector<float>& out) {
+void append_singles(const scene::NumberArray& numbers, base::HugeVector<float>& out) {
   if (const float* const singles = numbers.singles())
     out.insert(out.end(), singles, singles + numbers.size());
   else
@@ -74,7 +74,8 @@ void SphereStore::append(std::span<const scene::Points> sets) {
   }
   stop.check();
   radius_palette_ = std::move(palette);
-  centers_.reserve(3 * count);
+  if (count == 0) return;
+  centers_.reserve(3 * count + 1);
   if (radius_palette_.empty()) radii_.reserve(count);
   if (radius_palette_.size() > 1) radius_indices_.reserve(count);
   for (const scene::Points& points : sets) {
@@ -82,6 +83,7 @@ void SphereStore::append(std::span<const scene::Points> sets) {
     if (radius_palette_.empty()) append_singles(points.radii, radii_);
     if (radius_palette_.size() > 1) append_indices(points.radii, radius_palette_, radius_indices_);
   }
+  centers_.push_back(0);
   for (float& radius : radii_) radius = std::abs(radius);
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "kernel/sphere_array.h"
 #include "scene/scene.h"
 
@@ -38,13 +39,14 @@ class SphereStore {
   }
 
   std::size_t bytes() const noexcept {
-    return plain_.size() * sizeof(kernel::Sphere) + (centers_.size() + radii_.size()) * sizeof(float) +
+    return plain_.size() * sizeof(kernel::Sphere) + (centers_.size() / 3 * 3 + radii_.size()) * sizeof(float) +
            radius_indices_.size();
   }
 
  private:
-  std::vector<kernel::Sphere> plain_;
-  std::vector<float> centers_, radii_;
+  base::HugeVector<kernel::Sphere> plain_;
+  base::HugeVector<float> centers_;  ///< and one more: see kernel::SphereArray
+  base::HugeVector<float> radii_;
   std::vector<std::uint8_t> radius_indices_;
   std::vector<double> radius_palette_;
 };

@@ -12,11 +12,11 @@ namespace orrery::kernel {
 /// The spheres of a scene. Owns nothing.
 ///
 /// The first ones are stored as they are. The rest may be compact, if that loses nothing: centres in single precision,
-/// and a radius for all, one each, or one each from a palette.
+/// and a radius for all, one each, or one each from a palette. A vector of four floats is read from each centre.
 struct SphereArray {
   const Sphere* plain = nullptr;
   std::size_t plain_count = std::numeric_limits<std::size_t>::max();  ///< of the spheres in `plain`, the first ones
-  const float* centers = nullptr;                                     ///< of the others: x, y, z
+  const float* centers = nullptr;                                     ///< of the others: x, y, z; and one more number
   const float* radii = nullptr;                                       ///< of the others; null: from the palette
   const std::uint8_t* radius_indices = nullptr;                       ///< of the others; null: the first radius for all
   const double* radius_palette = nullptr;
@@ -27,10 +27,14 @@ struct SphereArray {
   Sphere operator[](std::size_t id) const noexcept {
     if (id < plain_count) return plain[id];
     const std::size_t i = id - plain_count;
-    const double radius = radii != nullptr ? static_cast<double>(radii[i])
-                                           : radius_palette[radius_indices != nullptr ? radius_indices[i] : 0];
     return {static_cast<double>(centers[3 * i]), static_cast<double>(centers[3 * i + 1]),
-            static_cast<double>(centers[3 * i + 2]), radius};
+            static_cast<double>(centers[3 * i + 2]), radius_of_compact(i)};
+  }
+
+  /// The radius of a compact sphere.
+  double radius_of_compact(std::size_t i) const noexcept {
+    return radii != nullptr ? static_cast<double>(radii[i])
+                            : radius_palette[radius_indices != nullptr ? radius_indices[i] : 0];
   }
 
   /// The address of a sphere's centre, for prefetching.

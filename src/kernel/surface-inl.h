@@ -54,17 +54,24 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD
   return {mul_add(Vec3<hn::Vec<D>>{change[0], change[1], change[2]}, time, at_opening.center),
           hn::MulAdd(change[3], time, at_opening.radius)};
 }
-/// Loads the spheres of the hits; lanes without a hit get sphere 0.
+
+/// The ids of hits, for loading; lanes without a hit get the last sphere, which is compact if any is.
+template <class D>
+HWY_INLINE void store_loadable(D, const SceneView& scene, hn::Vec<IdTag<D>> hits, hn::TFromD<IdTag<D>>* id) {
+  const IdTag<D> du;
+  static_assert(kNoSphere == ~std::uint32_t{0});
+  hn::Store(hn::Min(hits, hn::Set(du, static_cast<hn::TFromD<IdTag<D>>>(scene.sphere_count - 1))), du, id);
+}
+
+/// Loads the spheres of the hits; lanes without a hit get the last one.
 template <class D, bool kMoves>
 HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
-  using Id = hn::TFromD<IdTag<D>>;
-  const IdTag<D> du;
-  HWY_ALIGN Id id[hn::MaxLanes(D())];
-  hn::Store(hn::IfThenZeroElse(hits == hn::Set(du, static_cast<Id>(kNoSphere)), hits), du, id);
+  HWY_ALIGN hn::TFromD<IdTag<D>> id[hn::MaxLanes(D())];
+  store_loadable(d, scene, hits, id);
   return load_spheres<D, kMoves>(d, scene, id, times);
 }
 
-/// Loads spheres and materials of the hits; lanes without a hit get those of sphere 0.
+/// Loads spheres and materials of the hits; lanes without a hit get those of the last sphere.
 ///
 /// `times`    of the rays; read only where kMoves
 template <class D, bool kMoves>
@@ -74,7 +81,7 @@ HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits
   const IdTag<D> du;
   HWY_ALIGN Id id[kMax], kind[kMax], fresnel[kMax];
   const Material* material[kMax];
-  hn::Store(hn::IfThenZeroElse(hits == hn::Set(du, static_cast<Id>(kNoSphere)), hits), du, id);
+  store_loadable(d, scene, hits, id);
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
     material[i] = &scene.materials[scene.sphere_materials[id[i]]];
     kind[i] = static_cast<Id>(material[i]->kind);

@@ -131,6 +131,7 @@ struct Compact {
         s.radius = static_cast<double>(radii.back());
       }
     }
+    centers.push_back(0);
   }
   kernel::SphereArray array() const {
     kernel::SphereArray a(plain.data());

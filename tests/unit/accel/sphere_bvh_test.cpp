@@ -45,7 +45,7 @@ struct Tree {
   void each_below(std::uint32_t reference, F f) const {
     if ((reference & SphereBvh::kLeafBit) != 0) {
       const std::uint32_t leaf = reference & ~SphereBvh::kLeafBit;
-      for (unsigned i = 0; i < bvh.count_in(leaf); ++i) f(bvh.ids[leaf * SphereBvh::kArity + i]);
+      for (unsigned i = 0; i < bvh.count_in(leaf); ++i) f(bvh.leaves[leaf].ids[i]);
       return;
     }
     const SphereBvh::Node& node = bvh.nodes[reference];
@@ -73,7 +73,8 @@ TEST(AccelSphereBvh, EverySphereHasOnePlace) {
     tree.each_below(tree.bvh.root(), [&](std::uint32_t id) { ++seen[id]; });
     EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<long>(seen.size()));
     for (std::uint32_t id = 0; id < seen.size(); ++id) {
-      EXPECT_EQ(tree.bvh.ids[tree.bvh.places[id]], id);
+      const std::uint32_t place = tree.bvh.places[id];
+      EXPECT_EQ(tree.bvh.leaves[place / SphereBvh::kArity].ids[place % SphereBvh::kArity], id);
       bool found = false;
       tree.each_below(tree.bvh.home_of(id), [&](std::uint32_t other) { found = found || other == id; });
       EXPECT_TRUE(found) << id;
@@ -87,7 +88,7 @@ TEST(AccelSphereBvh, LeavesHoldCentresAndRadii) {
     for (std::uint32_t l = 0; l < tree.bvh.leaves.size(); ++l) {
       const SphereBvh::Leaf& leaf = tree.bvh.leaves[l];
       for (unsigned i = 0; i < tree.bvh.count_in(l); ++i) {
-        const std::uint32_t id = tree.bvh.ids[l * SphereBvh::kArity + i];
+        const std::uint32_t id = leaf.ids[i];
         double square = 0;
         for (int axis = 0; axis < 3; ++axis) {
           const double decoded = std::fma(static_cast<double>(leaf.center[axis][i]), static_cast<double>(leaf.step),
