@@ -49,8 +49,9 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 using BuildMonitor = std::function<bool(double fraction)>;
 
 /// If there are at least this many static spheres of similar size, they are one primitive of Embree's scene, with a BVH
-/// of their own inside (docs/decisions/0027-bvh-for-many-spheres.md). Below, each sphere is a primitive.
-inline constexpr std::size_t kBvhThreshold = 10'000;
+/// of their own inside (docs/decisions/0027-bvh-for-many-spheres.md). Below, each sphere is a primitive, because that
+/// is faster. Depends on the instruction set.
+std::size_t bvh_threshold();
 
 /// A threshold that no scene reaches.
 inline constexpr std::size_t kNoBvh = ~std::size_t{0};
@@ -61,7 +62,7 @@ inline constexpr std::size_t kNoBvh = ~std::size_t{0};
 /// Errors     base::Error(kInternal) if Embree fails or would drop a sphere, kStopped if the monitor cancelled
 ///            the build
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
-                                   const BuildMonitor& monitor = {}, std::size_t bvh_threshold = kBvhThreshold);
+                                   const BuildMonitor& monitor = {}, std::size_t threshold = bvh_threshold());
 
 /// The number of spheres, to within a few, that make_embree puts into its BVH of many spheres: 13 bytes each instead of
 /// Embree's hundred.

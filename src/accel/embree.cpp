@@ -206,9 +206,9 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 }
 
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
-                                   const BuildMonitor& monitor, std::size_t bvh_threshold) {
+                                   const BuildMonitor& monitor, std::size_t threshold) {
   if (scene.sphere_count == 0) return make_list(scene, precision);  // there is nothing to build a BVH of
-  return std::make_unique<Embree>(scene, precision, monitor, std::max<std::size_t>(1, bvh_threshold));
+  return std::make_unique<Embree>(scene, precision, monitor, std::max<std::size_t>(1, threshold));
 }
 
 std::string embree_version() { return RTC_VERSION_STRING; }

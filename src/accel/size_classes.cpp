@@ -9,6 +9,7 @@
 #include "accel/box_frame.h"
 #include "accel/sphere_bvh.h"
 #include "base/stop_point.h"
+#include "kernel/isa.h"
 
 namespace orrery::accel {
 namespace {
@@ -85,12 +86,19 @@ double giant_radius(const kernel::SceneView& view) {
   return kGiantRatio * *middle;
 }
 
+std::size_t bvh_threshold() {
+  // Measured in clouds and crystals (docs/benchmarks.md). A register of AVX-512 holds a bound of all children of a
+  // node.
+  return kernel::isa_name() == "avx512" ? 1000 : 200'000;
+}
+
 std::size_t spheres_in_bvh(const kernel::SceneView& scene) {
-  if (scene.sphere_count - scene.moving_count < kBvhThreshold) return 0;
+  const std::size_t least = bvh_threshold();
+  if (scene.sphere_count - scene.moving_count < least) return 0;
   const double limit = giant_radius(scene);
   std::size_t count = 0;
   for (std::size_t id = scene.moving_count; id < scene.sphere_count; ++id) count += scene.spheres[id].radius <= limit;
-  return count < kBvhThreshold || count > SphereBvh::kMaxSpheres ? 0 : count;
+  return count < least || count > SphereBvh::kMaxSpheres ? 0 : count;
 }
 
 }  // namespace orrery::accel

@@ -37,7 +37,7 @@ std::vector<BenchBuild> bench_builds(const kernel::SceneView& view, int rounds) 
   const auto embree = [&](std::size_t threshold) {
     return [&view, threshold] { return accel::make_embree(view, kernel::Precision::kExact, {}, threshold); };
   };
-  std::vector<Method> methods = {{"accelerator", embree(accel::kBvhThreshold), {}},
+  std::vector<Method> methods = {{"accelerator", embree(accel::bvh_threshold()), {}},
                                  {other.name, embree(other.bvh_threshold), {}},
                                  {"sphere points", [&view] { return accel::make_native_points(view); }, {}}};
   const Clock::time_point start = Clock::now();
