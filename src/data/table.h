@@ -118,7 +118,7 @@ struct Roles {
   std::string chain;                    ///< text: chain name, for assemblies
   std::array<std::string, 3> rgb;       ///< red, green, blue, display-referred sRGB
   double rgb_maximum = 255;             ///< value of full intensity
-  std::array<std::string, 3> image;     ///< counts of periodic images, for unwrapping
+  std::array<std::string, 3> image;     ///< periodic image flags, for unwrapping
 };
 
 /// A simulation box: a parallelepiped.
