@@ -9,7 +9,7 @@
 
 namespace orrery::base {
 
-/// A file that is written through a buffer and appears when it is complete.
+/// A buffered output file that appears under its name when it is complete.
 class OutputFile {
  public:
   /// Errors     those of AtomicFile
@@ -38,7 +38,7 @@ class OutputFile {
   std::string buffer_;
 };
 
-/// Writes a text to a file that appears when it is complete.
+/// Writes a text file, which appears under its name when it is complete.
 ///
 /// `synced`   see OutputFile::finish
 /// Errors     those of OutputFile

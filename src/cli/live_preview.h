@@ -26,7 +26,7 @@ class PreviewScreen : public BarDisplay {
   preview::Screen screen_;
 };
 
-/// The terminal, if the preview is drawn into it.
+/// Opens the terminal of `--preview terminal`; null for other targets.
 ///
 /// Errors     those of PreviewScreen
 std::unique_ptr<PreviewScreen> open_screen(const preview::Target& target);

@@ -13,8 +13,8 @@ struct Ray {
     double distance;  ///< m, of its middle from the start of the ray
     double radius;    ///< m, of its middle from the Earth's centre
     Amounts here;     ///< densities in the middle
-    /// Parts of the light that passes the segment's middle which are scattered in the segment and reach the start of
-    /// the ray, without phase function: by molecules, by aerosol, and by both without forward scattering.
+    /// Fractions of the light at the segment's middle that are scattered within the segment and reach the start of the
+    /// ray, without the phase function: by molecules, by aerosol, and by both without forward scattering.
     Spectrum molecules, aerosol, diffuse;
   };
 

@@ -39,7 +39,7 @@ struct Outputs {
   display::Settings display;         ///< for display formats; the working space is the scene's
   int bits = 0;                      ///< per channel of display formats; 0: the display's default
   image::ExrOptions exr;
-  bool reproducible = false;  ///< leave everything that varies between runs out of headers
+  bool reproducible = false;  ///< omit everything that varies between runs from headers
 
   /// True if an image is an EXR, the only format that holds layers.
   bool has_exr() const;

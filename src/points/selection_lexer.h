@@ -38,7 +38,7 @@ class SelectionLexer {
   [[noreturn]] void fail(const Token& token, const std::string& text, const std::string& remedy) const;
 
   const std::string& text_;
-  std::size_t next_ = 0;  ///< first byte behind the last token
+  std::size_t next_ = 0;  ///< first byte after the last token
 };
 
 }  // namespace orrery::points

@@ -199,7 +199,7 @@ struct Points {
   PointsTransform transform;
   std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
   std::string material_column = "material";          ///< indices into Scene::materials, in PLY files; empty: none
-  bool skip_bad = false;                             ///< leaves out rows with coordinates that are not finite
+  bool skip_bad = false;                             ///< skips rows with non-finite coordinates or radii
   PointArray centers = {};
   NumberArray radii = {};                     ///< as many as centers
   std::vector<std::uint32_t> materials = {};  ///< as many as centers, or empty: `material` for all
