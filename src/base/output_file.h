@@ -12,6 +12,8 @@ namespace orrery::base {
 /// A buffered output file that appears under its name when it is complete.
 class OutputFile {
  public:
+  /// Creates the temporary file.
+  ///
   /// Errors     those of AtomicFile
   explicit OutputFile(const std::filesystem::path& path);
   ~OutputFile();
@@ -21,6 +23,8 @@ class OutputFile {
   const std::filesystem::path& path() const { return path_; }
   /// The bytes to append to; flush() writes them once there are enough.
   std::string& buffer() { return buffer_; }
+  /// Writes the buffer if it is large enough.
+  ///
   /// Errors     base::Error(kIo)
   void flush();
   /// Writes the rest and commits the file.

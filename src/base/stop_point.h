@@ -9,6 +9,8 @@ namespace orrery::base {
 /// While it exists, a flag can stop long computations that this thread starts.
 class StopScope {
  public:
+  /// Sets the flag of this thread.
+  ///
   /// `flag`     true stops them; null: nothing does. Must outlive the scope
   explicit StopScope(const std::atomic<bool>* flag) noexcept;
   ~StopScope();

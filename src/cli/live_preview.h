@@ -14,6 +14,8 @@ namespace orrery::cli {
 /// The terminal of `--preview terminal`, which then shows progress and messages as well.
 class PreviewScreen : public BarDisplay {
  public:
+  /// Opens the terminal of stderr.
+  ///
   /// Errors     base::Error(kUsage) if stderr is not a terminal, or one without colours
   PreviewScreen();
   ~PreviewScreen() override { screen_.finish(); }

@@ -51,6 +51,8 @@ double aerosol_phase(double cosine);
 ///
 /// Reference  joseph1976, nakajima1988
 struct Atmosphere {
+  /// Computes the optical properties of an atmosphere.
+  ///
   /// `turbidity`  ratio of the vertical optical depth of molecules and aerosol to that of molecules alone, at 550 nm;
   ///              1: no aerosol
   /// `density`    factor of all densities; 0: vacuum

@@ -34,6 +34,8 @@ struct Ray {
 /// Reference  hillaire2020, section 5; nakajima1988
 class Scattering {
  public:
+  /// Tabulates multiple scattering.
+  ///
   /// `sun_elevation`  radians, at the ground point from which the sky is seen
   /// `refinement`     factor of all numbers of nodes
   Scattering(const Atmosphere& air, const ColumnTable& columns, double sun_elevation, const Spectrum& ground_albedo,
@@ -50,6 +52,8 @@ class Scattering {
     Spectrum molecules{}, aerosol{};  ///< scattered once, without phase function
     Spectrum multiple{};              ///< scattered more often
   };
+  /// Returns the light that a ray brings to the ground point.
+  ///
   /// `toward_sun`  cosine between the ray and the direction to the sun
   Light toward_ground(const Ray& ray, double toward_sun) const;
 

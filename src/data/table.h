@@ -30,6 +30,8 @@ struct Words {
 template <class T>
 class ArrayView {
  public:
+  /// A view of `size` values of a numeric array.
+  ///
   /// `first`    address of the first value; need not be aligned
   /// `stride`   bytes from one value to the next; may be negative or 0
   ArrayView(const void* first, std::ptrdiff_t stride, std::size_t size)

@@ -18,6 +18,8 @@ inline constexpr int kPartSpacing = 64;
 /// part that gained light, the pixels that are brighter than before give back the same fraction of their gain.
 class LightBalance {
  public:
+  /// Computes the factors of a plane.
+  ///
   /// `before`, `after`   plane before and after filtering
   /// `valid`             1, or 0 for pixels to ignore, whose values may be anything
   LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame);

@@ -68,6 +68,8 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
 /// values are those of develop().
 class PixelDeveloper {
  public:
+  /// Sets up the display transform.
+  ///
   /// Errors     those of choose
   explicit PixelDeveloper(const Settings& settings);
   ~PixelDeveloper();

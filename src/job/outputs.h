@@ -16,6 +16,8 @@ struct ImageFile {
   std::filesystem::path path;
   image::Format format;
 
+  /// Determines the format from the extension.
+  ///
   /// Errors     base::Error(kUsage) for an unknown extension
   // NOLINTNEXTLINE(google-explicit-constructor): a path is an image file
   ImageFile(std::filesystem::path file) : path(std::move(file)), format(image::format_of(path)) {}

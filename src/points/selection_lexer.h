@@ -21,6 +21,8 @@ struct Token {
 /// The tokens of a selection, one after the other.
 class SelectionLexer {
  public:
+  /// Starts at the first token.
+  ///
   /// `text`     outlives this and the tokens
   explicit SelectionLexer(const std::string& text) : text_(text) {}
 
