@@ -56,7 +56,7 @@ std::vector<Key<P>> make_keys() {
                 [](P& p) -> Vec3d& { return p.color.nan_color; }),
       choice_of_text<P>("color.element", {"jmol"}, {"", "Colours by chemical element. `jmol`: those of Jmol"},
                         [](P& p) -> std::string& { return p.color.element; }),
-      boolean<P>("color.rgb", {"", "Use the colours in the file, as sRGB"}, [](P& p) -> bool& { return p.color.rgb; }),
+      boolean<P>("color.rgb", {"", "Uses the colours in the file, as sRGB"}, [](P& p) -> bool& { return p.color.rgb; }),
       text<P>("select",
               {"", "Condition on the columns, e.g. `type == 2 && z > 0`; see [Selections](data.md#selections)"},
               [](P& p) -> std::string& { return p.select; }),
