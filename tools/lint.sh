@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks the source without building it: C++ formatting (clang-format 14, as in Debian 12), scripts (shellcheck), and the
-# licence line of every file. Exit status: 0 no findings, 1 findings, 77 a tool is missing.
+# Checks the source without building it: C++ formatting (clang-format 14, as in Debian 12), scripts (shellcheck), the
+# licence line of every file, words, and Markdown. Exit status: 0 no findings, 1 findings, 77 a tool is missing.
 #
 #   tools/lint.sh           prints findings
 #   tools/lint.sh --fix     formats the C++ first
@@ -33,6 +33,7 @@ if grep -nE '[|] *(head|grep -[a-zA-Z]*q)\b' "${scripts[@]}"; then
   echo "lint.sh: a pipe into head or grep -q fails at random with pipefail; use awk, or read the output into a variable" >&2
   status=1
 fi
-# Words and phrases that the project does not use.
+# Words and phrases that the project does not use; Markdown whose lines were joined by mistake.
 tools/terms.pl || status=1
+tools/markdown.pl || status=1
 exit "$status"

@@ -40,7 +40,7 @@ class Accel {
 /// Domain     the view's spheres outlive the result
 std::unique_ptr<Accel> make_list(const kernel::SceneView& scene, kernel::Precision precision);
 
-/// The naive list with a ray in each lane, which the BVH has to beat. For comparison.
+/// The naive list with one ray per lane: the baseline that a BVH has to beat. For comparison.
 ///
 /// Domain     the view's spheres outlive the result
 std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Precision precision);

@@ -9,10 +9,10 @@
 
 namespace orrery::accel {
 
-/// The spheres that a BVH bounds: as the kernel intersects them.
+/// Spheres as the kernel intersects them: in `fast`, rounded to single precision. BVHs bound these.
 struct BoundedSpheres {
   kernel::SphereArray spheres;
-  bool in_single = false;  ///< `fast` rounds them; far from the world's origin by more than boxes are padded
+  bool in_single = false;  ///< rounds as `fast` does; far from the world's origin this exceeds the padding of boxes
 
   BoundedSpheres() = default;
   BoundedSpheres(const kernel::SphereArray& all, bool rounded = false)  // NOLINT(google-explicit-constructor)
@@ -37,6 +37,8 @@ class BoxFrame {
  public:
   BoxFrame() = default;
 
+  /// The frame of the spheres with these ids.
+  ///
   /// `motion`   of the spheres below moving_count; the frame then encloses their whole motion
   /// Domain     `ids` not empty
   BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,

@@ -12,8 +12,8 @@ namespace orrery::accel {
 /// Ids, ascending, of spheres that coincide with an earlier one: equal centre and radius, in the number type of this
 /// precision, throughout the shutter interval.
 ///
-/// Accelerators leave them out. Root exclusion is by the id of the sphere that a ray leaves, so a coincident second
-/// sphere would be hit again at a distance of a few rounding errors.
+/// Accelerators skip them. Root exclusion is by the id of the sphere that a ray leaves, so a coincident second sphere
+/// would be hit again at a distance of a few rounding errors.
 ///
 /// Cost       none if the scene is known to have none; else see base::find_repeated
 std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision);

@@ -14,14 +14,15 @@
 
 namespace orrery::accel {
 
-/// The data behind a packet query: Embree's scene, and the spheres outside of it.
+/// The data of a packet query: Embree's scene, and the spheres outside of it.
 struct EmbreeScene {
   RTCScene scene = nullptr;  ///< null if every sphere is an outlier
   kernel::SphereArray spheres;
   BoundedSpheres bounded;
   const kernel::Sphere* motion = nullptr;  ///< as in kernel::SceneView
   std::size_t moving_count = 0;
-  /// If not 0, these are Embree's geometry 0, with two time steps, and geometry 1 has the rest. Else there is only one.
+  /// Number of moving primitives. If not 0, they are Embree's geometry 0, with two time steps, and the others geometry
+  /// 1; otherwise there is only one geometry.
   std::uint32_t moving_primitives = 0;
   BoxFrame frame;
   /// Ascending ids of spheres so much larger than the rest that their boxes would enclose everything (a ground). Every
@@ -43,7 +44,7 @@ struct EmbreeScene {
 };
 
 /// One call into Embree with some lanes of a packet. Embree passes the context to the callback, which finds the packet
-/// behind it and stores the result there, in the packet's precision. Embree's hit record is not used.
+/// through it and stores the result there, in the packet's precision. Embree's hit record is not used.
 template <class Packet>
 struct EmbreeQuery {
   EmbreeContext context;  // first member, so that Embree's pointer to it points to the query
@@ -54,7 +55,8 @@ struct EmbreeQuery {
   alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
 };
 
-/// The function instances for this processor, for one precision, with or without motion.
+/// Callbacks and tracer, instantiated for the instruction set of this processor, for one precision, and with or without
+/// motion.
 struct EmbreeFunctions {
   RTCIntersectFunctionN intersect = nullptr;
   RTCOccludedFunctionN occluded = nullptr;

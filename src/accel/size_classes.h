@@ -8,7 +8,7 @@
 #include "kernel/scene_view.h"
 #include "kernel/sphere_array.h"
 
-/// Which spheres stay out of the BVHs because of their size.
+/// Classification of spheres by size: which are too large for the BVHs.
 namespace orrery::accel {
 
 /// Ids of all spheres except those in `without`.

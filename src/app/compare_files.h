@@ -25,7 +25,7 @@ struct Comparison {
   std::optional<double> flip;                   ///< mean of flip_map; HDR-FLIP if scene-linear; colours only
   std::optional<metrics::ZTest> z_test;         ///< set if the image has a layer `variance`
   std::uint64_t values = 0, differing = 0;      ///< number of values in all common channels, and of unequal ones
-  bool is_matte = false;                        ///< `errors` is of ComparedChannels::shares
+  bool is_matte = false;                        ///< `errors` compares ComparedChannels::shares
   std::uint64_t no_hit = 0, no_hit_in_one = 0;  ///< skipped pixels, as in ComparedChannels
   std::vector<std::string> only_in_picture, only_in_reference;  ///< channels missing in the other image
 

@@ -11,7 +11,7 @@ namespace orrery::app {
 /// Arguments of `orrery denoise`.
 struct Denoising {
   std::filesystem::path input, output;  ///< EXR
-  int threads = 0;                      ///< 0: all that this process may use
+  int threads = 0;                      ///< 0: all CPUs available to the process
 };
 
 /// Result of denoise_file().

@@ -228,7 +228,7 @@ std::string info_text(const SceneInfo& info) {
   base::append(out, "memory      about %s: %s\n", base::bytes_text(info.memory.total()).c_str(),
                job::text_of(info.memory).c_str());
   for (const bool required : {true, false}) {
-    out += required ? "requires   " : "left out   ";
+    out += required ? "requires   " : "unused     ";
     bool first = true;
     for (const Feature& f : info.features) {
       if (f.required != required) continue;

@@ -9,9 +9,11 @@
 
 namespace orrery::base {
 
-/// A file that is written through a buffer and appears when it is complete.
+/// A buffered output file that appears under its name when it is complete.
 class OutputFile {
  public:
+  /// Creates the temporary file.
+  ///
   /// Errors     those of AtomicFile
   explicit OutputFile(const std::filesystem::path& path);
   ~OutputFile();
@@ -21,6 +23,8 @@ class OutputFile {
   const std::filesystem::path& path() const { return path_; }
   /// The bytes to append to; flush() writes them once there are enough.
   std::string& buffer() { return buffer_; }
+  /// Writes the buffer if it is large enough.
+  ///
   /// Errors     base::Error(kIo)
   void flush();
   /// Writes the rest and commits the file.
@@ -38,7 +42,7 @@ class OutputFile {
   std::string buffer_;
 };
 
-/// Writes a text to a file that appears when it is complete.
+/// Writes a text file, which appears under its name when it is complete.
 ///
 /// `synced`   see OutputFile::finish
 /// Errors     those of OutputFile

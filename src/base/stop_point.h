@@ -6,9 +6,11 @@
 
 namespace orrery::base {
 
-/// While it exists, a flag can stop the long computations of this thread.
+/// While it exists, a flag can stop long computations that this thread starts.
 class StopScope {
  public:
+  /// Sets the flag of this thread.
+  ///
   /// `flag`     true stops them; null: nothing does. Must outlive the scope
   explicit StopScope(const std::atomic<bool>* flag) noexcept;
   ~StopScope();
@@ -19,18 +21,20 @@ class StopScope {
   const std::atomic<bool>* before_;
 };
 
-/// Where a long computation can be stopped: knows the flag of the innermost StopScope on the thread that made it, and
-/// checks it on any thread. Outside of a scope nothing stops.
+/// A cancellation point of a long computation. Holds the flag of the innermost StopScope of the thread that created it,
+/// and can check it on any thread. Outside of a scope it never stops.
 class StopPoint {
  public:
   StopPoint() noexcept;
 
+  /// Stops the computation if the flag is set.
+  ///
   /// Errors     base::Error(kStopped)
   void check() const {
     if (flag_ != nullptr && flag_->load(std::memory_order_relaxed)) fail();
   }
 
-  /// Checks now and then, for loops over many short steps.
+  /// Checks every kSteps steps, for loops over many short steps.
   void check(std::size_t step) const {
     if (step % kSteps == 0) check();
   }

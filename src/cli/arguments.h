@@ -40,7 +40,7 @@ class Option {
   Option* repeatable();
   /// Number of times that it was given.
   std::size_t count() const;
-  /// The arguments that gave it, as typed: {"-o", "a.exr", "-o", "b.png"}.
+  /// Its arguments as typed: {"-o", "a.exr", "-o", "b.png"}.
   std::vector<std::string> arguments() const;
   /// Its heading in the help.
   std::string heading() const;

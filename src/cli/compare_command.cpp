@@ -94,7 +94,7 @@ int compare(const CompareOptions& options) {
 
 void add_compare(Command& program, Action& action) {
   const auto options = std::make_shared<CompareOptions>();
-  Command& command = *program.add_subcommand("compare", "Measure the difference between two images");
+  Command& command = *program.add_subcommand("compare", "Compare two images by error metrics");
   command.add_option("A", options->picture, "Image to compare")->required()->type_name("FILE");
   command.add_option("B", options->reference, "Reference image")->required()->type_name("FILE");
   command
@@ -111,7 +111,7 @@ void add_compare(Command& program, Action& action) {
   command.add_option("--difference", options->pictures.difference, "Write A - B as an image")->type_name("FILE");
   command.add_option("--heat", options->pictures.heat, "Write the display error as a heat map")->type_name("FILE");
   command.add_option("--flip", options->pictures.flip, "Write the FLIP error map")->type_name("FILE");
-  command.add_option("-t,--threads", options->threads, "Number of threads; default: all that this process may use")
+  command.add_option("-t,--threads", options->threads, "Number of threads; default: all CPUs available to the process")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command.add_flag("--json", options->json, "Print JSON");

@@ -60,7 +60,7 @@ void add_convert(Command& program, Action& action) {
   add_data_options(command, arguments->data, convert);
   add_look_options(command, arguments->data, convert);
   command.footer(
-      "Columns: x, y, z, radius if it is known, colours as red, green, blue, and all others of the file.\n"
+      "Columns: x, y, z; radius and red, green, blue if they are defined; then the other columns of the file.\n"
       "\n"
       "Examples:\n"
       "  orrery convert melt.dump -o melt.ply --select 'type == 2' --radius 0.5\n"

@@ -72,7 +72,7 @@ void read_slice(const std::string& text, plot::DataOptions& data) {
 }  // namespace
 
 void add_data_file(Command& command, plot::DataOptions& data) {
-  command.add_option("FILE", data.file, "Data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, LAS, GSD, HDF5, VTK")
+  command.add_option("FILE", data.file, "Data file: LAMMPS, XYZ, PDB, mmCIF, PLY, CSV, NPY, NPZ, LAS, GSD, HDF5, VTK")
       ->required()
       ->type_name("FILE");
 }
@@ -84,20 +84,20 @@ void add_data_options(Command& command, DataArguments& arguments, plot::DataOpti
       ->check(whole_number(1, 2'000'000'000))
       ->type_name("N");
   command
-      .add_option("--frames", arguments.frames, "Frames: all, or e.g. 1-48; names of outputs need a pattern, e.g. ####")
+      .add_option("--frames", arguments.frames, "Frames of the file: all, or e.g. 1-48; name outputs like out.####.png")
       ->type_name("RANGE");
-  command.add_option("--select", points.select, "Use only rows that match, e.g. 'type == 2 && z > 0'")
+  command.add_option("--select", points.select, "Use only the rows that match, e.g. 'type == 2 && z > 0'")
       ->type_name("CONDITION");
-  command.add_option("--slice", arguments.slice, "Cut open at a plane: remove the spheres in front of it, e.g. z=10")
+  command.add_option("--slice", arguments.slice, "Slice plane: remove the spheres in front of it, e.g. z=10")
       ->type_name("AXIS=POSITION");
   command.add_option("--component", arguments.component, "HDF5: particle type, N of PartTypeN")
       ->check(whole_number(0, 1000))
       ->type_name("N");
   command.add_option("--assembly", points.assembly, "PDB, mmCIF: biological assembly, e.g. 1")->type_name("NAME");
-  command.add_option("--replicate", arguments.replicate, "Copies of the periodic box along its edges, e.g. 2,2,1")
+  command.add_option("--replicate", arguments.replicate, "Number of periodic boxes along each box edge, e.g. 2,2,1")
       ->type_name("A,B,C");
-  command.add_flag("--unwrap", points.unwrap, "Undo periodic wrapping by the file's image counts");
-  command.add_flag("--skip-bad", points.skip_bad, "Leave out rows whose coordinates are not finite numbers");
+  command.add_flag("--unwrap", points.unwrap, "Unwrap coordinates with the file's periodic image flags");
+  command.add_flag("--skip-bad", points.skip_bad, "Skip rows with non-finite coordinates or radii");
 }
 
 void add_look_options(Command& command, DataArguments& arguments, plot::DataOptions& data) {
@@ -107,10 +107,12 @@ void add_look_options(Command& command, DataArguments& arguments, plot::DataOpti
       ->type_name("X|COLUMN");
   command
       .add_option("--radius-scale", points.radius.scale,
-                  "Factor for radii of the data and for the default radius, e.g. 0.5")
+                  "Factor for radii of the data and for the default radius, e.g. 0.5 for a column of diameters")
       ->check(real_number(1e-30, 1e30))
       ->type_name("X");
-  command.add_option("--element-radii", points.radius.element, "Radii of the chemical elements: vdw, covalent or ball")
+  command
+      .add_option("--element-radii", points.radius.element,
+                  "Radii by chemical element: vdw, covalent or ball (a quarter of vdw)")
       ->check(one_of({"vdw", "covalent", "ball"}))
       ->type_name("TABLE");
   command
@@ -119,7 +121,9 @@ void add_look_options(Command& command, DataArguments& arguments, plot::DataOpti
       ->type_name("COLUMN");
   arguments.map = command.add_option("--map", points.color.map, "Colour map, e.g. viridis, fast, coolwarm, or a file")
                       ->type_name("MAP");
-  command.add_option("--range", arguments.range, "Values at both ends of the colour map; default: minimum and maximum")
+  command
+      .add_option("--range", arguments.range,
+                  "Values at both ends of the colour map; default: minimum and maximum over all frames")
       ->type_name("LOW:HIGH");
 }
 

@@ -8,7 +8,7 @@
 
 namespace orrery::cli {
 
-/// The texts of options of data files that are more than a number or a name.
+/// Texts of the data options that need further parsing.
 struct DataArguments {
   std::string frame, frames, radius, range, slice, replicate, component;
   const Option* map = nullptr;
@@ -22,13 +22,13 @@ struct DataArguments {
 /// Adds FILE, the data file.
 void add_data_file(Command& command, plot::DataOptions& data);
 
-/// Adds the options that select frames and rows, and copy them.
+/// Adds the options for frames, selections and copies.
 void add_data_options(Command& command, DataArguments& arguments, plot::DataOptions& data);
 
-/// Adds the options of radius and colour, under the heading "Look options".
+/// Adds the options for radius and colour, under the heading "Look options".
 void add_look_options(Command& command, DataArguments& arguments, plot::DataOptions& data);
 
-/// Sets the members of `data` by the options.
+/// Sets the members of `data` from the parsed options.
 ///
 /// Errors     base::Error(kUsage)
 void read_data_options(const DataArguments& arguments, plot::DataOptions& data);

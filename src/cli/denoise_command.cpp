@@ -58,10 +58,10 @@ void add_denoise(Command& program, Action& action) {
   command.add_option("IN", options->denoising.input, "EXR image; best rendered with --layers halves")
       ->required()
       ->type_name("FILE");
-  command.add_option("-o,--output", options->denoising.output, "EXR to write")->required()->type_name("FILE");
+  command.add_option("-o,--output", options->denoising.output, "EXR file to write")->required()->type_name("FILE");
   command
       .add_option("-t,--threads", options->denoising.threads,
-                  "Number of threads; default: all that this process may use")
+                  "Number of threads; default: all CPUs available to the process")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command.add_flag("-q,--quiet", options->quiet, "Print only errors");

@@ -39,12 +39,11 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
   Command& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
   add_common(command, options->output, options->final_scene.seed);
   command
-      .add_option("--grid", options->final_scene.grid,
-                  "Half the side of the square of small spheres, in cells; default: 11")
+      .add_option("--grid", options->final_scene.grid, "Grid cells from the centre to the edge, 0 to 1000; default: 11")
       ->transform(whole_number(0, generate::kLargestFinalGrid))
       ->type_name("N");
   command.add_flag("--moving", options->final_scene.moving,
-                   "As in The Next Week: a checkered ground, and small spheres that move while the shutter is open");
+                   "The variant in The Next Week: checkered ground, small spheres that move while the shutter is open");
   command.footer(
       "Examples:\n"
       "  orrery generate final -o final.toml --seed 7\n"
@@ -89,22 +88,22 @@ void add_sky_options(Command& command, GenerateOptions& options) {
   options.ground_albedo = sky.ground_albedo.x;
   command
       .add_option("--sun-elevation", sky.sun_elevation,
-                  "Degrees from the horizon to the sun; default: " + scene::number_text(sky.sun_elevation))
+                  "Sun elevation above the horizon, in degrees; default: " + scene::number_text(sky.sun_elevation))
       ->check(real_number(-90, 90))
       ->type_name("DEG");
   command
       .add_option("--sun-azimuth", sky.sun_azimuth,
-                  "Degrees from +z towards +x; default: " + scene::number_text(sky.sun_azimuth))
+                  "Sun azimuth in degrees, from +z towards +x; default: " + scene::number_text(sky.sun_azimuth))
       ->check(real_number(-scene::kLargestRotation, scene::kLargestRotation))
       ->type_name("DEG");
   command
       .add_option("--turbidity", sky.turbidity,
-                  "Amount of haze, 1 to 10; 1: pure air; default: " + scene::number_text(sky.turbidity))
+                  "Turbidity, 1 (pure air) to 10 (hazy); default: " + scene::number_text(sky.turbidity))
       ->check(real_number(scene::kLowestTurbidity, scene::kHighestTurbidity))
       ->type_name("T");
   command
       .add_option("--ground-albedo", options.ground_albedo,
-                  "Reflectance of the ground; default: " + scene::number_text(options.ground_albedo))
+                  "Ground albedo, 0 to 1; default: " + scene::number_text(options.ground_albedo))
       ->check(real_number(0, 1))
       ->type_name("A");
   command.add_flag("--no-sun", options.no_sun, "Omit the sun's disc");
@@ -119,9 +118,9 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options,
       ->type_name("NAME");
   command.add_option("-o,--output", options->output, "EXR file to write")->required()->type_name("FILE");
   command
-      .add_option(
-          "--width", options->width,
-          "Pixels, a multiple of 4; the height is half of it; default: " + std::to_string(generate::kEnvironmentWidth))
+      .add_option("--width", options->width,
+                  "Image width in pixels, a multiple of 4; the height is half of it; default: " +
+                      std::to_string(generate::kEnvironmentWidth))
       ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment))
       ->type_name("PX");
   add_sky_options(command, *options);
@@ -154,9 +153,9 @@ void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& optio
       ->transform(whole_number(0, kMaxSeed))
       ->type_name("N");
   command
-      .add_option(
-          "--width", options->width,
-          "Pixels, a multiple of 4; the height is half of it; default: " + std::to_string(generate::kEnvironmentWidth))
+      .add_option("--width", options->width,
+                  "Image width in pixels, a multiple of 4; the height is half of it; default: " +
+                      std::to_string(generate::kEnvironmentWidth))
       ->transform(whole_number(generate::kSmallestEnvironment, generate::kLargestEnvironment))
       ->type_name("PX");
   command.footer("Example:\n  orrery generate planet -o planet.exr --width 2048");

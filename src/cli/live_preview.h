@@ -14,6 +14,8 @@ namespace orrery::cli {
 /// The terminal of `--preview terminal`, which then shows progress and messages as well.
 class PreviewScreen : public BarDisplay {
  public:
+  /// Opens the terminal of stderr.
+  ///
   /// Errors     base::Error(kUsage) if stderr is not a terminal, or one without colours
   PreviewScreen();
   ~PreviewScreen() override { screen_.finish(); }
@@ -26,7 +28,7 @@ class PreviewScreen : public BarDisplay {
   preview::Screen screen_;
 };
 
-/// The terminal, if the preview is drawn into it.
+/// Opens the terminal of `--preview terminal`; null for other targets.
 ///
 /// Errors     those of PreviewScreen
 std::unique_ptr<PreviewScreen> open_screen(const preview::Target& target);

@@ -16,6 +16,8 @@ inline constexpr const char* kImageOptions = "Image options";
 /// The options that select a job's image files and their formats.
 class PictureOptions {
  public:
+  /// Adds the options to a command.
+  ///
   /// `allows_deep`  with --deep
   /// Domain         called once; neither this nor `job` moves until the command line is parsed
   void add_to(Command& command, job::Job& job, bool allows_deep = true);

@@ -132,7 +132,7 @@ void add_view_options(Command& command, const std::shared_ptr<PlotArguments>& ar
       .add_option("--look-from", arguments->plot.look_from,
                   "View: iso, +x, -x, +y, -y, +z, -z, or azimuth and elevation in degrees, e.g. 30,20; default: iso")
       ->type_name("VIEW");
-  command.add_option("--up", arguments->plot.up, "Axis that points up in the image; default: z, for molecules y")
+  command.add_option("--up", arguments->plot.up, "Axis that points up in the image; default: z, y for PDB and mmCIF")
       ->check(one_of({"x", "y", "z"}))
       ->type_name("AXIS");
   command.add_option("--style", arguments->style, "Look: studio, flat (no shading) or night; default: studio")
@@ -155,7 +155,7 @@ void add_plot(Command& program, Action& action) {
   add_view_options(command, arguments);
   add_render_options(command, arguments->render, false);
   command.footer(
-      "Settings that are not given are chosen from the data and printed.\n"
+      "Settings without an option are chosen from the data and printed.\n"
       "\n"
       "Examples:\n"
       "  orrery plot melt.dump -o melt.png\n"

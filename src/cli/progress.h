@@ -15,7 +15,7 @@ namespace orrery::cli {
 /// Maximum time between two lines of progress, so that a supervisor does not consider a render hung.
 inline constexpr std::chrono::milliseconds kHeartbeat{60'000};
 
-/// A terminal that something else draws on, and that therefore shows bar and messages itself.
+/// Shows the progress bar and messages on a terminal that a preview also draws on.
 class BarDisplay {
  public:
   virtual ~BarDisplay() = default;
@@ -27,6 +27,8 @@ class BarDisplay {
 /// heartbeat, including while the scene is read and during a long tile.
 class ProgressPrinter {
  public:
+  /// Starts the heartbeat.
+  ///
   /// `display`  prints in place of `to`, if not null
   /// Domain     `to` and `display` outlive this
   ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat = kHeartbeat,
@@ -35,7 +37,7 @@ class ProgressPrinter {
   ProgressPrinter(const ProgressPrinter&) = delete;
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
-  /// Thread-safe.
+  /// Sets the progress to show. Thread-safe.
   void update(const ProgressState& state);
 
   /// Shows the finished fraction of the BVH build, 0..1, in the bar; lines show samples only. Thread-safe.

@@ -184,7 +184,7 @@ void add_render_options(Command& command, RenderOptions& options, bool allows_ra
                    "Exit with status 75 if the target noise was not reached or could not be estimated");
   command
       .add_option("-t,--threads", options.batch.job.resources.threads,
-                  "Number of threads; default: all that this process may use")
+                  "Number of threads; default: all CPUs available to the process")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command

@@ -50,7 +50,7 @@ void add_commands(Command& program, Action& action) {
   program.heading("Scenes and data");
   add_generate(program, action);
   add_convert(program, action);
-  program.heading("Colour");
+  program.heading("Images");
   add_develop(program, action);
   add_denoise(program, action);
   add_bake(program, action);

@@ -14,6 +14,8 @@ namespace orrery::cli {
 /// The options that override scene keys: --set, and short forms of frequent keys.
 class SceneOptions {
  public:
+  /// Adds the options to a command.
+  ///
   /// `allows_range`  --samples may be A:B
   /// Domain     called once; this does not move, and `command` exists, until the last call of overrides()
   void add_to(Command& command, bool allows_range = false);

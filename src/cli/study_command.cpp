@@ -73,7 +73,8 @@ void add_study(Command& program, Action& action) {
       ->transform(real_number(1e-4, 1))
       ->type_name("X");
   command
-      .add_option("-t,--threads", options->request.threads, "Number of threads; default: all that this process may use")
+      .add_option("-t,--threads", options->request.threads,
+                  "Number of threads; default: all CPUs available to the process")
       ->transform(whole_number(1, kMaxThreads))
       ->type_name("N");
   command

@@ -46,11 +46,13 @@ double aerosol_phase(double cosine);
 
 /// Optical properties by band, per metre at densities of 1.
 ///
-/// Aerosol scatters mostly forward. For light that is scattered again, the part `kForward` of its scattering is treated
-/// as if it did not happen (delta scaling); the rest is nearly isotropic.
+/// Aerosol scatters mostly forward. For light that is scattered again, the fraction `kForward` of its scattering is
+/// ignored (delta scaling); the rest is nearly isotropic.
 ///
 /// Reference  joseph1976, nakajima1988
 struct Atmosphere {
+  /// Computes the optical properties of an atmosphere.
+  ///
   /// `turbidity`  ratio of the vertical optical depth of molecules and aerosol to that of molecules alone, at 550 nm;
   ///              1: no aerosol
   /// `density`    factor of all densities; 0: vacuum
@@ -63,8 +65,7 @@ struct Atmosphere {
   Spectrum scaled_aerosol;  ///< extinction, without forward scattering
   Spectrum scaled_aerosol_scattering;
 
-  /// Returns the transmittance of a path for light that goes straight on, and for light that may also be scattered
-  /// forward.
+  /// Returns the transmittance of a path, for unscattered light and for light that may also be scattered forward.
   Spectrum transmittance(Amounts path) const { return transmittance(path, aerosol); }
   Spectrum scaled_transmittance(Amounts path) const { return transmittance(path, scaled_aerosol); }
 

@@ -33,6 +33,8 @@ std::uint64_t environment_bytes(int width, int height, EnvironmentSampling sampl
 /// Cost       4/3 bytes per texel in addition to the 12 bytes of the texels; none if it is not sampled
 class EnvironmentMap {
  public:
+  /// Builds the tables of the distribution.
+  ///
   /// Domain     texels are finite and not negative
   EnvironmentMap(std::shared_ptr<const scene::EnvironmentImage> image, const EnvironmentSettings& settings);
   EnvironmentMap(const EnvironmentMap&) = delete;

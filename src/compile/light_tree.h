@@ -9,7 +9,7 @@
 
 namespace orrery::compile {
 
-/// The emitters of a scene and the tree by which light sampling chooses between them; see kernel::Lights. Ranges of
+/// The emitters of a scene, and the tree with which light sampling chooses among them; see kernel::Lights. Ranges of
 /// leaves are split at the median of their longest axis, ties by id.
 struct LightTree {
   std::vector<std::uint32_t> spheres;    ///< sphere id of each leaf

@@ -26,6 +26,8 @@ std::uint16_t light_group(CompiledScene& compiled, const std::string& name);
 /// Compiles materials on first use, so that unused ones are left out.
 class MaterialTable {
  public:
+  /// A table that compiles materials of `scene` into `compiled`.
+  ///
   /// Domain     `scene` and `compiled` outlive it
   MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
       : scene_(scene), out_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}

@@ -9,7 +9,7 @@
 
 namespace orrery::compile {
 
-/// Unsigned integers, in as few bytes each as the largest one takes; in none if all are equal.
+/// Unsigned integers, each stored in as few bytes as the largest needs; in none if all are equal.
 class PackedIndices {
  public:
   std::size_t size() const noexcept { return size_; }

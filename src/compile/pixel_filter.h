@@ -8,7 +8,7 @@
 
 namespace orrery::compile {
 
-/// Tables to sample a pixel filter; empty for the box of width 1, which needs no table.
+/// Tables for importance sampling of a pixel filter; empty for the box filter of width 1, which needs none.
 struct FilterTables {
   std::vector<double> above, below;
   double below_mass = 0;  ///< per axis: integral of the negative part divided by that of the positive part
@@ -17,12 +17,13 @@ struct FilterTables {
   kernel::PixelFilter view() const noexcept;
 };
 
-/// Returns the tables for importance sampling of a pixel filter: the inverse of its integral.
+/// Returns the inverse cumulative distributions of the positive and negative parts of a pixel filter, for importance
+/// sampling.
 ///
 /// Reference  mitchell1988; harris1978 for the Blackman-Harris window
 FilterTables compile_filter(const scene::Render& render);
 
-/// Returns the full width of the filter in pixels, as set or by default.
+/// Returns the full width of the filter in pixels: the one that is set, or the default of its type.
 double filter_width(const scene::Render& render);
 
 }  // namespace orrery::compile

@@ -13,8 +13,8 @@ struct Ray {
     double distance;  ///< m, of its middle from the start of the ray
     double radius;    ///< m, of its middle from the Earth's centre
     Amounts here;     ///< densities in the middle
-    /// Parts of the light that passes the segment's middle which are scattered in the segment and reach the start of
-    /// the ray, without phase function: by molecules, by aerosol, and by both without forward scattering.
+    /// Fractions of the light at the segment's middle that are scattered within the segment and reach the start of the
+    /// ray, without the phase function: by molecules, by aerosol, and by both without forward scattering.
     Spectrum molecules, aerosol, diffuse;
   };
 
@@ -34,6 +34,8 @@ struct Ray {
 /// Reference  hillaire2020, section 5; nakajima1988
 class Scattering {
  public:
+  /// Tabulates multiple scattering.
+  ///
   /// `sun_elevation`  radians, at the ground point from which the sky is seen
   /// `refinement`     factor of all numbers of nodes
   Scattering(const Atmosphere& air, const ColumnTable& columns, double sun_elevation, const Spectrum& ground_albedo,
@@ -50,6 +52,8 @@ class Scattering {
     Spectrum molecules{}, aerosol{};  ///< scattered once, without phase function
     Spectrum multiple{};              ///< scattered more often
   };
+  /// Returns the light that a ray brings to the ground point.
+  ///
   /// `toward_sun`  cosine between the ray and the direction to the sun
   Light toward_ground(const Ray& ray, double toward_sun) const;
 

@@ -12,7 +12,7 @@
 
 namespace orrery::compile {
 
-/// The spheres of a compiled scene, in 12 or 13 bytes each where that loses nothing.
+/// The spheres of a compiled scene, stored in 12 or 13 bytes each where that is lossless.
 class SphereStore {
  public:
   std::size_t size() const noexcept { return plain_.size() + centers_.size() / 3; }

@@ -35,7 +35,7 @@ class TextureStore {
   std::uint64_t bytes() const noexcept;
 
  private:
-  /// A loaded image as the kernel sees it, turned.
+  /// A loaded image and its view for the kernel, including the rotation.
   struct Image {
     std::shared_ptr<const scene::EnvironmentImage> texels;
     kernel::Environment view;
@@ -46,8 +46,8 @@ class TextureStore {
   std::vector<std::shared_ptr<const Image>> images_;
 };
 
-/// The mean of a texture, by which its material is sampled: of an image over the sphere, of other textures halfway
-/// between their two values.
+/// Mean value of a texture, for sampling its material: of an image, the mean over the sphere; of other textures, the
+/// midpoint of their two values.
 math::Vec3d mean_of(const scene::Texture& texture);
 
 }  // namespace orrery::compile

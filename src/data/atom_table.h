@@ -36,6 +36,8 @@ class AtomTable {
 
   std::uint64_t rows() const { return numbers_.size(); }
 
+  /// Describes the table.
+  ///
   /// `has_subchains`   true: lists the column `subchain`, and assigns it the role of the chain
   FrameInfo info(bool has_subchains) const;
 

@@ -14,6 +14,8 @@ namespace orrery::data {
 /// decompressed into memory when it is opened. Thread-safe.
 class ByteSource {
  public:
+  /// Opens a file.
+  ///
   /// `limit`    maximum size after decompression, bytes: a small file may decompress to terabytes
   /// Errors     base::Error: kMissingInput, kIo; kBadData for damaged compressed data, and beyond the limit
   static std::shared_ptr<const ByteSource> open(const std::filesystem::path& file, std::uint64_t limit);

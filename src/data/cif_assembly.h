@@ -18,6 +18,8 @@ namespace orrery::data {
 class CifAssemblies {
  public:
   void add_operator(const std::string& id, const Transform& transform) { operators_[id] = transform; }
+  /// Adds a part of an assembly: chains, and the expression of their transforms.
+  ///
   /// `expression`   "1", "1,3", "(1-60)", "(1-5)(X0)"
   /// `chains`       "A,B,C"
   void add_part(const std::string& assembly, const std::string& expression, const std::string& chains,

@@ -8,7 +8,7 @@
 
 namespace orrery::data {
 
-/// What the values of a text column are, from which its type is determined.
+/// Statistics of the values of a text column, which determine its type.
 struct ColumnSurvey {
   bool has_numbers = false;
   bool has_fractions = false;       ///< numbers that are not integers of 64 bits

@@ -12,7 +12,7 @@
 
 namespace orrery::data {
 
-/// What the first lines of a table of text tell about it.
+/// Layout of a text table, determined from its first lines.
 struct CsvShape {
   char separator = ',';             ///< ' ': any number of blanks and tabs
   std::uint64_t begin = 0;          ///< offset of the first row of values

@@ -15,6 +15,8 @@ class Faults {
  public:
   explicit Faults(const std::filesystem::path& file) : file_(file.string()) {}
 
+  /// Adds an error.
+  ///
   /// `line`     1-based; 0: a binary file, or the whole file
   void add(std::uint64_t line, const std::string& text, const std::string& remedy = {});
   /// Adds one of possibly millions of errors.

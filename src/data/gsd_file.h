@@ -28,6 +28,8 @@ struct GsdChunk {
 /// Reference  gsd-format
 class GsdFile {
  public:
+  /// Reads header, index and list of names.
+  ///
   /// Errors     base::Error(kBadData): damaged header, index or list of names; chunks beyond the end of the file
   explicit GsdFile(Bytes bytes);
 

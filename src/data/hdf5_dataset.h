@@ -12,7 +12,7 @@
 #include "data/faults.h"
 #include "data/table.h"
 
-/// What the reader of snapshots uses of the HDF5 library, with its errors translated.
+/// The part of the HDF5 library that the reader of snapshots uses, with its errors translated.
 namespace orrery::data::hdf5 {
 
 /// Owns an identifier of the library.
@@ -55,7 +55,7 @@ std::vector<double> attribute(const Handle& object, const char* name);
 /// A dataset of numbers with rows of one or more components.
 class Dataset {
  public:
-  /// An empty dataset if there is none of this name with one or two dimensions of numbers.
+  /// Opens a numeric dataset with one or two dimensions; empty if the group has none of this name.
   Dataset(const Handle& group, const std::string& name);
 
   explicit operator bool() const { return static_cast<bool>(handle_); }
@@ -79,7 +79,7 @@ class Dataset {
  private:
   template <typename T>
   void append_as(const std::vector<std::pair<std::uint64_t, Values*>>& columns, Faults& faults) const;
-  /// Rows that are read at once: whole chunks, so that each is decompressed once.
+  /// Number of rows to read at once: whole chunks, so that each is decompressed once.
   std::uint64_t block_rows() const;
 
   std::string name_;

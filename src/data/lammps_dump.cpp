@@ -66,7 +66,7 @@ FrameInfo described(const LammpsFrame& frame) {
   roles.element = if_there("element");
   roles.type = base::contains(frame.columns, "type") ? "type" : if_there("typelabel");
   roles.id = if_there("id");
-  // Counts of periodic images apply to wrapped coordinates only.
+  // Periodic image flags apply to wrapped coordinates only.
   const bool is_wrapped = contain(frame.columns, kAxes) || scaled_position(frame) == &kScaled;
   if (is_wrapped && contain(frame.columns, Axes{"ix", "iy", "iz"})) roles.image = {"ix", "iy", "iz"};
   return info;

@@ -13,7 +13,7 @@
 
 namespace orrery::data {
 
-/// What precedes the rows of a frame in a LAMMPS dump.
+/// Header of a frame in a LAMMPS dump: everything before its rows.
 struct LammpsFrame {
   double step = 0;
   std::uint64_t rows = 0;

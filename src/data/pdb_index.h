@@ -13,7 +13,7 @@
 
 namespace orrery::data {
 
-/// Where a model is in a PDB file.
+/// Location of a model in a PDB file.
 struct PdbModel {
   std::uint64_t begin = 0, end = 0;  ///< offsets
   std::uint64_t first_line = 1;
@@ -21,7 +21,7 @@ struct PdbModel {
   std::string cell;              ///< the CRYST1 record that applies to it; may be empty
 };
 
-/// What a PDB file contains beside atoms.
+/// The models and assemblies of a PDB file.
 struct PdbIndex {
   std::vector<PdbModel> models;  ///< at least one
   std::vector<Assembly> assemblies;

@@ -30,6 +30,8 @@ struct Words {
 template <class T>
 class ArrayView {
  public:
+  /// A view of `size` values of a numeric array.
+  ///
   /// `first`    address of the first value; need not be aligned
   /// `stride`   bytes from one value to the next; may be negative or 0
   ArrayView(const void* first, std::ptrdiff_t stride, std::size_t size)
@@ -118,7 +120,7 @@ struct Roles {
   std::string chain;                    ///< text: chain name, for assemblies
   std::array<std::string, 3> rgb;       ///< red, green, blue, display-referred sRGB
   double rgb_maximum = 255;             ///< value of full intensity
-  std::array<std::string, 3> image;     ///< counts of periodic images, for unwrapping
+  std::array<std::string, 3> image;     ///< periodic image flags, for unwrapping
 };
 
 /// A simulation box: a parallelepiped.

@@ -13,7 +13,7 @@ namespace orrery::data {
 /// Raises base::Error(kUsage): "cannot write FILE: TEXT".
 [[noreturn]] void refuse_to_write(const std::filesystem::path& file, const std::string& text);
 
-/// The writers of the formats. They return the names of columns that they leave out.
+/// The writers of the formats. They return the names of columns that they omit.
 std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table);
 void write_npy_table(base::OutputFile& out, const Table& table);
 void write_csv_table(base::OutputFile& out, const Table& table);

@@ -11,7 +11,7 @@
 
 namespace orrery::data {
 
-/// A text file of frames, each a header and a number of rows. Frames are looked for only as far as they are needed.
+/// A text file of frames, each a header and a number of rows. Frames are located on demand.
 class TextFrames : public DataFile {
  public:
   int frame_count() override;
@@ -28,8 +28,7 @@ class TextFrames : public DataFile {
 
   /// Checks that a frame, or nothing, follows the rows of a frame.
   ///
-  /// `rows_end`   behind the rows
-  /// `count_line` the line that declares their number
+  /// `rows_end`   place after the rows `count_line` the line that declares their number
   void require_end(TextCursor rows_end, std::uint64_t count_line) const;
 
  private:
@@ -41,7 +40,7 @@ class TextFrames : public DataFile {
 
   Bytes bytes_;
   std::vector<TextCursor::Place> frames_;  ///< those found so far
-  TextCursor end_;                         ///< behind them
+  TextCursor end_;                         ///< after them
 };
 
 }  // namespace orrery::data

@@ -11,7 +11,7 @@
 
 namespace orrery::data {
 
-/// The longest line of a table that is read, bytes; longer ones are no text.
+/// Maximum length of a line, bytes. A file with longer lines is not a text table.
 inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
 /// Number of newlines in [begin, end).
@@ -20,11 +20,11 @@ std::uint64_t newline_count(const char* begin, const char* end);
 /// The newline that ends a line of TextLines.
 const char* line_end(const char* at);
 
-/// The lines that begin in one range of a file. The last one ends in a newline, too, if necessary an added one;
-/// kTextPadding newlines follow.
+/// The lines that begin in a range of a file. Every line ends in a newline, which is added to the last one if it is
+/// missing, and kTextPadding newlines follow.
 class TextLines {
  public:
-  /// Reads the lines whose first byte is at `first` <= offset < `last`. The memory is used again by the next call.
+  /// Reads the lines whose first byte is at `first` <= offset < `last`. Reuses the memory of the previous call.
   ///
   /// `is_line_start`  a line begins at `first`, even if no newline precedes it
   /// Errors           base::Error: kIo; kBadData for a line that is too long
@@ -39,7 +39,7 @@ class TextLines {
   std::uint64_t count() const { return newline_count(begin(), end()); }
   /// Number of lines that contain more than white space.
   ///
-  /// `skips_comments`  without comments
+  /// `skips_comments`  comments do not count
   std::uint64_t filled_count(bool skips_comments) const;
 
  private:
@@ -69,7 +69,7 @@ inline bool is_comment(const char* line) {
   return (*sign == '#' || *sign == '%') && may_follow(sign[1]);
 }
 
-/// Returns whether a line has no row: it is blank, or a comment where those are skipped.
+/// Returns whether a line has no row: it is blank, or a comment and those are skipped.
 inline bool has_no_row(const char* line, bool skips_comments) {
   return *skip_blanks(line) == '\n' || (skips_comments && is_comment(line));
 }

@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
-/// Numbers in text that is followed by kTextPadding bytes which belong to no number: there are no checks for the end.
+/// Fast parsing of numbers in text. The text must be followed by kTextPadding bytes that belong to no number, because
+/// nothing checks for its end.
 namespace orrery::data {
 
 inline constexpr std::size_t kTextPadding = 24;
@@ -16,7 +17,7 @@ inline constexpr std::uint64_t kIntegerPowers[] = {1, 10, 100, 1000, 10000, 1000
 inline constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                      1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-/// Eight characters at once, because loops over digits mispredict their end.
+/// Eight characters in one word. A loop over digits would mispredict its end.
 class EightCharacters {
  public:
   explicit EightCharacters(const char* at) {
@@ -25,12 +26,12 @@ class EightCharacters {
     word_ ^= 0x3030303030303030;  // digits become their values
   }
 
-  /// The top bit of each character that is no digit.
+  /// Returns a mask with the top bit of each character that is not a digit.
   std::uint64_t others() const {
     return (((word_ & 0x7f7f7f7f7f7f7f7f) + 0x7676767676767676) | word_) & 0x8080808080808080;
   }
 
-  /// The number that the first `count` digits are.
+  /// Returns the number that the first `count` digits form.
   ///
   /// Domain     1 <= count <= 8
   std::uint64_t value(unsigned count) const {
@@ -42,7 +43,7 @@ class EightCharacters {
     return word & 0xffffffff;
   }
 
-  /// Removes a character; `next` is the one behind the eight.
+  /// Removes a character and appends `next`, the one after the eight.
   void remove(unsigned index, char next) {
     const std::uint64_t before = (std::uint64_t{1} << (8 * index)) - 1;
     const auto last = static_cast<std::uint64_t>(static_cast<unsigned char>(next ^ 0x30)) << 56;
@@ -53,10 +54,10 @@ class EightCharacters {
   std::uint64_t word_ = 0;
 };
 
-/// The first of the characters that EightCharacters::others() marks; 8 if there is none.
+/// Index of the first character that EightCharacters::others() marks; 8 if there is none.
 inline unsigned first_of(std::uint64_t marks) { return static_cast<unsigned>(std::countr_zero(marks)) / 8; }
 
-/// Appends all digits of a text to `value`, which wraps around beyond 64 bits.
+/// Appends the leading digits of a text to `value`, which wraps around beyond 64 bits.
 ///
 /// Result     the end of the digits
 inline const char* scan_digits(const char* at, std::uint64_t& value) {
@@ -74,7 +75,7 @@ inline const char* scan_digits(const char* at, std::uint64_t& value) {
 /// Result     the end of the number; null if there is none
 const char* scan_any_number(const char* at, double& value);
 
-/// As scan_any_number(), fast for numbers of up to eight digits and a point.
+/// As scan_any_number(), but fast for numbers of up to eight digits with a decimal point.
 inline const char* scan_number(const char* at, double& value) {
   // The end of a number is where the next one is looked for: it should depend on as few operations as possible.
   const unsigned sign = *at == '-' ? 1 : 0;
@@ -100,7 +101,7 @@ inline const char* scan_number(const char* at, double& value) {
 
 /// Reads an integer.
 ///
-/// Result     the end of the integer; null if there is none, or none of 64 bits
+/// Result     the end of the integer; null if there is none, or if it exceeds 64 bits
 inline const char* scan_integer(const char* at, std::int64_t& value) {
   const bool is_negative = *at == '-';
   const char* const first = at + (is_negative || *at == '+' ? 1 : 0);

@@ -13,7 +13,7 @@
 
 namespace orrery::data {
 
-/// Distinct words of a column, in order of first appearance. The text of the words belongs to someone else.
+/// Distinct words of a column, in order of first appearance. The words are views of text that the caller keeps.
 class WordList {
  public:
   std::uint32_t index_of(std::string_view word);
@@ -26,7 +26,7 @@ class WordList {
   std::uint32_t last_ = 0;
 };
 
-/// Where the parsed values of a table go; one address per column, null where a column is not wanted.
+/// Destinations of the parsed values: one address per column, null for columns to skip.
 using ColumnAddresses = std::vector<void*>;
 
 /// Parses some lines of a table. Used by one thread at a time.

@@ -28,7 +28,7 @@ struct TextLayout {
   std::uint64_t first_line = 1;     ///< line number of the first row
   char separator = ' ';             ///< ' ': any number of blanks and tabs; else one character, values may be quoted
   bool allows_more = false;         ///< rows may have values beyond the last column
-  char comment = '\0';              ///< begins a comment behind the last value (only with separator ' '); 0: none
+  char comment = '\0';              ///< begins a comment after the last value (only with separator ' '); 0: none
   bool allows_missing = false;      ///< an empty value (with a separator other than ' ') or a marker such as NA is NaN
   bool allows_comments = false;     ///< comments are skipped, see is_comment() (only up to the end of the file)
   bool surveys = false;             ///< all columns are surveyed, also those that are not wanted
@@ -41,7 +41,7 @@ struct TextTable {
   std::uint64_t rows = 0;
   std::vector<Values> values;         ///< one per column; empty if it is not wanted
   std::vector<ColumnSurvey> surveys;  ///< one per column, if requested
-  std::uint64_t end = 0;              ///< offset behind the last row
+  std::uint64_t end = 0;              ///< offset after the last row
 };
 
 /// Parses the rows of a text table in parallel. Numbers are correctly rounded and independent of the locale; `nan`,
@@ -50,7 +50,7 @@ struct TextTable {
 /// Errors     base::Error(kBadData) by `faults`: too few or too many values, malformed numbers, a file that ends before
 ///            the last row, each with its line
 /// Cost       one pass over the bytes, two if the number of rows is not known; memory of the wanted columns, a few MiB
-/// per thread
+///            per thread
 TextTable read_text_rows(const ByteSource& bytes, const TextLayout& layout, Faults& faults);
 
 /// Parses a number as in read_text_rows().

@@ -19,7 +19,7 @@ struct VtkStorage {
   std::uint64_t limit = 0;        ///< maximum size of the decompressed data of an array, bytes
 };
 
-/// The numbers of an array: a part of a file or of memory.
+/// The numbers of an array: a range of a file or of memory.
 struct VtkBytes {
   std::shared_ptr<const ByteSource> source;
   std::uint64_t begin = 0;

@@ -16,6 +16,8 @@ namespace orrery::data {
 /// The XML of a VTP or VTU file, and access to its arrays.
 class VtkDocument {
  public:
+  /// Parses the XML.
+  ///
   /// `limit`    maximum size of the decompressed data of an array, bytes
   /// Errors     base::Error(kBadData) for malformed XML, and with a remedy for other types and compressions
   /// Cost       memory for the file without appended raw data

@@ -29,7 +29,7 @@ TableFormat table_format(const std::filesystem::path& file);
 /// is read as int64 only if float64 cannot represent all of its values.
 ///
 /// Domain     columns x, y, z of numbers; all columns have table.rows rows and different names
-/// Result     names of the columns that were left out because the format has no such texts
+/// Result     names of the columns that were omitted because the format cannot store their texts
 /// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
 ///            kCannotCreate; kIo
 [[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table);

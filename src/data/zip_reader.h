@@ -14,6 +14,8 @@ namespace orrery::data {
 /// Reads the members of a ZIP archive one after another.
 class ZipReader {
  public:
+  /// Starts before the first member.
+  ///
   /// Domain     `bytes` outlives this object
   explicit ZipReader(const ByteSource& bytes);
   ~ZipReader();

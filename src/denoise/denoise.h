@@ -9,24 +9,24 @@
 
 namespace orrery::denoise {
 
-/// Header attribute of a denoised image: the program that did it.
+/// Header attribute of a denoised image: the program that denoised it.
 inline constexpr const char* kAttribute = "orrery/denoised";
 
-/// What denoise() did.
+/// Report of denoise().
 struct Report {
   std::vector<std::string> layers;   ///< light layers that were filtered with the beauty
   std::vector<std::string> missing;  ///< layers that the image lacks; each would improve the result
   bool has_guides = false;           ///< albedo and normal guided the filter
-  /// Pixels without samples, or whose beauty is not finite or too large. They are left as they were.
+  /// Pixels without samples, or whose beauty is not finite or too large. They remain unchanged.
   std::uint64_t bad_pixels = 0;
 };
 
 /// Filters the noise of an image's beauty, and applies the same weights to its light layers (lobe AOVs, light groups
 /// and the lobes of the groups). If they added up to the beauty, they do so again, bit for bit in single precision.
 /// Alpha is filtered with the same weights if part of the image is transparent, since colours are premultiplied. Other
-/// planes are unchanged. The sum over the image is kept, within the limits of LightBalance.
+/// planes are unchanged. The sum over the image is preserved, within the limits of LightBalance.
 ///
-/// The weights come from the layer `halves`, or, as far as the image lacks it, from the guides `denoise.albedo`,
+/// The weights come from the layer `halves`, or, if the image lacks it, from the guides `denoise.albedo`,
 /// `denoise.normal` and `depth`, from `variance` and from the beauty itself.
 ///
 /// `threads`  number of threads; 0: all that the process may use

@@ -10,14 +10,16 @@ namespace orrery::denoise {
 /// Distance between the centres of neighbouring parts, px.
 inline constexpr int kPartSpacing = 64;
 
-/// Factors that restore the light of each part of a filtered plane to that before filtering: pixels may take more light
-/// from others, or less, than they give to them.
+/// Factors that restore the light of each part of a filtered plane to its value before filtering. The filter does not
+/// preserve it: what a pixel receives from others can differ from what it contributes to them.
 ///
 /// Parts are overlapping tents, 2 * kPartSpacing wide, that add up to 1 in each pixel, so that factors interpolated
-/// between parts keep the sum over the image. A part that lost light is multiplied by a factor of up to 1.05. In a part
-/// that gained light, the pixels that are brighter than before give back the same fraction of their gain.
+/// between parts preserve the sum over the image. A part that lost light is multiplied by a factor of up to 1.05. In a
+/// part that gained light, the pixels that are brighter than before give back the same fraction of their gain.
 class LightBalance {
  public:
+  /// Computes the factors of a plane.
+  ///
   /// `before`, `after`   plane before and after filtering
   /// `valid`             1, or 0 for pixels to ignore, whose values may be anything
   LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame);

@@ -9,7 +9,7 @@
 
 namespace orrery::denoise {
 
-/// One channel of the light of an image, as divided by its layers. Indices are those of planes.
+/// The planes of one colour channel, as its light is divided into layers. Members are indices of planes.
 struct LightChannel {
   std::size_t beauty = 0;
   std::vector<std::size_t> cells;  ///< layers that are not sums of others, in the order of their rounding

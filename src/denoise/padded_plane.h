@@ -9,7 +9,7 @@
 
 namespace orrery::denoise {
 
-/// A pixel's neighbours are up to this far away in x and in y, px.
+/// Maximum distance of a pixel's neighbours in x and in y, px.
 inline constexpr int kWindowRadius = 5;
 inline constexpr int kOffsets = (2 * kWindowRadius + 1) * (2 * kWindowRadius + 1);
 /// Radius of the patches that are compared, px.

@@ -22,17 +22,17 @@ inline bool is_usable(float v) { return std::abs(v) <= kLargest; }
 /// Returns 0 for values that are not finite or too large.
 inline float usable(float v) { return is_usable(v) ? v : 0; }
 
-/// Rows of an image and the indices of its pixels.
+/// Size of an image, and the indices of its pixels row by row.
 struct Frame {
   int width, height;
 
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
-  /// Index of the pixel nearest to a place.
+  /// Index of the pixel nearest to (x, y), which may be outside of the image.
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(std::clamp(x, 0, width - 1));
   }
-  /// Values by place.
+  /// Returns the plane of the values f(x, y).
   template <class F>
   Values each(F f) const {
     Values out(pixels());
@@ -41,7 +41,7 @@ struct Frame {
     });
     return out;
   }
-  /// Values by index.
+  /// Returns the plane of the values f(index).
   template <class F>
   Values each_index(F f) const {
     Values out(pixels());
@@ -52,10 +52,10 @@ struct Frame {
   }
 };
 
-/// Means over square windows. Beyond the image its outermost pixels are repeated.
+/// Means over square windows. Edge pixels are repeated beyond the image.
 Values window_means(const Values& in, Frame frame, int radius_px);
 
-/// A plane of two independent halves of the samples.
+/// The same plane of two independent halves of the samples.
 struct Halves {
   const Values* a;
   const Values* b;
@@ -65,7 +65,7 @@ struct Halves {
 /// Variance of the mean of two halves, averaged over square windows; sum over the planes.
 Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px);
 
-/// Copies values into a plane and repeats those at the edge in its border. Values that are not finite or too large
+/// Copies values into a padded plane, whose border repeats the edge pixels. Values that are not finite or too large
 /// become 0.
 PaddedPlane padded(const Values& values, Frame frame, float scale = 1);
 

@@ -10,12 +10,12 @@
 
 namespace orrery::denoise {
 
-/// Filters the guides, which are noisy where the lens or motion blurs them and behind glass, by their own similarity.
+/// Filters the guides by their own similarity. They are noisy where defocus or motion blurs them, and behind glass.
 ///
 /// Result     kGuides planes
 std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, Frame frame, Tiles& tiles);
 
-/// Two halves of the samples with less noise, by which the final weights are determined.
+/// The prefiltered halves of the beauty, which determine the final weights.
 struct FilteredHalves {
   std::array<PaddedPlane, 3> a, b;
   PaddedPlane variance;  ///< of their mean, sum over the channels

@@ -35,7 +35,7 @@ inline constexpr std::size_t kDistanceStride = kHaloWidth + kMaxLanes;
 ///
 /// The product of the differences in two independent halves is an unbiased estimate of the squared difference. Without
 /// halves, the part that noise explains is subtracted. The variance is mostly the smaller of the two pixels', so that a
-/// pixel with little noise, for instance in a shadow, takes no light from a noisy neighbour that differs from it.
+/// pixel with little noise, for instance in a shadow, takes no light from a different, noisy neighbour.
 template <bool kHalves>
 HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int dx, int dy, float* out) {
   const D d;

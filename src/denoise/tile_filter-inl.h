@@ -21,7 +21,7 @@ inline constexpr std::size_t kEntries = kUnknowns * (kUnknowns + 1) / 2;
 /// Added to the mean squares of albedo, normal and inverse depth in the regression: guides that vary less than this are
 /// ignored.
 inline constexpr float kRidges[kGuides] = {1e-2F, 1e-2F, 1e-2F, 2e-2F, 2e-2F, 2e-2F, 3e-4F};
-/// Divisors are at least this large, so that pixels without valid neighbours do not divide by 0.
+/// Lower bound of divisors, so that pixels without valid neighbours do not divide by 0.
 inline constexpr float kTiny = 1e-12F;
 
 /// Calls `f(index, dx, dy)` for all neighbours.

@@ -19,14 +19,14 @@ struct ComparedChannel {
   const PaddedPlane* b = nullptr;
 };
 
-/// What the weights of a tile are computed from.
+/// The data from which the weights of a tile are computed.
 struct WeightSource {
   std::vector<ComparedChannel> compared;
   const PaddedPlane* variance = nullptr;  ///< of the mean of `a` and `b`, sum over the channels
   int radius = kWindowRadius;             ///< of the window of neighbours, at most kWindowRadius, px
-  float tolerance = 1;  ///< squared difference of patches, in variances, from which on they have nothing in common
+  float tolerance = 1;                 ///< squared difference of patches, in variances, at which the weight becomes 0
   const PaddedPlane* valid = nullptr;  ///< 1, or 0 for pixels to ignore; 0 outside of the image
-  /// kGuides planes, scaled so that pixels that differ by 1 have nothing in common; or empty.
+  /// kGuides planes, scaled so that the weight becomes 0 at a difference of 1; or empty.
   std::vector<const PaddedPlane*> guides;
   const PaddedPlane* guide_variance = nullptr;  ///< sum of the variances of all guides
   bool has_regression = false;                  ///< on the guides; otherwise the weights are those of a weighted mean
@@ -47,8 +47,8 @@ struct TileScratch {
   std::vector<float> distances, columns;
 };
 
-/// Computes weights by non-local means: neighbours weigh as much as the patches around them are alike. With
-/// `has_regression`, the weights are those of a linear regression on the guides over the neighbours.
+/// Computes weights by non-local means: the weight of a neighbour is the similarity of the patches around both pixels.
+/// With `has_regression`, the weights are those of a linear regression on the guides over the neighbours.
 ///
 /// `x`, `y`   upper left pixel of the tile, multiples of its size
 /// `out`      resized to the number of neighbours
@@ -58,7 +58,7 @@ void compute_weights(const WeightSource& source, int x, int y, TileScratch& scra
 
 /// Applies the weights of a tile to a plane.
 ///
-/// `radius`   of the source of the weights
+/// `radius`   WeightSource::radius of the weights
 void apply_weights(const TileWeights& weights, int radius, const PaddedPlane& plane, int x, int y, TilePixels& out);
 
 }  // namespace orrery::denoise

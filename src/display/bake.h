@@ -13,8 +13,8 @@ inline constexpr int kDefaultCubeSize = 65;
 /// Bakes a display transform (exposure, look and view) to a 3D LUT, as the text of a Resolve .cube file. A 1D shaper
 /// LUT maps radiance from 0 to 7 stops above mid grey logarithmically to the domain of the 3D LUT.
 ///
-/// Precision  test DisplayBake.ACubeMatchesTheView
 /// Errors     those of choose
+/// Precision  test DisplayBake.ACubeMatchesTheView
 std::string bake_cube(const Settings& settings, int size);
 
 /// The same transform as the text of a Common LUT Format (CLF) file. It is stored exactly if the format supports all of

@@ -46,7 +46,7 @@ struct Choice {
 ///            names), and for an exposure that is not finite
 Choice choose(const Settings& settings);
 
-/// What happens to an image's alpha.
+/// Treatment of an image's alpha.
 enum class Alpha {
   kOverBlack,  ///< dropped: the image is shown over black
   kStraight,   ///< kept as a fourth channel; colours are divided by it before the view is applied
@@ -68,6 +68,8 @@ film::EncodedPicture develop(const film::Picture& picture, const Settings& setti
 /// values are those of develop().
 class PixelDeveloper {
  public:
+  /// Sets up the display transform.
+  ///
   /// Errors     those of choose
   explicit PixelDeveloper(const Settings& settings);
   ~PixelDeveloper();

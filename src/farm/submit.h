@@ -38,7 +38,7 @@ struct Commands {
 /// Errors     those of jobs_of and load_scene; base::Error(kUsage) for settings that cannot be combined with shards
 Commands commands_of(const Submission& submission);
 
-/// The whole job in the engine's format, as text that a person can read and edit.
+/// The whole job in the engine's format, as readable text.
 ///
 /// Errors     those of commands_of
 std::string submission_text(const Submission& submission);

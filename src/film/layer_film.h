@@ -19,6 +19,8 @@ std::vector<Plane> planes_of(const LayerRequest& request);
 /// The layer planes of an image, filled pixel by pixel.
 class LayerFilm {
  public:
+  /// Allocates the planes of the requested layers for an image of this size.
+  ///
   /// Domain     request and view outlive this
   LayerFilm(const LayerRequest& request, const kernel::SceneView& view, int width_px, int height_px);
 

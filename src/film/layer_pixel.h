@@ -27,7 +27,7 @@ struct SphereCoverage {
 /// bit.
 struct LayerPixel {
   /// Adds a path, except its light events. Radiance that is not finite or exceeds kernel::kLargestSample is invalid and
-  /// left out of all sums.
+  /// excluded from all sums.
   void add(const LayerRequest& request, const kernel::SceneView& scene, const kernel::PathRecord& path,
            std::int64_t weight);
 

@@ -21,8 +21,8 @@ inline constexpr const char* kLobeNames[kernel::kLobes] = {
 /// Maximum number of light groups: a pixel has sums for each, 384 bytes per group.
 inline constexpr std::size_t kMaxLightGroups = 64;
 
-/// A light group of the scene. Its sources are known without its light, so that all frames of a sequence have the same
-/// layers even if a light is black in some of them.
+/// A light group of the scene. The members describe its sources, not its light, so that all frames of a sequence have
+/// the same layers even if a light is black in some of them.
 struct LightGroup {
   std::string name;             ///< of its layers
   bool has_emitters = false;    ///< spheres emit its light
@@ -76,7 +76,7 @@ struct LayerRequest {
   }
 };
 
-/// What a layer is computed from.
+/// Source of the values of a layer.
 enum class LayerSource {
   kLight,    ///< radiance by lobe or light group
   kNearest,  ///< the first hit nearest to the camera
@@ -117,7 +117,7 @@ inline constexpr LayerType kLayerTypes[] = {
 
 namespace detail {
 
-/// Whether layers of a source are requested. This is asked per path: the table is evaluated at compile time.
+/// Whether layers of a source are requested. Called per path; the table is evaluated at compile time.
 template <LayerSource kSource, std::size_t... kIndices>
 constexpr bool requests(const LayerRequest& request, std::index_sequence<kIndices...>) {
   return ((kLayerTypes[kIndices].source == kSource && request.*kLayerTypes[kIndices].requested) || ...);

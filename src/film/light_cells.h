@@ -10,9 +10,9 @@
 
 namespace orrery::film {
 
-/// The mean radiance of a pixel, divided by light group and lobe, so that three divisions of the light add up to the
-/// beauty bit for bit in single precision and in any order: the lobes, the groups, and the lobes of the groups. The
-/// lobes of a group add up to the group, and the groups' parts of a lobe to the lobe.
+/// The mean radiance of a pixel by light group and lobe. The lobes, the groups, and the lobes of the groups each sum to
+/// the beauty, the lobes of a group to the group, and the groups' parts of a lobe to that lobe: bit for bit in single
+/// precision, in any order.
 ///
 /// Each cell is a multiple of the beauty's last bit, and no partial sum exceeds the beauty, so that all sums are exact.
 /// With a filter that has negative lobes a partial sum can exceed it.
@@ -20,12 +20,14 @@ namespace orrery::film {
 /// Precision  a cell or lobe is off by less than the last bit of the beauty, a group by less than kLobes of it
 class LightCells {
  public:
-  /// Domain     `beauty` is the sum of the same paths. Rounding may make it differ from the sum of the light events.
+  /// Divides the mean radiance of a pixel.
+  ///
+  /// Domain     `beauty` is the sum over the same paths; rounding may make it differ from the sum of the light events
   LightCells(const LayerRequest& request, const LayerPixel& pixel, const kernel::PixelSum& beauty);
 
-  float of(std::size_t group, kernel::Lobe lobe, std::size_t channel) const;
-  float of_lobe(kernel::Lobe lobe, std::size_t channel) const;   ///< of all groups
-  float of_group(std::size_t group, std::size_t channel) const;  ///< all lobes
+  float of(std::size_t group, kernel::Lobe lobe, std::size_t channel) const;  ///< a lobe of a group
+  float of_lobe(kernel::Lobe lobe, std::size_t channel) const;                ///< a lobe, all groups
+  float of_group(std::size_t group, std::size_t channel) const;               ///< a group, all lobes
 
  private:
   double& cell(std::size_t group, std::size_t lobe, std::size_t channel) {

@@ -13,7 +13,7 @@
 
 namespace orrery::film {
 
-/// The work done so far, summed over all runs of the program.
+/// Work done so far, summed over all runs of the program.
 struct RenderWork {
   std::uint64_t paths = 0, rays = 0;
   std::uint64_t bad_samples = 0;  ///< samples with an invalid value, excluded from the pixel means

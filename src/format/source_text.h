@@ -29,6 +29,8 @@ struct Place {
 /// The texts from which a scene is read, the file and the overrides, to quote their lines in diagnostics.
 class SourceText {
  public:
+  /// Adds a text.
+  ///
   /// `is_generated`  a program wrote the text, so that its lines mean nothing to the user: diagnostics omit them
   void add(const std::string& name, std::string_view text, bool is_generated = false);
 

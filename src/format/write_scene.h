@@ -8,7 +8,7 @@
 
 namespace orrery::format {
 
-/// Returns a scene file that reads back to the same scene. Keys with default values are left out.
+/// Returns a scene file that reads back to the same scene. Keys with default values are omitted.
 ///
 /// `comment`  placed at the top, each line after a #
 /// Errors     base::Error(kInternal) for a scene that no file can represent: two materials of the same name, or a

@@ -15,6 +15,8 @@ namespace orrery::image {
 /// full at the end.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
  public:
+  /// Opens a file for writing.
+  ///
   /// Domain     the file exists; it is emptied
   explicit CheckedFile(const std::filesystem::path& file);
   ~CheckedFile() override;

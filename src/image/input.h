@@ -33,7 +33,7 @@ struct Input {
   std::string complaint() const;
 };
 
-/// How colours are read that a file stores beside alpha, not multiplied by it, as PNG does.
+/// How to read colours that a file stores with unassociated alpha, as PNG does.
 enum class Alpha { kPremultiplied, kAsInFile };
 
 /// Opens an image and checks its header.

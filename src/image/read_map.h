@@ -15,7 +15,7 @@ enum class MapFormats {
   kAll,          ///< all formats that are written: textures
 };
 
-/// What the header of a latitude-longitude map says.
+/// Header of a latitude-longitude map.
 struct MapHeader {
   int width = 0, height = 0;                             ///< px, of the display window
   std::string color_interop_id = {};                     ///< "lin_ap1_scene"; empty: not declared

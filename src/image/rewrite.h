@@ -17,7 +17,7 @@ namespace orrery::image {
 /// Result     attributes to add to the file
 using EditPlanes = std::function<std::vector<Attribute>(film::Picture& planes)>;
 
-/// What rewrite_exr() did.
+/// Report of rewrite_exr().
 struct RewriteReport {
   std::uint64_t clamped = 0;             ///< values that were clamped to the range of half
   std::vector<std::string> other_parts;  ///< names of further parts with a channel R, which were copied

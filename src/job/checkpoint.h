@@ -28,6 +28,8 @@ class Checkpoint {
   /// Writes a partial film to a file.
   using Write = std::function<void(const std::filesystem::path& file, const film::Partial& partial)>;
 
+  /// Starts the first interval; no file is read or written yet.
+  ///
   /// Domain     `settings` and `hooks` outlive this
   Checkpoint(std::filesystem::path file, const CheckpointSettings& settings, const Hooks& hooks,
              image::Provenance provenance, Write write);

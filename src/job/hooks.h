@@ -25,7 +25,7 @@ struct Hooks {
   std::function<void(const render::Progress&)> on_progress;  ///< see render::Settings
   std::function<void(double fraction)> on_build;             ///< see render::Settings
   std::function<void(const PictureStart&)> on_start;         ///< called before rendering starts
-  /// See render::Settings. Nothing is called for a merge.
+  /// See render::Settings. Not called for a merge.
   std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
   std::function<void(const film::Picture&)> on_denoised;  ///< receives the denoised image
   bool develops_pixels = false;  ///< `on_pixels` applies the display transform, whose names are therefore checked

@@ -31,7 +31,7 @@ struct MapRequest {
   bool skips_large = false;        ///< an image that does not fit into memory is a warning and is not read
 };
 
-/// An image that was read, and what was found out about its file.
+/// A map that was read, and the properties of its file.
 struct LoadedMap {
   int width = 0, height = 0;  ///< texels
   std::string color_space;    ///< of the file; empty for data
@@ -45,7 +45,7 @@ struct LoadedMap {
 /// chromaticities, or the name that OpenImageIO's tools write), else in that of `color_space`, else in sRGB for
 /// integers and in `default_space` for scene-linear files.
 ///
-/// NaN, infinite and negative values become 0, values above `largest` that, and they are counted in a warning.
+/// NaN, infinite and negative values become 0, values above `largest` become `largest`; a warning states how many.
 ///
 /// Errors     those of the file and of colour spaces become diagnostics; base::Error(kNoMemory) if the image does not
 ///            fit into memory, before its pixels are read

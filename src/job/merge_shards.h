@@ -13,7 +13,7 @@ namespace orrery::job {
 
 /// Reads the provenance of shards and checks that they belong to one image.
 ///
-/// `on_left_out`  called for each missing or damaged file, which is then left out; null: these are errors
+/// `on_left_out`  called for each missing or damaged file, which is then skipped; null: these are errors
 /// Errors     base::Error with a diagnostic for each file that is missing, damaged, or of another image than the first:
 ///            kMissingInput if files are missing and nothing else is wrong, kBadData otherwise; kUsage for a file that
 ///            is given twice
@@ -36,7 +36,7 @@ struct MergedShards {
 ///
 /// `samples`  per pixel of the whole image
 /// `spheres`  in the scene
-/// `allow_missing`  accept missing samples and leave out shards with unreadable sums
+/// `allow_missing`  accept missing samples, and skip shards with unreadable sums
 /// Domain     `shards` is a result of read_shards
 /// Errors     base::Error(kBadData) naming files that overlap, are unfinished or of another size, and missing samples
 MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int height_px, std::uint32_t samples,

@@ -16,6 +16,8 @@ struct ImageFile {
   std::filesystem::path path;
   image::Format format;
 
+  /// Determines the format from the extension.
+  ///
   /// Errors     base::Error(kUsage) for an unknown extension
   // NOLINTNEXTLINE(google-explicit-constructor): a path is an image file
   ImageFile(std::filesystem::path file) : path(std::move(file)), format(image::format_of(path)) {}
@@ -39,7 +41,7 @@ struct Outputs {
   display::Settings display;         ///< for display formats; the working space is the scene's
   int bits = 0;                      ///< per channel of display formats; 0: the display's default
   image::ExrOptions exr;
-  bool reproducible = false;  ///< leave everything that varies between runs out of headers
+  bool reproducible = false;  ///< omit everything that varies between runs from headers
 
   /// True if an image is an EXR, the only format that holds layers.
   bool has_exr() const;

@@ -13,7 +13,7 @@
 
 namespace orrery::job {
 
-/// A rendered image in memory, and what its files need besides.
+/// A rendered image in memory, and the other data that its files need.
 struct Rendering {
   Job job;                ///< the request, without hooks and data in memory
   film::Picture picture;  ///< R, G, B, A, then the layers of the scene

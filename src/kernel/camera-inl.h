@@ -26,7 +26,8 @@ struct CameraRay {
   Vec3<V> direction;  ///< unit
 };
 
-/// Warps the two numbers that place a path in its pixel by the pixel filter; the pixel itself is 0..1.
+/// Importance sampling of the pixel filter: warps the first two random numbers to the path's position in the pixel,
+/// which spans 0..1 on each axis.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void filter_place(D d, const PixelFilter& filter, hn::Vec<hn::RebindToUnsigned<D>> samples,
                              Four<V>& random) {
@@ -86,7 +87,7 @@ HWY_INLINE CameraVectors<V> moved(const CameraVectors<V>& a, const CameraVectors
           mul_add(change.lens_u, time, a.lens_u), mul_add(change.lens_v, time, a.lens_v)};
 }
 
-/// The camera rays of paths through their pixels.
+/// Camera rays through pixels, one per lane.
 ///
 /// Space      pixel_x, pixel_y are pixels of the frame, relative to the rendered window
 template <class D, class V = hn::Vec<D>>

@@ -91,9 +91,9 @@ inline bool samples_lights(const SceneView& scene) {
          (scene.lights.count > 0 || (scene.environment != nullptr && scene.environment->is_sampled));
 }
 
-/// The probability with which light sampling takes the environment, not an emitter.
+/// The probability that light sampling chooses the environment instead of an emitter.
 ///
-/// A vertex cannot know which of the two matters without tracing shadow rays, so both have the same chance.
+/// Which of the two matters at a vertex is unknown without tracing shadow rays, so both are equally likely.
 inline double environment_share(const SceneView& scene) {
   if (scene.environment == nullptr || !scene.environment->is_sampled) return 0;
   return scene.lights.count > 0 ? 0.5 : 1;

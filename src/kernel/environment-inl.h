@@ -25,7 +25,7 @@ HWY_INLINE V interpolated(D, V a, V b, V s) {
   return hn::MulAdd(b - a, s, a);
 }
 
-/// Returns x minus the largest integer up to x: angles in turns, within 0..1.
+/// Returns the fractional part x - floor(x), within 0..1: an angle in turns.
 template <class V>
 HWY_INLINE V whole_turns_removed(V x) {
   return x - hn::Floor(x);

@@ -55,8 +55,8 @@ HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> lattice_cell(D d, hn::Vec<D> whole) 
   }
 }
 
-/// The lattice position of frequency (base + rest). The rounding error of the product is
-/// carried along, however far `base` is.
+/// The lattice position of frequency (base + rest). The rounding error of the product is compensated, however large
+/// `base` is.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE LatticePoint<D> lattice_point(D d, const Vec3<V>& base, const Vec3<V>& rest, V frequency) {
   LatticePoint<D> out;

@@ -10,7 +10,7 @@ namespace orrery::kernel {
 /// Number of paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
 inline constexpr int kStreamSize = 1024;
 
-/// Shadow rays that wait until they fill a packet, and what arrives if they are not occluded.
+/// Shadow rays that wait until they fill a packet, and the light that arrives if they are not occluded.
 ///
 /// The end of the arrays is written in whole vectors.
 template <class T, class Id>

@@ -38,7 +38,7 @@ class Recorder {
     (void)d;
   }
 
-  /// Resets what is read of the records of paths that begin, and is not written to all of them later.
+  /// Initializes the members of new records that are read later but not written for every path.
   HWY_INLINE void begin(D d, hn::Mask<D> active, hn::Mask<D> missed) {
     if (!tile_.record_hits) return;
     if (tile_.record_light) each(d, active, [](PathRecord& r, int) { std::fill_n(r.light, 3, 0.0); });

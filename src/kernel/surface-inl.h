@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// What an instance of the path loop is compiled for.
+/// Compile-time options of an instance of the path loop.
 struct Loop {
   Precision precision = Precision::kExact;
   bool records = false;   ///< fills the tile's records

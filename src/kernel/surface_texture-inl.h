@@ -18,13 +18,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// The textures of spheres' materials, by lane.
+/// Texture indices of the materials of spheres, one per lane.
 template <class D>
 struct TextureIndices {
   static constexpr std::size_t kMax = hn::MaxLanes(D());
   std::uint32_t albedo[kMax], fuzz[kMax], radiance[kMax];
   bool has_albedo = false, has_fuzz = false, has_radiance = false;
 
+  /// Loads the texture indices of the spheres in `lanes`; other lanes have none.
+  ///
   /// Domain     scene.textures is not null
   HWY_INLINE TextureIndices(D d, const SceneView& scene, hn::Vec<IdTag<D>> spheres, hn::Mask<D> lanes) {
     using T = hn::TFromD<D>;
@@ -45,7 +47,7 @@ struct TextureIndices {
   }
 };
 
-/// Replaces albedo and fuzz at hits by those of textures.
+/// Replaces albedo and fuzz at hits by the values of their textures.
 ///
 /// `hit`      lanes with a hit
 template <class D, Precision kPrecision, class V = hn::Vec<D>>
@@ -62,7 +64,7 @@ HWY_NOINLINE void apply_textures(D d, const SceneView& scene, const Rays<D>& ray
         replaced_by_textures(d, scene.textures, index.fuzz, point, {surface.fuzz, surface.fuzz, surface.fuzz}).x;
 }
 
-/// The radiance of emitters, with textures, at sampled points.
+/// Emitted radiance at sampled points of emitters: the value of the texture, or `radiance` without one.
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, hn::Vec<IdTag<D>> spheres,
                                        const TexturePoint<D>& point, const Vec3<V>& radiance) {
@@ -71,7 +73,7 @@ HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, hn::Vec<IdTa
   return replaced_by_textures(d, scene.textures, index.radiance, point, radiance);
 }
 
-/// The radiance of emitters, with textures, at hits.
+/// Emitted radiance at hits of emitters: the value of the texture, or `radiance` without one.
 ///
 /// `lanes`    hits of emitters
 /// `times`    of the rays; read only where kMoves

@@ -38,7 +38,7 @@ HWY_INLINE hn::Mask<D> is_odd_cell(D d, const TexturePoint<D>& at, V size) {
   return parity(cells) != hn::Zero(d);
 }
 
-/// The stripes of marble: 0..1, a wave along z that turbulence distorts.
+/// The marble pattern, 0..1: a sine wave along z, perturbed by turbulence.
 ///
 /// Reference  shirley2024b, "Adjusting the Phase"
 template <class D, class V = hn::Vec<D>>
@@ -79,7 +79,7 @@ HWY_NOINLINE Vec3<V> texture_color(D d, const Texture& texture, const TexturePoi
   return mul_add(high - low, t, low);
 }
 
-/// Replaces colours by those of textures.
+/// Replaces colours by the values of textures.
 ///
 /// `index`    of each lane's texture; MaterialTextures::kNone: the lane keeps its colour
 /// Cost       one evaluation for each texture in the vector

@@ -58,11 +58,11 @@ HWY_INLINE V refined_distance(D d, const Rays<D>& ray, const Spheres<D>& sphere,
   return hn::IfThenElse(hn::Abs(near - distance) < hn::Abs(far - distance), near, distance);
 }
 
-/// Hit points as textures see them.
+/// The points at which textures are evaluated for hits.
 ///
 /// A point on a sphere that is small or far from the ray's origin is its centre plus an offset. On one that is large in
-/// comparison with its distance it is the ray's origin plus a vector: the offset would round to a spacing that shows,
-/// where a ground touches the face of a checker's cells.
+/// comparison with its distance it is the ray's origin plus a vector: rounding of the offset would be visible where a
+/// ground touches a face of a checker's cells.
 ///
 /// `offset`, `outward`  as of HitPoint
 /// Precision  docs/numerics.md, test KernelTexture.CellsOfCheckersAtAllRadii

@@ -16,6 +16,8 @@ namespace orrery::measure {
 /// sphere points; and a SIMD list.
 class TracingBench {
  public:
+  /// Builds the other accelerators.
+  ///
   /// Domain     `fast` is built for precision fast; it, the view and the rays outlive this; at least one sphere
   TracingBench(const kernel::SceneView& view, accel::Accel& fast, render::RecordedRays<kernel::RayPacketFast>& rays,
                bool with_list);

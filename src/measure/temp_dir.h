@@ -8,6 +8,8 @@ namespace orrery::measure {
 /// A new temporary folder, removed with its content on destruction.
 class TempDir {
  public:
+  /// Creates the folder.
+  ///
   /// Errors     base::Error(kCannotCreate)
   TempDir();
   ~TempDir();

@@ -31,8 +31,8 @@ struct PixelErrors {
 /// Domain     views of the same size, with channels; `left_out` flags the pixels to skip, empty for none
 PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference, const std::vector<bool>& left_out = {});
 
-/// The display error of every pixel; 0 if the pixel is left out or a value is not finite. PixelErrors::display is its
-/// root mean square over the pixels that are not left out.
+/// The display error of every pixel; 0 if the pixel is skipped or a value is not finite. PixelErrors::display is its
+/// root mean square over the pixels that are not skipped.
 Map display_error_map(const ColorView& picture, const ColorView& reference, const std::vector<bool>& left_out = {});
 
 }  // namespace orrery::metrics

@@ -21,7 +21,7 @@ struct ConvertedFile {
   std::filesystem::path file;
   std::size_t spheres = 0;
   std::vector<std::string> columns;
-  std::vector<std::string> notes;  ///< what was left out, and why
+  std::vector<std::string> notes;  ///< what was omitted, and why
   std::vector<base::Diagnostic> warnings;
 };
 
@@ -29,7 +29,7 @@ struct ConvertedFile {
 ///
 /// - Positions and radii are those of a plot: selected, unwrapped, copied and cut. A plane cuts as in a plot from the
 ///   default view. Values of other columns are those of the file; copies of a particle have the same values.
-/// - The radius is left out if neither the file nor the options say it: nothing is guessed.
+/// - The radius is omitted if neither the file nor the options define it: nothing is guessed.
 /// - Colours are those of `color_by`, or the file's own: display-referred sRGB, uint8.
 /// - The order is that of the particle ids, if the file has any.
 ///

@@ -12,7 +12,7 @@
 
 namespace orrery::plot {
 
-/// What is read from a data file, and how: common to all commands that make spheres of particles.
+/// Options for reading a data file, common to all commands that turn particles into spheres.
 struct DataOptions {
   std::filesystem::path file;  ///< data file, may contain a frame pattern
   std::vector<int> frames;     ///< empty: one frame
@@ -20,7 +20,7 @@ struct DataOptions {
   scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
   std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: not set
   bool has_map = false;        ///< `points.color.map` is the user's
-  /// Axis 0, 1 or 2, and the plane's place: removes what is in front of it.
+  /// Slice plane: axis 0, 1 or 2, and position. The spheres in front of it are removed.
   std::optional<std::pair<int, double>> slice = {};
   std::uint64_t memory_limit = 0;  ///< bytes; 0: no limit
 };

@@ -8,7 +8,7 @@
 
 namespace orrery::plot {
 
-/// Everything that the scene of a plot consists of.
+/// The parts of the scene of a plot.
 struct PlotParts {
   const PlotOptions& options;
   const scene::Points& points;

@@ -25,7 +25,7 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up);
 
 /// Removes the spheres on the camera's side of a plane: sets the clip of `points`.
 ///
-/// `plane`    axis 0, 1 or 2, and place
+/// `plane`    axis 0, 1 or 2, and position
 void slice(std::pair<int, double> plane, const ViewAxes& axes, scene::Points& points);
 
 /// Extent of spheres along the axes of a view.

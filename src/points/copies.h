@@ -11,7 +11,7 @@
 
 namespace orrery::points {
 
-/// Moves particles out of the periodic box: p + i a + j b + k c, with the image counts i, j, k of the file.
+/// Unwraps the coordinates of particles: p + i a + j b + k c, with the periodic image flags i, j, k of the file.
 ///
 /// Domain     `centers` are those of the rows
 void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, scene::PointArray& centers);

@@ -123,9 +123,8 @@ class Loader {
 
   void plan_unwrap() {
     if (info_.roles.image[0].empty() || !info_.box) {
-      faults_.error(
-          ".unwrap",
-          "the file has no box, or no wrapped coordinates with counts of periodic images, such as ix, iy and iz");
+      faults_.error(".unwrap",
+                    "the file has no box, or no wrapped coordinates with periodic image flags, such as ix, iy and iz");
       return;
     }
     for (const std::string& column : info_.roles.image) need(column);

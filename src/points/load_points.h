@@ -15,7 +15,7 @@
 
 namespace orrery::points {
 
-/// What the spheres were made of.
+/// The data from which spheres were made.
 struct SourceRows {
   data::FrameInfo info;             ///< of the frame
   data::Table table;                ///< all columns of the frame

@@ -12,7 +12,7 @@
 
 namespace orrery::points {
 
-/// What reading the spheres of a data file takes.
+/// Memory that reading the spheres of a data file takes.
 struct ReadMemory {
   std::uint64_t rows = 0;          ///< of the file
   std::uint64_t row_bytes = 0;     ///< of the columns that are read

@@ -73,6 +73,8 @@ class KeyFaults {
  public:
   explicit KeyFaults(std::string key) : key_(std::move(key)) {}
 
+  /// Adds an error about a key.
+  ///
   /// `part`     of the key: ".radius.column"; empty: the whole table
   void error(const std::string& part, std::string text, base::ErrorKind kind = base::ErrorKind::kBadData) {
     diagnostics_.push_back({base::Severity::kError, key_ + part, std::move(text), kind});

@@ -21,6 +21,8 @@ struct Token {
 /// The tokens of a selection, one after the other.
 class SelectionLexer {
  public:
+  /// Starts at the first token.
+  ///
   /// `text`     outlives this and the tokens
   explicit SelectionLexer(const std::string& text) : text_(text) {}
 
@@ -38,7 +40,7 @@ class SelectionLexer {
   [[noreturn]] void fail(const Token& token, const std::string& text, const std::string& remedy) const;
 
   const std::string& text_;
-  std::size_t next_ = 0;  ///< first byte behind the last token
+  std::size_t next_ = 0;  ///< first byte after the last token
 };
 
 }  // namespace orrery::points

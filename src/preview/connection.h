@@ -28,7 +28,7 @@ class Connection {
   /// Why it is closed: "Connection refused".
   const std::string& reason() const { return reason_; }
 
-  /// Begins to connect, if closed.
+  /// Starts to connect, if closed.
   void open();
 
   /// Updates the state: whether connecting has succeeded, and whether the other side has closed the connection.
@@ -39,7 +39,7 @@ class Connection {
   /// Result     number of bytes; 0 if the other side does not read, or has closed the connection
   std::size_t send(const char* bytes, std::size_t count);
 
-  /// Waits until the system accepts bytes or the time is over.
+  /// Waits until the socket accepts bytes, for at most `milliseconds`.
   void wait(int milliseconds) const;
 
  private:

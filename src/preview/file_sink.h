@@ -17,6 +17,8 @@ class FileSink : public Sink {
   double interval_s() const override { return 1; }
   void begin(const PictureInfo& picture, const Canvas& canvas) override;
 
+  /// Develops the changed cells and rewrites the file.
+  ///
   /// Errors     base::Error: kCannotCreate, kIo
   void update(const std::vector<std::size_t>& cells) override;
 

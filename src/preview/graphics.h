@@ -7,7 +7,7 @@
 
 namespace orrery::preview {
 
-/// Ways to draw an image into a terminal, from best to worst.
+/// Ways to draw an image in a terminal, from best to worst.
 enum class Graphics {
   kKitty,      ///< kitty's protocol, true colour
   kIterm,      ///< iTerm2's inline images, true colour
@@ -19,8 +19,8 @@ enum class Graphics {
 /// True if a character cell shows two pixels, one above the other, instead of an image of any resolution.
 inline bool is_text(Graphics graphics) { return graphics == Graphics::kTrueColor || graphics == Graphics::k256Colors; }
 
-/// The bytes that draw a bitmap at the cursor's cell. They leave the cursor in that cell's row or the one below the
-/// image; the caller saves and restores it.
+/// Returns the bytes that draw a bitmap at the cursor's cell. They leave the cursor in that cell's row or the one below
+/// the image; the caller saves and restores it.
 ///
 /// `columns`, `rows`  character cells that the image covers; as text, one column per pixel and one row per two
 /// Reference  kitty graphics; iTerm2 images; DEC STD 070; ECMA-48
@@ -32,7 +32,8 @@ std::string iterm(const Bitmap& bitmap, int columns, int rows);
 std::string sixel(const Bitmap& bitmap);
 std::string half_blocks(const Bitmap& bitmap, bool true_color);
 
-/// The bytes that remove images which the terminal keeps beside its text; empty if there are none.
+/// Returns the escape sequence that deletes drawn images, for terminals that store them separately from their text;
+/// empty for others.
 std::string removed(Graphics graphics);
 
 }  // namespace orrery::preview

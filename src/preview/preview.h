@@ -18,6 +18,8 @@ namespace orrery::preview {
 /// uses at most kShareOfTime of the render's processor time.
 class Preview {
  public:
+  /// Starts the preview's thread.
+  ///
   /// `on_note`  may be called until the destructor returns
   Preview(std::unique_ptr<Sink> sink, OnNote on_note);
   /// Ends the last image.

@@ -9,14 +9,14 @@
 
 namespace orrery::preview {
 
-/// The lower end of a terminal: an image, and the line of a progress bar below it. Messages scroll above the image.
+/// The bottom of a terminal: an image, and a progress bar below it. Messages scroll above the image.
 ///
 /// bar() and note() only copy the text; poll() writes it on the preview's thread, without waiting for the terminal.
 class Screen {
  public:
-  /// Asks the terminal how it can show images.
+  /// Queries the terminal for its graphics capabilities.
   ///
-  /// Errors     base::Error(kUsage) if the descriptor is no terminal, or one without colours
+  /// Errors     base::Error(kUsage) if the descriptor is not a terminal, or one without colours
   explicit Screen(int descriptor, const Environment& environment = preview::environment);
 
   Graphics graphics() const { return graphics_; }

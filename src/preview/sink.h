@@ -11,7 +11,7 @@
 
 namespace orrery::preview {
 
-/// The image of a render that begins.
+/// Properties of an image that is about to be rendered.
 struct PictureInfo {
   std::string name;           ///< of the scene
   int width = 0, height = 0;  ///< px
@@ -44,7 +44,7 @@ class Sink {
   /// Shows cells that have changed.
   virtual void update(const std::vector<std::size_t>& cells) = 0;
 
-  /// Continues what would have blocked. Called often.
+  /// Continues output that would have blocked. Called often.
   virtual void poll() {}
 
   /// Ends an image: waits until the viewer has everything, but not for a viewer that hangs.

@@ -15,21 +15,21 @@ using Environment = std::function<std::string(const char* name)>;
 /// The environment of the process.
 std::string environment(const char* name);
 
-/// Why a terminal cannot show colours, by $TERM and $NO_COLOR; empty if it can.
+/// Returns why a terminal shows no colours, according to $TERM and $NO_COLOR; empty if it does.
 std::string missing_colors(const Environment& environment);
 
-/// The queries to which a terminal answers what it can draw: kitty's graphics, the size of a cell, and the device
+/// Returns queries for the graphics capabilities of a terminal: kitty's graphics, the size of a cell, and the device
 /// attributes, which every terminal answers and which therefore come last. Empty for a terminal that would print them.
 std::string queries(const Environment& environment);
 
-/// What a terminal has answered.
+/// Answers of a terminal to queries().
 struct Answers {
   bool kitty = false, sixel = false;
   int cell_width = 0, cell_height = 0;  ///< px; 0: unknown
   bool is_complete = false;             ///< the device attributes have arrived
 };
 
-/// Parses answers, of which the rest may not have arrived yet.
+/// Parses answers, which may still be incomplete.
 ///
 /// Reference  kitty graphics; xterm control sequences
 Answers parse_answers(std::string_view bytes);

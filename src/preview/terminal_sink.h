@@ -11,6 +11,8 @@ namespace orrery::preview {
 /// Draws images on a Screen, through the display transform.
 class TerminalSink : public Sink {
  public:
+  /// A sink that draws on `screen`.
+  ///
   /// Domain     `screen` outlives this
   explicit TerminalSink(Screen& screen) : screen_(screen) {}
 

@@ -17,6 +17,8 @@ namespace orrery::preview {
 /// or starts later, gets the whole image when it can be reached again.
 class TevSink : public Sink {
  public:
+  /// Resolves the address of tev.
+  ///
   /// Errors     none: an address that cannot be reached is reported by `on_note`
   TevSink(const std::string& host, const std::string& port, OnNote on_note);
 

@@ -18,6 +18,8 @@ struct TerminalSize {
 /// affected, because the terminal is opened again.
 class Tty {
  public:
+  /// Opens the terminal of a descriptor again, without blocking.
+  ///
   /// Errors     base::Error(kUsage) if the descriptor is not a terminal or cannot be opened again
   explicit Tty(int descriptor);
   ~Tty();
@@ -29,8 +31,8 @@ class Tty {
   /// True if a shell runs this process in the background, so that the terminal belongs to another one.
   bool is_in_background() const;
 
-  /// Sends queries and returns the answers that arrive until `is_complete`, or within half a second. Without echo; the
-  /// terminal's mode is restored.
+  /// Sends queries and returns the answers that arrive until `is_complete` returns true, for at most half a second.
+  /// Echo is off meanwhile; afterwards the terminal's mode is restored.
   std::string ask(const std::string& queries, bool (*is_complete)(const std::string& answers)) const;
 
   /// Writes as much as the terminal accepts.
@@ -38,14 +40,14 @@ class Tty {
   /// Result     number of bytes; 0 if the terminal does not read
   std::size_t write(const char* bytes, std::size_t count) const;
 
-  /// Waits until the terminal accepts bytes or the time is over.
+  /// Waits until the terminal accepts bytes, for at most `milliseconds`.
   void wait(int milliseconds) const;
 
  private:
   int terminal_ = -1;
 };
 
-/// Restores the mode of a terminal that is being asked, and ends an escape sequence that is being written. Safe in a
+/// Restores the mode of a terminal that is being queried, and ends an escape sequence that is being written. Safe in a
 /// signal handler; the process must end right after.
 void restore_terminal() noexcept;
 

@@ -32,9 +32,13 @@ class Picture {
   /// Result     None if there is no such layer
   static pybind11::object array(const pybind11::object& self, const std::string& layer);
 
+  /// Writes image files.
+  ///
   /// Errors     those of job::write_rendering
   void write(const job::Outputs& outputs) const;
 
+  /// Returns the image as sRGB with 8 bits per channel.
+  ///
   /// Errors     those of display::develop; base::Error(kUsage) if the display is not sRGB
   film::EncodedPicture srgb8(const display::Settings& display) const;
 

@@ -8,7 +8,7 @@
 
 namespace orrery::python {
 
-/// Renders on a thread of its own, without the GIL, while the calling thread passes on progress and warnings and looks
+/// Renders on a thread of its own, without the GIL, while the calling thread reports progress and warnings and checks
 /// for signals: KeyboardInterrupt, and an exception in a callback, stop the render.
 ///
 /// `on_progress`  called with fraction, samples done, samples in all, seconds and goal; or None

@@ -6,14 +6,14 @@
 
 namespace orrery::render {
 
-/// The goal and the limits of the next iteration of adaptive sampling.
+/// Target noise and sample limits of the next iteration of adaptive sampling.
 struct RoundGoal {
   double error_ratio = 0;            ///< target squared error of the image / current one
   std::uint64_t affordable = 0;      ///< maximum samples of this iteration
   std::uint32_t most_per_pixel = 0;  ///< maximum samples of a pixel
 };
 
-/// The pixels that double their samples, and how much is left to do.
+/// The pixels whose samples are doubled, and the remaining work.
 struct Round {
   std::vector<bool> chosen;        ///< by pixel
   bool any = false;                ///< false: no pixel can reduce the error

@@ -28,7 +28,7 @@ struct MissingEvidence {
   std::uint64_t count = 0;
 };
 
-/// Looks for light around every pixel, excluding the pixel's own samples.
+/// Finds the pixels around which too few paths have found light, excluding each pixel's own samples.
 ///
 /// A window without light may be black, or its light may be rare. It is assumed to be black after
 /// 2 * kSamplesForEvidence samples per pixel. From then on the errors of windows in which few paths found light are

@@ -5,8 +5,8 @@
 
 namespace orrery::render {
 
-/// A shard of an image's pixels. Squares are dealt out in turn, so that neighbouring ones, which cost about the same,
-/// go to different shards.
+/// A shard of an image's pixels. Squares are assigned round-robin, so that neighbouring ones, which cost about the
+/// same, go to different shards.
 struct PixelShard {
   int index = 0;  ///< from 0
   int count = 1;  ///< number of shards

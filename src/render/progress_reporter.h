@@ -15,6 +15,8 @@ namespace orrery::render {
 /// between.
 class ProgressReporter {
  public:
+  /// Starts the clock.
+  ///
   /// `total`    samples to render, as far as known
   /// `before`   work of earlier runs
   ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before = {})

@@ -21,6 +21,8 @@ class ProgressiveSampling {
   /// Called for every pixel that has received samples, on the thread that rendered them.
   using OnPixel = std::function<void(int x, int y)>;
 
+  /// Prepares the rendering of `state`; run() starts it.
+  ///
   /// Domain     all arguments outlive this
   ProgressiveSampling(const Settings& settings, const TileRenderer& render_tile, TilePool& pool,
                       ProgressReporter& progress, film::Partial& state)

@@ -38,6 +38,8 @@ struct TileWorker {
 /// Renders tiles in the scene's precision and adds their paths to the layers, if there are any.
 class TileRenderer {
  public:
+  /// Selects the kernel's instances for the scene.
+  ///
   /// `is_adaptive`  samples from Sampler::kSecondHalf on are the second half
   /// Domain     all arguments outlive this
   TileRenderer(const compile::CompiledScene& compiled, const accel::Accel& accel, const film::LayerRequest& request,

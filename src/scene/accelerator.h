@@ -3,7 +3,7 @@
 
 namespace orrery::scene {
 
-/// What finds the closest sphere along a ray. The image does not depend on it.
+/// The data structure that finds the closest sphere along a ray. The image does not depend on it.
 enum class Accelerator {
   kEmbree,  ///< a BVH
   kList,    ///< a loop over all spheres

@@ -8,7 +8,7 @@
 
 namespace orrery::scene {
 
-/// The sun of an image background: a disc of constant radiance, apart from the texels.
+/// The sun of an image background: a disc of constant radiance, separate from the texels.
 struct Sun {
   math::Vec3d direction{0, 1, 0};  ///< unit, from the scene to the centre of the disc, in the map's space
   double one_minus_cos = 0;        ///< of half the angle that the disc subtends

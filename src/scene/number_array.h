@@ -37,7 +37,7 @@ class ValueIterator {
   std::size_t at_;
 };
 
-/// Numbers of double precision. As long as that loses nothing, they are stored as a single number if all are equal, as
+/// Numbers of double precision, stored compactly as long as that is lossless: as a single number if all are equal, as
 /// indices of one byte if there are few different ones, or as floats.
 ///
 /// Not thread-safe, even for writes to different elements.
@@ -69,9 +69,9 @@ class NumberArray {
   const_iterator begin() const { return {*this, 0}; }
   const_iterator end() const { return {*this, count_}; }
 
-  /// All numbers are equal.
+  /// Returns whether all numbers are equal.
   bool is_uniform() const noexcept { return storage_ == Storage::kOne; }
-  /// No number needs double precision.
+  /// Returns whether no number needs double precision.
   bool fits_single() const noexcept;
   /// The numbers, if they are stored as floats; otherwise null.
   const float* singles() const noexcept { return storage_ == Storage::kSingles ? singles_.data() : nullptr; }
@@ -204,6 +204,8 @@ class PointArray {
     numbers_.set(3 * i + 1, p.y);
     numbers_.set(3 * i + 2, p.z);
   }
+  /// Sets one coordinate of a point.
+  ///
   /// `axis`     0, 1 or 2
   void set(std::size_t i, std::size_t axis, double value) { numbers_.set(3 * i + axis, value); }
   void push_back(Vec3d p) {

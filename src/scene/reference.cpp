@@ -78,9 +78,9 @@ std::string material_section() {
 }
 
 const char* const kNumberNote =
-    "If the key is a number, such as `fuzz`, so are `even`, `odd`, `low` and `high`. If it is `radiance`, their range "
-    "is "
-    "that of `radiance`.\n";
+    "For a number key, such as `fuzz`, the values `even`, `odd`, `low` and `high` are numbers. For `radiance`, their "
+    "range "
+    "is that of `radiance`.\n";
 
 std::string texture_section() {
   std::string out = "### Textures\n\n| `texture` | description |\n|---|---|\n";

@@ -193,13 +193,13 @@ struct Points {
   PointsRadius radius;
   PointsColor color;
   std::string select;        ///< condition on columns; empty: all
-  Vec3d replicate{1, 1, 1};  ///< number of periodic images along each edge of the box
-  bool unwrap = false;       ///< by the counts of periodic images in the file
+  Vec3d replicate{1, 1, 1};  ///< number of periodic boxes along each box edge
+  bool unwrap = false;       ///< by the periodic image flags of the file
   std::string assembly;      ///< biological assembly; empty: the file's own atoms
   PointsTransform transform;
   std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
   std::string material_column = "material";          ///< indices into Scene::materials, in PLY files; empty: none
-  bool skip_bad = false;                             ///< leaves out rows with coordinates that are not finite
+  bool skip_bad = false;                             ///< skips rows with non-finite coordinates or radii
   PointArray centers = {};
   NumberArray radii = {};                     ///< as many as centers
   std::vector<std::uint32_t> materials = {};  ///< as many as centers, or empty: `material` for all

@@ -60,7 +60,7 @@ struct Table {
 };
 const std::vector<Table>& tables();
 
-/// What a texture stands for, which decides the type and range of its values.
+/// Use of a texture, which decides the type and range of its values.
 enum class TextureUse { kReflectance, kRadiance, kNumber };
 
 /// A type of texture: the keys that a material's key has in addition to `texture` if its value is a texture.

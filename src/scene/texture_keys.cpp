@@ -31,28 +31,30 @@ Keys noise_keys(TextureUse use, const char* scale) {
                           [](Texture& t) -> double& { return t.scale; }),
           integer<Texture>("seed", {0, std::numeric_limits<std::uint32_t>::max()}, {"", "Seed of the noise"},
                            [](Texture& t) -> std::uint32_t& { return t.seed; }),
-          value(use, "low", "Value where the noise is 0", &Texture::low),
-          value(use, "high", "Value where the noise is 1", &Texture::high)};
+          value(use, "low", "Value where the pattern is 0", &Texture::low),
+          value(use, "high", "Value where the pattern is 1", &Texture::high)};
 }
 
 std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
-  const char* const spectrum = "Number of cells of the noise per scene unit";
+  const char* const spectrum = "Spatial frequency: noise cells per scene unit";
   return {
       {"checker",
-       "Cubes in world space of two alternating colours; a corner of a cube is at the origin",
+       "3D checkerboard of cubes in world space, with a cube corner at the origin",
        TextureType::kChecker,
-       {number<Texture>("scale", {kSmallestScale, kLargestScale}, {"scene units", "Edge of a cube"},
+       {number<Texture>("scale", {kSmallestScale, kLargestScale}, {"scene units", "Edge length of the cubes"},
                         [](Texture& t) -> double& { return t.scale; }),
-        required(value(use, "even", "Value of the cube at 0..`scale` in x, y and z, and of every other cube",
+        required(value(use, "even",
+                       "Value of the cube between 0 and `scale` on each axis, and of all cubes of the same parity",
                        &Texture::low)),
-        required(value(use, "odd", "Value of the cubes that share a face with those", &Texture::high))}},
-      {"noise", "Perlin noise in world space, smooth", TextureType::kNoise, noise_keys(use, spectrum)},
-      {"turbulence", "The magnitude of a sum of seven octaves of noise, at most 1", TextureType::kTurbulence,
-       noise_keys(use, spectrum)},
-      {"marble", "A wave along z that turbulence distorts", TextureType::kMarble,
-       noise_keys(use, "Angular frequency of the wave, radians per scene unit. The turbulence has one cell per unit")},
+        required(value(use, "odd", "Value of the other cubes", &Texture::high))}},
+      {"noise", "Perlin noise in world space", TextureType::kNoise, noise_keys(use, spectrum)},
+      {"turbulence", "Turbulence: absolute value of seven summed octaves of Perlin noise, clamped to 1",
+       TextureType::kTurbulence, noise_keys(use, spectrum)},
+      {"marble", "Marble: sine wave along z, perturbed by turbulence", TextureType::kMarble,
+       noise_keys(use,
+                  "Angular frequency of the wave, in radians per scene unit. The turbulence has one cell per unit")},
       {"image",
-       "A latitude-longitude map around the sphere",
+       "Latitude-longitude image mapped onto the sphere",
        TextureType::kImage,
        {required(text<Texture>(
             "file",
@@ -64,7 +66,7 @@ std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
         text<Texture>("color_space",
                       {"",
                        "Colour space of `file`, if the file does not declare one. Default: `srgb_texture` for 8-bit "
-                       "and 16-bit integers, else `color.space`. Not used for numbers"},
+                       "and 16-bit integers, else `color.space`. Ignored for number keys such as `fuzz`"},
                       [](Texture& t) -> std::string& { return t.color_space; }),
         number<Texture>("rotation", {-kLargestRotation, kLargestRotation},
                         {"degrees", "Rotation about +y; 90 turns +z to +x"},

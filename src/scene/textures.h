@@ -10,7 +10,7 @@
 
 namespace orrery::scene {
 
-/// A texture of a scene and the key that it is the value of.
+/// A texture of a scene, and the key whose value it is.
 struct NamedTexture {
   std::string key;  ///< "material.earth.albedo"
   TextureUse use;
@@ -20,10 +20,10 @@ struct NamedTexture {
 /// All textures of a scene, in the order of its materials.
 std::vector<NamedTexture> textures(const Scene& scene);
 
-/// Those whose type is image.
+/// The image textures of a scene, in the same order.
 std::vector<NamedTexture> image_textures(const Scene& scene);
 
-/// Replaces every texture of a scene by what `modify` makes of a copy.
+/// Replaces every texture of a scene by a copy that `modify` has changed.
 void modify_textures(Scene& scene, const std::function<void(Texture& texture, TextureUse use)>& modify);
 
 }  // namespace orrery::scene

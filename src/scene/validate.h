@@ -28,8 +28,8 @@ struct SceneDiagnostic {
 /// `exposure`  stops
 std::string exposure_fault(double radiance, double exposure);
 
-/// Checks what the type and range of a single key cannot: a camera without direction, a lens of absurd size, lights
-/// of absurd exposure, numbers outside the domain, materials that do not exist, names of light groups, layers that the
+/// Checks what the type and range of a single key cannot: a camera without direction, a lens that is too large, lights
+/// that are too bright, numbers outside the domain, materials that do not exist, names of light groups, layers that the
 /// scene cannot have.
 ///
 /// Domain     any scene, including non-finite numbers

@@ -147,7 +147,7 @@ class Scene:
         samples        per pixel; by default the scene's, or, with noise or time, as many as needed
         noise          target noise (relative display error), e.g. 0.02
         time           time budget for adaptive sampling, seconds
-        threads        by default all that this process may use
+        threads        by default all CPUs available to the process
         frame          of an animation
         memory_limit   bytes; by default the free memory
         on_progress    called with a Progress, at most ten times a second

@@ -84,7 +84,7 @@ TEST_F(AppInfo, ReportsRequiredAndOmittedFeatures) {
   EXPECT_FALSE(requires_(pinhole, "thin lens"));
   EXPECT_FALSE(requires_(pinhole, "gradient sky"));
   const std::string text = info_text(pinhole);
-  EXPECT_NE(text.find("left out    thin lens (pinhole camera: no lens sampling);"), std::string::npos) << text;
+  EXPECT_NE(text.find("unused      thin lens (pinhole camera: no lens sampling);"), std::string::npos) << text;
 }
 
 TEST_F(AppInfo, TheListNeedsNoMemoryForABvh) {
