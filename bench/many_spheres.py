@@ -7,9 +7,10 @@
     bench/many_spheres.py build/src/orrery --radii               spheres of many sizes
     bench/many_spheres.py build/src/orrery --whole 100000000     from command to picture, all threads
 
-For each scene the first form prints closest hits per second of `orrery bench` (the accelerator of the scene, one Embree
-primitive per sphere, Embree's sphere points), seconds of the build, the ratio of the build's time to that of Embree's
-sphere points, and peak bytes per sphere of a small render. The base, which is what the program takes without spheres, is
+For each scene the first form prints closest hits per second of `orrery bench` (the BVH for many spheres with single rays
+and with packets, one Embree primitive per sphere, Embree's sphere points), the ratio of the scene's accelerator to sphere
+points, seconds of the build, the ratio of the build's time to that of sphere points, and peak bytes per sphere of a small
+render. The base, which is what the program takes without spheres, is
 subtracted. --json FILE keeps the numbers. --isa avx2 limits the instruction set of orrery and of Embree.
 """
 import argparse
@@ -183,17 +184,19 @@ def main():
             return
         base = base_bytes(program, folder)
         results = []
-        print("scene                single rays  packets  one by one  sphere points   ratio    build  its ratio  "
+        print("scene                BVH: single  packets  one by one  sphere points   ratio    build  its ratio  "
               "bytes/sphere")
         for count in map(int, options.counts.split(",")):
             for make in (stars, grains, giant) if options.radii else (uniform, crystal):
                 r = measure(program, make(folder, count), folder, options.rounds, base)
                 hits = {k: v / 1e6 for k, v in r["hits_per_second"].items()}
-                best = max(hits["single rays"], hits["packets"])
-                print(f"{r['scene']:20} {hits['single rays']:9.2f} M {hits['packets']:6.2f} M "
-                      f"{hits.get('one by one, single', float('nan')):9.2f} M {hits['sphere points']:12.2f} M "
-                      f"{best / hits['sphere points']:7.2f} {r['build_seconds']:6.2f} s {r['build_ratio']:10.2f} "
-                      f"{r['bytes_per_sphere']:13.0f}", flush=True)
+                own, other = (hits["single rays"], hits["packets"]), tuple(
+                    next(v for k, v in hits.items() if k.endswith(", " + way)) for way in ("single", "packets"))
+                is_bvh = "one by one, single" in hits
+                bvh, one_by_one = (own, other) if is_bvh else (other, own)
+                print(f"{r['scene']:20} {bvh[0]:9.2f} M {bvh[1]:6.2f} M {max(one_by_one):9.2f} M "
+                      f"{hits['sphere points']:12.2f} M {max(own) / hits['sphere points']:7.2f} "
+                      f"{r['build_seconds']:6.2f} s {r['build_ratio']:10.2f} {r['bytes_per_sphere']:13.0f}", flush=True)
                 results.append(r)
         if options.json:
             pathlib.Path(options.json).write_text(json.dumps(results, indent=1) + "\n")
