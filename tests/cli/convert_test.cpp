@@ -322,6 +322,14 @@ TEST_F(CliConvert, MaterialsAreAColumnLikeOthers) {
   EXPECT_TRUE(converted("cloud.ply").starts_with("x,y,z,radius,material\n"));
 }
 
+TEST_F(CliConvert, GenerateDoesNotReplaceConvertedFiles) {
+  ASSERT_EQ(run("convert a.dump -o cloud.ply").status, 0);
+  const std::string converted = text_of(folder_ / "cloud.ply");
+  expect_error("generate cloud --count 10 -o cloud.toml", 73, "was not written by orrery generate");
+  EXPECT_EQ(text_of(folder_ / "cloud.ply"), converted);
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(run("generate cloud --count 10 -o own.toml").status, 0) << "its own file";
+}
+
 class CliDataInfo : public CliConvert {};
 
 TEST_F(CliDataInfo, DescribesDataFilesByTheirContent) {
