@@ -16,7 +16,6 @@ void bake_file(const display::Settings& display, int cube_size, const std::files
   base::FileSet files;
   job::add_ocio_configs(display.config, files);
   files.add_output(file, "-o");
-  for (const std::string& table : display::choose(display).files) files.add_input(table, "table of the OCIO config");
   base::check_creatable(file);
   base::write_text_file(
       file, extension == ".cube" ? display::bake_cube(display, cube_size) : display::bake_clf(display, cube_size));

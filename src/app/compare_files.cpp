@@ -35,13 +35,15 @@ std::string size_text(const film::Picture& picture) {
 
 base::Error bad_data(const std::string& text) { return {base::ErrorKind::kBadData, text}; }
 
-void count_differing(const film::Picture& picture, const film::Picture& reference, Comparison& out) {
+void count_differing(const film::Picture& picture, const film::Picture& reference, const std::string& layer,
+                     Comparison& out) {
   for (const film::Plane& plane : picture.planes) {
     const film::Plane* const other = reference.find(plane.name);
     if (other == nullptr) {
       out.only_in_picture.push_back(plane.name);
       continue;
     }
+    if (!is_of_layer(plane, layer)) continue;
     out.values += plane.values.size();
     for (std::size_t i = 0; i < plane.values.size(); ++i)
       if (plane.values[i] != other->values[i] && !(std::isnan(plane.values[i]) && std::isnan(other->values[i])))
@@ -176,7 +178,7 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
   Comparison out;
   out.width = picture.width;
   out.height = picture.height;
-  count_differing(picture, reference, out);
+  count_differing(picture, reference, layer, out);
   const ComparedChannels c = compared_channels(picture, reference, layer);
   out.channels = c.names;
   out.is_matte = c.is_matte;

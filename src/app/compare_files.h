@@ -21,12 +21,12 @@ struct Comparison {
   int width = 0, height = 0;          ///< px
   std::vector<std::string> channels;  ///< channels that `errors` covers
   metrics::PixelErrors errors;
-  std::optional<double> ssim;                   ///< colours only
-  std::optional<double> flip;                   ///< mean of flip_map; HDR-FLIP if scene-linear; colours only
-  std::optional<metrics::ZTest> z_test;         ///< set if the image has a layer `variance`
-  std::uint64_t values = 0, differing = 0;      ///< number of values in all common channels, and of unequal ones
-  bool is_matte = false;                        ///< `errors` compares ComparedChannels::shares
-  std::uint64_t no_hit = 0, no_hit_in_one = 0;  ///< skipped pixels, as in ComparedChannels
+  std::optional<double> ssim;               ///< colours only
+  std::optional<double> flip;               ///< mean of flip_map; HDR-FLIP if scene-linear; colours only
+  std::optional<metrics::ZTest> z_test;     ///< set if the image has a layer `variance`
+  std::uint64_t values = 0, differing = 0;  ///< number of values in common channels of the layer, and of unequal ones
+  bool is_matte = false;                    ///< `errors` compares ComparedChannels::shares
+  std::uint64_t no_hit = 0, no_hit_in_one = 0;                  ///< skipped pixels, as in ComparedChannels
   std::vector<std::string> only_in_picture, only_in_reference;  ///< channels missing in the other image
 
   metrics::Map flip_map, display_map;  ///< per-pixel FLIP and display error
@@ -41,7 +41,8 @@ struct Comparison {
 /// The metrics that `--fail-above` accepts: those that grow with the difference.
 const std::vector<std::string>& limitable_metrics();
 
-/// Compares R, G, B, or the channels of another layer, which must be in both images.
+/// Compares R, G, B, or the channels of another layer, which must be in both images. Without a layer, `differing`
+/// counts the values of all channels.
 ///
 /// Domain     `layer` empty: the beauty; `threads` 0: default_threads()
 /// Errors     base::Error(kBadData) if sizes differ, the channels are not in both images, or no value can be compared

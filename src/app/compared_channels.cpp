@@ -100,6 +100,10 @@ void leave_out_no_hit(ComparedChannels& c) {
 
 }  // namespace
 
+bool is_of_layer(const film::Plane& channel, const std::string& layer) {
+  return layer.empty() || channel.name == layer || channel.layer() == layer || layer_name(channel.name) == layer;
+}
+
 ComparedChannels compared_channels(const film::Picture& picture, const film::Picture& reference,
                                    const std::string& layer) {
   ComparedChannels out;

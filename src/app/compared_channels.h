@@ -24,6 +24,9 @@ struct ComparedChannels {
   std::vector<float> shares, zeros;  ///< the pixels of `picture` and `reference` for a matte
 };
 
+/// True if a channel belongs to the layer or Cryptomatte of this name; an empty `layer` has all channels.
+bool is_of_layer(const film::Plane& channel, const std::string& layer);
+
 /// Selects the channels to compare: R, G, B for an empty `layer`, else those of the layer or Cryptomatte of this name.
 ///
 /// Domain     images of the same size, which outlive the result

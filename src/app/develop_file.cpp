@@ -45,7 +45,6 @@ DevelopReport develop_file(const Development& development) {
   if (display.working_space.empty()) display.working_space = picture.color_interop_id;
   if (display.working_space.empty()) display.working_space = "lin_rec709";
   report.display = display::choose(display);
-  for (const std::string& table : report.display.files) files.add_input(table, "table of the OCIO config");
   for (const char* name : {"R", "G", "B"})  // no other plane is developed
     if (const film::Plane* plane = picture.find(name)) report.bad_values += film::count_bad_values(*plane);
   job::DisplayWriter developed(picture, display,

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "app/precision_advice.h"
 #include "base/text.h"
 #include "compile/compile.h"
+#include "compile/emitters.h"
 #include "film/layer_film.h"
 #include "job/layers.h"
 #include "job/scene_hash.h"
@@ -91,11 +93,14 @@ std::string points_text(const std::vector<PointsInfo>& points) {
   return out;
 }
 
+/// The emitters that are rendered: of coincident spheres, only the first is.
 std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
-  std::uint64_t count = 0;
+  if (compiled.emission.empty()) return 0;
+  std::vector<std::uint32_t> ids;
   for (std::size_t i = 0; i < compiled.spheres.size(); ++i)
-    if (compiled.materials[compiled.sphere_materials[i]].kind == kernel::MaterialKind::kEmitter) ++count;
-  return count;
+    if (compiled.materials[compiled.sphere_materials[i]].kind == kernel::MaterialKind::kEmitter)
+      ids.push_back(static_cast<std::uint32_t>(i));
+  return compile::without_coincident(compiled.view(), compiled.precision, std::move(ids)).size();
 }
 
 /// Describes how the emitters are sampled: "40 emitters, light and BSDF sampling, chosen by a light tree of 1.9 KiB".

@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/file_set.h"
+#include "base/frames.h"
 #include "base/output_file.h"
 #include "cli/commands.h"
 #include "cli/data_options.h"
@@ -13,7 +14,9 @@
 #include "cli/option_checks.h"
 #include "cli/render_options.h"
 #include "format/write_tree.h"
+#include "job/job_files.h"
 #include "job/memory.h"
+#include "job/working_space.h"
 #include "plot/plot.h"
 #include "plot/write_legend.h"
 #include "preview/target.h"
@@ -67,20 +70,56 @@ std::string saved_text(const std::string& text, std::vector<format::Override> se
   return text.substr(0, text.find('\n')) + "\n\n" + format::merged_text("plot", text, settings, same);
 }
 
-/// Checks the files that plot itself writes, before anything is read.
-void check_own_outputs(const PlotArguments& arguments) {
-  base::FileSet files;
-  files.add_input(arguments.plot.file, "data file");
-  const scene::PointsColor& color = arguments.plot.points.color;
-  if (color.has_map_file()) files.add_input(color.map, "colour map");
-  const auto add = [&](const std::filesystem::path& file, const char* option) {
-    if (file.empty()) return;
-    files.add_output(file, option);
-    base::check_creatable(file);
+/// The value of an override of a string; empty if none sets the key.
+std::string string_of(const std::vector<format::Override>& overrides, const std::string& key) {
+  std::string value;
+  for (const format::Override& override : overrides) {
+    if (!override.sets(key)) continue;
+    const std::string text = override.text.substr(override.text.find('=') + 1);
+    value = scene::unquoted(text.substr(std::min(text.find_first_not_of(" \t"), text.size())));
+  }
+  return value;
+}
+
+/// The display transform of the images by the command line. Options have precedence over --set.
+display::Settings display_of(const display::Settings& options, const std::vector<format::Override>& overrides,
+                             const std::filesystem::path& scene_file) {
+  display::Settings out = options;
+  const auto otherwise = [&](std::string& option, const char* key) {
+    if (option.empty()) option = string_of(overrides, key);
   };
-  add(arguments.save_scene, "--save-scene");
-  add(arguments.legend, "--legend");
-  if (!arguments.render.preview.empty()) add(preview::parse_target(arguments.render.preview).file, "--preview");
+  scene::Color color;
+  color.config = string_of(overrides, "color.config");
+  if (out.config.empty()) out.config = job::config_of(scene_file, color);
+  otherwise(out.display, "color.display");
+  otherwise(out.view, "color.view");
+  otherwise(out.look, "color.look");
+  return out;
+}
+
+/// The files that plot writes besides those of a render.
+std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
+  std::vector<job::OutputFile> out;
+  if (!arguments.save_scene.empty()) out.push_back({arguments.save_scene, "--save-scene"});
+  if (!arguments.legend.empty()) out.push_back({arguments.legend, "--legend"});
+  return out;
+}
+
+/// Checks the names that are known before the data is read, which may take long. run_render() checks all.
+void check_outputs(const PlotArguments& arguments) {
+  const plot::PlotOptions& plot = arguments.plot;
+  base::FileSet files;
+  for (const int frame : plot.frames.empty() ? std::vector<int>{1} : plot.frames)
+    files.add_input(base::with_frame(plot.file.string(), frame), "data file");
+  if (plot.points.color.has_map_file()) files.add_input(plot.points.color.map, "colour map");
+  job::add_ocio_configs(plot.display.config, files);
+  for (const job::OutputFile& output : own_outputs(arguments)) {
+    files.add_output(output.path, output.role);
+    base::check_creatable(output.path);
+  }
+  if (!arguments.render.preview.empty())
+    if (const auto file = preview::parse_target(arguments.render.preview).file; !file.empty())
+      files.add_output(file, "--preview");
   for (const job::ImageFile& image : arguments.render.batch.job.outputs.images) files.add_output(image.path, "-o");
 }
 
@@ -97,32 +136,32 @@ int run_plot(PlotArguments& arguments) {
   plot.memory_limit = render.batch.job.resources.memory_limit > 0 ? render.batch.job.resources.memory_limit
                                                                   : job::available_memory().value_or(0);
   const bool saves = !arguments.save_scene.empty();
+  const std::filesystem::path scene_file = saves ? arguments.save_scene : plot.file;
   render.picture.finish(render.batch.job);
-  check_own_outputs(arguments);
-  const plot::PlotScene made =
-      plot::make_plot(plot, saves ? arguments.save_scene.parent_path() : plot.file.parent_path());
-  render.batch.frames = made.frames;
   job::Job& job = render.batch.job;
+  plot.display = display_of(job.outputs.display, overrides, scene_file);
+  check_outputs(arguments);
+  const plot::PlotScene made = plot::make_plot(plot, scene_file.parent_path());
+  render.batch.frames = made.frames;
   const bool has_samples = std::any_of(overrides.begin(), overrides.end(),
                                        [](const auto& o) { return o.text.starts_with("render.samples="); });
   if (!job.sampling.noise && !job.sampling.seconds && !has_samples && plot.style != plot::Style::kFlat)
     job.sampling.noise = kNoise;
   print_choices(made, arguments);
   render.shows_display = !arguments.legend.empty() || saves;
-  if (!arguments.legend.empty()) {
-    display::Settings display = job.outputs.display;
-    if (display.view.empty()) display.view = "Un-tone-mapped";
-    plot::write_legend(arguments.legend, made.legend, display);
-  }
-  if (saves) {
-    base::write_text_file(arguments.save_scene, saved_text(made.text, overrides, job.outputs.display));
-    render.batch.scenes = {arguments.save_scene};
-  } else {
-    job.scene.text = std::make_shared<const std::string>(made.text);
-    job.scene.is_generated = true;
-    job.scene.has_file = false;
-    render.batch.scenes = {plot.file};
-  }
+  const auto text =
+      std::make_shared<const std::string>(saves ? saved_text(made.text, overrides, job.outputs.display) : made.text);
+  job.scene.text = text;
+  job.scene.is_generated = !saves;
+  job.scene.has_file = false;
+  render.batch.scenes = {scene_file};
+  render.batch.others = own_outputs(arguments);
+  render.before_files = [&] {
+    display::Settings display = plot.display;
+    display.view = made.view;
+    if (!arguments.legend.empty()) plot::write_legend(arguments.legend, made.legend, display);
+    if (saves) base::write_text_file(arguments.save_scene, *text);
+  };
   return run_render(render);
 }
 

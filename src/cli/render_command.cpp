@@ -151,7 +151,9 @@ int run_render(RenderOptions& options) {
   };
   batch.on_failure = [&](const job::Job&, const base::Error& error) { printer.note(error_text(error)); };
   const std::vector<job::Job> jobs = farm::jobs_of(batch);
-  if (!batch.log.empty()) open_log(batch.log);  // only now is it known not to be an input
+  // Only now are outputs known not to be inputs.
+  if (options.before_files) options.before_files();
+  if (!batch.log.empty()) open_log(batch.log);
   const farm::BatchReport report = farm::run_batch(batch, jobs);
   if (preview) preview->end();
   printer.finish();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "cli/picture_options.h"
@@ -16,7 +17,8 @@ struct RenderOptions {
   PictureOptions picture;
   std::string preview, progress = "auto", traversal = "auto", shard, frames;
   bool quiet = false, verbose = false, strict = false, fail_fast = false;
-  bool shows_display = false;  ///< the display transform is used for more than images
+  bool shows_display = false;          ///< the display transform is used for more than images
+  std::function<void()> before_files;  ///< called when all names are checked, before any file is written
 };
 
 /// Adds the options of rendering, except those that name the scene, its frames and its shard.

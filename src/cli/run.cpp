@@ -97,7 +97,7 @@ int run(int argc, const char* const* argv) {
   } catch (const base::Error& error) {
     return print_error(error);
   } catch (const std::bad_alloc&) {
-    std::fputs("orrery: out of memory; orrery info SCENE prints how much a scene needs\n", stderr);
+    std::fputs("orrery: out of memory; end other programs, or raise the limit of the shell (ulimit -v)\n", stderr);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "orrery: internal error: %s\n", error.what());
   }

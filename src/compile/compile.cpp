@@ -175,6 +175,16 @@ kernel::SceneView CompiledScene::view() const noexcept {
   return v;
 }
 
+void update_lights(CompiledScene& scene) {
+  const auto is_fast = [](Precision precision) { return precision == Precision::kFast; };
+  const std::optional<Precision> built = scene.light_tree.precision;
+  if (scene.emission.empty() || scene.direct_lighting == kernel::DirectLighting::kBsdf) {
+    scene.light_tree = {};
+  } else if (!built || (is_fast(*built) != is_fast(scene.precision) && scene.distinct_in != scene::Precision::kFast)) {
+    scene.light_tree = build_light_tree(scene.view(), scene.precision);
+  }
+}
+
 int blue_noise_bits(int samples) noexcept {
   return std::min(static_cast<int>(std::bit_width(static_cast<unsigned>(samples) - 1)), kernel::kSobolBits);
 }
@@ -223,8 +233,7 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
     case scene::DirectLighting::kBsdf: compiled.direct_lighting = kernel::DirectLighting::kBsdf; break;
     case scene::DirectLighting::kLight: compiled.direct_lighting = kernel::DirectLighting::kLight; break;
   }
-  if (!compiled.emission.empty() && compiled.direct_lighting != kernel::DirectLighting::kBsdf)
-    compiled.light_tree = build_light_tree(compiled.view());
+  update_lights(compiled);
   compiled.bounds = bounds_of(compiled.spheres);
   return compiled;
 }

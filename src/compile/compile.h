@@ -17,6 +17,12 @@ namespace orrery::compile {
 /// Domain     scenes in which scene::validate finds no error
 CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = nullptr);
 
+/// Builds the light tree, if the scene samples its emitters. Needed after a change of `precision`, since other spheres
+/// may coincide in another number type, and of `direct_lighting`.
+///
+/// Cost       that of build_light_tree; none if the tree would be the same
+void update_lights(CompiledScene& scene);
+
 /// Returns the number of index bits that count a pixel's samples when blue noise shares a sequence among neighbours.
 int blue_noise_bits(int samples) noexcept;
 

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
+
+#include "compile/emitters.h"
 
 namespace orrery::compile {
 namespace {
@@ -97,12 +100,14 @@ std::size_t LightTree::bytes() const noexcept {
   return spheres.size() * sizeof(spheres[0]) + nodes.size() * sizeof(nodes[0]) + leaves.size() * sizeof(leaves[0]);
 }
 
-LightTree build_light_tree(const kernel::SceneView& scene) {
+LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision precision) {
   LightTree tree;
+  tree.precision = precision;
   for (std::uint32_t id = 0; id < scene.sphere_count; ++id) {
     const double* const rgb = scene.emission[scene.sphere_materials[id]].radiance;
     if (rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) tree.spheres.push_back(id);
   }
+  tree.spheres = without_coincident(scene, precision, std::move(tree.spheres));
   if (tree.spheres.empty()) return tree;
   tree.first_sphere = tree.spheres.front();
   tree.leaves.assign(tree.spheres.back() - tree.first_sphere + 1, Lights::kNoLeaf);

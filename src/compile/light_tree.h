@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "kernel/lights.h"
+#include "kernel/precision.h"
 #include "kernel/scene_view.h"
 
 namespace orrery::compile {
@@ -16,15 +18,18 @@ struct LightTree {
   std::vector<kernel::LightNode> nodes;  ///< one per leaf; the first is unused
   std::vector<std::uint32_t> leaves;     ///< leaf of each sphere from first_sphere on, or kernel::Lights::kNoLeaf
   std::uint32_t first_sphere = 0;
+  std::optional<kernel::Precision> precision;  ///< in which its spheres do not coincide; empty: there is no tree
 
   /// Valid until the tree is modified or destroyed.
   kernel::Lights view() const noexcept;
   std::size_t bytes() const noexcept;
 };
 
-/// Builds the tree of all spheres that emit. Deterministic; scaling the scene by a power of two changes no choice.
+/// Builds the tree of all spheres that emit and do not coincide with an earlier sphere, which in `fast` depends on the
+/// precision. Deterministic; scaling the scene by a power of two changes no choice.
 ///
-/// Cost       O(n log n) for n emitters; 48 bytes each if their ids are consecutive, and 96 during the build
-LightTree build_light_tree(const kernel::SceneView& scene);
+/// Cost       O(n log n) for n emitters; 48 bytes each if their ids are consecutive, and 96 during the build; that of
+///            without_coincident
+LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision precision);
 
 }  // namespace orrery::compile

@@ -117,7 +117,7 @@ class PlyFile final : public SingleFrame {
       check_count(faults, header_.elements[e], header_, cursor.bytes_left());
       skip_element(faults, header_.elements[e], header_, cursor);
     }
-    check_end(faults, cursor);
+    check_end(faults, header_, cursor);
   }
 
   /// Reads an ascii file that has nothing but vertices.
@@ -129,8 +129,9 @@ class PlyFile final : public SingleFrame {
     for (const std::size_t p : wanted) layout.columns[p].is_wanted = true;
     TextTable text = read_text_rows(*bytes_, layout, faults);
     if (text.rows != vertex().count)
-      faults.fail(0, "the header declares " + std::to_string(vertex().count) + " rows of `vertex`, but there are " +
-                         std::to_string(text.rows) + "; the file is truncated, or the count is wrong");
+      faults.fail(static_cast<std::uint64_t>(vertex().line),
+                  "the header declares " + std::to_string(vertex().count) + " rows of `vertex`, but there are " +
+                      std::to_string(text.rows) + "; the file is truncated, or the count is wrong");
     std::vector<Values> out;
     for (const std::size_t p : wanted) out.push_back(std::move(text.values[p]));
     return out;
@@ -160,7 +161,7 @@ class PlyFile final : public SingleFrame {
                         name() + ", `" + element.properties[wanted[w]].name + "`: not an integer of 64 bits");
       }
     }
-    check_end(faults, cursor);
+    check_end(faults, header_, cursor);
     return out;
   }
 

@@ -50,8 +50,9 @@ std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& 
   return {};
 }
 
-std::string parse_element(const std::vector<std::string_view>& words, PlyHeader& header) {
+std::string parse_element(const std::vector<std::string_view>& words, int line, PlyHeader& header) {
   PlyElement element;
+  element.line = line;
   if (words.size() != 3) return "an element line must be `element NAME COUNT`";
   element.name = words[1];
   const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
@@ -103,7 +104,7 @@ std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line
       fault = has_format ? "duplicate format line" : parse_format(words, header);
       has_format = true;
     } else if (words[0] == "element") {
-      fault = parse_element(words, header);
+      fault = parse_element(words, line, header);
     } else if (words[0] == "property") {
       fault = parse_property(words, header);
     } else if (words[0] == "end_header") {

@@ -23,6 +23,7 @@ struct PlyProperty {
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
+  int line = 0;  ///< of its declaration
   std::vector<PlyProperty> properties;
 
   bool has_list() const {

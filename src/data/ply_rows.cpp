@@ -18,9 +18,9 @@ void check_count(Faults& faults, const PlyElement& element, const PlyHeader& hea
   // The last ascii word needs no space after it.
   const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
   if (element.count > bytes / each)
-    faults.fail(0, "the header declares " + std::to_string(element.count) + " rows of `" + element.name +
-                       "`, but only " + std::to_string(bytes_left) +
-                       " bytes follow; the file is truncated, or the count is wrong");
+    faults.fail(static_cast<std::uint64_t>(element.line),
+                "the header declares " + std::to_string(element.count) + " rows of `" + element.name + "`, but only " +
+                    std::to_string(bytes_left) + " bytes follow; the file is truncated, or the count is wrong");
 }
 
 void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor) {
@@ -33,10 +33,13 @@ void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& he
         [&](const PlyProperty& property, std::size_t) { return cursor.skip(property); });
 }
 
-void check_end(Faults& faults, PlyCursor& cursor) {
+void check_end(Faults& faults, const PlyHeader& header, PlyCursor& cursor) {
   cursor.begin_row();
   if (cursor.bytes_left() == 0) return;
-  faults.fail(static_cast<std::uint64_t>(cursor.line()),
+  const auto last = std::find_if(header.elements.rbegin(), header.elements.rend(),
+                                 [](const PlyElement& element) { return element.count > 0; });
+  const PlyElement& element = last != header.elements.rend() ? *last : header.elements.back();
+  faults.fail(static_cast<std::uint64_t>(element.line),
               std::to_string(cursor.bytes_left()) +
                   " bytes follow the last row that the header declares; the counts are wrong, or the "
                   "file is damaged");

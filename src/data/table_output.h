@@ -14,7 +14,7 @@ namespace orrery::data {
 [[noreturn]] void refuse_to_write(const std::filesystem::path& file, const std::string& text);
 
 /// The writers of the formats. They return the names of columns that they omit.
-std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table);
+std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table, const std::string& writer);
 void write_npy_table(base::OutputFile& out, const Table& table);
 void write_csv_table(base::OutputFile& out, const Table& table);
 std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& table);

@@ -148,13 +148,13 @@ std::string npy_header(const base::OutputFile& out, const Table& table) {
 
 }  // namespace
 
-std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table) {
+std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& table, const std::string& writer) {
   std::vector<std::string> left_out;
   std::vector<PlyOutput> outputs;
   std::set<std::string> used;
   std::string& bytes = out.buffer();
-  bytes = "ply\nformat binary_little_endian 1.0\ncomment made by orrery\nelement vertex " + std::to_string(table.rows) +
-          "\n";
+  bytes = "ply\nformat binary_little_endian 1.0\ncomment made by " + writer + "\nelement vertex " +
+          std::to_string(table.rows) + "\n";
   for (const Column& column : table.columns) {
     outputs.push_back(ply_output(out, column));
     if (outputs.back() == PlyOutput::kNone) {

@@ -18,12 +18,12 @@ TableFormat table_format(const std::filesystem::path& file) {
   refuse_to_write(file, "unknown extension `" + extension + "`; use .ply, .xyz, .npy or .csv");
 }
 
-std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table) {
+std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const std::string& writer) {
   const TableFormat format = table_format(file);
   base::OutputFile out(file);
   std::vector<std::string> left_out;
   switch (format) {
-    case TableFormat::kPly: left_out = write_ply_table(out, table); break;
+    case TableFormat::kPly: left_out = write_ply_table(out, table, writer); break;
     case TableFormat::kNpy: write_npy_table(out, table); break;
     case TableFormat::kCsv: write_csv_table(out, table); break;
     case TableFormat::kXyz: left_out = write_xyz_table(out, table); break;

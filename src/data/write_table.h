@@ -28,10 +28,12 @@ TableFormat table_format(const std::filesystem::path& file);
 /// Text formats have fewer types of numbers, and reading returns float64 or int64. An integer column of a CSV file
 /// is read as int64 only if float64 cannot represent all of its values.
 ///
+/// `writer`   named in a comment of .ply
 /// Domain     columns x, y, z of numbers; all columns have table.rows rows and different names
 /// Result     names of the columns that were omitted because the format cannot store their texts
 /// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
 ///            kCannotCreate; kIo
-[[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table);
+[[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table,
+                                                   const std::string& writer = "orrery");
 
 }  // namespace orrery::data

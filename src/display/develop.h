@@ -30,9 +30,8 @@ struct Choice {
   std::string config_id;     ///< OCIO's digest of the config; it changes with the text of the config
   std::string transform_id;  ///< OCIO's digest of the display transform; it changes with the contents of LUT files
   std::string display, view;
-  std::string working_space;       ///< canonical name in the config
-  std::vector<std::string> files;  ///< LUT files that the transforms read
-  bool is_hdr = false;             ///< the result is for a high dynamic range display
+  std::string working_space;  ///< canonical name in the config
+  bool is_hdr = false;        ///< the result is for a high dynamic range display
 
   /// Default bits per channel. With 8 bits, banding is visible on high dynamic range displays.
   int default_bits() const { return is_hdr ? 16 : 8; }

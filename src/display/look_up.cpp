@@ -40,4 +40,19 @@ LookUp look_up(const Settings& settings, const std::string& space) {
   return out;
 }
 
+std::string view_or_default(const Settings& settings, const std::string& preferred) {
+  Choice choice;
+  try {
+    const Config config = load_config(settings.config);
+    choose_display(config, settings, choice);
+    if (has_view(config, choice.display, preferred)) return preferred;
+    Settings with_default = settings;
+    with_default.view.clear();
+    choose_view(config, with_default, choice);
+  } catch (const base::Error&) {
+    return preferred;
+  }
+  return choice.view;
+}
+
 }  // namespace orrery::display

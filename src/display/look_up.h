@@ -31,4 +31,10 @@ struct LookUp {
 /// Errors     base::Error(kUsage) for an exposure that is not finite; errors of the config and its names become faults
 LookUp look_up(const Settings& settings, const std::string& space);
 
+/// Returns `preferred` if the display has a view of this name, else the display's default view.
+///
+/// Domain     the settings' own view is not used
+/// Result     `preferred` also if the config or the display is not found, which look_up() reports
+std::string view_or_default(const Settings& settings, const std::string& preferred);
+
 }  // namespace orrery::display

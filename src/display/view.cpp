@@ -19,6 +19,11 @@ void require(const Config& config, const std::string& what, const std::string& n
   if (std::find(known.begin(), known.end(), name) == known.end()) unknown(config, what, name, known);
 }
 
+Names views_of(const Config& config, const std::string& display) {
+  return names(config.config->getNumViews(display.c_str()),
+               [&](int i) { return config.config->getView(display.c_str(), i); });
+}
+
 /// The output colour space of the view.
 std::string final_space(const ocio::Config& config, const Choice& choice) {
   const std::string space = config.getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str());
@@ -68,10 +73,13 @@ void choose_display(const Config& config, const Settings& settings, Choice& choi
 }
 
 void choose_view(const Config& config, const Settings& settings, Choice& choice) {
-  const char* const display = choice.display.c_str();
-  choice.view = settings.view.empty() ? config.config->getDefaultView(display) : settings.view;
-  require(config, "view on display `" + choice.display + "` named", choice.view,
-          names(config.config->getNumViews(display), [&](int i) { return config.config->getView(display, i); }));
+  choice.view = settings.view.empty() ? config.config->getDefaultView(choice.display.c_str()) : settings.view;
+  require(config, "view on display `" + choice.display + "` named", choice.view, views_of(config, choice.display));
+}
+
+bool has_view(const Config& config, const std::string& display, const std::string& view) {
+  const Names views = views_of(config, display);
+  return std::find(views.begin(), views.end(), view) != views.end();
 }
 
 void check_look(const Config& config, const Settings& settings) {
@@ -96,8 +104,6 @@ View find_view(const Config& source, const Settings& settings) {
     out.choice.working_space = find_color_space(source, settings.working_space);
     out.transform = transform(*source.config, settings, out.choice);
     // Lossless, since the default optimization replaces curves by LUTs.
-    const ocio::ConstProcessorMetadataRcPtr metadata = out.transform->getProcessorMetadata();
-    for (int i = 0; i < metadata->getNumFiles(); ++i) out.choice.files.emplace_back(metadata->getFile(i));
     out.processor = out.transform->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
     out.choice.transform_id = out.processor->getCacheID();
     const std::string space = final_space(*source.config, out.choice);

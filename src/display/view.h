@@ -34,6 +34,9 @@ void choose_display(const Config& config, const Settings& settings, Choice& choi
 /// Domain     the display is set
 void choose_view(const Config& config, const Settings& settings, Choice& choice);
 
+/// True if a display of the config has a view of this name.
+bool has_view(const Config& config, const std::string& display, const std::string& view);
+
 /// Checks that the config has the look.
 void check_look(const Config& config, const Settings& settings);
 

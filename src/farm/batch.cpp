@@ -69,8 +69,9 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   base::FileSet& files = *common.files;
   if (!batch.log.empty()) files.add_output(batch.log, "--log");
   if (!batch.preview.empty()) files.add_output(batch.preview, "--preview");
+  for (const job::OutputFile& other : batch.others) files.add_output(other.path, other.role);
   for (const fs::path& scene : batch.scenes)
-    if (!files.add_input(scene, "scene")) refuse(scene.string() + " is given twice");
+    if (common.scene.has_file && !files.add_input(scene, "scene")) refuse(scene.string() + " is given twice");
   for (const fs::path& scene : batch.scenes) {
     for (const int frame : frames) {
       job::Job job = common;
@@ -84,9 +85,9 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
       jobs.push_back(std::move(job));
     }
   }
-  // A single job checks its scene's files when it reads the scene. Here, another job or the log could overwrite them
+  // A single job checks its scene's files when it reads the scene. Here, another job or the caller could overwrite them
   // before that.
-  if (jobs.size() > 1 || !batch.log.empty())
+  if (jobs.size() > 1 || !batch.log.empty() || !batch.others.empty())
     for (const fs::path& scene : batch.scenes) {
       job::SceneSource source = common.scene;
       source.file = scene;

@@ -35,12 +35,14 @@ void append_float(std::string& out, double value, std::size_t index) {
   append_bytes(out, static_cast<float>(value));
 }
 
-/// Start of the PLY files that orrery writes; is_own_ply() recognises them by the comment.
-constexpr const char* kPlyBegin = "ply\nformat binary_little_endian 1.0\ncomment made by orrery\n";
+/// The header up to the comment that names the writer, as in data::write_table.
+std::string header_begin(std::string_view writer) {
+  return "ply\nformat binary_little_endian 1.0\ncomment made by " + std::string(writer) + '\n';
+}
 
 std::string header(const scene::Points& points, PlyReal real) {
   const std::string property = real == PlyReal::kDouble ? "property double " : "property float ";
-  std::string out = kPlyBegin + ("element vertex " + std::to_string(points.centers.size()) + '\n');
+  std::string out = header_begin(kPlyWriter) + "element vertex " + std::to_string(points.centers.size()) + '\n';
   for (const char* name : {"x", "y", "z", "radius"}) out += property + name + '\n';
   if (!points.materials.empty()) out += "property uint material\n";
   return out + "end_header\n";
@@ -67,8 +69,8 @@ void write_ply(const scene::Points& points, const std::filesystem::path& file, P
   output.finish();
 }
 
-bool is_own_ply(const std::filesystem::path& file) {
-  const std::string_view begin = kPlyBegin;
+bool is_ply_of(std::string_view writer, const std::filesystem::path& file) {
+  const std::string begin = header_begin(writer);
   std::string found(begin.size(), '\0');
   std::ifstream in(file, std::ios::binary);
   return in.read(found.data(), static_cast<std::streamsize>(found.size())) && found == begin;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "scene/scene.h"
 
@@ -13,15 +14,19 @@ enum class PlyReal {
   kDouble,  ///< reads back to the same bits
 };
 
+/// The writer of write_ply()'s files, for is_ply_of().
+inline constexpr const char* kPlyWriter = "orrery generate";
+
 /// Writes spheres as binary little-endian PLY: x, y, z, radius, and material as uint if `points` has materials. A
-/// comment in the header identifies orrery as the writer.
+/// comment in the header names the writer.
 ///
 /// Errors     base::Error: kCannotCreate, kIo; kBadData if a number overflows a float
 /// Cost       the whole file is built in memory before it is written
 /// Reference  turk1994
 void write_ply(const scene::Points& points, const std::filesystem::path& file, PlyReal real = PlyReal::kDouble);
 
-/// True if write_ply wrote the file, so that replacing it destroys no user data.
-bool is_own_ply(const std::filesystem::path& file);
+/// True if the header of a PLY file says that `writer` made it. A command that names a file itself replaces only its
+/// own: others, such as those of `orrery convert`, are the user's.
+bool is_ply_of(std::string_view writer, const std::filesystem::path& file);
 
 }  // namespace orrery::format

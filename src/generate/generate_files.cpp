@@ -72,7 +72,7 @@ void check(const std::filesystem::path& file, bool has_points) {
   files.add_output(points, "points file");
   base::check_creatable(points);
   std::error_code ignored;
-  if (std::filesystem::exists(points, ignored) && !format::is_own_ply(points))
+  if (std::filesystem::exists(points, ignored) && !format::is_ply_of(format::kPlyWriter, points))
     throw base::Error(base::ErrorKind::kCannotCreate,
                       "cannot create " + points.string() +
                           ": the existing file was not written by orrery generate; move it, or choose another -o");

@@ -33,6 +33,11 @@ void fail_to_read(const std::filesystem::path& file, const std::string& reason) 
   throw base::Error(base::ErrorKind::kBadData, "cannot read image " + file.string() + ": " + reason);
 }
 
+void fail_for_memory(const std::filesystem::path& file) {
+  throw base::Error(base::ErrorKind::kNoMemory,
+                    "cannot read image " + file.string() + ": there is not enough memory for its pixels");
+}
+
 void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
   const auto too_large = [](int side) { return side < 1 || side > kLargestSide; };
   if (too_large(spec.width) || too_large(spec.height) || too_large(spec.full_width) || too_large(spec.full_height))

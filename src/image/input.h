@@ -12,6 +12,9 @@ namespace orrery::image {
 /// Throws the error of an image that cannot be read: base::Error(kBadData).
 [[noreturn]] void fail_to_read(const std::filesystem::path& file, const std::string& reason);
 
+/// Throws the error of an image whose pixels do not fit into memory: base::Error(kNoMemory).
+[[noreturn]] void fail_for_memory(const std::filesystem::path& file);
+
 /// Checks the size in the header of an image or part.
 ///
 /// Errors     base::Error(kBadData) if it is out of range or the pixels are deep

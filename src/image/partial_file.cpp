@@ -109,9 +109,10 @@ PartialFile read_partial(const std::filesystem::path& file, int width_px, int he
   } catch (const base::Error& error) {
     damaged(file, error.what());
   } catch (const std::bad_alloc&) {
-    damaged(file, "there is not enough memory for its samples");
+    throw base::Error(base::ErrorKind::kNoMemory,
+                      "cannot read " + file.string() + ": there is not enough memory for its samples");
   } catch (const std::length_error&) {
-    damaged(file, "there is not enough memory for its samples");
+    damaged(file, "its samples would not fit into any memory");
   }
 }
 

@@ -131,9 +131,9 @@ film::Picture read(const std::filesystem::path& file, Parts parts, std::uint64_t
     input.in->geterror();  // OpenImageIO prints messages that are not fetched
     return picture;
   } catch (const std::bad_alloc&) {
-    fail_to_read(file, "there is not enough memory for its pixels");
+    fail_for_memory(file);
   } catch (const std::length_error&) {
-    fail_to_read(file, "there is not enough memory for its pixels");
+    fail_for_memory(file);
   }
 }
 

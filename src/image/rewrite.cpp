@@ -165,9 +165,9 @@ RewriteReport rewrite_exr(const std::filesystem::path& input, const std::filesys
     parts = read_parts(input);
     planes = planes_of_parts(parts);
   } catch (const std::bad_alloc&) {
-    fail_to_read(input, "there is not enough memory for its pixels");
+    fail_for_memory(input);
   } catch (const std::length_error&) {
-    fail_to_read(input, "there is not enough memory for its pixels");
+    fail_for_memory(input);
   }
   auto& [picture, places] = planes;
   const std::vector<Attribute> attributes = edit(picture);

@@ -182,8 +182,6 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   format::ReadResult& read = loaded.read;
   const display::Settings& display = loaded.display;
   add_scene_files(job.scene.file, read.scene, files);
-  if (loaded.choice)
-    for (const std::string& table : loaded.choice->files) files.add_input(table, "table of the OCIO config");
   report.phases.read_s = watch.lap();
   stop_if_cancelled(job);
 
@@ -191,10 +189,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   check_samples(job, compiled);
   check_sizes(job, compiled);
   const Layers layers = layers_for(job, read.scene, compiled);
-  for (const auto& manifest : manifest_files(layers.mattes, job.outputs)) {
-    files.add_output(manifest, "Cryptomatte manifest");
-    base::check_creatable(manifest);
-  }
+  for (const auto& manifest : manifest_files(layers.mattes, job.outputs)) base::check_creatable(manifest);
   const image::Provenance provenance = provenance_of(job, compiled, layers);
   const std::string stamp = stamp_of(job, provenance, display, report.display);
   report.scene_hash = provenance.at("sceneHash");

@@ -5,6 +5,7 @@
 #include "display/config_files.h"
 #include "format/named_files.h"
 #include "job/checkpoint.h"
+#include "job/matte_manifest.h"
 #include "job/working_space.h"
 #include "scene/textures.h"
 
@@ -35,6 +36,9 @@ void add_job_files(const Job& job, base::FileSet& files, const std::string& owne
   for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
   add_ocio_configs(job.outputs.display.config, files);
   for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
+  if (is_shard(job)) return;
+  for (const fs::path& manifest : possible_manifest_files(job.outputs))
+    files.add_output(manifest, "Cryptomatte manifest" + owner);
 }
 
 void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
@@ -69,7 +73,10 @@ void add_scene_files(const fs::path& scene_file, const scene::Scene& scene, base
 }
 
 void add_ocio_configs(const std::string& config, base::FileSet& files) {
-  for (const fs::path& file : display::config_files(config)) files.add_input(file, "OCIO config");
+  for (const fs::path& file : display::config_files(config)) {
+    if (!files.add_input(file, "OCIO config")) continue;
+    for (const fs::path& table : display::table_files(file)) files.add_input(table, "table of the OCIO config");
+  }
 }
 
 }  // namespace orrery::job

@@ -17,10 +17,11 @@ struct OutputFile {
   std::string role;  ///< "-o", "--stats", "checkpoint"
 };
 
-/// All files that a job writes, except those that depend on the scene: Cryptomatte manifests.
+/// All files that a job writes, except Cryptomatte manifests, which only some scenes have.
 std::vector<OutputFile> outputs_of(const Job& job);
 
-/// Adds the files that a job reads and writes according to its command line.
+/// Adds the files that a job reads and writes according to its command line. The names of Cryptomatte manifests are
+/// reserved for every EXR image, because the scene is not read yet.
 ///
 /// `owner`    appended to roles in messages about several scenes: " of shot.toml"
 /// Errors     base::Error(kUsage) for an output that is an input or another output
@@ -36,9 +37,10 @@ void add_named_files(const SceneSource& scene, const std::vector<int>& frames, b
 /// Errors     those of add_job_files
 void add_scene_files(const std::filesystem::path& scene_file, const scene::Scene& scene, base::FileSet& files);
 
-/// Adds an OCIO config, from --ocio or a scene, and the config in $OCIO, if they are files.
+/// Adds an OCIO config, from --ocio or a scene, and the config in $OCIO, if they are files, and their LUT files.
 ///
 /// Errors     those of add_job_files
+/// Cost       loads a config that is not in the set
 void add_ocio_configs(const std::string& config, base::FileSet& files);
 
 }  // namespace orrery::job

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -11,6 +12,9 @@
 #include "scene/scene.h"
 
 namespace orrery::job {
+
+/// The layers that are Cryptomattes.
+inline constexpr std::array kMatteLayers = {"CryptoObject", "CryptoMaterial", "CryptoGroup"};
 
 /// A Cryptomatte's names, as in its EXR header.
 struct MatteNames {

@@ -24,8 +24,8 @@ std::string manifest(const MatteNames& matte) {
 
 bool is_large(const MatteNames& matte) { return matte.things.size() > kMaxNamesInHeader; }
 
-std::filesystem::path manifest_file(const MatteNames& matte, const std::filesystem::path& picture) {
-  return picture.parent_path() / base::companion_name(picture.stem().string(), "." + matte.layer + ".json");
+std::filesystem::path manifest_file(const std::string& layer, const std::filesystem::path& picture) {
+  return picture.parent_path() / base::companion_name(picture.stem().string(), "." + layer + ".json");
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& ma
     out.push_back({key + "hash", std::string("MurmurHash3_32")});
     out.push_back({key + "conversion", std::string("uint32_to_float32")});
     if (is_large(matte)) {
-      out.push_back({key + "manif_file", manifest_file(matte, picture).filename().string()});
+      out.push_back({key + "manif_file", manifest_file(matte.layer, picture).filename().string()});
     } else {
       out.push_back({key + "manifest", manifest(matte)});
     }
@@ -51,13 +51,21 @@ std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>&
   std::vector<std::filesystem::path> files;
   for (const auto& [picture, format] : outputs.images)
     for (const MatteNames& matte : mattes)
-      if (is_large(matte) && format == image::Format::kExr) files.push_back(manifest_file(matte, picture));
+      if (is_large(matte) && format == image::Format::kExr) files.push_back(manifest_file(matte.layer, picture));
+  return files;
+}
+
+std::vector<std::filesystem::path> possible_manifest_files(const Outputs& outputs) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& [picture, format] : outputs.images)
+    if (format == image::Format::kExr)
+      for (const char* layer : kMatteLayers) files.push_back(manifest_file(layer, picture));
   return files;
 }
 
 void write_manifests(const std::vector<MatteNames>& mattes, const std::filesystem::path& picture) {
   for (const MatteNames& matte : mattes)
-    if (is_large(matte)) base::write_text_file(manifest_file(matte, picture), manifest(matte));
+    if (is_large(matte)) base::write_text_file(manifest_file(matte.layer, picture), manifest(matte));
 }
 
 }  // namespace orrery::job

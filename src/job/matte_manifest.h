@@ -25,6 +25,9 @@ std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& ma
 /// The files that write_manifests writes for the EXR files among the outputs.
 std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>& mattes, const Outputs& outputs);
 
+/// The files that write_manifests may write for the EXR files among the outputs, whatever the scene requests.
+std::vector<std::filesystem::path> possible_manifest_files(const Outputs& outputs);
+
 /// Writes the manifest files that the header names, IMAGE.CryptoObject.json. Small manifests have no file.
 ///
 /// Errors     base::Error: kCannotCreate, kIo

@@ -161,10 +161,7 @@ class Planner {
     }
     const auto add_one = [&](const char* name, kernel::DirectLighting mode) {
       add("direct lighting", name, flag(kCompared) + " --set render.direct_lighting=" + name, kCompared).apply =
-          [mode](CompiledScene& w) {
-            w.direct_lighting = mode;
-            if (w.light_tree.spheres.empty() && !w.emission.empty()) w.light_tree = compile::build_light_tree(w.view());
-          };
+          [mode](CompiledScene& w) { w.direct_lighting = mode; };
     };
     add_one("mis", kernel::DirectLighting::kMis);
     add_one("bsdf", kernel::DirectLighting::kBsdf);

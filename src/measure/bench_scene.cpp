@@ -136,6 +136,7 @@ class Subject {
     compiled_.accelerator = c.tracer == Tracer::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
     compiled_.precision = c.precision;
     compiled_.features = c.features;
+    compile::update_lights(compiled_);
   }
 
   accel::Accel& accel(const Case& c) {

@@ -33,11 +33,13 @@ class Recommender {
     if (takes_fast) {
       compiled.precision = compile::Precision::kFast;
       flags += " --precision fast";
-      r.bias = std::max(fast->bias, std::abs(fast->energy));
+      r.bias = fast->bias;
     }
+    std::string sampler_flag;
     if (compiled.sampler.kind == kernel::SamplerKind::kIndependent) {
       compiled.sampler.kind = kernel::SamplerKind::kSobol;
-      flags += " --set render.sampler=sobol";
+      sampler_flag = " --set render.sampler=sobol";
+      flags += sampler_flag;
     }
     const Point* const without = find("roulette", "off");
     const Point* const with = find("roulette", "from 3");
@@ -51,11 +53,21 @@ class Recommender {
     r.noise = std::min(last.noise, request_.noise);
     r.seconds = last.seconds * growth(pilots, request_.noise, &Point::seconds);
     r.samples = last.samples * growth(pilots, request_.noise, &Point::samples);
+    const Baseline baseline = this->baseline();
+    r.baseline_seconds = baseline.seconds;
+    const bool is_faster = baseline.seconds > r.seconds;
+    if (baseline.seconds > 0 && !is_faster) {
+      // --noise needs more samples than this. Sobol points have no larger error than as many independent ones.
+      flags = "--samples " + std::to_string(baseline.samples) + sampler_flag;
+      r.noise = request_.noise;
+      r.bias = 0;
+      r.seconds = baseline.seconds;
+      r.samples = baseline.samples;
+    }
     r.command = "orrery render " + base::shell_quoted(study_.scene) + " -o final.exr " + scene_flags() + flags;
-    r.baseline_seconds = baseline_seconds();
     base::append(r.words, "for %.3g %% noise: %s, %.3g s", request_.noise * 100, flags.c_str(), r.seconds);
-    if (r.baseline_seconds > 0) base::append(r.words, " instead of %.3g s", r.baseline_seconds);
-    if (takes_fast) base::append(r.words, ", bias %.2g %%", r.bias * 100);
+    if (is_faster) base::append(r.words, " instead of %.3g s", baseline.seconds);
+    if (r.bias > 0) base::append(r.words, ", bias %.2g %%", r.bias * 100);
   }
 
  private:
@@ -64,6 +76,13 @@ class Recommender {
     double noise, seconds, samples;  ///< samples per pixel
   };
   using Pilots = std::vector<Pilot>;
+
+  /// Samples per pixel and time for the target noise at full resolution with the book's method: independent samples,
+  /// uniform over the image. 0: not known.
+  struct Baseline {
+    int samples = 0;
+    double seconds = 0;
+  };
 
   double left() const { return request_.budget_s - renderer_.elapsed(); }
   double pixels() const { return static_cast<double>(study_.width) * study_.height; }
@@ -134,14 +153,16 @@ class Recommender {
     return line.size() < 2 ? std::pow(reached / noise, kUsual) : std::exp(at(noise) - at(reached));
   }
 
-  /// Time for the target noise at full resolution with the book's method: independent samples, uniform over the image.
-  double baseline_seconds() const {
+  Baseline baseline() const {
     const Point* best = nullptr;
     for (const Point& p : study_.points)
       if (p.axis == "sampler" && p.name.find("independent") != std::string::npos) best = &p;
-    if (best == nullptr) return 0;
+    if (best == nullptr) return {};
+    constexpr double kMaxSamples = 1 << 30;
+    const double samples =
+        std::clamp(std::ceil(best->samples * std::pow(best->error / request_.noise, 2)), 1.0, kMaxSamples);
     const double scale = static_cast<double>(full_.width) * full_.height / pixels();
-    return best->seconds * scale * std::pow(best->error / request_.noise, 2);
+    return {static_cast<int>(samples), best->seconds * scale * samples / best->samples};
   }
 
   const Request& request_;

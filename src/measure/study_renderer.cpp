@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "compile/compile.h"
 #include "denoise/denoise.h"
 
 namespace orrery::measure {
@@ -31,6 +32,7 @@ accel::Accel& StudyRenderer::accel_of(const compile::CompiledScene& scene) {
 render::Result StudyRenderer::render(compile::CompiledScene& scene, double noise,
                                      std::optional<accel::Traversal> traversal, bool is_denoised) {
   const Spheres::Loan loan(spheres_, scene);
+  compile::update_lights(scene);
   render::Settings settings;
   settings.threads = threads_;
   settings.sampling.noise = noise;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "display/look_up.h"
 #include "plot/data_frames.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
@@ -16,6 +17,9 @@ namespace orrery::plot {
 namespace {
 
 using scene::number_text;
+
+/// The view of plots, if the OCIO config has it.
+constexpr const char* kPlainView = "Un-tone-mapped";
 
 /// A points table of the scene as its author would write it, completed step by step.
 class PlotMaker {
@@ -49,7 +53,8 @@ class PlotMaker {
     const scene::Camera camera = extent.camera(static_cast<double>(options_.width) / options_.height);
     chose("view " + options_.look_from + ", " + number_text(rounded(*camera.width)) + " wide",
           out_.frames.size() > 1 ? "fitted to the spheres of all frames" : "fitted to the spheres");
-    out_.text = scene_text({options_, out_.points, camera, up, extent.center(), lowest_, extent.radius()});
+    choose_display_view();
+    out_.text = scene_text({options_, out_.points, camera, up, out_.view, extent.center(), lowest_, extent.radius()});
     return std::move(out_);
   }
 
@@ -110,6 +115,15 @@ class PlotMaker {
     chose("map " + color.map, points::find_color_map(color.map)->is_categorical
                                   ? "colours for categories"
                                   : "no dark colours, which shading would hide");
+  }
+
+  /// A view without tone mapping, which leaves the colours of the colour map as they are.
+  void choose_display_view() {
+    out_.view = options_.display.view;
+    if (!out_.view.empty()) return;
+    out_.view = display::view_or_default(options_.display, kPlainView);
+    if (out_.view != kPlainView)
+      chose("display view " + out_.view, std::string("the default; the OCIO config has no view ") + kPlainView);
   }
 
   /// Reads all frames once: the view contains all of them, and one range of the colour map holds for all, or an

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "display/develop.h"
 #include "plot/data_options.h"
 #include "plot/write_legend.h"
 #include "scene/scene.h"
@@ -20,6 +21,7 @@ struct PlotOptions : DataOptions {
   Style style = Style::kStudio;
   bool ground = false;
   int width = 1920, height = 1080;  ///< px
+  display::Settings display;        ///< of the images; an empty view is chosen
 };
 
 struct PlotScene {
@@ -29,6 +31,7 @@ struct PlotScene {
   std::vector<int> frames;  ///< to render; empty: one still image
   scene::Points points;     ///< keys of the scene's points
   LegendColors legend;
+  std::string view;  ///< of the display
 };
 
 /// Reads the data and writes a scene for it.

@@ -100,7 +100,8 @@ std::string scene_text(const PlotParts& parts) {
   out += std::string("\n[background]\ntype = \"constant\"\ncolor = ") +
          (is_night ? "[0.02, 0.02, 0.025]" : "[1, 1, 1]") + "\n";
   if (options.style == Style::kFlat) out += "\n[render]\nshading = \"flat\"\n";
-  out += "\n[color]\nview = \"Un-tone-mapped\"\n\n[material.matte]\ntype = \"lambertian\"\nalbedo = [0.8, 0.8, 0.8]\n";
+  out += "\n[color]\nview = " + string_text(parts.view) +
+         "\n\n[material.matte]\ntype = \"lambertian\"\nalbedo = [0.8, 0.8, 0.8]\n";
   if (options.ground)
     out += std::string("\n[material.ground]\ntype = \"lambertian\"\nalbedo = ") +
            (is_night ? "[0.1, 0.1, 0.1]" : "[0.95, 0.95, 0.95]") + "\n";

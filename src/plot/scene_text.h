@@ -13,10 +13,11 @@ struct PlotParts {
   const PlotOptions& options;
   const scene::Points& points;
   const scene::Camera& camera;
-  Vec3d up;           ///< unit vector
-  Vec3d center;       ///< of the spheres
-  double lowest = 0;  ///< of the spheres along `up`
-  double radius = 1;  ///< of a sphere around `center` that contains all spheres
+  Vec3d up;                 ///< unit vector
+  const std::string& view;  ///< of the display
+  Vec3d center;             ///< of the spheres
+  double lowest = 0;        ///< of the spheres along `up`
+  double radius = 1;        ///< of a sphere around `center` that contains all spheres
 };
 
 /// Returns the scene file of a plot.

@@ -26,6 +26,9 @@ std::string moved(const std::string& name, const fs::path& from, const fs::path&
   return old_folder == folder ? name : (old_folder / name).lexically_normal().lexically_relative(folder).string();
 }
 
+/// Named in the data files of saved scenes, which save() may replace.
+constexpr const char* kWriter = "orrery Scene.save";
+
 /// The data file of a table beside the scene file.
 std::string table_file_name(const fs::path& scene_file, const std::string& table) {
   return scene_file.stem().string() + "." + table + ".ply";
@@ -34,10 +37,10 @@ std::string table_file_name(const fs::path& scene_file, const std::string& table
 void check_data_file(const fs::path& file) {
   base::check_creatable(file);
   std::error_code ignored;
-  if (fs::exists(file, ignored) && !format::is_own_ply(file))
+  if (fs::exists(file, ignored) && !format::is_ply_of(kWriter, file))
     throw base::Error(base::ErrorKind::kCannotCreate,
                       "cannot create " + file.string() +
-                          ": the existing file was not written by orrery; move it, or choose another name");
+                          ": the existing file was not written by save(); move it, or choose another name");
 }
 
 }  // namespace
@@ -89,7 +92,7 @@ void save(const SceneData& scene, const fs::path& file) {
   };
   const std::string text = format::merged_text(scene.file, scene.text, source.overrides, renamed);
   for (const auto& [name, table] : scene.tables)
-    static_cast<void>(data::write_table(folder / table_file_name(file, name), *table));  // all columns are numbers
+    static_cast<void>(data::write_table(folder / table_file_name(file, name), *table, kWriter));  // all are numbers
   base::write_text_file(file, text);
 }
 

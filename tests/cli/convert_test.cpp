@@ -254,6 +254,34 @@ TEST_F(CliConvert, SavedScenesHaveTheSettingsOfTheCommandLine) {
       << scaled.err;
 }
 
+TEST_F(CliConvert, PlotsUseTheDefaultViewOfAConfigWithoutTheirOwn) {
+  write("my.ocio",
+        "ocio_profile_version: 1\nsearch_path: .\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+        "displays:\n  d:\n    - !<View> {name: film, colorspace: lin_rec709}\n"
+        "    - !<View> {name: other, colorspace: lin_rec709}\n"
+        "  full:\n    - !<View> {name: film, colorspace: lin_rec709}\n"
+        "    - !<View> {name: Un-tone-mapped, colorspace: lin_rec709}\nactive_displays: []\nactive_views: []\n"
+        "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n");
+  write("a.csv", "x,y,z,q\n0,0,0,1\n1,0,0,2\n");
+  const std::string plot = "plot a.csv -o a.ppm --color-by q --width 16 --height 9 --samples 1 --legend l.svg ";
+  const std::string choice = "plot: display view film: the default; the OCIO config has no view Un-tone-mapped";
+  for (const char* config : {"--ocio my.ocio", "--set color.config=my.ocio", "--ocio my.ocio --save-scene s.toml"}) {
+    const Outcome r = run(plot + config);
+    EXPECT_EQ(r.status, 0) << config << r.err;
+    EXPECT_TRUE(contains(r.err, choice)) << config << r.err;
+  }
+  EXPECT_TRUE(contains(text_of(folder_ / "s.toml"), "view = \"film\""));
+  for (const char* config :
+       {"", "--ocio my.ocio --display full", "--ocio my.ocio --view other", "--ocio my.ocio --set color.view=other"}) {
+    const Outcome r = run(plot + config);
+    EXPECT_EQ(r.status, 0) << config << r.err;
+    EXPECT_FALSE(contains(r.err, "display view")) << config << r.err;
+  }
+  for (const char* option : {"--view", "--display"})
+    EXPECT_TRUE(contains(run("plot a.csv -o a.ppm --ocio my.ocio " + std::string(option) + " none").err,
+                         std::string(option) + ": the OCIO config (my.ocio) has no "));
+}
+
 /// The scene of a plot is not a file: its lines mean nothing to the user.
 TEST_F(CliConvert, ErrorsOfAPlotHaveNoLinesOfItsScene) {
   write("far.csv", "x,y,z\n1e30,0,0\n0,0,0\n");
@@ -292,6 +320,14 @@ TEST_F(CliConvert, ErrorsLeaveNoFile) {
 TEST_F(CliConvert, MaterialsAreAColumnLikeOthers) {
   ASSERT_EQ(run("generate cloud --count 100 -o cloud.toml").status, 0);
   EXPECT_TRUE(converted("cloud.ply").starts_with("x,y,z,radius,material\n"));
+}
+
+TEST_F(CliConvert, GenerateDoesNotReplaceConvertedFiles) {
+  ASSERT_EQ(run("convert a.dump -o cloud.ply").status, 0);
+  const std::string converted = text_of(folder_ / "cloud.ply");
+  expect_error("generate cloud --count 10 -o cloud.toml", 73, "was not written by orrery generate");
+  EXPECT_EQ(text_of(folder_ / "cloud.ply"), converted);
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(run("generate cloud --count 10 -o own.toml").status, 0) << "its own file";
 }
 
 class CliDataInfo : public CliConvert {};

@@ -26,6 +26,16 @@ class CliOutputs : public ProgramTest {
     return kGoodScene + ("[[points]]\nfile = \"" + file + "\"\nmaterial = \"grey\"\n");
   }
 
+  /// my.ocio, whose only view uses film.cube.
+  void write_film_config() {
+    write("film.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
+    write("my.ocio",
+          "ocio_profile_version: 1\nsearch_path: .\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+          "displays:\n  d:\n    - !<View> {name: film, colorspace: film}\nactive_displays: []\nactive_views: []\n"
+          "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
+          "  - !<ColorSpace> {name: film, from_reference: !<FileTransform> {src: film.cube, interpolation: linear}}\n");
+  }
+
   /// Contents of all files, by name.
   std::map<std::string, std::string> contents() const {
     std::map<std::string, std::string> out;
@@ -102,15 +112,59 @@ TEST_F(CliOutputs, ContentsOfTheOcioConfigCount) {
 }
 
 TEST_F(CliOutputs, LutOfAnOcioConfigIsAnInput) {
-  write("film.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
-  write("my.ocio",
-        "ocio_profile_version: 1\nsearch_path: .\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
-        "displays:\n  d:\n    - !<View> {name: film, colorspace: film}\nactive_displays: []\nactive_views: []\n"
-        "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n"
-        "  - !<ColorSpace> {name: film, from_reference: !<FileTransform> {src: film.cube, interpolation: linear}}\n");
+  write_film_config();
+  write("config.toml", std::string("[color]\nconfig = \"my.ocio\"\n") + kGoodScene);
   ASSERT_EQ(run("render good.toml -o a.png -q --ocio my.ocio").status, 0) << text_of(folder_ / ".err");
-  expect_refused("bake --ocio my.ocio -o film.cube", "film.cube (table of the OCIO config)");
-  expect_refused("render good.toml -o a.png --ocio my.ocio --stats film.cube", "table of the OCIO config");
+  const char* const refusal = "film.cube (table of the OCIO config)";
+  expect_refused("bake --ocio my.ocio -o film.cube", refusal);
+  for (const char* option : {"--stats", "--log"}) {
+    const std::string film = std::string(option) + " film.cube";
+    expect_refused("render good.toml -o a.png --ocio my.ocio " + film, refusal);
+    expect_refused("render good.toml -o a.png " + film, refusal, "OCIO=my.ocio");
+    expect_refused("render good.toml -o a.exr " + film, refusal, "OCIO=my.ocio");
+    expect_refused("render config.toml -o a.png " + film, refusal);
+    expect_refused("render good.toml -o a.png --set 'color.config=\"my.ocio\"' " + film, refusal);
+  }
+  expect_refused("render good.toml config.toml -o {scene}.png --log film.cube", refusal);
+}
+
+TEST_F(CliOutputs, CryptomatteManifestIsAnOutput) {
+  const char* const refusal = "a.CryptoObject.json (Cryptomatte manifest)";
+  write("a.CryptoObject.json", "of an earlier render");
+  for (const char* option : {"--stats", "--log"})
+    expect_refused("render good.toml -o a.exr " + std::string(option) + " a.CryptoObject.json", refusal);
+  EXPECT_EQ(run("render good.toml -o a.png --log a.CryptoObject.json -q").status, 0) << "PNG has no manifest";
+}
+
+TEST_F(CliOutputs, PlotDoesNotOverwriteItsInputs) {
+  write_film_config();
+  for (const char* name : {"pp.0001.ply", "pp.0002.ply", "all.ply"}) write(name, kPly);
+  const std::string size = " --width 16 --height 9 --samples 1 -q ";
+  const std::string frames = "plot 'pp.%04d.ply' -o q.####.png --frames 1-2" + size;
+  const std::string one = "plot all.ply -o q.png" + size;
+  for (const char* option : {"--save-scene", "--legend", "--log", "--stats"}) {
+    const std::string files = option == std::string("--stats") ? " pp.%04d.ply" : " pp.0002.ply";
+    expect_refused(frames + option + files, "pp.000");
+    expect_refused(one + option + " all.ply", "all.ply");
+    expect_refused(one + "--ocio my.ocio " + option + " my.ocio", "my.ocio (OCIO config)");
+    expect_refused(one + option + " my.ocio", "my.ocio (OCIO config)", "OCIO=my.ocio");
+    expect_refused(one + "--ocio my.ocio " + option + " film.cube", "film.cube (table of the OCIO config)");
+    expect_refused(one + "--set color.config=my.ocio " + option + " film.cube", "film.cube (table of the OCIO config)");
+  }
+}
+
+TEST_F(CliOutputs, OutputsOfPlotMustBeDistinctFiles) {
+  write("a.csv", "x,y,z,v\n0,0,0,1\n1,0,0,2\n");
+  const std::string plot = "plot a.csv --color-by v --radius 0.3 --width 16 --height 9 --samples 1 -q ";
+  for (const char* option : {"--stats", "--log", "--save-scene"})
+    expect_refused(plot + "-o q.png --legend l.svg " + option + " ./l.svg", "are the same file");
+  for (const char* option : {"--stats", "--log"})
+    expect_refused(plot + "-o q.png --save-scene s.toml " + option + " ./s.toml", "are the same file");
+  expect_refused(plot + "-o q.####.png --frames 1 --legend q.0001.png", "are the same file");
+  expect_refused(plot + "-o q.exr --legend q.checkpoint.exr", "are the same file");
+  EXPECT_EQ(run(plot + "-o q.####.png --frames 1 --legend l.svg --stats t --log u --save-scene s.toml").status, 0);
+  for (const char* name : {"q.0001.png", "l.svg", "t", "u", "s.toml"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
 }
 
 TEST_F(CliOutputs, OutputsMustBeDistinctFiles) {

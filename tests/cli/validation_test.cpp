@@ -76,7 +76,7 @@ const Broken kBroken[] = {
     {"AnIncompletePointsLine", "[[points]]\nfile = \"lines.ply\"\nmaterial = \"grey\"\n", "", 65,
      "lines.ply:9: error: has 3 values, not 4"},
     {"MorePointsThanDeclared", "[[points]]\nfile = \"more.ply\"\nmaterial = \"grey\"\n", "", 65,
-     "more.ply: error: the header declares 2 rows of `vertex`, but there are 3"},
+     "more.ply:3: error: the header declares 2 rows of `vertex`, but there are 3"},
     {"MissingPointsAndAnUnknownKey", "[image.more]\n[[points]]\nfile = \"none.ply\"\nmaterial = \"grey\"\n", "", 65,
      ": 2 errors"},
     {"AnImageBackgroundWithoutAFile", "[background]\ntype = \"image\"\n", "", 65,

@@ -318,7 +318,10 @@ class Files(FolderTest):
 
     def test_other_files_are_not_replaced(self):
         write("scene.positions-1.ply", "not from orrery")
-        with self.assertRaisesRegex(orrery.OutputError, "was not written by orrery"):
+        with self.assertRaisesRegex(orrery.OutputError, r"was not written by save\(\)"):
+            small_scene(positions()).save("scene.toml")
+        write("scene.positions-1.ply", "ply\nformat binary_little_endian 1.0\ncomment made by orrery\n")
+        with self.assertRaisesRegex(orrery.OutputError, r"was not written by save\(\)"):  # but by orrery convert
             small_scene(positions()).save("scene.toml")
         self.assertFalse(os.path.exists("scene.toml"))
         with self.assertRaises(OSError):

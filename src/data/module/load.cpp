@@ -20,8 +20,8 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
 
 TableFormat table_format(const std::filesystem::path& file) { return module().table_format(file); }
 
-std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table) {
-  return module().write_table(file, table);
+std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const std::string& writer) {
+  return module().write_table(file, table, writer);
 }
 
 }  // namespace orrery::data

@@ -56,8 +56,11 @@ TEST(AppCompareFiles, ComparesASingleLayer) {
   film::Picture a = grey(2, 1, 0.5f), b = a;
   a.planes.push_back({"Z", {1, 7}});
   b.planes.push_back({"Z", {1, 2}});
+  b.planes[0].values = {0, 0};
   const Comparison c = compare(a, b, Encoding::kLight, "Z");
   EXPECT_EQ(c.channels, (std::vector<std::string>{"Z"}));
+  EXPECT_EQ(c.values, 2u);
+  EXPECT_EQ(c.differing, 1u) << "R is of another layer";
   EXPECT_EQ(c.errors.max, 5);
   EXPECT_DOUBLE_EQ(c.errors.rmse, std::sqrt(12.5));
   EXPECT_FALSE(c.flip);

@@ -135,5 +135,17 @@ TEST_F(AppInfo, WarningsAreReported) {
   EXPECT_EQ(nlohmann::json::parse(info_json(found))["warnings"].size(), 1u);
 }
 
+TEST_F(AppInfo, OfCoincidentEmittersOnlyTheFirstCounts) {
+  const auto lamp = [](const std::string& center) {
+    return "[[sphere]]\ncenter = " + center + "\nradius = 0.5\nmaterial = \"lamp\"\n";
+  };
+  const std::string scene = std::string(kScene) + "[material.lamp]\ntype = \"emitter\"\nradiance = [1, 1, 1]\n" +
+                            lamp("[0, 0, -1]") + lamp("[8, 0, -1]") + lamp("[8, 0, -1]") +
+                            lamp("[8, 0, -1.000000000001]");
+  EXPECT_EQ(info(scene).emitters, 2u);
+  EXPECT_EQ(info(scene, {"render.direct_lighting=\"bsdf\""}).emitters, 2u);
+  EXPECT_EQ(info(scene, {"render.precision=\"fast\""}).lights, "1 emitter, light and BSDF sampling");
+}
+
 }  // namespace
 }  // namespace orrery::app

@@ -73,6 +73,40 @@ TEST(CompileLightTree, DarkEmittersAreLeftOut) {
   EXPECT_EQ(compile(s).light_tree.spheres, std::vector<std::uint32_t>{3});
 }
 
+TEST(CompileLightTree, SpheresThatCoincideWithAnEarlierOneAreLeftOut) {
+  scene::Scene s = test::dark_stage(16, 9);
+  test::add_lamp(s, {0, 5, 0}, 1, {1, 1, 1});
+  test::add_lamp(s, {0, 5, 0}, -1, {2, 2, 2});
+  test::add_lamp(s, {0, 5, 0}, 1.5, {2, 2, 2});
+  test::add_lamp(s, s.spheres[1].center, s.spheres[1].radius, {3, 3, 3});
+  std::vector<std::uint32_t> spheres = compile(s).light_tree.spheres;
+  std::sort(spheres.begin(), spheres.end());
+  EXPECT_EQ(spheres, (std::vector<std::uint32_t>{2, 4}));
+}
+
+TEST(CompileLightTree, IsBuiltAgainForAnotherPrecisionOrSampling) {
+  scene::Scene s = test::dark_stage(16, 9);
+  test::add_lamp(s, {0, 5, 0}, 1, {1, 1, 1});
+  test::add_lamp(s, {0, 5 + 1e-12, 0}, 1, {1, 1, 1});
+  for (const auto distinct_in : {std::optional<scene::Precision>(), std::optional(scene::Precision::kExact)}) {
+    s.distinct_in = distinct_in;
+    CompiledScene compiled = compile(s);
+    const auto lights = [&] {
+      update_lights(compiled);
+      return compiled.light_tree.spheres.size();
+    };
+    EXPECT_EQ(lights(), 2u);
+    compiled.precision = Precision::kFast;
+    EXPECT_EQ(lights(), 1u);
+    compiled.precision = Precision::kBook;
+    EXPECT_EQ(lights(), 2u);
+    compiled.direct_lighting = kernel::DirectLighting::kBsdf;
+    EXPECT_EQ(lights(), 0u);
+    compiled.direct_lighting = kernel::DirectLighting::kLight;
+    EXPECT_EQ(lights(), 2u);
+  }
+}
+
 TEST(CompileLightTree, NoTreeIfLightsAreNotSampled) {
   scene::Scene s = random_lamps(3, 1);
   s.render.direct_lighting = scene::DirectLighting::kBsdf;

@@ -144,7 +144,7 @@ TEST_F(DataPly, AnExcessiveCountIsRefusedBeforeAllocation) {
   for (const char* encoding : {"binary_little_endian", "ascii"})
     for (const char* count : {"1152921504606846976", "18446744073709551615", "17"})
       EXPECT_EQ(faults(header(encoding, "element vertex " + std::string(count) + "\n" + kXyzr) + data),
-                "the header declares " + std::string(count) +
+                "3: the header declares " + std::string(count) +
                     " rows of `vertex`, but only 31 bytes follow; the file is truncated, or the count is wrong\n");
   EXPECT_EQ(faults(header("binary_little_endian", std::string("element vertex 1\n") + kXyzr) + data.substr(0, 16)), "");
   EXPECT_NE(faults(header("binary_little_endian",
@@ -160,12 +160,14 @@ constexpr const char* kTwo =
 
 TEST_F(DataPly, RowsThatDifferFromTheHeaderAreRefused) {
   EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n \n\r\n"), "") << "blank lines are not rows";
-  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n5 6 7 8\n"),
-            "the header declares 2 rows of `vertex`, but there are 3; the file is truncated, or the count is wrong\n");
-  EXPECT_EQ(faults(header("ascii", kTwo) + "1 2 3 4       \n"),
-            "the header declares 2 rows of `vertex`, but there are 1; the file is truncated, or the count is wrong\n");
+  EXPECT_EQ(
+      faults(header("ascii", kTwo) + "1 2 3 4\n1 2 3 4\n5 6 7 8\n"),
+      "3: the header declares 2 rows of `vertex`, but there are 3; the file is truncated, or the count is wrong\n");
+  EXPECT_EQ(
+      faults(header("ascii", kTwo) + "1 2 3 4       \n"),
+      "3: the header declares 2 rows of `vertex`, but there are 1; the file is truncated, or the count is wrong\n");
   EXPECT_EQ(faults(header("binary_little_endian", kTwo) + std::string(2 * 16 + 3, '\0')),
-            "3 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n");
+            "3: 3 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n");
   for (const char* wrong : {"1 2 3 4\n1 2 3\n4\n", "1 2 3 4 1\n2 3 4\n", "1 2 3 4\n1 2 three 4\n"})
     EXPECT_NE(faults(header("ascii", kTwo) + wrong), "") << wrong;
   const std::string colors = "element vertex 1\n" + std::string(kXyz) + "property uchar red\n";
@@ -180,7 +182,15 @@ TEST_F(DataPly, ElementsAfterTheVerticesMustBeComplete) {
   EXPECT_EQ(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n3 1 2\n"),
             "13: row 0 of `face`, `v`: unexpected end of line; a row must be one line\n");
   EXPECT_EQ(faults(header("binary_little_endian", elements) + std::string(2 * 16, '\0') + "\2abcd"),
-            "row 0 of `face`, `v`: unexpected end of file\n");
+            "8: row 0 of `face`, `v`: unexpected end of file\n");
+  EXPECT_EQ(faults(header("binary_little_endian", elements + "element none 0\nproperty int n\n") +
+                   std::string(2 * 16, '\0') + std::string("\1abcde")),
+            "8: 1 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n")
+      << "the last element that has rows";
+  EXPECT_EQ(
+      faults(header("binary_little_endian", std::string(kTwo) + "element e 3\nproperty double d\n") +
+             std::string(2 * 16, '\0')),
+      "8: the header declares 3 rows of `e`, but only 0 bytes follow; the file is truncated, or the count is wrong\n");
 }
 
 }  // namespace

@@ -78,6 +78,14 @@ TEST(FormatWritePly, WritesAFileWithoutPoints) {
   EXPECT_TRUE(read_back(folder / "a.ply").centers.empty());
 }
 
+TEST(FormatWritePly, TheHeaderNamesTheWriter) {
+  const support::TempDir folder;
+  write_ply({}, folder / "a.ply");
+  EXPECT_TRUE(is_ply_of(kPlyWriter, folder / "a.ply"));
+  EXPECT_FALSE(is_ply_of("orrery", folder / "a.ply")) << "convert";
+  EXPECT_FALSE(is_ply_of(kPlyWriter, folder / "none.ply"));
+}
+
 TEST(FormatWritePly, MissingFolderIsCannotCreate) {
   const support::TempDir folder;
   try {

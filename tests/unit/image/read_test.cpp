@@ -2,9 +2,13 @@
 #include "image/read.h"
 
 #include <OpenImageIO/imageio.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <random>
 #include <sstream>
 
@@ -209,6 +213,31 @@ TEST_F(ImageRead, DamagedBytesNeverCrashAndPrintNothing) {
     if (line.rfind("libpng ", 0) != 0) printed += line + "\n";
   EXPECT_EQ(printed, "");
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// Limits the address space, reads an image that does not fit, and exits with the kind of the error.
+[[noreturn]] void read_without_memory(const std::filesystem::path& small, const std::filesystem::path& large) {
+  read(small);  // loads what the library loads once
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlimit limit{pages * 4096 + (16 << 20), RLIM_INFINITY};
+  ::setrlimit(RLIMIT_AS, &limit);
+  try {
+    read(large);
+  } catch (const base::Error& error) {
+    std::fputs(error.what(), stderr);
+    std::_Exit(static_cast<int>(error.kind()));
+  }
+  std::_Exit(100);
+}
+
+TEST_F(ImageRead, TooLittleMemoryIsNoFaultOfTheFile) {
+  write_foreign(folder_ / "small.exr", grey(4, 4));
+  write_foreign(folder_ / "large.exr", grey(4096, 4096));
+  EXPECT_EXIT(read_without_memory(folder_ / "small.exr", folder_ / "large.exr"),
+              testing::ExitedWithCode(static_cast<int>(ErrorKind::kNoMemory)), "large.exr: there is not enough memory");
+}
+#endif
 
 }  // namespace
 }  // namespace orrery::image

@@ -174,6 +174,23 @@ TEST(JobMatteManifest, LargeMattesOfExrFilesHaveManifestFiles) {
   outputs.images = image_files({"a/shot.exr", "shot.png", "b.exr"});
   const std::vector<std::filesystem::path> files = manifest_files({small, large}, outputs);
   EXPECT_EQ(files, (std::vector<std::filesystem::path>{"a/shot.CryptoObject.json", "b.CryptoObject.json"}));
+  EXPECT_EQ(possible_manifest_files(outputs),
+            (std::vector<std::filesystem::path>{"a/shot.CryptoObject.json", "a/shot.CryptoMaterial.json",
+                                                "a/shot.CryptoGroup.json", "b.CryptoObject.json",
+                                                "b.CryptoMaterial.json", "b.CryptoGroup.json"}));
+}
+
+TEST(JobMatteManifest, EveryMatteIsKnown) {
+  scene::Scene s;
+  s.materials = {{"grey", scene::Lambertian{{0.5, 0.5, 0.5}}}};
+  s.spheres = {{{0, 0, -1}, 0.5, 0, ""}};
+  s.spheres[0].group = "group";
+  s.output.layers.assign(kMatteLayers.begin(), kMatteLayers.end());
+  EXPECT_EQ(choose_layers(s, compile::compile(s)).mattes.size(), kMatteLayers.size());
+  for (const std::string& name : scene::available_layers(s))
+    if (name.rfind("Crypto", 0) == 0) {
+      EXPECT_EQ(std::count(kMatteLayers.begin(), kMatteLayers.end(), name), 1) << name;
+    }
 }
 
 TEST(JobMatteManifest, LargeManifestsAreFilesNextToTheImage) {

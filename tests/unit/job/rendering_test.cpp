@@ -81,6 +81,9 @@ TEST_F(JobRendering, ChecksFilesBeforeItWrites) {
   Outputs unknown = outputs("a.png");
   unknown.display.view = "no such view";
   EXPECT_THROW(write_rendering(rendering_, unknown), base::Error);
+  Outputs config = outputs("a.exr");
+  config.display.config = folder_ / "a.exr";
+  EXPECT_THROW(write_rendering(rendering_, config), base::Error);
   EXPECT_EQ(folder_.count(), 1u);
 }
 

@@ -8,6 +8,7 @@
 #include "compile/compile.h"
 #include "render/render.h"
 #include "support/everything.h"
+#include "support/lit_scenes.h"
 
 namespace orrery::render {
 namespace {
@@ -147,6 +148,72 @@ TEST(RenderCoincident, SpheresThatAreDistinctInDoubleMayCoincideInSingle) {
   two.distinct_in = scene::Precision::kExact;
   one.render.precision = two.render.precision = scene::Precision::kFast;
   EXPECT_TRUE(outcome(one, nullptr, {}) == outcome(two, nullptr, {}));
+}
+
+/// A floor and a ball, without light.
+scene::Scene dark_stage() {
+  scene::Scene s = test::dark_stage(12, 8);
+  s.render.samples = 16;
+  s.render.max_depth = 8;
+  return s;
+}
+
+/// Expects the same image of both scenes however direct light is sampled.
+void expect_equal_light(scene::Scene a, scene::Scene b, const std::string& what,
+                        const scene::Scene* a_closing = nullptr, const scene::Scene* b_closing = nullptr) {
+  for (const auto mode : {scene::DirectLighting::kMis, scene::DirectLighting::kLight, scene::DirectLighting::kBsdf}) {
+    a.render.direct_lighting = b.render.direct_lighting = mode;
+    expect_equal(a, b, what + ", direct lighting " + std::to_string(static_cast<int>(mode)), a_closing, b_closing);
+  }
+}
+
+TEST(RenderCoincident, OnlyTheFirstEmitterIsALight) {
+  scene::Scene one = dark_stage();
+  test::add_lamp(one, {1.5, 2.5, 1}, 0.4, {20, 15, 10});
+  scene::Scene more = one;
+  more.spheres.push_back(one.spheres.back());
+  test::add_lamp(more, {1.5, 2.5, 1}, -0.4, {1, 2, 30}, "other");
+  add_point(more, {1.5, 2.5, 1}, 0.4, one.spheres.back().material);
+  expect_equal_light(one, more, "lamps");
+}
+
+TEST(RenderCoincident, AnEmitterBehindAnEarlierSphereIsNoLight) {
+  scene::Scene dark = dark_stage();
+  scene::Scene hidden = dark;
+  test::add_lamp(hidden, dark.spheres[1].center, dark.spheres[1].radius, {20, 15, 10});
+  add_point(hidden, dark.spheres[1].center, dark.spheres[1].radius, hidden.spheres.back().material);
+  for (const auto mode : {scene::DirectLighting::kMis, scene::DirectLighting::kLight, scene::DirectLighting::kBsdf}) {
+    hidden.render.direct_lighting = mode;
+    for (const float value : outcome(hidden, nullptr, std::nullopt).values)
+      ASSERT_TRUE(value == 0 || value == 1) << "black, with alpha";
+  }
+}
+
+TEST(RenderCoincident, OfMovingEmittersOnlyTheFirstIsALight) {
+  scene::Scene one = dark_stage();
+  test::add_lamp(one, {1.5, 2.5, 1}, 0.4, {20, 15, 10});
+  scene::Scene two = one;
+  two.spheres.push_back(one.spheres.back());
+  scene::Scene one_closing = one, two_closing = two;
+  one_closing.spheres[2].center.x = two_closing.spheres[2].center.x = two_closing.spheres[3].center.x = 1;
+  expect_equal_light(one, two, "moving lamps", &one_closing, &two_closing);
+  two_closing.spheres[3].center.x = 0.5;
+  EXPECT_FALSE(outcome(one, &one_closing, {}) == outcome(two, &two_closing, {})) << "lamps that separate are two";
+}
+
+/// The two lamps coincide in single precision but not in double.
+TEST(RenderCoincident, FastComparesEmittersInSinglePrecision) {
+  scene::Scene one = dark_stage();
+  test::add_lamp(one, {1.5, 2.5, 1}, 0.4, {20, 15, 10});
+  scene::Scene two = one;
+  test::add_lamp(two, {1.5, 2.5 + 1e-12, 1}, 0.4 + 1e-12, {10, 15, 20});
+  for (const auto distinct_in : {std::optional<scene::Precision>(), std::optional(scene::Precision::kExact)}) {
+    two.distinct_in = distinct_in;
+    one.render.precision = two.render.precision = scene::Precision::kFast;
+    EXPECT_TRUE(outcome(one, nullptr, {}) == outcome(two, nullptr, {}));
+    one.render.precision = two.render.precision = scene::Precision::kExact;
+    EXPECT_FALSE(outcome(one, nullptr, {}) == outcome(two, nullptr, {}));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernel/precision.h"
+#include "kernel/scene_view.h"
+
+namespace orrery::compile {
+
+/// Removes spheres that coincide with an earlier sphere of the scene, whether that emits or not. The accelerators leave
+/// them out (see accel::duplicates), so they are no lights.
+///
+/// `ids`      ascending
+/// Result     ascending
+/// Cost       none if there are no ids, or if the scene is known to have no coincident spheres; else see
+///            base::find_repeated, for the spheres up to the last id
+std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, kernel::Precision precision,
+                                              std::vector<std::uint32_t> ids);
+
+}  // namespace orrery::compile
