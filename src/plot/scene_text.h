@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "plot/plot.h"
@@ -13,10 +14,9 @@ struct PlotParts {
   const PlotOptions& options;
   const scene::Points& points;
   const scene::Camera& camera;
-  Vec3d up;           ///< unit vector
-  Vec3d center;       ///< of the spheres
-  double lowest = 0;  ///< of the spheres along `up`
-  double radius = 1;  ///< of a sphere around `center` that contains all spheres
+  Vec3d center;                  ///< of the spheres
+  double radius = 1;             ///< of a sphere around `center` that contains all spheres
+  std::optional<Ground> ground;  ///< below the spheres
 };
 
 /// Returns the scene file of a plot.
