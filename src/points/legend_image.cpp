@@ -72,7 +72,8 @@ class Image {
   }
 
   Srgb8& at(int x, int y) {
-    return out_.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(out_.width) + static_cast<std::size_t>(x)];
+    return out_
+        .pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(out_.width) + static_cast<std::size_t>(x)];
   }
   void fill(int x, int y, int width, int height, const Srgb8& color) {
     for (int row = y; row < y + height; ++row)

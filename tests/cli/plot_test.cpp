@@ -26,9 +26,7 @@ class CliPlot : public ProgramTest {
   }
 
   /// Runs `orrery plot ARGUMENTS` for a small image.
-  Outcome plot(const std::string& arguments) {
-    return run("plot " + arguments + " --width 16 --height 9 --samples 1");
-  }
+  Outcome plot(const std::string& arguments) { return run("plot " + arguments + " --width 16 --height 9 --samples 1"); }
   void expect_error(const std::string& arguments, int status, const std::string& part) {
     const Outcome r = run(arguments);
     EXPECT_EQ(r.status, status) << arguments << ": " << r.err;

@@ -11,15 +11,15 @@ namespace {
 constexpr Srgb8 kBlack = {0, 0, 0}, kWhite = {255, 255, 255}, kRed = {255, 0, 0}, kBlue = {0, 0, 255};
 
 Srgb8 at(const LegendImage& image, int x, int y) {
-  return image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)];
+  return image
+      .pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)];
 }
 
 /// A rectangle as text: every second pixel, black as #.
 std::string drawn(const LegendImage& image, int x, int y, int width, int height) {
   std::string out;
   for (int row = 0; row < height; ++row) {
-    for (int column = 0; column < width; ++column)
-      out += at(image, x + 2 * column, y + 2 * row) == kBlack ? '#' : '.';
+    for (int column = 0; column < width; ++column) out += at(image, x + 2 * column, y + 2 * row) == kBlack ? '#' : '.';
     out += '\n';
   }
   return out;
