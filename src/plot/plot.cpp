@@ -57,7 +57,7 @@ class PlotMaker {
     PlotParts parts{options_, out_.points, camera, extent.center(), extent.radius(), {}};
     if (options_.ground && !extent.is_empty()) {
       parts.ground = ground_below(lowest_, up, extent);
-      if (hides_view(*parts.ground, up, camera, aspect)) {
+      if (hides_view(*parts.ground, camera, aspect)) {
         parts.ground.reset();
         chose("no ground", "it would hide the spheres from " + options_.look_from + "; look from further above");
       }

@@ -122,9 +122,8 @@ Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent) {
   return {center + up * (lowest - radius - math::dot(center, up)), radius};
 }
 
-bool hides_view(const Ground& ground, Vec3d up, const scene::Camera& camera, double aspect) {
+bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect) {
   const Vec3d back = math::normalized(camera.look_from - camera.look_at);
-  if (!(math::dot(back, up) > 0)) return true;
   const Vec3d right = math::cross(camera.up, back);
   const double half_width = camera.width.value_or(1) / 2;
   for (const double x : {-half_width, half_width})

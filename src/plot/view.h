@@ -62,11 +62,11 @@ struct Ground {
 /// `lowest`   height of the spheres' lowest point along `up`, a unit vector
 Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent);
 
-/// Whether a ground hides the spheres from a camera: it looks from level or from below, or rays of the image begin
-/// below the ground.
+/// Whether a ground hides spheres, or a part of the background, from a camera of ViewExtent: rays of the image begin
+/// below it. If the camera looks from level or from below, some do.
 ///
 /// `aspect`   image width divided by its height
-bool hides_view(const Ground& ground, Vec3d up, const scene::Camera& camera, double aspect);
+bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect);
 
 /// The unit vector of an axis name.
 Vec3d axis_of(const std::string& name);
