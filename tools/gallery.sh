@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Renders the images of docs/gallery.md by the commands in it.
 #
-#   tools/gallery.sh DATA [NAME...]    DATA: folder with the data files that the page names
+#   tools/gallery.sh DATA [NAME...]    DATA: folder with the data files that the page names; tools/lammps/ makes some
 #                                      NAME: images to render, e.g. virus; default: all
 #
 # ORRERY is the program; default: build/src/orrery, which ./run.sh builds.

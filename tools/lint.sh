@@ -33,6 +33,14 @@ if grep -nE '[|] *(head|grep -[a-zA-Z]*q)\b' "${scripts[@]}"; then
   echo "lint.sh: a pipe into head or grep -q fails at random with pipefail; use awk, or read the output into a variable" >&2
   status=1
 fi
+# tools/gallery.sh runs the commands of each image of the gallery, and expects them to write it.
+if ! awk -F '[ :]' '
+    function check() { if (name != "" && !(shows && writes)) { print FILENAME ": " name ": " (shows ? "no command writes" : "the page does not show") " " name ".jpg"; bad = 1 } }
+    /^## / { check(); name = $2; shows = writes = 0 }
+    index($0, "](gallery/" name ".jpg)") { shows = 1 }
+    /^```/ { inside = !inside }
+    inside && index($0, "-o " name ".jpg") { writes = 1 }
+    END { check(); exit bad }' docs/gallery.md >&2; then status=1; fi
 # Words and phrases that the project does not use; Markdown whose lines were joined by mistake.
 tools/terms.pl || status=1
 tools/markdown.pl || status=1

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/data_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/option_checks.h"
+#include "scene/limits.h"
 
 namespace orrery::cli {
 namespace {
@@ -47,6 +49,8 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
   if (!arguments.range.empty()) {
     const auto ends = numbers_of(arguments.range, ':', 2,
                                  "--range: `" + arguments.range + "` is not a range; write LOW:HIGH, e.g. 0:12");
+    if (std::max(std::abs(ends[0]), std::abs(ends[1])) > scene::kLargestValue)
+      refuse("--range: the numbers must be from -1e+300 to 1e+300");
     if (!(ends[0] < ends[1])) refuse("--range: the first number must be less than the second");
     points.color.range = scene::Interval{ends[0], ends[1]};
   }

@@ -32,7 +32,7 @@ int merge(MergeOptions& options) {
   job::take_scene(job.merge.shards.front(), job);
   job.hooks.cancel = &stop_on_signals();
   const job::JobReport report = job::run_job(job);
-  if (!options.quiet) print_message(report_text(job, report, options.verbose));
+  if (!options.quiet) print_message(report_text(job, report, {options.verbose}));
   return 0;
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <fmt/core.h>
 
 #include "base/atomic_file.h"
 #include "base/file_set.h"
@@ -14,7 +17,9 @@
 #include "cli/option_checks.h"
 #include "cli/render_options.h"
 #include "format/write_tree.h"
+#include "job/check_job.h"
 #include "job/job_files.h"
+#include "job/load_scene.h"
 #include "job/memory.h"
 #include "job/working_space.h"
 #include "plot/plot.h"
@@ -32,14 +37,68 @@ struct PlotArguments {
   RenderOptions render;
   plot::PlotOptions plot;
   DataArguments data;
-  std::string style = "studio";
+  std::string style;  ///< empty: not set
   std::filesystem::path save_scene, legend;
 };
+
+bool is_set(const std::vector<format::Override>& overrides, std::string_view key) {
+  return std::any_of(overrides.begin(), overrides.end(), [&](const auto& o) { return o.sets(key); });
+}
 
 /// The value of an override, such as --width, which the camera must know.
 void take_override(const std::vector<format::Override>& overrides, const std::string& key, int& value) {
   for (const format::Override& override : overrides)
     if (override.text.starts_with(key + "=")) value = std::max(1, integer_of(override.text.substr(key.size() + 1)));
+}
+
+/// The scene of a plot before there is one: what the overrides of tables that every scene has make of it, checked.
+///
+/// `develops` see job::SceneRequest
+job::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments,
+                             const std::vector<format::Override>& overrides, bool develops) {
+  job::SceneRequest request{job.scene, job.outputs.display, develops};
+  request.source.file = arguments.save_scene.empty() ? arguments.plot.file : arguments.save_scene;
+  request.source.text = std::make_shared<const std::string>();
+  request.source.is_generated = true;
+  request.source.overrides.clear();
+  for (const format::Override& override : overrides)
+    for (const char* table : {"color.", "image.", "output.", "render."})
+      if (override.text.starts_with(table)) request.source.overrides.push_back(override);
+  return job::load_scene(request);
+}
+
+/// The files that plot writes besides those of a render.
+std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
+  std::vector<job::OutputFile> out;
+  if (!arguments.save_scene.empty()) out.push_back({arguments.save_scene, "--save-scene"});
+  if (!arguments.legend.empty()) out.push_back({arguments.legend, "--legend"});
+  return out;
+}
+
+/// Refuses what would fail after all frames were read: names and formats of outputs, layers, colour names.
+void check_request(const PlotArguments& arguments, const std::vector<format::Override>& overrides,
+                   const std::vector<int>& frames) {
+  farm::Batch batch = arguments.render.batch;
+  batch.scenes = {arguments.plot.file};
+  batch.frames = frames;
+  batch.others = own_outputs(arguments);
+  if (!arguments.render.preview.empty()) batch.preview = preview::parse_target(arguments.render.preview).file;
+  job::Job& job = batch.job;
+  job.scene.text = std::make_shared<const std::string>();
+  job.scene.has_file = false;
+  for (const job::Job& one : farm::jobs_of(batch)) job::check_request(one);
+  job.scene.overrides = overrides;
+  job::check_layers(job, settings_of(job, arguments, overrides, job.outputs.has_display_format()).read.scene);
+}
+
+/// The choices that are not those of plot::make_plot().
+void add_choices(const job::Job& job, const plot::PlotOptions& plot, const std::vector<format::Override>& overrides,
+                 plot::PlotScene& made) {
+  if (plot.style == plot::Style::kFlat && !job.sampling.noise && !job.sampling.seconds &&
+      !is_set(overrides, "render.samples"))
+    made.choices.emplace_back("samples 100: without shading there is hardly any noise");
+  if (job.outputs.has_display_format() && plot.display.view.empty() && made.view == plot::kPlainView)
+    made.choices.emplace_back("view transform " + made.view + ": colours stay those of the map");
 }
 
 void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) {
@@ -97,14 +156,6 @@ display::Settings display_of(const display::Settings& options, const std::vector
   return out;
 }
 
-/// The files that plot writes besides those of a render.
-std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
-  std::vector<job::OutputFile> out;
-  if (!arguments.save_scene.empty()) out.push_back({arguments.save_scene, "--save-scene"});
-  if (!arguments.legend.empty()) out.push_back({arguments.legend, "--legend"});
-  return out;
-}
-
 /// Checks the names that are known before the data is read, which may take long. run_render() checks all.
 void check_outputs(const PlotArguments& arguments) {
   const plot::PlotOptions& plot = arguments.plot;
@@ -124,12 +175,16 @@ void check_outputs(const PlotArguments& arguments) {
 }
 
 int run_plot(PlotArguments& arguments) {
+  if (arguments.plot.file.extension() == ".toml")
+    refuse(arguments.plot.file.string() + " is a scene; render it: orrery render " + arguments.plot.file.string());
   RenderOptions& render = arguments.render;
   plot::PlotOptions& plot = arguments.plot;
   const std::vector<format::Override> overrides = render.scene.overrides();
   take_override(overrides, "image.width", plot.width);
   take_override(overrides, "image.height", plot.height);
   read_data_options(arguments.data, plot);
+  plot.has_size = is_set(overrides, "image.width") || is_set(overrides, "image.height");
+  plot.has_style = !arguments.style.empty();
   plot.style = arguments.style == "flat"    ? plot::Style::kFlat
                : arguments.style == "night" ? plot::Style::kNight
                                             : plot::Style::kStudio;
@@ -141,12 +196,21 @@ int run_plot(PlotArguments& arguments) {
   job::Job& job = render.batch.job;
   plot.display = display_of(job.outputs.display, overrides, scene_file);
   check_outputs(arguments);
-  const plot::PlotScene made = plot::make_plot(plot, scene_file.parent_path());
+  const auto begin = std::chrono::steady_clock::now();
+  plot::PlotScene made = plot::make_plot(plot, scene_file.parent_path(), [&](const std::vector<int>& frames) {
+    check_request(arguments, overrides, frames);
+  });
   render.batch.frames = made.frames;
-  const bool has_samples = std::any_of(overrides.begin(), overrides.end(),
-                                       [](const auto& o) { return o.text.starts_with("render.samples="); });
-  if (!job.sampling.noise && !job.sampling.seconds && !has_samples && plot.style != plot::Style::kFlat)
+  job.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  add_choices(job, plot, overrides, made);
+  if (!job.sampling.noise && !job.sampling.seconds && !is_set(overrides, "render.samples") &&
+      plot.style != plot::Style::kFlat) {
     job.sampling.noise = kNoise;
+    made.choices.push_back(fmt::format("noise {}: --noise, --time or --samples change it", kNoise));
+  }
+  made.choices.push_back(
+      fmt::format("prepared in {:.1f} s: read {} to fit the view and the colours", job.prepare_s,
+                  made.frames.size() > 1 ? std::to_string(made.frames.size()) + " frames" : "the file"));
   print_choices(made, arguments);
   render.shows_display = !arguments.legend.empty() || saves;
   const auto text =
@@ -157,9 +221,11 @@ int run_plot(PlotArguments& arguments) {
   render.batch.scenes = {scene_file};
   render.batch.others = own_outputs(arguments);
   render.before_files = [&] {
-    display::Settings display = plot.display;
-    display.view = made.view;
-    if (!arguments.legend.empty()) plot::write_legend(arguments.legend, made.legend, display);
+    if (!arguments.legend.empty()) {
+      display::Settings display = settings_of(job, arguments, overrides, true).display;
+      display.view = made.view;
+      plot::write_legend(arguments.legend, made.legend, display);
+    }
     if (saves) base::write_text_file(arguments.save_scene, *text);
   };
   return run_render(render);
@@ -186,8 +252,7 @@ void add_plot(Command& program, Action& action) {
   const auto arguments = std::make_shared<PlotArguments>();
   Command& command = *program.add_subcommand("plot", "Render a particle data file");
   add_data_file(command, arguments->plot);
-  command.add_option("--legend", arguments->legend, "Write a legend of the colours: .svg, or .png for the bar alone")
-      ->type_name("FILE");
+  command.add_option("--legend", arguments->legend, "Write a legend of the colours: .svg or .png")->type_name("FILE");
   command.add_option("--save-scene", arguments->save_scene, "Also write the scene file")->type_name("FILE");
   add_data_options(command, arguments->data, arguments->plot);
   add_look_options(command, arguments->data, arguments->plot);

@@ -98,11 +98,23 @@ int print_summary(const farm::BatchReport& report, bool quiet) {
   return report.failures.empty() ? 0 : base::exit_status(report.failures.front().error.kind());
 }
 
+/// Refuses data files by their extension: as a scene, one has errors that say nothing.
+void refuse_data_files(const std::vector<std::filesystem::path>& scenes) {
+  constexpr const char* kExtensions[] = {".csv", ".tsv", ".xyz",  ".extxyz", ".dump", ".lammpstrj", ".pdb",
+                                         ".ent", ".cif", ".ply",  ".npy",    ".npz",  ".las",       ".laz",
+                                         ".gsd", ".h5",  ".hdf5", ".vtp",    ".vtu",  ".gz",        ".zst"};
+  for (const std::filesystem::path& scene : scenes)
+    for (const char* extension : kExtensions)
+      if (scene.extension() == extension)
+        refuse(scene.string() + " is a data file, not a scene; render it: orrery plot " + scene.string() + " -o IMAGE");
+}
+
 }  // namespace
 
 int run_render(RenderOptions& options) {
   farm::Batch& batch = options.batch;
   job::Job& job = batch.job;
+  if (job.scene.text == nullptr) refuse_data_files(batch.scenes);
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
     if (batch.scenes[i].extension() != ".toml")
       refuse("unexpected argument `" + batch.scenes[i].string() + "`; name output files with -o");
@@ -142,7 +154,7 @@ int run_render(RenderOptions& options) {
     if (!is_many) printer.finish();
     const std::string text = report.was_skipped
                                  ? "skipped " + farm::job_name(batch, one) + ": its files are up to date\n"
-                                 : report_text(one, report, options.verbose);
+                                 : report_text(one, report, {options.verbose, is_many});
     note(text);
     if (report.target_missed.empty()) return;
     if (!options.quiet || options.strict)

@@ -25,7 +25,7 @@ void add_bad_values(std::string& out, const job::JobReport& report) {
        "values exceed the range of their file and were clamped; EXR with --type float keeps them");
 }
 
-void add_summary(std::string& out, const job::Job& job, const job::JobReport& report, bool verbose) {
+void add_summary(std::string& out, const job::Job& job, const job::JobReport& report, ReportDetail detail) {
   std::string files;
   for (const job::ImageFile& output : job.outputs.images) files += (files.empty() ? "" : ", ") + output.path.string();
   const double pixels = static_cast<double>(report.width) * report.height;
@@ -34,12 +34,14 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
                      report.height, static_cast<double>(r.paths) / pixels, r.render_s,
                      r.render_s > 0 ? static_cast<double>(r.paths) / r.render_s / 1e6 : 0.0);
   if (r.noise) out += fmt::format("; noise {:.3g}, {} to {} samples", *r.noise, r.fewest_samples, r.most_samples);
+  if (detail.has_total) out += fmt::format("; {:.1f} s in all", report.phases.total_s());
   out += '\n';
-  if (!verbose) return;
+  if (!detail.is_verbose) return;
   if (r.accelerator.empty()) return;  // a merge
   out += fmt::format("{} spheres, {}, {}, traversal {}, {} threads, {} rays; scene {}\n", report.spheres, r.accelerator,
                      r.isa, r.traversal, r.threads, r.rays, report.scene_hash);
   const job::Phases& p = report.phases;
+  if (p.prepare_s > 0) out += fmt::format("prepare {:.3f} s\n", p.prepare_s);
   if (p.denoise_s > 0) out += fmt::format("denoise {:.3f} s\n", p.denoise_s);
   out +=
       fmt::format("read {:.3f} s, compile {:.3f} s, build {:.3f} s, render {:.3f} s, finish {:.3f} s, write {:.3f} s\n",
@@ -51,10 +53,10 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
 
 }  // namespace
 
-std::string report_text(const job::Job& job, const job::JobReport& report, bool verbose) {
+std::string report_text(const job::Job& job, const job::JobReport& report, ReportDetail detail) {
   std::string out;
   add_bad_values(out, report);
-  add_summary(out, job, report, verbose);
+  add_summary(out, job, report, detail);
   return out;
 }
 

@@ -28,9 +28,14 @@ struct OpenOptions {
   /// Maximum size of decompressed data, bytes. They are in memory while they are read.
   std::uint64_t decompressed_limit = std::uint64_t{16} << 30;
 
-  /// Limits the decompressed data to the memory that may be used, bytes; 0: no further limit.
+  /// PDB, mmCIF: what parsing the atoms may take, bytes; 0: no limit.
+  std::uint64_t memory_limit = 0;
+
+  /// Limits decompressed and parsed data to the memory that may be used, bytes; 0: no further limit.
   void limit_memory(std::uint64_t bytes) {
-    if (bytes > 0) decompressed_limit = std::min(decompressed_limit, bytes);
+    if (bytes == 0) return;
+    decompressed_limit = std::min(decompressed_limit, bytes);
+    memory_limit = bytes;
   }
 };
 
@@ -64,7 +69,7 @@ class DataFile {
 /// Opens a data file. Its format is recognised by its content; CSV, TSV and plain XYZ, which have no signature, also by
 /// the extension.
 ///
-/// Errors     base::Error: kMissingInput, kIo; kBadData with a remedy for unknown formats, LAZ and ADIOS2
+/// Errors     base::Error: kMissingInput, kIo; kBadData with a remedy for unknown formats, LAZ and ADIOS2; kNoMemory
 std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options = {});
 
 /// The first bytes of a file and its extension, by which formats are recognised.

@@ -32,9 +32,10 @@ bool contain(const std::vector<std::string>& names, const Axes& axes) {
   return std::all_of(axes.begin(), axes.end(), [&](const std::string& axis) { return base::contains(names, axis); });
 }
 
-ColumnType type_of_dump_column(std::string_view column) {
+/// The type of a column of numbers, unless the types of atoms are labels.
+ColumnType type_of_dump_column(std::string_view column, bool has_labels) {
   constexpr std::string_view kIntegers[] = {"id", "type", "mol", "ix", "iy", "iz", "proc", "procp1"};
-  if (column == "element" || column == "typelabel") return ColumnType::kText;
+  if (column == "element" || column == "typelabel" || (has_labels && column == "type")) return ColumnType::kText;
   return std::find(std::begin(kIntegers), std::end(kIntegers), column) != std::end(kIntegers) ? ColumnType::kInt64
                                                                                               : ColumnType::kFloat64;
 }
@@ -51,7 +52,8 @@ FrameInfo described(const LammpsFrame& frame) {
   info.rows = frame.rows;
   info.box = frame.box;
   info.step = frame.step;
-  for (const std::string& column : frame.columns) info.columns.push_back({column, type_of_dump_column(column)});
+  for (const std::string& column : frame.columns)
+    info.columns.push_back({column, type_of_dump_column(column, frame.has_labels)});
   if (scaled_position(frame) != nullptr)
     for (const std::string& axis : kAxes)
       if (!base::contains(frame.columns, axis)) info.columns.push_back({axis, ColumnType::kFloat64});
@@ -133,7 +135,7 @@ class LammpsDump final : public TextFrames {
     for (const std::string& name : frame.columns) {
       const bool is_scaled = needs_scaled && std::count(scaled->begin(), scaled->end(), name) > 0;
       const bool is_wanted = !is_computed(name) && base::contains(columns, name);
-      layout.columns.push_back({type_of_dump_column(name), is_wanted || is_scaled});
+      layout.columns.push_back({type_of_dump_column(name, frame.has_labels), is_wanted || is_scaled});
     }
     Faults faults(bytes().file());
     TextTable text = read_text_rows(bytes(), layout, faults);
@@ -149,11 +151,25 @@ class LammpsDump final : public TextFrames {
 
   bool begins_frame(std::string_view line) const override { return line.starts_with("ITEM:"); }
 
+  /// Whether the types of atoms are labels, as with `dump_modify types labels`: the first one is no number.
+  ///
+  /// `rows`     at the first row
+  static bool has_labels(const LammpsFrame& frame, TextCursor rows) {
+    const auto type = std::find(frame.columns.begin(), frame.columns.end(), "type");
+    std::string row;
+    if (type == frame.columns.end() || frame.rows == 0 || !rows.next(row)) return false;
+    const auto words = words_of(row);
+    const auto column = static_cast<std::size_t>(type - frame.columns.begin());
+    std::int64_t ignored = 0;
+    return column < words.size() && !parse_integer(words[column], ignored);
+  }
+
   /// The header of a frame, and the cursor at its rows.
   std::pair<LammpsFrame, TextCursor> header(int number) {
     TextCursor cursor = frame(number);
     Faults faults(bytes().file());
     LammpsFrame header = read_lammps_frame(cursor, faults);
+    header.has_labels = has_labels(header, cursor);
     const std::uint64_t line = cursor.line() - 1;
     if (!contain(header.columns, kAxes) && !contain(header.columns, kUnwrapped) && scaled_position(header) == nullptr)
       faults.fail(line, "no columns with positions", "write x y z, xu yu zu, xs ys zs or xsu ysu zsu");

@@ -20,6 +20,7 @@ struct LammpsFrame {
   std::uint64_t rows_line = 0;  ///< number of the line that declares `rows`
   std::optional<Box> box;
   std::vector<std::string> columns;
+  bool has_labels = false;  ///< the column `type` has labels instead of numbers
 };
 
 /// Reads the items of a frame up to and including `ITEM: ATOMS`.

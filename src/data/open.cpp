@@ -32,6 +32,19 @@ bool is_image(std::string_view head) {
   return std::any_of(std::begin(kBegins), std::end(kBegins), [&](auto begin) { return head.starts_with(begin); });
 }
 
+[[noreturn]] void refuse_adios(const std::filesystem::path& file) {
+  Faults(file).fail(0, "ADIOS2 files are not supported",
+                    "convert it, e.g. with `bpls -d` to CSV, or write HDF5 from the simulation");
+}
+
+bool is_adios(const std::string& extension) { return extension == ".bp" || extension == ".bp4" || extension == ".bp5"; }
+
+/// ADIOS2 data are folders, of which no byte can be read.
+void refuse_folder(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (is_adios(extension_of(file)) && std::filesystem::is_directory(file, ignored)) refuse_adios(file);
+}
+
 /// Formats that end users meet, but that no reader supports; what to do about each.
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
@@ -48,9 +61,8 @@ bool is_image(std::string_view head) {
     remedy =
         "convert it to a table: (echo x y z radius; awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' " +
         bytes.file().filename().string() + ") > atoms.txt";
-  } else if (signature.extension == ".bp" || signature.extension == ".bp4" || signature.extension == ".bp5") {
-    text = "ADIOS2 files are not supported";
-    remedy = "convert it, e.g. with `bpls -d` to CSV, or write HDF5 from the simulation";
+  } else if (is_adios(signature.extension)) {
+    refuse_adios(bytes.file());
   }
   Faults(bytes.file()).fail(0, text, remedy);
 }
@@ -58,6 +70,7 @@ bool is_image(std::string_view head) {
 }  // namespace
 
 std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options) {
+  refuse_folder(file);
   const Bytes bytes = ByteSource::open(file, options.decompressed_limit);
   const Signature signature{bytes->text(0, kHeadBytes), extension_of(file)};
   if (is_ply(signature)) return open_ply(bytes);
@@ -68,8 +81,8 @@ std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOpti
   if (is_npz(signature)) return open_npz(bytes, options);
   if (is_vtk(signature)) return open_vtk(bytes, options);
   if (is_lammps_dump(signature)) return open_lammps_dump(bytes);
-  if (is_mmcif(signature)) return open_mmcif(bytes);
-  if (is_pdb(signature)) return open_pdb(bytes);
+  if (is_mmcif(signature)) return open_mmcif(bytes, options);
+  if (is_pdb(signature)) return open_pdb(bytes, options);
   if (is_xyz(signature)) return open_xyz(bytes);
   if (is_lammps_data(signature)) return open_lammps_data(bytes);
   if (is_csv(signature)) return open_csv(bytes);

@@ -6,6 +6,7 @@
 #include <gemmi/pdb.hpp>
 
 #include "data/atom_table.h"
+#include "data/parse_memory.h"
 #include "data/pdb_index.h"
 #include "data/readers.h"
 
@@ -32,7 +33,8 @@ bool has_coordinates(std::string_view line) {
 
 class PdbReader final : public DataFile {
  public:
-  explicit PdbReader(const Bytes& bytes) : bytes_(bytes), index_(index_pdb(*bytes)) {}
+  PdbReader(const Bytes& bytes, const OpenOptions& options)
+      : bytes_(bytes), index_(index_pdb(*bytes)), memory_limit_(options.memory_limit) {}
 
   Format format() const override { return Format::kPdb; }
   int frame_count() override { return static_cast<int>(index_.models.size()); }
@@ -59,7 +61,8 @@ class PdbReader final : public DataFile {
 
   Bytes bytes_;
   PdbIndex index_;
-  int loaded_ = -1;  ///< frame in `atoms_`
+  std::uint64_t memory_limit_;  ///< see OpenOptions
+  int loaded_ = -1;             ///< frame in `atoms_`
   AtomTable atoms_;
   std::optional<Box> box_;
 };
@@ -105,6 +108,9 @@ void PdbReader::load(int frame) {
   loaded_ = -1;
   atoms_ = {};
   const PdbModel& model = index_.models[static_cast<std::size_t>(frame)];
+  // Measured: 3.7 with residues of 8 atoms, 5.5 if all are water.
+  constexpr double kMemoryPerByte = 4;
+  require_parse_memory(bytes_->file(), model.end - model.begin, kMemoryPerByte, memory_limit_);
   const std::string text = text_of(model);
   gemmi::Structure structure;
   try {
@@ -155,6 +161,8 @@ bool is_pdb(const Signature& signature) {
                              second.starts_with("END") || second.starts_with("ANISOU"));
 }
 
-std::unique_ptr<DataFile> open_pdb(const Bytes& bytes) { return std::make_unique<PdbReader>(bytes); }
+std::unique_ptr<DataFile> open_pdb(const Bytes& bytes, const OpenOptions& options) {
+  return std::make_unique<PdbReader>(bytes, options);
+}
 
 }  // namespace orrery::data

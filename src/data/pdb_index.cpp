@@ -36,12 +36,19 @@ class Indexer {
     ++line_;
     if (is_pdb_atom(line)) {
       has_atoms_ = true;
+      ++atoms_;
+      has_end_ = false;
     } else if (line.starts_with("MODEL ")) {
       finish(offset, line_);
       is_declared_ = true;
       model_.number = number(columns(line, 7, 14));
     } else if (line.starts_with("END") && (line.starts_with("ENDMDL") || columns(line, 4, 6).empty())) {
       finish(offset, line_);
+      has_end_ = !line.starts_with("ENDMDL");
+    } else if (line.starts_with("HEADER")) {
+      has_header_ = true;
+    } else if (line.starts_with("MASTER")) {
+      declared_atoms_ = number(columns(line, 51, 55));
     } else if (line.starts_with("CRYST1")) {
       model_.cell = line;
     } else if (line.starts_with("TITLE ") && index_.title.size() < kMaxTitle) {
@@ -52,6 +59,10 @@ class Indexer {
   }
 
   void finish_file(std::uint64_t size) {
+    const bool has_all_atoms = declared_atoms_ && *declared_atoms_ == static_cast<double>(atoms_);
+    if (has_header_ && !has_end_ && !has_all_atoms)
+      faults_.fail(line_, "truncated: the file has HEADER, but not the record END",
+                   "get the whole file again; if it is complete, add a line END");
     finish(size, line_);
     if (index_.models.empty()) index_.models.push_back({0, 0, 1, std::nullopt, {}});
     index_.assemblies = biomt_.finish(faults_);
@@ -74,6 +85,10 @@ class Indexer {
   PdbModel model_;
   bool has_atoms_ = false;
   bool is_declared_ = false;  ///< by a MODEL record
+  bool has_header_ = false;
+  bool has_end_ = false;                  ///< after the last atom
+  std::uint64_t atoms_ = 0;               ///< records
+  std::optional<double> declared_atoms_;  ///< by the MASTER record
   std::uint64_t line_ = 0;
 };
 

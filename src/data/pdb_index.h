@@ -30,7 +30,9 @@ struct PdbIndex {
 
 /// Finds the models of a PDB file, which end at ENDMDL or END, and its assemblies.
 ///
-/// Errors     base::Error(kBadData): malformed REMARK 350
+/// Errors     base::Error(kBadData): malformed REMARK 350; a file that begins with HEADER, as those of the Protein Data
+///            Bank do, but has neither END nor as many atoms as MASTER declares: it is truncated. Simulation programs
+///            write neither
 /// Cost       one pass over the file
 PdbIndex index_pdb(const ByteSource& bytes);
 

@@ -22,10 +22,10 @@ bool is_xyz(const Signature& signature);
 std::unique_ptr<DataFile> open_xyz(const Bytes& bytes);
 
 bool is_pdb(const Signature& signature);
-std::unique_ptr<DataFile> open_pdb(const Bytes& bytes);
+std::unique_ptr<DataFile> open_pdb(const Bytes& bytes, const OpenOptions& options);
 
 bool is_mmcif(const Signature& signature);
-std::unique_ptr<DataFile> open_mmcif(const Bytes& bytes);
+std::unique_ptr<DataFile> open_mmcif(const Bytes& bytes, const OpenOptions& options);
 
 bool is_ply(const Signature& signature);
 std::unique_ptr<DataFile> open_ply(const Bytes& bytes);

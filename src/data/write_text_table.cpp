@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <type_traits>
@@ -77,6 +79,7 @@ struct XyzOutput {
   std::string name;
   std::vector<const Column*> columns;
   char type = 'R';
+  bool is_color = false;  ///< 8-bit colours, written as 0 to 1
 };
 
 char xyz_type(const Column& column) {
@@ -111,6 +114,19 @@ XyzOutput property_at(const Table& table, std::size_t first) {
   return out;
 }
 
+/// Returns the 8-bit colours at a column, as the property `color`, which other programs know; nothing if it is another
+/// column.
+std::optional<XyzOutput> color_at(const Table& table, std::size_t first) {
+  XyzOutput out{"color", {}, 'R', true};
+  for (const char* name : {"red", "green", "blue"}) {
+    const std::size_t at = first + out.columns.size();
+    if (at >= table.columns.size() || table.columns[at].name != name || table.columns[at].type() != ColumnType::kUint8)
+      return {};
+    out.columns.push_back(&table.columns[at]);
+  }
+  return out;
+}
+
 /// Returns the column of chemical elements; null if there is none that XYZ can store.
 const Column* element_of(const Table& table) {
   for (const char* name : {"element", "species", "symbol"})
@@ -139,7 +155,8 @@ std::vector<XyzOutput> xyz_outputs(const Table& table, std::vector<std::string>&
       ++i;
       continue;
     }
-    XyzOutput property = property_at(table, i);
+    const std::optional<XyzOutput> color = color_at(table, i);
+    XyzOutput property = color ? *color : property_at(table, i);
     i += property.columns.size();
     property.name = xyz_name(property.name, used);
     out.push_back(std::move(property));
@@ -190,7 +207,10 @@ std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& tab
       for (const Column* const column : property.columns) {
         if (!is_first) text += ' ';
         is_first = false;
-        append_value(text, *column, row, [](std::string& to, const std::string& word) { to += word; });
+        if (property.is_color)
+          append_number(text, column->number(row) / std::numeric_limits<std::uint8_t>::max());
+        else
+          append_value(text, *column, row, [](std::string& to, const std::string& word) { to += word; });
       }
     text += '\n';
     out.flush();

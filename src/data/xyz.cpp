@@ -86,6 +86,7 @@ class XyzHeaderReader {
 
   void add_properties(const std::vector<XyzProperty>& properties, const Parts& first) {
     Roles& roles = out_.info.roles;
+    std::string diameter;
     for (const XyzProperty& p : properties) {
       if (p.name == "pos") {
         if (p.count != 3 || p.type != ColumnType::kFloat64)
@@ -106,9 +107,19 @@ class XyzHeaderReader {
         if (p.name == "type" || (p.name == "species" && is_number)) roles.type = name;
         if (p.name == "id" && is_number) roles.id = name;
         if (p.name == "radius" && is_number) roles.radius = name;
+        if (p.name == "diameter" && is_number) diameter = name;
         continue;
       }
       for (std::size_t i = 1; i <= p.count; ++i) add(p.name + "[" + std::to_string(i) + "]", p.type);
+    }
+    if (roles.radius.empty() && !diameter.empty()) {
+      roles.radius = diameter;
+      roles.radius_scale = 0.5;
+    }
+    if (roles.rgb[0].empty()) {
+      const Roles customary = customary_roles(out_.info.columns);
+      roles.rgb = customary.rgb;
+      roles.rgb_maximum = customary.rgb_maximum;
     }
     if (roles.position[0].empty())
       faults_.fail(comment_line_, "Properties has no positions", "write for example Properties=species:S:1:pos:R:3");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/check_job.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
@@ -35,6 +37,13 @@ void check_request(const Job& job) {
   for (const OutputFile& output : outputs_of(job)) base::check_creatable(output.path);
   image::check_compression(job.outputs.exr.compression);
   choose_isa(job.resources.isa);
+}
+
+void check_layers(const Job& job, const scene::Scene& scene) {
+  const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
+  if (!job.outputs.has_exr() && job.keep == nullptr && job.merge.shards.empty() && !scene.output.layers.empty() &&
+      std::any_of(job.scene.overrides.begin(), job.scene.overrides.end(), is_explicit))
+    throw base::Error(base::ErrorKind::kUsage, "no output can hold the requested layers; add -o FILE.exr");
 }
 
 void check_samples(const Job& job, const compile::CompiledScene& compiled) {

@@ -3,6 +3,7 @@
 
 #include "compile/compiled_scene.h"
 #include "job/job.h"
+#include "scene/scene.h"
 
 namespace orrery::job {
 
@@ -11,6 +12,11 @@ namespace orrery::job {
 ///
 /// Errors     base::Error: kUsage, kCannotCreate
 void check_request(const Job& job);
+
+/// Checks that an output holds layers that the command line requests.
+///
+/// Errors     base::Error(kUsage)
+void check_layers(const Job& job, const scene::Scene& scene);
 
 /// Checks that --samples A:B is within the scene's sample count.
 ///

@@ -82,11 +82,8 @@ Layers layers_for(const Job& job, const scene::Scene& scene, const compile::Comp
   layers.request.deep = !job.outputs.deep.empty();
   layers.request.halves = layers.request.halves || job.denoise;
   image::check_lossless(film::planes_of(layers.request), job.outputs.exr);
+  check_layers(job, scene);
   if (job.outputs.has_exr() || job.keep != nullptr) return layers;
-  const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
-  if (job.merge.shards.empty() && !scene.output.layers.empty() &&
-      std::any_of(job.scene.overrides.begin(), job.scene.overrides.end(), is_explicit))
-    throw base::Error(base::ErrorKind::kUsage, "no output can hold the requested layers; add -o FILE.exr");
   Layers none;
   none.request.coverage = layers.request.coverage;
   none.request.deep = layers.request.deep;
@@ -178,6 +175,7 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
 /// Read, check, compile, render or merge, develop, write.
 void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
+  report.phases.prepare_s = job.prepare_s;
   LoadedScene loaded = load(job, report);
   format::ReadResult& read = loaded.read;
   const display::Settings& display = loaded.display;

@@ -62,6 +62,7 @@ struct Job {
   std::shared_ptr<BackgroundCache> background_cache = nullptr;  ///< shared by the jobs of a batch
   Rendering* keep = nullptr;  ///< receives the image and all layers of the scene; no file is written
   std::shared_ptr<TextureCache> texture_cache = nullptr;  ///< shared by the jobs of a batch
+  double prepare_s = 0;                                   ///< seconds that it took to make the scene, for the report
 };
 
 /// True if the scene's sample count limits adaptive sampling, because an override sets it.

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "points/color_map.h"
 #include "points/derived.h"
 
 namespace orrery::plot {
@@ -20,6 +21,11 @@ const data::ColumnInfo* find_column(const data::FrameInfo& info, const std::stri
   const auto at = std::find_if(info.columns.begin(), info.columns.end(), [&](const auto& c) { return c.name == name; });
   return at == info.columns.end() ? nullptr : &*at;
 }
+
+/// Frames of larger files are not counted for a message: that would read the whole file.
+constexpr std::uintmax_t kMostCountedBytes = std::uintmax_t{2} << 30;
+
+[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
 
 bool is_text(const data::FrameInfo& info, const std::string& name) {
   const data::ColumnInfo* const column = find_column(info, name);
@@ -38,6 +44,9 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   open_options.limit_memory(options.memory_limit);
   const int first = all().front();
   file_ = open_(file_of(first), open_options);
+  if (options.points.component && file_->format() != data::Format::kHdf5)
+    refuse("--component: " + file_of(first).string() + " is " + data::format_name(file_->format()) +
+           "; only HDF5 files have components");
   const int frame = options.points.frame ? *options.points.frame : is_sequence_ ? 1 : first;
   if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
   info_ = file_->describe(described_ - 1);
@@ -45,11 +54,20 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   require_frames();
   if (!options.all_frames) return;
   if (is_sequence_)
-    throw base::Error(base::ErrorKind::kUsage,
-                      "--frames: `all` are the frames of one file; for a sequence of files, write "
-                      "a range, e.g. 1-48");
+    refuse("--frames: `all` are the frames of one file; for a sequence of files, write a range, e.g. 1-48");
   numbers_.resize(static_cast<std::size_t>(file_->frame_count()));
   std::iota(numbers_.begin(), numbers_.end(), 1);
+}
+
+std::optional<int> DataFrames::frame_count() const {
+  if (is_sequence_) return 1;
+  std::error_code unknown;
+  if (std::filesystem::file_size(file_of(1), unknown) > kMostCountedBytes || unknown) return {};
+  try {
+    return file_->frame_count();
+  } catch (const base::Error&) {
+    return {};
+  }
 }
 
 /// Before anything is written, so that no animation ends at the last frame of its file.
@@ -89,8 +107,11 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   return out;
 }
 
-bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
-               scene::PointsColor& color) {
+namespace {
+
+/// set_color() without checks.
+bool choose_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
+                  scene::PointsColor& color) {
   const data::Roles& roles = info.roles;
   if (color_by == "none") return false;
   if (color_by == "rgb" && find_column(info, "rgb") == nullptr) {
@@ -108,6 +129,21 @@ bool set_color(const DataOptions& options, const std::string& color_by, const da
   if (options.has_map) return false;
   color.map = is_type || is_text(info, color.column) ? kCategoricalMap : kMap;
   return true;
+}
+
+}  // namespace
+
+bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
+               scene::PointsColor& color) {
+  const bool has_range = options.points.color.range.has_value();
+  const bool is_chosen = choose_color(options, color_by, info, color);
+  if (color.column.empty() && (options.has_map || has_range))
+    refuse(std::string(options.has_map ? "--map" : "--range") +
+           " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
+  const auto map = points::find_color_map(color.map);
+  if (has_range && map && map->is_categorical)
+    refuse("--range has no effect: the map " + color.map + " has a colour for each value");
+  return is_chosen;
 }
 
 void widen(std::optional<scene::Interval>& range, const scene::Points& points) {

@@ -37,6 +37,10 @@ class DataFrames {
   const data::FrameInfo& info() const { return info_; }
   /// Its number in the file, from 1.
   int described_frame() const { return described_; }
+  bool is_sequence() const { return is_sequence_; }
+  /// The number of frames of the file; nothing if it is not known: the file is large and would have to be read, or ends
+  /// within a frame. 1 for a sequence of files.
+  std::optional<int> frame_count() const;
   /// The frames to use; empty: one, without a number of its own.
   const std::vector<int>& numbers() const { return numbers_; }
   /// The frames to use; { 1 } if they have no numbers.
@@ -66,6 +70,7 @@ class DataFrames {
 /// Sets the keys of a colour by its name in DataOptions::color_by.
 ///
 /// Result     true if the colour map was chosen here, because the user chose none
+/// Errors     base::Error(kUsage) if the user has set a map or a range that would have no effect
 bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
                scene::PointsColor& color);
 

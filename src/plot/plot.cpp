@@ -18,9 +18,6 @@ namespace {
 
 using scene::number_text;
 
-/// The view of plots, if the OCIO config has it.
-constexpr const char* kPlainView = "Un-tone-mapped";
-
 /// A points table of the scene as its author would write it, completed step by step.
 class PlotMaker {
  public:
@@ -35,12 +32,16 @@ class PlotMaker {
     out_.frames = data_.numbers();
   }
 
+  const std::vector<int>& frames() const { return out_.frames; }
+
   PlotScene run() {
     const std::string which = data_.described_frame() > 1 ? " in frame " + std::to_string(data_.described_frame()) : "";
     chose(data::format_name(data_.format()), std::to_string(info_.rows) + " particles" + which);
-    if (options_.all_frames) chose("frames 1-" + std::to_string(out_.frames.size()), "all of the file");
+    choose_frame();
+    // The spacing that a radius may need takes a read; the options of the colour are checked before.
+    const std::vector<std::string> color_choices = choose_color();
     choose_radius();
-    choose_color();
+    out_.choices.insert(out_.choices.end(), color_choices.begin(), color_choices.end());
     const std::string up_name = options_.up.empty() ? (info_.z_up ? "z" : "y") : options_.up;
     if (options_.up.empty())
       chose("up " + up_name, info_.z_up ? "customary for simulations and scans" : "customary for molecules");
@@ -49,12 +50,25 @@ class PlotMaker {
     if (options_.slice) slice(*options_.slice, axes, out_.points);
     ViewExtent extent(axes);
     visit_frames(extent, up);
-    if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: no frame has spheres");
-    const scene::Camera camera = extent.camera(static_cast<double>(options_.width) / options_.height);
+    if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: " + nothing_text());
+    const double aspect = static_cast<double>(options_.width) / options_.height;
+    const scene::Camera camera = extent.camera(aspect);
     chose("view " + options_.look_from + ", " + number_text(rounded(*camera.width)) + " wide",
           out_.frames.size() > 1 ? "fitted to the spheres of all frames" : "fitted to the spheres");
     choose_display_view();
-    out_.text = scene_text({options_, out_.points, camera, up, out_.view, extent.center(), lowest_, extent.radius()});
+    PlotParts parts{options_, out_.points, camera, out_.view, extent.center(), extent.radius(), {}};
+    if (options_.ground && !extent.is_empty()) {
+      parts.ground = ground_below(lowest_, up, extent);
+      if (hides_view(*parts.ground, camera, aspect)) {
+        parts.ground.reset();
+        chose("no ground", "it would hide the spheres from " + options_.look_from + "; look from further above");
+      }
+    }
+    if (!options_.has_style) chose("style studio", "white light from all directions");
+    if (!options_.has_size)
+      chose("size " + std::to_string(options_.width) + " x " + std::to_string(options_.height),
+            "--width and --height change it");
+    out_.text = scene_text(parts);
     return std::move(out_);
   }
 
@@ -67,6 +81,27 @@ class PlotMaker {
   }
 
   void chose(const std::string& what, const std::string& why) { out_.choices.push_back(what + ": " + why); }
+
+  /// A still image of a file with several frames: which one it shows.
+  void choose_frame() {
+    if (options_.all_frames) chose("frames 1-" + std::to_string(out_.frames.size()), "all of the file");
+    if (!out_.frames.empty() || options_.points.frame) return;
+    const std::optional<int> count = data_.frame_count();
+    if (count && *count > 1)
+      chose("frame 1 of " + std::to_string(*count), "the first; --frames all renders all of them");
+    else if (!count)
+      chose("frame 1", "the first; --frame N selects another");
+  }
+
+  /// What has no spheres, and what to do.
+  std::string nothing_text() const {
+    if (out_.frames.size() > 1) return "none of the " + std::to_string(out_.frames.size()) + " frames has spheres";
+    const std::optional<int> count = data_.frame_count();
+    if (count == 1 || data_.is_sequence())
+      return std::string(options_.points.select.empty() ? "the file" : "the selection") + " has no spheres";
+    return "frame " + std::to_string(data_.described_frame()) + (count ? " of " + std::to_string(*count) : "") +
+           " has no spheres; --frame N selects another, --frames all renders all";
+  }
 
   scene::Points load(int frame) const { return data_.load(frame, out_.points).points; }
 
@@ -101,20 +136,23 @@ class PlotMaker {
     }
   }
 
-  void choose_color() {
+  /// Result     the choices, to be printed after those of the radius
+  std::vector<std::string> choose_color() {
     scene::PointsColor& color = out_.points.color;
     const data::Roles& roles = info_.roles;
     std::string by = options_.color_by;
     std::string why;
+    std::vector<std::string> out;
     if (by.empty()) {
       by = !roles.rgb[0].empty() ? "rgb" : !roles.element.empty() ? "element" : !roles.type.empty() ? "type" : "none";
       why = by == "rgb" ? "the file's own" : by == "none" ? "light grey" : "the file has no colours";
-      chose(by == "none" ? "no colour" : "colour by " + by, why);
+      out.push_back((by == "none" ? "no colour" : "colour by " + by) + ": " + why);
     }
-    if (!set_color(options_, by, info_, color)) return;
-    chose("map " + color.map, points::find_color_map(color.map)->is_categorical
-                                  ? "colours for categories"
-                                  : "no dark colours, which shading would hide");
+    if (set_color(options_, by, info_, color))
+      out.push_back("map " + color.map + ": " +
+                    (points::find_color_map(color.map)->is_categorical ? "colours for categories"
+                                                                       : "no dark colours, which shading would hide"));
+    return out;
   }
 
   /// A view without tone mapping, which leaves the colours of the colour map as they are.
@@ -159,8 +197,11 @@ class PlotMaker {
 
 }  // namespace
 
-PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder) {
-  return PlotMaker(options, folder).run();
+PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder,
+                    const std::function<void(const std::vector<int>& frames)>& check) {
+  PlotMaker maker(options, folder);
+  if (check) check(maker.frames());
+  return maker.run();
 }
 
 }  // namespace orrery::plot

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,15 @@ struct PlotOptions : DataOptions {
   std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
   std::string up;                 ///< "x", "y" or "z"; empty: by the format
   Style style = Style::kStudio;
+  bool has_style = false;  ///< `style` is the user's
   bool ground = false;
   int width = 1920, height = 1080;  ///< px
   display::Settings display;        ///< of the images; an empty view is chosen
+  bool has_size = false;            ///< `width` or `height` is the user's
 };
+
+/// The view that leaves colours as the colour map has them, where the OCIO config has it.
+inline constexpr const char* kPlainView = "Un-tone-mapped";
 
 struct PlotScene {
   std::string text;                  ///< the scene file
@@ -37,9 +43,11 @@ struct PlotScene {
 /// Reads the data and writes a scene for it.
 ///
 /// `folder`   of the scene file; paths in the scene are relative to it
+/// `check`    called with PlotScene::frames before any row is read: a request that cannot be met should fail early
 /// Errors     base::Error: those of points::load_points() and data::open(); kBadData with its errors; kUsage for an
-///            invalid view
+///            invalid view, and for options without effect; those of `check`
 /// Cost       reads every frame once, to fit the camera and the colour map
-PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder);
+PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder,
+                    const std::function<void(const std::vector<int>& frames)>& check = {});
 
 }  // namespace orrery::plot

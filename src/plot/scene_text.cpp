@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plot/scene_text.h"
 
-#include <cmath>
-
 #include "scene/schema.h"
 #include "scene/value_text.h"
 
@@ -77,13 +75,9 @@ std::string lamp_text(const PlotParts& parts) {
          "\nradius = " + number_text(kRadius * parts.radius) + "\nmaterial = \"lamp\"\n";
 }
 
-/// A ground below the lowest sphere, so large that it looks flat.
-std::string ground_text(const PlotParts& parts) {
-  constexpr double kLarge = 1000;
-  const double radius = kLarge * parts.radius;
-  const math::Vec3d foot = parts.center - parts.up * math::dot(parts.center, parts.up);
-  return "\n[[sphere]]\nname = \"ground\"\ncenter = " + vector_text(foot + parts.up * (parts.lowest - radius)) +
-         "\nradius = " + number_text(radius) + "\nmaterial = \"ground\"\n";
+std::string ground_text(const Ground& ground) {
+  return "\n[[sphere]]\nname = \"ground\"\ncenter = " + vector_text(ground.center) +
+         "\nradius = " + number_text(ground.radius) + "\nmaterial = \"ground\"\n";
 }
 
 }  // namespace
@@ -102,13 +96,13 @@ std::string scene_text(const PlotParts& parts) {
   if (options.style == Style::kFlat) out += "\n[render]\nshading = \"flat\"\n";
   out += "\n[color]\nview = " + string_text(parts.view) +
          "\n\n[material.matte]\ntype = \"lambertian\"\nalbedo = [0.8, 0.8, 0.8]\n";
-  if (options.ground)
+  if (parts.ground)
     out += std::string("\n[material.ground]\ntype = \"lambertian\"\nalbedo = ") +
            (is_night ? "[0.1, 0.1, 0.1]" : "[0.95, 0.95, 0.95]") + "\n";
   // Its irradiance at the centre, pi times radiance times (radius / distance)^2, is that of a white dome.
   if (is_night) out += "\n[material.lamp]\ntype = \"emitter\"\nradiance = [25, 24.5, 23.5]\n";
   out += "\n" + points_text(parts.points);
-  if (options.ground && std::isfinite(parts.lowest)) out += ground_text(parts);
+  if (parts.ground) out += ground_text(*parts.ground);
   if (is_night) out += lamp_text(parts);
   return out;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "plot/plot.h"
@@ -13,11 +14,10 @@ struct PlotParts {
   const PlotOptions& options;
   const scene::Points& points;
   const scene::Camera& camera;
-  Vec3d up;                 ///< unit vector
-  const std::string& view;  ///< of the display
-  Vec3d center;             ///< of the spheres
-  double lowest = 0;        ///< of the spheres along `up`
-  double radius = 1;        ///< of a sphere around `center` that contains all spheres
+  const std::string& view;       ///< of the display
+  Vec3d center;                  ///< of the spheres
+  double radius = 1;             ///< of a sphere around `center` that contains all spheres
+  std::optional<Ground> ground;  ///< below the spheres
 };
 
 /// Returns the scene file of a plot.

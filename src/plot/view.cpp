@@ -115,6 +115,23 @@ double ViewExtent::radius() const {
   return radius > 0 ? radius : 1;  // a single point has no extent
 }
 
+Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent) {
+  constexpr double kLarge = 1000;
+  const double radius = kLarge * extent.radius();
+  const Vec3d center = extent.center();
+  return {center + up * (lowest - radius - math::dot(center, up)), radius};
+}
+
+bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect) {
+  const Vec3d back = math::normalized(camera.look_from - camera.look_at);
+  const Vec3d right = math::cross(camera.up, back);
+  const double half_width = camera.width.value_or(1) / 2;
+  for (const double x : {-half_width, half_width})
+    for (const double y : {-half_width / aspect, half_width / aspect})
+      if (math::length(camera.look_from + right * x + camera.up * y - ground.center) < ground.radius) return true;
+  return false;
+}
+
 scene::Camera ViewExtent::camera(double aspect) const {
   scene::Camera camera;
   camera.projection = scene::Projection::kOrthographic;

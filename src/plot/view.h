@@ -51,6 +51,23 @@ class ViewExtent {
   bool is_empty_ = true;
 };
 
+/// A sphere so large that it looks flat.
+struct Ground {
+  Vec3d center;
+  double radius = 0;
+};
+
+/// Returns a ground that touches the lowest sphere from below.
+///
+/// `lowest`   height of the spheres' lowest point along `up`, a unit vector
+Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent);
+
+/// Whether a ground hides spheres, or a part of the background, from a camera of ViewExtent: rays of the image begin
+/// below it. If the camera looks from level or from below, some do.
+///
+/// `aspect`   image width divided by its height
+bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect);
+
 /// The unit vector of an axis name.
 Vec3d axis_of(const std::string& name);
 

@@ -13,12 +13,10 @@
 #include "image/format.h"
 #include "image/write.h"
 #include "points/legend.h"
+#include "points/legend_image.h"
 
 namespace orrery::plot {
 namespace {
-
-/// Size of the bar as an image, px.
-constexpr int kBarWidth = 64, kBarHeight = 512;
 
 /// Colours as the display shows them.
 ///
@@ -56,14 +54,16 @@ points::Legend legend_of(const LegendColors& colors, const display::Settings& di
   return legend;
 }
 
-void write_bar(const std::filesystem::path& file, const points::Legend& legend) {
-  if (legend.bar.empty())
-    throw base::Error(base::ErrorKind::kUsage,
-                      "--legend: an image shows the bar of a colour map only; name an .svg file");
+void write_image(const std::filesystem::path& file, const points::Legend& legend) {
+  if (legend.patches.size() > points::kMostImagePatches)
+    throw base::Error(
+        base::ErrorKind::kUsage,
+        "--legend: an image shows up to " + std::to_string(points::kMostImagePatches) + " values; name an .svg file");
+  const points::LegendImage image = points::legend_image(legend);
   film::EncodedPicture picture;
-  picture.width = kBarWidth;
-  picture.height = kBarHeight;
-  for (const points::Srgb8& pixel : points::bar_pixels(legend.bar, kBarWidth, kBarHeight))
+  picture.width = image.width;
+  picture.height = image.height;
+  for (const points::Srgb8& pixel : image.pixels)
     picture.values.insert(picture.values.end(), pixel.begin(), pixel.end());
   image::write_encoded(file, picture, "orrery");
 }
@@ -102,7 +102,7 @@ void write_legend(const std::filesystem::path& file, const LegendColors& colors,
   if (file.extension() == ".svg") return base::write_text_file(file, points::legend_svg(legend));
   if (!image::is_display_format(image::format_of(file)))
     throw base::Error(base::ErrorKind::kUsage, "--legend: name an .svg or .png file");
-  write_bar(file, legend);
+  write_image(file, legend);
 }
 
 }  // namespace orrery::plot

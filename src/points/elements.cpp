@@ -17,7 +17,7 @@ struct Row {
 
 // clang-format off
 constexpr Row kRows[] = {
-    {"H", 1.20, 0.31, 0xFFFFFF, 0xFFFFFF},
+    {"H", 1.20, 0.31, 0xE6E6E6, 0xFFFFFF},
     {"He", 1.40, 0.28, 0xD9FFFF, 0xFFC0CB},
     {"Li", 1.82, 1.28, 0xCC80FF, 0xB22222},
     {"Be", 1.53, 0.96, 0xC2FF00, 0xFF1493},

@@ -36,8 +36,10 @@ struct Element {
   /// Units      angstrom
   /// Reference  cordero2008, pyykko2009
   double covalent;
-  Srgb8 jmol;  ///< Reference jmol-colors; from Ds on that of Mt
-  Srgb8 cpk;   ///< Reference rasmol-colors; deep pink for the elements without a colour
+  /// Reference jmol-colors; from Ds on that of Mt. Hydrogen is not white but has PyMOL's light grey: white atoms are
+  /// invisible before the white background of a plot.
+  Srgb8 jmol;
+  Srgb8 cpk;  ///< Reference rasmol-colors; deep pink for the elements without a colour
 
   double radius(ElementRadius kind) const;
   const Srgb8& color(ElementColors scheme) const { return scheme == ElementColors::kJmol ? jmol : cpk; }

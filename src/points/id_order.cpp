@@ -63,9 +63,19 @@ void order(const Ids& ids, std::vector<std::uint32_t>& rows) {
   sort(ids, rows);
 }
 
+/// The number of equal neighbours; missing ids are not equal.
+template <class Ids>
+std::size_t count_repeated(const Ids& ids, const std::vector<std::uint32_t>& rows) {
+  std::size_t out = 0;
+  const std::size_t count = rows.empty() ? ids.size() : rows.size();
+  for (std::size_t i = 1; i < count; ++i) out += rows.empty() ? ids[i] == ids[i - 1] : ids[rows[i]] == ids[rows[i - 1]];
+  return out;
+}
+
 }  // namespace
 
-Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected) {
+Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected, std::size_t& repeated) {
+  repeated = 0;
   std::size_t count = 0;
   // In the type in which the file stores them: a double cannot represent all ids of 64 bits.
   std::visit(
@@ -75,6 +85,7 @@ Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected) {
         } else {
           count = values.size();
           order(values, selected);
+          repeated = count_repeated(values, selected);
         }
       },
       ids.values);

@@ -105,9 +105,7 @@ class Drawing {
     y_ += kFont / 2;  // half of the label of a tick at the end
     add_rectangle(kMargin, y_, kBarWidth, kBarHeight, "url(#bar)");
     for (const Tick& tick : nice_ticks(legend.first, legend.last)) {
-      const double range = legend.last - legend.first;
-      const double share = range != 0 ? (tick.value - legend.first) / range : 0.5;
-      const double y = y_ + kBarHeight * (1 - std::clamp(share, 0.0, 1.0)), x = kMargin + kBarWidth;
+      const double y = y_ + kBarHeight * (1 - share_of(tick.value, legend)), x = kMargin + kBarWidth;
       body_ += "<path d=\"M" + px(x) + ' ' + px(y) + "h" + px(kTickLength) + "\" stroke=\"#000000\"/>\n";
       add_text(x + kTickLength + kGap, y + 0.35 * kFont, tick.label);
     }
@@ -153,6 +151,12 @@ std::string legend_svg(const Legend& legend) {
   for (const Legend::Patch& patch : legend.patches) drawing.add_patch(patch);
   if (legend.nan_color) drawing.add_patch({"no value", *legend.nan_color});
   return drawing.svg();
+}
+
+double share_of(double value, const Legend& legend) {
+  // Halves: the difference of the ends may not be finite.
+  const double range = legend.last / 2 - legend.first / 2;
+  return range != 0 ? std::clamp((value / 2 - legend.first / 2) / range, 0.0, 1.0) : 0.5;
 }
 
 std::vector<Srgb8> bar_pixels(const std::vector<Srgb8>& bar, int width_px, int height_px) {

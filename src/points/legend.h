@@ -28,6 +28,11 @@ struct Legend {
 /// Bytes that XML does not allow are replaced by question marks, long texts are truncated.
 std::string legend_svg(const Legend& legend);
 
+/// Returns where a value is on the bar of a legend.
+///
+/// Result     0 at `first` to 1 at `last`; 0.5 if both are equal
+double share_of(double value, const Legend& legend);
+
 /// Returns the pixels of a bar of a size, row by row from the top, where the last colour is.
 ///
 /// Domain     at least one colour; a size of at least 1 x 1

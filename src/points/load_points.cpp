@@ -42,6 +42,8 @@ class Loader {
     options.limit_memory(request_.memory_limit);
     file_ = request_.open && !request_.is_sequence ? request_.open(request_.file, options)
                                                    : data::open(request_.file, options);
+    if (points_.component && file_->format() != data::Format::kHdf5)
+      faults_.warning(".component", "has no effect: only HDF5 files have components");
     if (const std::optional<int> frame = choose_frame()) {
       info_ = file_->describe(*frame);
       add_derived_columns(info_);
@@ -206,7 +208,13 @@ class Loader {
     }
     const data::Column* const ids = table.find(info_.roles.id);
     if (ids == nullptr) return list.empty() ? Rows(table.rows) : Rows(std::move(list));
-    return rows_by_id(*ids, std::move(list));
+    std::size_t repeated = 0;
+    Rows rows = rows_by_id(*ids, std::move(list), repeated);
+    if (repeated > 0)
+      faults_.warning(".file", std::to_string(repeated) + (repeated == 1 ? " particle has" : " particles have") +
+                                   " the id of another one in column `" + info_.roles.id +
+                                   "`; in other frames, particles may change places");
+    return rows;
   }
 
   scene::PointArray centers_of(const data::Table& table, const Rows& rows) const {
@@ -217,10 +225,15 @@ class Loader {
     return out;
   }
 
-  static bool is_good(Vec3d center, double radius) {
-    return math::is_finite(center) && std::isfinite(radius) && radius != 0;
+  /// A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
+  /// error that the image would not show.
+  bool may_be_negative() const {
+    return radius_.kind == RadiusSource::Kind::kValue || file_->format() == data::Format::kPly;
   }
-  static bool all_good(const scene::PointArray& centers, const scene::NumberArray& radii) {
+  bool is_good(Vec3d center, double radius) const {
+    return math::is_finite(center) && std::isfinite(radius) && (radius > 0 || (radius < 0 && may_be_negative()));
+  }
+  bool all_good(const scene::PointArray& centers, const scene::NumberArray& radii) const {
     for (std::size_t i = 0; i < centers.size(); ++i)
       if (!is_good(centers[i], radii[i])) return false;
     return true;
@@ -242,12 +255,14 @@ class Loader {
     }
     const std::size_t count = rows.size() - good.size();
     if (bad > 0)
-      faults_.error(".file", std::to_string(count) + " of " + std::to_string(rows.size()) +
-                                 " rows have coordinates that are not finite or no radius; `skip_bad = true`, or "
-                                 "--skip-bad, leaves them out");
+      faults_.error(".file",
+                    std::to_string(count) + " of " + std::to_string(rows.size()) +
+                        " rows have coordinates that are not finite, or a radius that is not above 0; `skip_bad = "
+                        "true`, or --skip-bad, leaves them out");
     else if (count > 0)
-      faults_.warning(".skip_bad", std::to_string(count) + " of " + std::to_string(rows.size()) +
-                                       " rows were left out: their coordinates are not finite, or they have no radius");
+      faults_.warning(".skip_bad",
+                      std::to_string(count) + " of " + std::to_string(rows.size()) +
+                          " rows were left out: their coordinates are not finite, or their radius is not above 0");
     return good;
   }
 

@@ -25,19 +25,22 @@ std::string fixed_text(double value, int decimals) {
   return status == std::errc() ? std::string(text, end) : "?";
 }
 
+std::string shortest_text(double value) {
+  char text[64];
+  const auto [end, status] = std::to_chars(text, text + sizeof text, value);
+  std::string out(text, status == std::errc() ? end : text);
+  std::erase(out, '+');  // of "1e+300"
+  return out;
+}
+
 }  // namespace
 
 std::vector<Tick> nice_ticks(double first, double last) {
   const double low = std::min(first, last), high = std::max(first, last);
   const double size = std::max(std::abs(low), std::abs(high)), range = high - low;
+  if (!std::isfinite(range)) return {{low, shortest_text(low)}, {high, shortest_text(high)}};
   const bool is_fixed = size == 0 || (size >= kSmallestFixed && size < kLargestFixed);
-  if (!(range > std::max(kLeastRange, kLeastRelativeRange * size))) {
-    char text[64];
-    const auto [end, status] = std::to_chars(text, text + sizeof text, low);
-    std::string label(text, status == std::errc() ? end : text);
-    std::erase(label, '+');  // of "1e+300"
-    return {{low, std::move(label)}};
-  }
+  if (!(range > std::max(kLeastRange, kLeastRelativeRange * size))) return {{low, shortest_text(low)}};
   int exponent = exponent_of(range * kLeastShare);
   double digit = 1;
   for (const double larger : {2.0, 5.0, 10.0}) {

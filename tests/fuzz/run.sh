@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes the readers with libFuzzer under the address and undefined-behaviour sanitizers. Needs clang.
 #
-#   tests/fuzz/run.sh scene|ply|overrides|data|hdf5|selection|color_map [SECONDS=600] [libFuzzer options]
+#   tests/fuzz/run.sh scene|ply|overrides|data|hdf5|selection|color_map [SECONDS=600] [FOLDER...] [libFuzzer options]
+#
+# FOLDER: more files to begin with, for example damaged ones that other programs test with. They are not changed.
 #
 # `data` has all formats but HDF5, which `hdf5` has: libhdf5 1.10 itself crashes on some damaged files.
 # Crashing inputs (crash-*) and the corpus are kept in the build folder (ORRERY_FUZZ_BUILD, default build-fuzz).
 set -euo pipefail
+from=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 target=${1:-}
@@ -21,12 +24,20 @@ case "$target" in
     done
     ;;
   *)
-    sed -n '3,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '3,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
     exit 2
     ;;
 esac
 seconds=${2:-600}
 shift $(($# < 2 ? $# : 2))
+options=()
+for argument in "$@"; do
+  if [[ $argument == -* ]]; then
+    options+=("$argument")
+  else
+    seeds+=("$(cd "$from" && cd "$argument" && pwd)")
+  fi
+done
 
 build=${ORRERY_FUZZ_BUILD:-build-fuzz}
 objects=$build/objects
@@ -58,5 +69,5 @@ printf '%s\0' tests/fuzz/readers.cpp src/{base,scene,format,data,points}/*.cpp |
   xargs -0 -P "$(nproc)" -I{} bash -c 'compile "$@"' - {} "${compiler[@]}" "${flags[@]}"
 "$clang" -std=c++20 "${flags[@]}" -fsanitize=fuzzer -DFAULT="fault_with_${target/hdf5/data}" tests/fuzz/long_run.cpp \
   "$objects"/*.o "${libraries[@]}" -o "$build/fuzz_$target"
-exec "$build/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$build/" "$@" \
+exec "$build/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$build/" "${options[@]}" \
   "$build/corpus-$target" "${seeds[@]}"

@@ -132,7 +132,7 @@ TEST_F(AppDataInfo, AssembliesAndTitle) {
       "REMARK 350   BIOMT1   2  1.000000  0.000000  0.000000        5.00000\n"
       "REMARK 350   BIOMT2   2  0.000000  1.000000  0.000000        0.00000\n"
       "REMARK 350   BIOMT3   2  0.000000  0.000000  1.000000        0.00000\n"
-      "ATOM      1  N   ALA A   1       1.000   2.000   3.000  1.00  0.00           N\n";
+      "ATOM      1  N   ALA A   1       1.000   2.000   3.000  1.00  0.00           N\nEND\n";
   const DataInfo found = info("a.pdb", pdb);
   const std::string text = data_info_text(found);
   EXPECT_NE(text.find("\ntitle       A ? TITLE\n"), std::string::npos) << text;

@@ -35,6 +35,17 @@ class DataLammpsDump : public testing::Test {
   support::TempDir folder_;
 };
 
+/// As with `dump_modify types labels`.
+TEST_F(DataLammpsDump, TypesMayBeLabels) {
+  const std::string head = kFrameHead + kBox + "ITEM: ATOMS id type x y z\n";
+  const auto file = open(head + "1 C 0 0 0\n2 O 1 1 1\n" + head + "1 1 0 0 0\n2 2 1 1 1\n");
+  EXPECT_EQ(file->describe(0).columns[1].type, ColumnType::kText);
+  EXPECT_EQ(file->describe(0).roles.type, "type");
+  EXPECT_EQ(column_texts(file->read(0, {"type"}), "type"), (std::vector<std::string>{"C", "O"}));
+  EXPECT_EQ(file->describe(1).columns[1].type, ColumnType::kInt64) << "each frame has its own";
+  EXPECT_NE(errors(head + "1 1 0 0 0\n2 O 1 1 1\n"), "");
+}
+
 TEST_F(DataLammpsDump, ReadsColumnsWithTheirTypesAndRoles) {
   const auto file = open("ITEM: UNITS\nlj\nITEM: TIME\n0.5\n" + kFrameHead + kBox +
                          "ITEM: ATOMS id type element x y z radius c_stress[1] ix iy iz \n"

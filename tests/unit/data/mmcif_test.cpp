@@ -171,6 +171,22 @@ TEST_F(DataMmcif, DamagedFilesAreRefusedWithTheirLine) {
             std::string::npos);
 }
 
+TEST_F(DataMmcif, MemoryIsCheckedBeforeTheFileIsParsed) {
+  std::string text = "data_a\n" + kLoop;
+  for (int i = 0; i < 100; ++i) text += kCarbon;
+  opened(text);
+  OpenOptions options;
+  options.limit_memory(text.size() * 9 / 4 + 1);
+  EXPECT_EQ(open(folder_ / "a.cif", options)->describe(0).rows, 100u);
+  options.limit_memory(text.size() * 9 / 4 - 1);
+  try {
+    open(folder_ / "a.cif", options);
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory);
+  }
+}
+
 TEST_F(DataMmcif, UnknownCoordinatesAreNotNumbers) {
   const auto file = opened("data_a\n" + kLoop + "ATOM 1 C CA . ALA A ? 0 . 1 0 7 X 1\n");
   const Table table = file->read(0, {"x", "z"});

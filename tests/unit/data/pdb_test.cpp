@@ -253,9 +253,48 @@ TEST_F(DataPdb, LinesAcrossBlocksAreRead) {
 }
 
 TEST_F(DataPdb, HeaderWithoutAtomsIsAnEmptyFrame) {
-  const auto file = opened("HEADER    VIRUS\nTITLE     NOTHING\n");
+  const auto file = opened("HEADER    VIRUS\nTITLE     NOTHING\nEND\n");
   EXPECT_EQ(file->frame_count(), 1);
   EXPECT_EQ(file->read(0, {"x", "element"}).rows, 0U);
+}
+
+TEST_F(DataPdb, TruncatedFilesOfTheDataBankAreRefused) {
+  const std::string header = "HEADER    VIRUS\n", one = atom(" C", "ALA", 'A', 1, {1, 2, 3}, " C");
+  const std::string biomt =
+      "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n"
+      "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n"
+      "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n"
+      "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n";
+  const std::string truncated = "truncated: the file has HEADER, but not the record END";
+  const auto master = [](const std::string& atoms) {
+    return "MASTER" + std::string(49 - atoms.size(), ' ') + atoms + "\n";
+  };
+  EXPECT_EQ(error_of(header + one + "TER\n").text, truncated);
+  EXPECT_EQ(error_of(header + biomt + "REMARK 350\n").text, truncated) << "cut between transforms, no atoms";
+  EXPECT_EQ(error_of(header + "MODEL        1\n" + one + "ENDMDL\n").text, truncated);
+  EXPECT_EQ(error_of(header + one + "END\n" + one).text, truncated) << "the first model ends, the second does not";
+  EXPECT_EQ(error_of(header + one + master("2")).text, truncated);
+  EXPECT_EQ(error_of(header + one + master("1")).text, "");
+  EXPECT_EQ(error_of(header + one + "END").text, "");
+  EXPECT_EQ(error_of(header + "MODEL        1\n" + one + "ENDMDL\nEND   \n").text, "");
+  EXPECT_EQ(error_of("TITLE     FRAME 7\n" + one + "TER\n").text, "") << "simulation programs write no END";
+}
+
+TEST_F(DataPdb, MemoryIsCheckedBeforeAtomsAreParsed) {
+  std::string text;
+  for (int i = 0; i < 100; ++i) text += atom(" C", "ALA", 'A', i, {1, 2, 3}, " C");
+  opened(text);
+  OpenOptions options;
+  options.limit_memory(4 * text.size());
+  EXPECT_EQ(open(folder_ / "a.pdb", options)->describe(0).rows, 100u);
+  options.limit_memory(4 * text.size() - 1);
+  try {
+    open(folder_ / "a.pdb", options)->describe(0);
+    FAIL() << "no error";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory);
+    EXPECT_NE(std::string(error.what()).find(" of atoms need about "), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(DataPdb, VirusPbcv1HasAllItsTransforms) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -153,6 +154,23 @@ TEST_F(DataWriteTable, XyzKeepsValues) {
                  : name == "a:b"   ? "a_b_"
                                    : name);
   }
+}
+
+/// As other programs write them.
+TEST_F(DataWriteTable, XyzHasColorsOfOneProperty) {
+  Table table{2, {}};
+  for (const char* name : {"x", "y", "z"}) table.columns.push_back({name, std::vector<double>{1, 2}});
+  const std::vector<std::uint8_t> bytes[] = {{255, 0}, {0, 51}, {102, 1}};
+  for (std::size_t i = 0; i < 3; ++i) table.columns.push_back({std::array{"red", "green", "blue"}[i], bytes[i]});
+  (void)write_table(folder_ / "a.xyz", table);
+  EXPECT_EQ(support::file_bytes(folder_ / "a.xyz").substr(0, 61),
+            "2\nProperties=pos:R:3:color:R:3\n1 1 1 1 0 0.4\n2 2 2 0 0.2 0.00");
+  const std::unique_ptr<DataFile> file = open(folder_ / "a.xyz");
+  const Roles roles = file->describe(0).roles;
+  EXPECT_EQ(roles.rgb_maximum, 1);
+  const Table read = file->read(0, {roles.rgb[0], roles.rgb[2]});
+  EXPECT_EQ(read.columns[0].number(0), 1);
+  EXPECT_EQ(std::lround(255 * read.columns[1].number(1)), 1);
 }
 
 TEST_F(DataWriteTable, XyzLeavesOutTextsWithBlanksAndEmptyTexts) {

@@ -172,6 +172,23 @@ TEST_F(DataXyz, ErrorsHaveLines) {
   EXPECT_EQ(errors("1\nLattice=\"1 0 0 0 1 0 0 0 1\" pbc=\"T X F\"\nH 1 2 3\n"), "2: pbc: 'X' is neither T nor F\n");
 }
 
+TEST_F(DataXyz, DiametersAreHalved) {
+  const auto roles = [&](const std::string& properties, const std::string& row) {
+    return open("1\nProperties=" + properties + "\n" + row + "\n")->describe(0).roles;
+  };
+  EXPECT_EQ(roles("pos:R:3:diameter:R:1", "1 2 3 4").radius, "diameter");
+  EXPECT_EQ(roles("pos:R:3:diameter:R:1", "1 2 3 4").radius_scale, 0.5);
+  EXPECT_EQ(roles("pos:R:3:diameter:R:1:radius:R:1", "1 2 3 4 5").radius, "radius");
+  EXPECT_EQ(roles("pos:R:3:diameter:R:1:radius:R:1", "1 2 3 4 5").radius_scale, 1);
+  EXPECT_EQ(roles("pos:R:3:diameter:S:1", "1 2 3 x").radius, "");
+}
+
+TEST_F(DataXyz, ColorsByName) {
+  const Roles roles = open("1\nProperties=pos:R:3:red:I:1:green:I:1:blue:I:1\n1 2 3 255 0 128\n")->describe(0).roles;
+  EXPECT_EQ(roles.rgb[2], "blue");
+  EXPECT_EQ(roles.rgb_maximum, 255);
+}
+
 TEST_F(DataXyz, RowsBehindTheFrameAreNotIgnored) {
   const auto file = open("1\n\nH 1 2 3\nH 1 2 3\n");
   try {

@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "display/develop.h"
 #include "format/read_scene.h"
 #include "points/color_map.h"
+#include "points/elements.h"
 #include "support/temp_dir.h"
 
 namespace orrery::plot {
@@ -78,7 +80,9 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
             "radius 2: half the median distance to the nearest neighbour\n"
             "no colour: light grey\n"
             "up z: customary for simulations and scans\n"
-            "view iso, 20.8 wide: fitted to the spheres\n");
+            "view iso, 20.8 wide: fitted to the spheres\n"
+            "style studio: white light from all directions\n"
+            "size 1920 x 1080: --width and --height change it\n");
   const scene::Scene scene = read();
   ASSERT_EQ(scene.points.size(), 1u);
   EXPECT_EQ(scene.points[0].file, "a.csv") << "relative to the scene file";
@@ -139,6 +143,46 @@ TEST_F(PlotPlot, MoleculesHaveRadiiAndColorsOfTheirElements) {
   EXPECT_EQ(read().points[0].radii[0], 0.25 * 1.70);
 }
 
+/// Colours as a plot shows them where all light reaches the sphere; the background comes first.
+std::vector<std::array<int, 3>> shown(const scene::Scene& scene) {
+  std::vector<Vec3d> colors = {scene.background.color};
+  for (const scene::Points& points : scene.points)
+    colors.insert(colors.end(), points.palette.begin(), points.palette.end());
+  film::Picture row;
+  row.width = static_cast<int>(colors.size());
+  row.height = 1;
+  for (const char* name : {"R", "G", "B"}) row.planes.push_back({name, {}, film::PlaneKind::kLight});
+  for (const Vec3d& c : colors) {
+    const double channels[] = {c.x, c.y, c.z};
+    for (std::size_t i = 0; i < 3; ++i) row.planes[i].values.push_back(static_cast<float>(channels[i]));
+  }
+  display::Settings settings;
+  settings.view = scene.color.view;
+  const film::EncodedPicture encoded = display::develop(row, settings, 8);
+  std::vector<std::array<int, 3>> out(colors.size());
+  for (std::size_t i = 0; i < 3 * colors.size(); ++i) out[i / 3][i % 3] = encoded.values[i];
+  return out;
+}
+
+TEST_F(PlotPlot, ElementsDifferFromTheBackground) {
+  std::string text = "119\nall elements and an unknown one\nXx 0 0 0\n";
+  for (int z = 1; z <= 118; ++z)
+    text += std::string(points::find_element(z)->symbol) + " " + std::to_string(z) + " 0 0\n";
+  write("a.xyz", text);
+  options.points.radius.value = 1;
+  for (const Style style : {Style::kStudio, Style::kFlat, Style::kNight}) {
+    options.style = style;
+    make();
+    const auto colors = shown(read());
+    ASSERT_GT(colors.size(), 100u);
+    for (std::size_t i = 1; i < colors.size(); ++i) {
+      int difference = 0;
+      for (std::size_t c = 0; c < 3; ++c) difference = std::max(difference, std::abs(colors[i][c] - colors[0][c]));
+      EXPECT_GE(difference, 24) << "colour " << i << " of style " << static_cast<int>(style);
+    }
+  }
+}
+
 TEST_F(PlotPlot, ColorsOfTheFileComeFirst) {
   make("a.csv", "x,y,z,radius,type,red,green,blue\n0,0,0,1,1,255,0,0\n");
   EXPECT_TRUE(chose("colour by rgb: the file's own")) << choices();
@@ -178,6 +222,8 @@ TEST_F(PlotPlot, ColorByAColumn) {
   EXPECT_EQ(choices().find("map "), std::string::npos) << choices();
   EXPECT_EQ(choices().find("range "), std::string::npos) << choices();
   options.color_by = "none";
+  options.points.color = {};
+  options.has_map = false;
   make();
   EXPECT_FALSE(read().points[0].color.is_set());
 }
@@ -273,10 +319,43 @@ TEST_F(PlotPlot, SequencesOfFiles) {
   EXPECT_NE(error().find("--frames: `all` are the frames of one file"), std::string::npos) << error();
 }
 
+TEST_F(PlotPlot, TheFrameIsPrinted) {
+  const std::string one = frame("x y z radius", {"0 0 0 1"});
+  write("a.dump", one + one + one);
+  make();
+  EXPECT_TRUE(chose("frame 1 of 3: the first; --frames all renders all of them")) << choices();
+  options.points.frame = 2;
+  make();
+  EXPECT_EQ(choices().find("frame 1"), std::string::npos) << "it was not left to the plot: " << choices();
+  options.points.frame.reset();
+  make("a.dump", one);
+  EXPECT_EQ(choices().find("frame"), std::string::npos) << choices();
+  make("a.dump", one + one + "ITEM: TIMESTEP\n");
+  EXPECT_TRUE(chose("frame 1: the first; --frame N selects another")) << "the file ends in a header: " << choices();
+}
+
 TEST_F(PlotPlot, NothingToSeeIsAWarning) {
-  make("a.dump", frame("x y z radius", {}));
-  ASSERT_EQ(made.warnings.size(), 1u);
-  EXPECT_EQ(made.warnings[0], "there is nothing to see: no frame has spheres");
+  const std::string none = frame("x y z radius", {}), one = frame("x y z radius", {"0 0 0 1"});
+  const auto warning = [&](const std::string& text) {
+    make("a.dump", text);
+    return made.warnings.size() == 1 ? made.warnings[0] : std::to_string(made.warnings.size()) + " warnings";
+  };
+  EXPECT_EQ(warning(none), "there is nothing to see: the file has no spheres");
+  EXPECT_EQ(
+      warning(none + one + one),
+      "there is nothing to see: frame 1 of 3 has no spheres; --frame N selects another, --frames all renders all");
+  options.points.frame = 2;
+  EXPECT_EQ(
+      warning(one + none),
+      "there is nothing to see: frame 2 of 2 has no spheres; --frame N selects another, --frames all renders all");
+  options.points.frame.reset();
+  options.frames = {1, 2};
+  EXPECT_EQ(warning(none + none + one), "there is nothing to see: none of the 2 frames has spheres");
+  options.frames.clear();
+  options.points.select = "x > 5";
+  EXPECT_EQ(warning(one), "there is nothing to see: the selection has no spheres");
+  options.points.select.clear();
+  warning(none);
   options.ground = true;
   make();
   EXPECT_TRUE(read().points[0].centers.empty()) << "the scene is valid";
@@ -339,6 +418,78 @@ TEST_F(PlotPlot, StylesAndGround) {
   EXPECT_TRUE(std::holds_alternative<scene::Emitter>(scene.materials[lamp.material].model));
   const Vec3d back = math::normalized(scene.camera.look_from - scene.camera.look_at);
   EXPECT_GT(math::dot(lamp.center - scene.camera.look_from, back), lamp.radius) << "behind the camera";
+}
+
+/// From level or below, the ground would be in front of the spheres, or a bar at the bottom of the image.
+TEST_F(PlotPlot, TheGroundIsLeftOutWhereItWouldHideTheSpheres) {
+  write("a.csv", "x,y,z,radius\n0,0,2,1\n0,0,7,1\n");
+  options.ground = true;
+  const auto has_ground = [&](const std::string& view) {
+    options.look_from = view;
+    make();
+    const bool has_note = choices().find("no ground: ") != std::string::npos;
+    const bool has_sphere = !read().spheres.empty();
+    EXPECT_NE(has_note, has_sphere) << view << ": " << choices();
+    return has_sphere;
+  };
+  for (const char* view : {"iso", "+z", "30,20", "0,90", "200,10"}) EXPECT_TRUE(has_ground(view)) << view;
+  for (const char* view : {"-z", "30,-20", "-y", "+x", "0,0", "90,-0.001"}) EXPECT_FALSE(has_ground(view)) << view;
+  // The lower corners of a tall image would be below the ground.
+  options.height = 20 * options.width;
+  EXPECT_FALSE(has_ground("30,20"));
+}
+
+TEST_F(PlotPlot, WithoutLookOptionsTheirDefaultsArePrinted) {
+  options.has_style = options.has_size = true;
+  make("a.csv", kCorners);
+  EXPECT_EQ(choices().find("style"), std::string::npos) << choices();
+  EXPECT_EQ(choices().find("size"), std::string::npos) << choices();
+}
+
+TEST_F(PlotPlot, OptionsOfAMapWithoutAMapAreRefused) {
+  write("a.csv", kCorners);
+  options.points.color.range = scene::Interval{0, 1};
+  EXPECT_EQ(error(), "--range has nothing to map: the colours are not those of a column; add --color-by COLUMN");
+  options.color_by = "none";
+  EXPECT_NE(error().find("--range has nothing to map"), std::string::npos) << error();
+  options.points.color.range.reset();
+  options.points.color.map = "viridis";
+  options.has_map = true;
+  EXPECT_NE(error().find("--map has nothing to map"), std::string::npos) << error();
+  options.color_by = "mass";
+  EXPECT_EQ(error(), "no error");
+  options.points.color.map = "tab10";
+  options.points.color.range = scene::Interval{0, 1};
+  EXPECT_NE(error().find("--range has no effect: the map tab10 has a colour for each value"), std::string::npos)
+      << error();
+  write("b.dump", frame("x y z radius type", {"0 0 0 1 2"}));
+  options.color_by.clear();
+  options.points.color.range.reset();
+  options.points.color.map = "viridis";
+  EXPECT_EQ(error(), "no error") << "types have values";
+}
+
+TEST_F(PlotPlot, ComponentsOfOtherFormatsAreRefused) {
+  write("a.csv", kCorners);
+  options.points.component = 1;
+  EXPECT_EQ(error(), "--component: " + options.file.string() + " is CSV; only HDF5 files have components");
+}
+
+TEST_F(PlotPlot, FramesAreKnownBeforeAnyIsRead) {
+  options.all_frames = true;
+  write("a.dump", frame("x y z", {"0 0 zero"}) + frame("x y z", {"0 0 0"}));
+  std::vector<int> known;
+  const auto check = [&](const std::vector<int>& frames) {
+    known = frames;
+    throw base::Error(base::ErrorKind::kUsage, "checked");
+  };
+  try {
+    make_plot(options, folder_.path(), check);
+    FAIL() << "no error";
+  } catch (const base::Error& e) {
+    EXPECT_STREQ(e.what(), "checked");
+  }
+  EXPECT_EQ(known, (std::vector<int>{1, 2}));
 }
 
 TEST_F(PlotPlot, FileNamesCannotAddLines) {

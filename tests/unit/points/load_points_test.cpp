@@ -136,7 +136,10 @@ TEST_F(PointsLoadPoints, IdsNeedNotBeConsecutive) {
   points.radius.value = 1;
   EXPECT_EQ(load("a.dump", frame("id x y z", {"900 1 0 0", "-5 2 0 0", "70 3 0 0"})), "");
   EXPECT_EQ(x(), (Numbers{2, 3, 1}));
-  EXPECT_EQ(load("b.dump", frame("id x y z", {"2 1 0 0", "1 2 0 0", "2 3 0 0", "0 4 0 0"})), "");
+  EXPECT_EQ(
+      load("b.dump", frame("id x y z", {"2 1 0 0", "1 2 0 0", "2 3 0 0", "0 4 0 0"})),
+      "warning points[0].file: 1 particle has the id of another one in column `id`; in other frames, particles may "
+      "change places\n");
   EXPECT_EQ(x(), (Numbers{4, 2, 1, 3})) << "equal ids stay in the order of the file";
   EXPECT_EQ(load("n.dump", frame("id x y z", {"1152921504606846979 3 0 0", "1152921504606846977 1 0 0",
                                               "1152921504606846978 2 0 0"})),
@@ -225,10 +228,36 @@ TEST_F(PointsLoadPoints, BadRowsAreErrors) {
   ASSERT_EQ(diagnostics.size(), scene::kMaxReported + 1) << text_of(diagnostics);
   for (const auto& d : diagnostics) EXPECT_EQ(d.kind, base::ErrorKind::kBadData);
   EXPECT_EQ(diagnostics[0].text, "row 2 of a.csv has center [0, nan, 0] and radius 1");
-  EXPECT_EQ(diagnostics.back().text,
-            "13 of 14 rows have coordinates that are not finite or no radius; `skip_bad = true`, or --skip-bad, leaves "
-            "them out");
+  EXPECT_EQ(
+      diagnostics.back().text,
+      "13 of 14 rows have coordinates that are not finite, or a radius that is not above 0; `skip_bad = true`, or "
+      "--skip-bad, leaves them out");
   EXPECT_TRUE(points.centers.empty());
+}
+
+/// A sphere of radius -1 looks like one of radius 1, unless it is of glass.
+TEST_F(PointsLoadPoints, NegativeRadiiAreBadExceptInPlyFiles) {
+  EXPECT_NE(
+      load("a.csv", "x,y,z,radius\n1,0,0,1\n2,0,0,-1\n").find("row 2 of a.csv has center [2, 0, 0] and radius -1"),
+      std::string::npos);
+  points.skip_bad = true;
+  EXPECT_NE(load("a.csv", "x,y,z,radius\n1,0,0,1\n2,0,0,-1\n").find("1 of 2 rows were left out"), std::string::npos);
+  EXPECT_EQ(points.radii, Numbers{1});
+  points.skip_bad = false;
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float radius\nend_header\n2 0 0 -1\n";
+  EXPECT_EQ(load("a.ply", ply), "");
+  EXPECT_EQ(points.radii, Numbers{-1}) << "the inside of hollow glass";
+  points.radius.value = -2;
+  EXPECT_EQ(load("b.csv", "x,y,z\n1,0,0\n"), "");
+  EXPECT_EQ(points.radii, Numbers{-2});
+}
+
+TEST_F(PointsLoadPoints, ComponentsOfOtherFormatsAreAWarning) {
+  points.component = 1;
+  EXPECT_EQ(load("a.csv", "x,y,z,radius\n1,0,0,1\n"),
+            "warning points[0].component: has no effect: only HDF5 files have components\n");
 }
 
 TEST_F(PointsLoadPoints, BadRowsCanBeSkipped) {
@@ -236,8 +265,8 @@ TEST_F(PointsLoadPoints, BadRowsCanBeSkipped) {
   points.color.column = "x";
   EXPECT_EQ(
       load("a.csv", bad_rows()),
-      "warning points[0].skip_bad: 13 of 14 rows were left out: their coordinates are not finite, or they have no "
-      "radius\n");
+      "warning points[0].skip_bad: 13 of 14 rows were left out: their coordinates are not finite, or their radius "
+      "is not above 0\n");
   EXPECT_EQ(points.centers, (std::vector<Vec3d>{{0, 0, 0}}));
   EXPECT_EQ(points.radii, Numbers{1});
   EXPECT_EQ(points.colors.size(), 1u);
@@ -246,8 +275,8 @@ TEST_F(PointsLoadPoints, BadRowsCanBeSkipped) {
   EXPECT_EQ(x(), (Numbers{1, 3}));
   EXPECT_EQ(points.radii, (Numbers{1, 3}));
   EXPECT_EQ(load("c.csv", "x,y,z,radius\nnan,0,0,2\n"),
-            "warning points[0].skip_bad: 1 of 1 rows were left out: their coordinates are not finite, or they have no "
-            "radius\n")
+            "warning points[0].skip_bad: 1 of 1 rows were left out: their coordinates are not finite, or their "
+            "radius is not above 0\n")
       << "no selection is to blame";
 }
 
@@ -481,6 +510,8 @@ TEST_F(PointsLoadPointsMemory, ChainsReduceTheNeed) {
   points.assembly = "1";
   write("a.pdb", protein());
   request.memory_limit = 2000;
+  // Parsing the text takes more than that.
+  request.open = [](const std::filesystem::path& file, const data::OpenOptions&) { return data::open(file); };
   EXPECT_EQ(shortage(), "");
   EXPECT_EQ(points.centers.size(), 3u);
 }

@@ -40,6 +40,14 @@ TEST(PointsTicks, OneTickIfNothingCanBeDistinguished) {
   EXPECT_EQ(labels(0, 2e-310), "0");
 }
 
+TEST(PointsTicks, RangesThatOverflowHaveTheirEnds) {
+  const std::vector<Tick> ticks = nice_ticks(1e308, -1e308);
+  ASSERT_EQ(ticks.size(), 2u);
+  EXPECT_EQ(ticks[0].value, -1e308);
+  EXPECT_EQ(ticks[0].label, "-1e308");
+  EXPECT_EQ(ticks[1].label, "1e308");
+}
+
 TEST(PointsTicks, AnyRangeHasAFewTicksInside) {
   std::mt19937_64 engine(18);
   std::uniform_real_distribution<double> uniform(-1, 1), exponent(-285, 290);

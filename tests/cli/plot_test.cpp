@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command plot.
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace orrery::test {
+namespace {
+
+/// A frame of particles with the columns id type x y z radius vx.
+std::string frame(const std::vector<std::string>& rows) {
+  std::string out = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + std::to_string(rows.size()) +
+                    "\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\nITEM: ATOMS id type x y z radius vx\n";
+  for (const std::string& row : rows) out += row + "\n";
+  return out;
+}
+
+class CliPlot : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write("a.dump", frame({"1 1 0 0 0 1 0", "2 2 3 0 0 1 1"}) + frame({"1 1 0 0 1 1 2", "2 2 3 0 0 1 3"}));
+    write("c.csv", "x,y,z,radius,q\n0,0,0,1,0\n3,0,0,1,1\n");
+  }
+
+  /// Runs `orrery plot ARGUMENTS` for a small image.
+  Outcome plot(const std::string& arguments) { return run("plot " + arguments + " --width 16 --height 9 --samples 1"); }
+  void expect_error(const std::string& arguments, int status, const std::string& part) {
+    const Outcome r = run(arguments);
+    EXPECT_EQ(r.status, status) << arguments << ": " << r.err;
+    EXPECT_TRUE(contains(r.err, part)) << arguments << ": " << r.err;
+  }
+};
+
+/// The legend goes through the display transform of the image, however that is set.
+TEST_F(CliPlot, LegendsHaveTheSettingsOfTheImage) {
+  const auto legend = [&](const std::string& options) {
+    const Outcome r = plot("c.csv -o a.ppm --color-by q -q --legend l.svg " + options);
+    EXPECT_EQ(r.status, 0) << r.err;
+    return text_of(folder_ / "l.svg");
+  };
+  const std::string plain = legend("");
+  EXPECT_NE(legend("--exposure -2"), plain);
+  EXPECT_EQ(legend("--set color.exposure=-2"), legend("--exposure -2"));
+  EXPECT_NE(legend("--view Raw"), plain);
+  EXPECT_EQ(legend("--set color.view=Raw"), legend("--view Raw"));
+}
+
+TEST_F(CliPlot, LegendsAsImagesHaveTexts) {
+  ASSERT_EQ(plot("c.csv -o a.ppm --color-by q -q --legend l.ppm").status, 0);
+  const std::string bar = text_of(folder_ / "l.ppm");
+  ASSERT_EQ(plot("c.csv -o a.ppm --color-by q --range 0:2 -q --legend l.ppm").status, 0);
+  EXPECT_NE(text_of(folder_ / "l.ppm"), bar) << "other ticks";
+  ASSERT_EQ(plot("a.dump -o a.ppm -q --legend l.ppm").status, 0) << "types";
+  std::string many = "x,y,z,radius,q\n";
+  for (int i = 0; i <= 500; ++i) many += std::to_string(i) + ",0,0,1," + std::to_string(i) + "\n";
+  write("many.csv", many);
+  const Outcome r = plot("many.csv -o a.ppm -q --color-by q --map tab10 --legend l.ppm");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_TRUE(contains(r.err, "up to 500 values; name an .svg file")) << r.err;
+}
+
+TEST_F(CliPlot, ChoicesOfTheRenderArePrinted) {
+  Outcome r = run("plot a.dump -o a.ppm --width 16 --height 9");
+  EXPECT_TRUE(contains(r.err, "\nplot: frame 1 of 2: the first; --frames all renders all of them\n")) << r.err;
+  EXPECT_TRUE(contains(r.err, "\nplot: view transform Un-tone-mapped: ")) << r.err;
+  EXPECT_TRUE(contains(r.err, "\nplot: noise 0.02: --noise, --time or --samples change it\n")) << r.err;
+  EXPECT_TRUE(contains(r.err, "\nplot: prepared in ")) << r.err;
+  EXPECT_FALSE(contains(r.err, "\nplot: size")) << r.err;
+  r = plot("a.dump -o a.ppm --style flat --view Raw");
+  EXPECT_FALSE(contains(r.err, "view transform") || contains(r.err, "plot: noise") || contains(r.err, "plot: style"))
+      << r.err;
+  r = run("plot a.dump -o a.ppm --style flat --set image.width=16 --set image.height=9");
+  EXPECT_TRUE(contains(r.err, "\nplot: samples 100: ")) << r.err;
+}
+
+TEST_F(CliPlot, TimesIncludeThePlotsOwnPass) {
+  const Outcome r = plot("a.dump -o a.##.ppm --frames all --stats s.##.json -v");
+  ASSERT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(contains(r.err, "prepare 0.")) << r.err;
+  const auto lines = std::count(r.err.begin(), r.err.end(), '\n');
+  EXPECT_GT(lines, 0);
+  std::size_t totals = 0;
+  for (std::size_t at = r.err.find(" s in all\n"); at != std::string::npos; at = r.err.find(" s in all\n", at + 1))
+    ++totals;
+  EXPECT_EQ(totals, 2u) << "one per frame: " << r.err;
+  EXPECT_GT(nlohmann::json::parse(text_of(folder_ / "s.01.json"))["seconds"]["prepare"], 0);
+}
+
+/// The second frame is malformed, which is an error only when it is read.
+TEST_F(CliPlot, RequestsAreCheckedBeforeFramesAreRead) {
+  write("bad.dump", frame({"1 1 0 0 zero 1 0"}) + frame({"1 1 0 0 0 1 0"}));
+  const std::string plot = "plot bad.dump ";
+  expect_error(plot + "-o a.ppm", 65, "'zero' is not a number");
+  expect_error(plot + "-o none/a.png", 73, "none");
+  expect_error(plot + "-o a.png --frames all", 2, "a.png is one name for 2 frames");
+  expect_error(plot + "-o a.##.png", 2, "a.##.png has a frame pattern");
+  expect_error(plot + "-o a.png --layers Z", 2, "no output can hold the requested layers");
+  expect_error(plot + "-o a.png --bits 32", 2, "bits");
+  expect_error(plot + "-o a.png --view Rw", 2, "did you mean `Raw`?");
+  expect_error(plot + "-o a.png --set color.view=Rw", 65, "did you mean `Raw`?");
+  expect_error(plot + "-o a.png --set render.samples=0", 65, "render.samples");
+}
+
+TEST_F(CliPlot, OptionsWithoutEffectAreRefused) {
+  expect_error("plot c.csv -o a.png --map viridis", 2, "--map has nothing to map");
+  expect_error("plot c.csv -o a.png --range 0:1", 2, "--range has nothing to map");
+  expect_error("plot c.csv -o a.png --component 1", 2, "only HDF5 files have components");
+  expect_error("convert c.csv -o a.ply --component 1", 2, "only HDF5 files have components");
+  expect_error("convert c.csv -o a.ply --color-by none --map viridis", 2, "--map has nothing to map");
+}
+
+TEST_F(CliPlot, RangesAreFinite) {
+  expect_error("plot c.csv -o a.png --color-by q --range=-1e308:1e308 --legend a.svg", 2,
+               "--range: the numbers must be from -1e+300 to 1e+300");
+  EXPECT_EQ(plot("c.csv -o a.ppm -q --color-by q --range=-1e300:1e300 --legend a.svg").status, 0);
+}
+
+TEST_F(CliPlot, ScenesAndDataFilesAreToldApart) {
+  expect_error("render c.csv -o a.png", 2, "c.csv is a data file, not a scene; render it: orrery plot c.csv -o IMAGE");
+  expect_error("plot good.toml -o a.png", 2, "good.toml is a scene; render it: orrery render good.toml");
+}
+
+TEST_F(CliPlot, AdiosFoldersAreRefused) {
+  for (const char* name : {"a.bp", "a.bp4", "a.bp5"}) {
+    std::filesystem::create_directory(folder_ / name);
+    expect_error(std::string("plot ") + name + " -o a.png", 65, "ADIOS2 files are not supported");
+    expect_error(std::string("info ") + name, 65, "ADIOS2 files are not supported");
+  }
+}
+
+/// What convert writes is plotted like what it read, whatever the format.
+TEST_F(CliPlot, ColorsSurviveConversion) {
+  write("rgb.csv", "x,y,z,radius,red,green,blue\n0,0,0,1,255,13,128\n3,0,0,1,1,254,77\n");
+  ASSERT_EQ(plot("rgb.csv -o a.ppm --up z -q").status, 0);
+  const std::string expected = text_of(folder_ / "a.ppm");
+  for (const std::string name : {"b.ply", "b.xyz", "b.npy", "b.csv"}) {
+    ASSERT_EQ(run("convert rgb.csv -o " + name + " -q").status, 0);
+    const Outcome r = plot(name + " -o b.ppm --up z");
+    EXPECT_TRUE(contains(r.err, "plot: colour by rgb: the file's own")) << name << r.err;
+    EXPECT_EQ(text_of(folder_ / "b.ppm"), expected) << name;
+  }
+  EXPECT_TRUE(contains(text_of(folder_ / "b.xyz"), "Properties=pos:R:3:radius:R:1:color:R:3\n"))
+      << "as other programs write it";
+  ASSERT_EQ(run("convert b.xyz -o c.xyz -q").status, 0);
+  EXPECT_EQ(text_of(folder_ / "c.xyz"), text_of(folder_ / "b.xyz"));
+}
+
+TEST_F(CliPlot, MemoryOfMoleculesIsEstimated) {
+  std::string pdb;
+  for (int i = 0; i < 20000; ++i)
+    pdb += "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n";
+  write("a.pdb", pdb);
+  const Outcome r = plot("a.pdb -o a.ppm --memory-limit 5M");
+  EXPECT_EQ(r.status, 1) << r.err;
+  EXPECT_TRUE(contains(r.err, "of atoms need about ")) << r.err;
+}
+
+}  // namespace
+}  // namespace orrery::test
