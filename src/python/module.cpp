@@ -152,12 +152,18 @@ py::list list_of(math::Vec3d v) {
   return out;
 }
 
-/// The camera that sees an extent, as keys of [camera].
-py::dict camera_of(const plot::ViewExtent& extent, double aspect) {
-  const scene::Camera camera = extent.camera(aspect);
+/// The camera that sees spheres of a larger radius around an extent, as keys of [camera]: a perspective camera if there
+/// is a field of view, else an orthographic one.
+py::dict camera_of(const plot::ViewExtent& extent, double aspect, double radius, std::optional<double> vfov_deg) {
+  const plot::ViewExtent seen = extent.grown(radius);
+  const scene::Camera camera = vfov_deg ? seen.perspective_camera(aspect, *vfov_deg) : seen.camera(aspect);
   py::dict out;
-  out["projection"] = "orthographic";
-  out["width"] = camera.width.value_or(1);
+  if (vfov_deg) {
+    out["vfov"] = *vfov_deg;
+  } else {
+    out["projection"] = "orthographic";
+    out["width"] = camera.width.value_or(1);
+  }
   out["look_from"] = list_of(camera.look_from);
   out["look_at"] = list_of(camera.look_at);
   out["up"] = list_of(camera.up);
@@ -190,6 +196,7 @@ void bind_scene(py::module_& m) {
           },
           ReleaseGil())
       .def("save", &save, ReleaseGil())
+      .def("largest_radius", &largest_radius, ReleaseGil())
       .def("render", &render_scene);
   // Pickled as its bytes, for processes on the same machine.
   static_assert(std::is_trivially_copyable_v<plot::ViewExtent>);

@@ -38,9 +38,14 @@ class Camera(_Keys):
     ) -> None: ...
     @classmethod
     def fit(
-        cls, positions: ArrayLike, radius: float = 0.0, *, look_from: str = "iso", up: Literal["x", "y", "z"] = "z"
+        cls,
+        positions: ArrayLike,
+        radius: float | None = None,
+        *,
+        look_from: str = "iso",
+        up: Literal["x", "y", "z"] = "z",
     ) -> Camera: ...
-    def keys_for(self, aspect: float) -> dict[str, Any]: ...
+    def keys_for(self, aspect: float, radius: float = 0.0, vfov: float | None = None) -> dict[str, Any]: ...
 
 class Constant(_Keys):
     def __init__(self, color: _Color | None = None, **keys: Any) -> None: ...

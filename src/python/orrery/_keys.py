@@ -62,26 +62,38 @@ class Camera(Keys):
     def __init__(self, look_from=None, look_at=None, *, vfov=None, up=None, **keys):
         super().__init__(look_from=look_from, look_at=look_at, vfov=vfov, up=up, **keys)
         self._extent = None
+        self._completes_radius = False
 
     @classmethod
-    def fit(cls, positions, radius=0.0, *, look_from="iso", up="z"):
-        """Returns an orthographic camera that sees spheres of a radius around all positions, with a margin of 5 %.
+    def fit(cls, positions, radius=None, *, look_from="iso", up="z"):
+        """Returns a camera that sees spheres around all positions in an image of any size, with a margin of 5 %.
+
+        It is orthographic, or a perspective camera if "camera.vfov" of the scene is set.
 
         positions  shape (n, 3)
+        radius     of the spheres; by default the largest radius of the scene's points when it is rendered or saved
         look_from  "iso", "+x", "-x" .. "-z", or "azimuth,elevation" in degrees, as for `orrery plot`
         up         "x", "y" or "z"
         """
-        if not 0 <= radius < float("inf"):
+        if radius is not None and not 0 <= radius < float("inf"):
             raise ValueError(f"radius is {radius!r}; must be a finite number, at least 0")
         columns = [(axis, column) for axis, column in zip("xyz", _arrays.positions(positions).T)]
         camera = cls()
-        camera._extent = Extent(columns, float(radius), look_from, up)
-        camera.keys = camera._extent.camera(16 / 9)
+        camera._extent = Extent(columns, float(radius or 0), look_from, up)
+        camera._completes_radius = radius is None
+        camera.keys = camera.keys_for(16 / 9)
         return camera
 
-    def keys_for(self, aspect):
-        """Returns the keys for an image of this aspect ratio; only those of a fitted camera depend on it."""
-        return self.keys if self._extent is None else self._extent.camera(aspect)
+    def keys_for(self, aspect, radius=0.0, vfov=None):
+        """Returns the keys for an image of this aspect ratio; only those of a fitted camera depend on the arguments.
+
+        aspect  width divided by height, as displayed
+        radius  of the spheres, if fit() was not given one
+        vfov    vertical field of view in degrees, for a perspective camera
+        """
+        if self._extent is None:
+            return self.keys
+        return self._extent.camera(aspect, radius if self._completes_radius else 0.0, vfov)
 
 
 class Constant(Keys):
