@@ -145,7 +145,7 @@ scene::Camera ViewExtent::perspective_camera(double aspect, double vfov_deg) con
   // The box that contains the spheres is seen if its face in front is.
   const double half_height = std::max((high_[0] - low_[0]) / aspect, high_[1] - low_[1]) / 2;
   const double seen = std::tan(vfov_deg / 360 * std::numbers::pi) * (1 - 2 * kMargin);  // half height at distance 1
-  const double from_face = half_height > 0 ? half_height / seen : 1 / seen;  // a single point has no extent
+  const double from_face = half_height > 0 ? half_height / seen : 1 / seen;             // a single point has no extent
   camera.look_from = camera.look_at + axes_.back * ((high_[2] - low_[2]) / 2 + from_face);
   return camera;
 }

@@ -38,8 +38,8 @@ std::string read_scene_text(const std::filesystem::path& file);
 /// Errors     those of job::load_scene
 std::vector<base::Diagnostic> check(const SceneData& scene);
 
-/// Returns the largest absolute radius of the spheres of all [[points]], scene units; 0 if there are none, or if the scene
-/// has errors, which a render reports.
+/// Returns the largest absolute radius of the spheres of all [[points]], scene units; 0 if there are none, or if the
+/// scene has errors, which a render reports.
 ///
 /// `memory_limit`   bytes that the spheres may take while they are read; 0: the free memory
 double largest_radius(const SceneData& scene, std::uint64_t memory_limit);

@@ -2,6 +2,7 @@
 """The examples of docs/python.md run, and the stub file agrees with the package."""
 
 import ast
+import glob
 import inspect
 import io
 import os
@@ -44,6 +45,16 @@ def parameters_of(function):
     if a.kwarg:
         out.append((a.kwarg.arg, kind.VAR_KEYWORD, None))
     return [(n, k, kind.empty if d is None else ast.literal_eval(d)) for n, k, d in out]
+
+
+class Tests(unittest.TestCase):
+    def test_no_test_replaces_another_of_the_same_name(self):
+        for file in glob.glob(os.path.join(ROOT, "tests/python/test_*.py")):
+            with open(file, encoding="utf-8") as text:
+                module = ast.parse(text.read())
+            for parent in [module, *(node for node in module.body if isinstance(node, ast.ClassDef))]:
+                names = [node.name for node in parent.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
+                self.assertEqual(len(names), len(set(names)), f"{file}: {names}")
 
 
 class Stub(unittest.TestCase):
