@@ -91,7 +91,8 @@ display::Settings display_settings(const std::string& display, const std::string
 }
 
 Picture render_scene(const SceneData& scene, double noise, double seconds, int threads, std::uint64_t memory_limit,
-                     const std::string& isa, const py::object& on_progress, const py::object& on_warning) {
+                     const std::string& isa, bool denoise, const py::object& on_progress,
+                     const py::object& on_warning) {
   job::Job job;
   job.scene = scene.source();
   job.sampling.noise = noise;
@@ -99,6 +100,7 @@ Picture render_scene(const SceneData& scene, double noise, double seconds, int t
   job.resources.threads = threads;
   job.resources.memory_limit = memory_limit;
   job.resources.isa = isa;
+  job.denoise = denoise;
   return render(std::move(job), on_progress, on_warning);
 }
 
@@ -143,6 +145,7 @@ py::dict statistics(const Picture& picture) {
   out["compile_seconds"] = report.phases.compile_s;
   out["build_seconds"] = report.phases.build_s;
   out["render_seconds"] = report.phases.render_s;
+  out["denoise_seconds"] = report.phases.denoise_s;
   return out;
 }
 

@@ -102,6 +102,19 @@ class SameAsTheProgram(FolderTest):
                 orrery.load("scene.toml").render(**keys).write("b.exr", reproducible=True)
                 self.assertEqual(file_bytes("a.exr"), file_bytes("b.exr"))
 
+    def test_denoised_images(self):
+        write("scene.toml", SCENE.replace('"CryptoObject"', '"diffuse", "specular"').replace("samples = 3", "samples = 16"))
+        status, error = run("render", "scene.toml", "-o", "a.exr", "-o", "a.png", "-q", "--reproducible", "--denoise")
+        self.assertEqual(status, 0, error)
+        scene = orrery.load("scene.toml")
+        clean = scene.render(denoise=True, threads=1)
+        clean.write("b.exr", "b.png", reproducible=True)
+        for extension in ("exr", "png"):
+            self.assertEqual(file_bytes(f"a.{extension}"), file_bytes(f"b.{extension}"))
+        self.assertFalse((clean.beauty == scene.render().beauty).all())
+        self.assertNotIn("halves", clean.layers)
+        self.assertGreater(clean.statistics["denoise_seconds"], 0)
+
     def test_images_of_all_formats(self):
         write("scene.toml", SCENE.replace('layers = ["Z", "N", "CryptoObject"]', ""))
         picture = orrery.load("scene.toml").render()

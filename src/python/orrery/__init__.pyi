@@ -206,6 +206,7 @@ class Scene:
         threads: int | None = None,
         frame: int = 1,
         memory_limit: int | None = None,
+        denoise: bool = False,
         on_progress: Callable[[Progress], object] | None = None,
     ) -> Picture: ...
 

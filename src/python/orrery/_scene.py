@@ -144,6 +144,7 @@ class Scene:
         threads=None,
         frame=1,
         memory_limit=None,
+        denoise=False,
         on_progress=None,
     ):
         """Renders the scene and returns a Picture, with the same bits as `orrery render`.
@@ -155,6 +156,7 @@ class Scene:
         threads        by default all that this process may use
         frame          of an animation
         memory_limit   bytes; by default the free memory
+        denoise        filters the beauty and the light layers, as `orrery render --denoise`
         on_progress    called with a Progress, at most ten times a second
 
         Other Python threads run meanwhile. KeyboardInterrupt, and an exception in on_progress, stop the render.
@@ -172,7 +174,7 @@ class Scene:
         def warn(text):
             warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=3)
 
-        return Picture(data.render(*limits, threads, memory, "", report if on_progress else None, warn))
+        return Picture(data.render(*limits, threads, memory, "", bool(denoise), report if on_progress else None, warn))
 
     def _add_table(self, name, keys):
         lines = [f"{key} = {_keys.toml_text(value)}\n" for key, value in keys.items() if value is not None]
