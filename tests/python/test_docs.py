@@ -102,6 +102,15 @@ class Stub(unittest.TestCase):
                 compared += 1
         self.assertGreater(compared, 25)
 
+    def test_textures(self):
+        for name in ("Lambertian", "Hemisphere", "Metal", "Dielectric", "Emitter"):
+            init = next(node for node in self.nodes[name].body if node.name == "__init__")
+            arguments = [*init.args.args, *init.args.kwonlyargs]
+            found = {a.arg: ast.unparse(a.annotation) for a in arguments if a.arg in ("albedo", "fuzz", "radiance")}
+            self.assertTrue(found, name)
+            for argument, types in found.items():
+                self.assertIn("_Texture", types, f"{name}: {argument}")
+
     def test_docstrings(self):
         for name in orrery.__all__:
             value = getattr(orrery, name)

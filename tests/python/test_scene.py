@@ -227,6 +227,33 @@ class Settings(FolderTest):
         image = orrery.Scene(background=orrery.Image("map.hdr", exposure=1)).render(4, 4, samples=1)
         np.testing.assert_allclose(image.beauty[..., :3], 2, rtol=0.01)
 
+    def test_textures(self):
+        orrery.Scene(background=orrery.Gradient()).render(8, 4, samples=1).write("map.png")
+        number = {"texture": "checker", "scale": 0.3, "even": 0, "odd": 0.5}
+        color = {"texture": "checker", "scale": 0.3, "even": (0.1, 0.2, 0.3), "odd": np.full(3, 0.9)}
+        image = {"texture": "image", "file": "map.png"}
+        text = '{ texture = "checker", scale = 0.3, even = [0.1, 0.2, 0.3], odd = [0.9, 0.9, 0.9] }'
+        images = set()
+        materials = [
+            orrery.Lambertian(color),
+            orrery.Lambertian(image),
+            orrery.Hemisphere(color),
+            orrery.Metal(color, number),
+            orrery.Dielectric(1.5, fuzz=number),
+            orrery.Emitter({"texture": "marble", "scale": 4}),
+        ]
+        for material in materials:
+            scene = orrery.Scene(background=orrery.Gradient(), materials={"textured": material})
+            scene.add_sphere((0, 0, -2), 1, "textured")
+            scene.set("render.samples", 4)
+            images.add(beauty(scene))
+        self.assertEqual(len(images), len(materials))
+        orrery.Scene().save("scene.toml")
+        with open("scene.toml", "a", encoding="utf-8") as file:
+            file.write('[background]\ntype = "gradient"\n[render]\nsamples = 4\n[[sphere]]\ncenter = [0, 0, -2]\n'
+                       f'radius = 1\nmaterial = "textured"\n[material.textured]\ntype = "lambertian"\nalbedo = {text}\n')
+        self.assertIn(beauty(orrery.load("scene.toml")), images)
+
     def test_values(self):
         text = orrery._keys.toml_text
         self.assertEqual(text(True), "true")

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 _Path = str | PathLike[str]
 _Vector = Sequence[float] | NDArray[np.floating[Any]]
 _Color = float | _Vector
+_Texture = Mapping[str, Any]
 
 __version__: str
 color_maps: tuple[str, ...]
@@ -69,19 +70,23 @@ class Sky(_Keys):
     ) -> None: ...
 
 class Lambertian(_Keys):
-    def __init__(self, albedo: _Color | None = None, **keys: Any) -> None: ...
+    def __init__(self, albedo: _Color | _Texture | None = None, **keys: Any) -> None: ...
 
 class Hemisphere(_Keys):
-    def __init__(self, albedo: _Color | None = None, **keys: Any) -> None: ...
+    def __init__(self, albedo: _Color | _Texture | None = None, **keys: Any) -> None: ...
 
 class Metal(_Keys):
-    def __init__(self, albedo: _Color | None = None, fuzz: float | None = None, **keys: Any) -> None: ...
+    def __init__(
+        self, albedo: _Color | _Texture | None = None, fuzz: float | _Texture | None = None, **keys: Any
+    ) -> None: ...
 
 class Dielectric(_Keys):
-    def __init__(self, ior: float | None = None, **keys: Any) -> None: ...
+    def __init__(self, ior: float | None = None, *, fuzz: float | _Texture | None = None, **keys: Any) -> None: ...
 
 class Emitter(_Keys):
-    def __init__(self, radiance: _Color | None = None, exposure: float | None = None, **keys: Any) -> None: ...
+    def __init__(
+        self, radiance: _Color | _Texture | None = None, exposure: float | None = None, **keys: Any
+    ) -> None: ...
 
 class ColorMap:
     values: NDArray[Any]

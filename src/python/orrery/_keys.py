@@ -127,35 +127,35 @@ class Sky(Keys):
 
 
 class Lambertian(Keys):
-    """A diffuse material. Its albedo is linear; a number is a grey."""
+    """A diffuse material. Its albedo is linear: a number is a grey, a dict is a texture."""
 
     def __init__(self, albedo=None, **keys):
         super().__init__(type="lambertian", albedo=_color(albedo), **keys)
 
 
 class Hemisphere(Keys):
-    """The first diffuse material of the book "Ray Tracing in One Weekend"."""
+    """The first diffuse material of the book "Ray Tracing in One Weekend"; its albedo may be a texture."""
 
     def __init__(self, albedo=None, **keys):
         super().__init__(type="hemisphere", albedo=_color(albedo), **keys)
 
 
 class Metal(Keys):
-    """A metal; its fuzz is from 0, a mirror, to 1."""
+    """A metal; its fuzz is from 0, a mirror, to 1. Albedo and fuzz may be textures."""
 
     def __init__(self, albedo=None, fuzz=None, **keys):
         super().__init__(type="metal", albedo=_color(albedo), fuzz=fuzz, **keys)
 
 
 class Dielectric(Keys):
-    """Glass or water, by its index of refraction."""
+    """Glass or water, by its index of refraction; its fuzz, a number or a texture, makes it rough."""
 
-    def __init__(self, ior=None, **keys):
-        super().__init__(type="dielectric", ior=ior, **keys)
+    def __init__(self, ior=None, *, fuzz=None, **keys):
+        super().__init__(type="dielectric", ior=ior, fuzz=fuzz, **keys)
 
 
 class Emitter(Keys):
-    """A light: emits the same linear radiance in all directions."""
+    """A light: emits the same linear radiance, which may be a texture, in all directions."""
 
     def __init__(self, radiance=None, exposure=None, **keys):
         super().__init__(type="emitter", radiance=_color(radiance), exposure=exposure, **keys)
