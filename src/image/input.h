@@ -12,6 +12,9 @@ namespace orrery::image {
 /// Throws the error of an image that cannot be read: base::Error(kBadData).
 [[noreturn]] void fail_to_read(const std::filesystem::path& file, const std::string& reason);
 
+/// The first of OpenImageIO's messages about an image, one per line. It names the cause; the others are consequences.
+std::string first_complaint(const std::string& text);
+
 /// Checks the size in the header of an image or part.
 ///
 /// Errors     base::Error(kBadData) if it is out of range or the pixels are deep
