@@ -8,8 +8,9 @@
 
 namespace orrery::image {
 
-/// Looks for damage that the libraries do not report, or report on standard error: PNG files that are truncated or whose
-/// checksums do not match, and truncated JPEG files, whose missing rows libjpeg fills with grey. Pixels are not decoded.
+/// Looks for damage that the libraries do not report, or report on standard error: PNG files that are truncated or
+/// whose checksums do not match, and truncated JPEG files, whose missing rows libjpeg fills with grey. Pixels are not
+/// decoded.
 ///
 /// Result     what is wrong; empty if nothing was found, for other formats, and for a file that is of another format
 ///            than its name says

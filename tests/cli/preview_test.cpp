@@ -63,8 +63,8 @@ class CliPreview : public ProgramTest {
   }
 };
 
-/// R, G, B of all pixels of an uncompressed EXR with float channels A, B, G, R, which ends with its rows: y, size in bytes,
-/// and the values of one channel after the other.
+/// R, G, B of all pixels of an uncompressed EXR with float channels A, B, G, R, which ends with its rows: y, size in
+/// bytes, and the values of one channel after the other.
 std::vector<float> rows_of_exr(const std::filesystem::path& file, int width, int height) {
   const std::string bytes = text_of(file);
   const std::size_t row = 2 * sizeof(std::int32_t) + 4 * sizeof(float) * static_cast<std::size_t>(width);
@@ -78,7 +78,8 @@ std::vector<float> rows_of_exr(const std::filesystem::path& file, int width, int
     for (int x = 0; x < width; ++x)
       for (const int channel : {3, 2, 1}) {
         float value = 0;
-        std::memcpy(&value, at + 2 * sizeof(std::int32_t) + sizeof(float) * static_cast<std::size_t>(channel * width + x),
+        std::memcpy(&value,
+                    at + 2 * sizeof(std::int32_t) + sizeof(float) * static_cast<std::size_t>(channel * width + x),
                     sizeof(value));
         out.push_back(value);
       }

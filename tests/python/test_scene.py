@@ -370,7 +370,7 @@ class Cameras(FolderTest):
     def test_positions_that_are_not_finite(self):
         p = positions()
         p[7, 1] = np.nan
-        with self.assertRaisesRegex(orrery.SceneError, r"positions\[7\] is not finite"):
+        with self.assertRaisesRegex(orrery.SceneError, r"row 8 of positions is not finite"):
             orrery.Camera.fit(p)
 
     def test_no_positions(self):
