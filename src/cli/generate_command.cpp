@@ -25,9 +25,15 @@ struct GenerateOptions {
   double ground_albedo = 0.2;
   bool no_sun = false;
   std::filesystem::path output;
+  bool quiet = false;  ///< no generator prints anything but errors
 };
 
 constexpr std::uint64_t kMaxSeed = std::numeric_limits<std::uint64_t>::max();
+
+/// Adds the option that other commands have for scripts.
+void add_quiet(Command& command, GenerateOptions& options) {
+  command.add_flag("-q,--quiet", options.quiet, "Print only errors, as always");
+}
 
 /// Adds the options of all scene generators.
 void add_common(Command& command, std::filesystem::path& output, std::uint64_t& seed) {
@@ -38,6 +44,7 @@ void add_common(Command& command, std::filesystem::path& output, std::uint64_t& 
 void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
   Command& command = *generate.add_subcommand("final", "The random final scene of Ray Tracing in One Weekend");
   add_common(command, options->output, options->final_scene.seed);
+  add_quiet(command, *options);
   command
       .add_option("--grid", options->final_scene.grid, "Grid cells from the centre to the edge, 0 to 1000; default: 11")
       ->transform(whole_number(0, generate::kLargestFinalGrid))
@@ -61,6 +68,7 @@ void add_cloud(Command& generate, const std::shared_ptr<GenerateOptions>& option
   Command& command =
       *generate.add_subcommand("cloud", "A cloud of small spheres: a scene file and a PLY file next to it");
   add_common(command, options->output, options->cloud.seed);
+  add_quiet(command, *options);
   command.add_option("--count", options->cloud.count, "Number of spheres; default: 1000")
       ->transform(whole_number(1, generate::kLargestCloud))
       ->type_name("N");
@@ -117,6 +125,7 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options,
       ->check(one_of({"studio", "sky"}))
       ->type_name("NAME");
   command.add_option("-o,--output", options->output, "EXR file to write")->required()->type_name("FILE");
+  add_quiet(command, *options);
   command
       .add_option("--width", options->width,
                   "Image width in pixels, a multiple of 4; the height is half of it; default: " +
@@ -149,6 +158,7 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options,
 void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
   Command& command = *generate.add_subcommand("planet", "A map of a planet for textures: continents, ice and clouds");
   command.add_option("-o,--output", options->output, "EXR file to write")->required()->type_name("FILE");
+  add_quiet(command, *options);
   command.add_option("--seed", options->planet_seed, "Random seed; default: 1")
       ->transform(whole_number(0, kMaxSeed))
       ->type_name("N");

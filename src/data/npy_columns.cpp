@@ -63,7 +63,8 @@ Values read_texts(const ByteSource& bytes, std::uint64_t rows, const NpyColumn& 
     const std::string block = bytes.text(column.begin + first * stride, static_cast<std::size_t>(count * stride));
     for (std::uint64_t i = 0; i < count; ++i) {
       if (!decode_text(column.field, block.data() + i * stride + column.offset, word))
-        faults.add_of_many(0, "row " + std::to_string(first + i) + ": `" + column.name + "` has an invalid character");
+        faults.add_of_many(0,
+                           "row " + std::to_string(first + i + 1) + ": `" + column.name + "` has an invalid character");
       out.add(word);
     }
   }

@@ -151,7 +151,7 @@ class PlyFile final : public SingleFrame {
       }
       std::vector<double> row(element.properties.size());
       for (std::uint64_t i = 0; i < element.count; ++i) {
-        const auto name = [&] { return "vertex " + std::to_string(i) + " of " + std::to_string(element.count); };
+        const auto name = [&] { return "vertex " + std::to_string(i + 1) + " of " + std::to_string(element.count); };
         read_row(faults, element, cursor, name, [&](const PlyProperty& property, std::size_t k) {
           return property.is_list ? cursor.skip(property) : cursor.take(property.type, row[k]);
         });

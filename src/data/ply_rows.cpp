@@ -29,7 +29,7 @@ void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& he
     return cursor.skip_bytes(element.count * fewest_bytes(element, header.encoding));
   for (std::uint64_t i = 0; i < element.count; ++i)
     read_row(
-        faults, element, cursor, [&] { return "row " + std::to_string(i) + " of `" + element.name + "`"; },
+        faults, element, cursor, [&] { return "row " + std::to_string(i + 1) + " of `" + element.name + "`"; },
         [&](const PlyProperty& property, std::size_t) { return cursor.skip(property); });
 }
 

@@ -45,7 +45,7 @@ void decode_field(const RecordField& field, const char* records, std::size_t str
 void check_unsigned(const std::string& column, const std::vector<std::int64_t>& values, Faults& faults) {
   for (std::size_t row = 0; row < values.size(); ++row)
     if (values[row] < 0)
-      faults.add_of_many(0, "row " + std::to_string(row) + ": `" + column + "` is " +
+      faults.add_of_many(0, "row " + std::to_string(row + 1) + ": `" + column + "` is " +
                                 std::to_string(static_cast<std::uint64_t>(values[row])) +
                                 ", larger than the largest int64");
 }

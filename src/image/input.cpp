@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "image/damage.h"
 #include "image/format.h"
 #include "image/library.h"
 
@@ -53,8 +54,10 @@ bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO:
   return in->read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
 }
 
+std::string first_complaint(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 std::string Input::complaint() const {
-  const std::string text = in->geterror();
+  const std::string text = first_complaint(in->geterror());
   return text.empty() ? "its pixels cannot be decoded" : text;
 }
 
@@ -62,12 +65,13 @@ Input open_input(const std::filesystem::path& file, Alpha alpha) {
   prepare_library();
   const Format format = format_of(file);
   base::require_readable(file);
+  if (const std::string damage = damage_of(file, format); !damage.empty()) fail_to_read(file, damage);
   Input out{OIIO::ImageInput::create(library_name(format)), {}, 0};
   if (!out.in)
     throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read " + file.string() + OIIO::geterror());
   OIIO::ImageSpec settings;
   if (alpha == Alpha::kAsInFile) settings.attribute("oiio:UnassociatedAlpha", 1);
-  if (!out.in->open(file.string(), out.spec, settings)) fail_to_read(file, out.in->geterror());
+  if (!out.in->open(file.string(), out.spec, settings)) fail_to_read(file, first_complaint(out.in->geterror()));
   check_spec(file, out.spec);
   return out;
 }

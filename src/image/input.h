@@ -15,6 +15,9 @@ namespace orrery::image {
 /// Throws the error of an image whose pixels do not fit into memory: base::Error(kNoMemory).
 [[noreturn]] void fail_for_memory(const std::filesystem::path& file);
 
+/// The first of OpenImageIO's messages about an image, one per line. It names the cause; the others are consequences.
+std::string first_complaint(const std::string& text);
+
 /// Checks the size in the header of an image or part.
 ///
 /// Errors     base::Error(kBadData) if it is out of range or the pixels are deep

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <fstream>
 #include <vector>
 
 #include "base/error.h"
@@ -43,27 +42,13 @@ std::optional<Format> known_format(const std::filesystem::path& file) {
   }
 }
 
-/// libjpeg fills what a truncated file lacks with grey. In such a file, no end marker follows the last scan.
-bool is_truncated_jpeg(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  bool in_scan = false, is_closed = false;
-  for (int before = 0, now = in.get(); now != std::ifstream::traits_type::eof(); before = now, now = in.get()) {
-    if (before != 0xFF) continue;
-    if (now == 0xDA) in_scan = true, is_closed = false;
-    if (now == 0xD9 && in_scan) is_closed = true;
-  }
-  return !is_closed;
-}
-
 Input open_map(const std::filesystem::path& file, MapFormats formats) {
   base::require_readable(file);
   const std::optional<Format> format = known_format(file);
   if (formats == MapFormats::kSceneLinear && (!format || is_display_format(*format)))
     fail_to_read(file, "an environment map must be an exr or hdr file");
   if (!format) fail_to_read(file, "a texture must be an exr, hdr, png, tiff, jpeg or ppm file");
-  Input input = open_input(file, Alpha::kAsInFile);
-  if (*format == Format::kJpeg && is_truncated_jpeg(file)) fail_to_read(file, "the file is truncated");
-  return input;
+  return open_input(file, Alpha::kAsInFile);
 }
 
 /// The names by which OpenImageIO says that it assumes a scene-linear file, which declares nothing.

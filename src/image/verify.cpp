@@ -8,6 +8,8 @@
 #include <new>
 #include <vector>
 
+#include "image/damage.h"
+#include "image/format.h"
 #include "image/input.h"
 #include "image/library.h"
 #include "image/write.h"
@@ -48,6 +50,7 @@ std::string verified_stamp(const std::filesystem::path& file) {
   prepare_library();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
+  if (!damage_of(file, format_of(file)).empty()) return {};
   const auto in = ImageInput::open(file.string());
   if (!in) {
     OIIO::geterror();  // OpenImageIO prints messages that are not fetched

@@ -139,6 +139,14 @@ void denoise_picture(const Job& job, const scene::Scene& scene, int threads, fil
   if (!base::contains(scene::requested_layers(scene), scene::kHalvesLayer)) denoise::remove_halves(picture);
 }
 
+/// The header of the finished image.
+image::Header finished_header(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled,
+                              const JobReport& report, bool reproducible) {
+  image::Header header = picture_header(read, compiled, report, reproducible);
+  if (job.denoise) header.attributes.push_back({denoise::kAttribute, "orrery " + program_version()});
+  return header;
+}
+
 /// Keeps the image in memory instead of writing files.
 void keep(const Job& job, const format::ReadResult& read, const compile::CompiledScene& compiled, const Layers& layers,
           const image::Provenance& provenance, const display::Settings& display, const base::FileSet& files,
@@ -149,8 +157,8 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
   out.job.keep = nullptr;
   out.job.scene.open_data = {};
   out.picture = std::move(picture);
-  out.header = picture_header(read, compiled, report, false);
-  out.reproducible_header = picture_header(read, compiled, report, true);
+  out.header = finished_header(job, read, compiled, report, false);
+  out.reproducible_header = finished_header(job, read, compiled, report, true);
   out.mattes = layers.mattes;
   out.display = display;
   out.provenance = provenance;
@@ -236,9 +244,8 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   } else if (is_shard(job)) {
     write_sums(job.outputs.images.front().path, *result.partial);
   } else {
-    image::Header header = picture_header(read, compiled, report, job.outputs.reproducible);
+    image::Header header = finished_header(job, read, compiled, report, job.outputs.reproducible);
     header.stamp = stamp;
-    if (job.denoise) header.attributes.push_back({denoise::kAttribute, "orrery " + program_version()});
     const int bits = job.outputs.bits != 0 ? job.outputs.bits : report.display.default_bits();
     try {
       report.written = write_outputs(job.outputs, display, bits, result.picture, header, layers.mattes);

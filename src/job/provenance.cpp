@@ -40,7 +40,7 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
   out["sceneHash"] = scene_hash(compiled);
   out["samples"] = fmt::format("{}:{}", job.sampling.sample_begin, end);
   out["shard"] = fmt::format("{}/{}", job.sampling.shard.index + 1, job.sampling.shard.count);
-  out["noise"] = fmt::format("{:.17g}", job.sampling.noise);
+  out["noise"] = fmt::format("{}", job.sampling.noise);  // shortest text that reads back exactly
   out["time"] = job.sampling.seconds > 0 ? "yes" : "no";
   out["limit"] = is_limited(job) ? "yes" : "no";
   out["layers"] = layers_text(layers);

@@ -132,6 +132,15 @@ bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect
   return false;
 }
 
+ViewExtent ViewExtent::grown(double length) const {
+  ViewExtent out = *this;
+  for (int k = 0; k < 3 && !is_empty_; ++k) {
+    out.low_[k] -= length;
+    out.high_[k] += length;
+  }
+  return out;
+}
+
 scene::Camera ViewExtent::camera(double aspect) const {
   scene::Camera camera;
   camera.projection = scene::Projection::kOrthographic;
@@ -142,6 +151,19 @@ scene::Camera ViewExtent::camera(double aspect) const {
   const double width = std::max(high_[0] - low_[0], (high_[1] - low_[1]) * aspect);
   // A single point has no extent.
   camera.width = is_empty_ || !(width > 0) ? 2 : width / (1 - 2 * kMargin);
+  return camera;
+}
+
+scene::Camera ViewExtent::perspective_camera(double aspect, double vfov_deg) const {
+  scene::Camera camera;
+  camera.up = axes_.up;
+  camera.look_at = center();
+  camera.vfov = vfov_deg;
+  // The box that contains the spheres is seen if its face in front is.
+  const double half_height = std::max((high_[0] - low_[0]) / aspect, high_[1] - low_[1]) / 2;
+  const double seen = std::tan(vfov_deg / 360 * std::numbers::pi) * (1 - 2 * kMargin);  // half height at distance 1
+  const double from_face = half_height > 0 ? half_height / seen : 1 / seen;             // a single point has no extent
+  camera.look_from = camera.look_at + axes_.back * ((high_[2] - low_[2]) / 2 + from_face);
   return camera;
 }
 

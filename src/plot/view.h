@@ -37,10 +37,19 @@ class ViewExtent {
   void add(Vec3d center, double radius);
   bool is_empty() const { return is_empty_; }
 
+  /// Returns the extent of spheres whose radii are larger by a length. An empty extent stays empty.
+  ViewExtent grown(double length) const;
+
   /// Returns an orthographic camera that sees all spheres, with a margin of 5 % of the image on each side.
   ///
-  /// `aspect`   image width divided by its height
+  /// `aspect`   image width divided by its height, as displayed
   scene::Camera camera(double aspect) const;
+
+  /// Returns a perspective camera in the same direction, far enough away that all spheres are seen with this margin.
+  ///
+  /// `aspect`     image width divided by its height, as displayed
+  /// `vfov_deg`   vertical field of view, between 0 and 180 degrees
+  scene::Camera perspective_camera(double aspect, double vfov_deg) const;
 
   Vec3d center() const;   ///< of the box along the axes
   double radius() const;  ///< of a sphere around center() that contains all spheres, scene units

@@ -16,11 +16,6 @@ namespace {
 using data::Transform;
 using data::Vec3d;
 
-Vec3d applied(const Transform& t, Vec3d p) {
-  return {math::dot(t.rows[0], p) + t.translation.x, math::dot(t.rows[1], p) + t.translation.y,
-          math::dot(t.rows[2], p) + t.translation.z};
-}
-
 bool is_identity(const Transform& t) {
   const Transform identity;
   return t.rows == identity.rows && t.translation == identity.translation;
@@ -30,25 +25,6 @@ bool is_identity(const Transform& t) {
 /// origin, in ångström less than the files' last digit.
 Vec3d in_single_precision(Vec3d p) {
   return {math::in_single_precision(p.x), math::in_single_precision(p.y), math::in_single_precision(p.z)};
-}
-
-/// The transform of a points table: scale, then turns about x, y and z, then translation.
-///
-/// Precision  sines and cosines are rounded from long double, so that they do not depend on the math library
-Transform transform_of(const scene::PointsTransform& t) {
-  const auto turn = [](double degrees) {
-    const long double angle = static_cast<long double>(degrees) / 180 * std::numbers::pi_v<long double>;
-    return std::pair{static_cast<double>(std::cos(angle)), static_cast<double>(std::sin(angle))};
-  };
-  const auto [cx, sx] = turn(t.rotate.x);
-  const auto [cy, sy] = turn(t.rotate.y);
-  const auto [cz, sz] = turn(t.rotate.z);
-  Transform out;
-  out.rows[0] = Vec3d{cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx} * t.scale;
-  out.rows[1] = Vec3d{sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx} * t.scale;
-  out.rows[2] = Vec3d{-sy, cy * sx, cy * cx} * t.scale;
-  out.translation = t.translate;
-  return out;
 }
 
 const data::Assembly* find_assembly(const data::FrameInfo& info, const std::string& name, KeyFaults& faults) {
@@ -120,6 +96,27 @@ void scale(scene::NumberArray& radii, double factor) {
 }
 
 }  // namespace
+
+Vec3d applied(const Transform& t, Vec3d p) {
+  return {math::dot(t.rows[0], p) + t.translation.x, math::dot(t.rows[1], p) + t.translation.y,
+          math::dot(t.rows[2], p) + t.translation.z};
+}
+
+Transform transform_of(const scene::PointsTransform& t) {
+  const auto turn = [](double degrees) {
+    const long double angle = static_cast<long double>(degrees) / 180 * std::numbers::pi_v<long double>;
+    return std::pair{static_cast<double>(std::cos(angle)), static_cast<double>(std::sin(angle))};
+  };
+  const auto [cx, sx] = turn(t.rotate.x);
+  const auto [cy, sy] = turn(t.rotate.y);
+  const auto [cz, sz] = turn(t.rotate.z);
+  Transform out;
+  out.rows[0] = Vec3d{cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx} * t.scale;
+  out.rows[1] = Vec3d{sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx} * t.scale;
+  out.rows[2] = Vec3d{-sy, cy * sx, cy * cx} * t.scale;
+  out.translation = t.translate;
+  return out;
+}
 
 void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, scene::PointArray& centers) {
   for (std::size_t axis = 0; axis < 3; ++axis)

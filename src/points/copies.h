@@ -16,6 +16,14 @@ namespace orrery::points {
 /// Domain     `centers` are those of the rows
 void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, scene::PointArray& centers);
 
+/// The transform of a points table: scale, then turns about x, y and z, then translation.
+///
+/// Precision  sines and cosines are rounded from long double, so that they do not depend on the math library
+data::Transform transform_of(const scene::PointsTransform& t);
+
+/// Returns a transformed point.
+data::Vec3d applied(const data::Transform& t, data::Vec3d p);
+
 /// One copy of all spheres, or of those in some chains.
 struct Copy {
   data::Transform transform;

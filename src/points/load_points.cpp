@@ -162,11 +162,13 @@ class Loader {
       faults_.warning(table.rows == 0 ? ".file" : ".select",
                       table.rows == 0 ? "the frame has no particles"
                                       : "selects none of the " + std::to_string(table.rows) + " particles");
+    const bool is_all = rows.is_all();
     scene::NumberArray radii = radii_of(table, rows, radius_, points_.radius, faults_);
     scene::PointArray centers = centers_of(table, rows);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
     if (!all_good(centers, radii)) {
+      check_domain(rows, centers, radii);
       const std::vector<std::uint32_t> good = good_rows(rows, centers, radii);
       if (faults_.has_errors()) return;
       rows = kept(rows, good, centers, radii);
@@ -189,6 +191,7 @@ class Loader {
     if (row_of_sphere != nullptr) *row_of_sphere = rows.list();
     make_copies(copies_, chains, points_, row_of_sphere);
     clip(points_, row_of_sphere);
+    points_.spheres_are_rows = is_all && copies_.size() == 1 && points_.centers.size() == table.rows;
     if (request_.source == nullptr) return;
     request_.source->info = std::move(info_);
     request_.source->table = std::move(table);
@@ -234,9 +237,34 @@ class Loader {
     return math::is_finite(center) && std::isfinite(radius) && (radius > 0 || (radius < 0 && may_be_negative()));
   }
   bool all_good(const scene::PointArray& centers, const scene::NumberArray& radii) const {
-    for (std::size_t i = 0; i < centers.size(); ++i)
-      if (!is_good(centers[i], radii[i])) return false;
+    const auto is_inside = [](double x) { return std::abs(x) <= scene::kLargestLength; };
+    for (std::size_t i = 0; i < centers.size(); ++i) {
+      const Vec3d center = centers[i];
+      const double radius = std::abs(radii[i]);
+      if (!is_inside(center.x) || !is_inside(center.y) || !is_inside(center.z) || !is_inside(radius) ||
+          !(radius >= scene::kSmallestRadius) || (radii[i] < 0 && !may_be_negative()))
+        return false;
+    }
     return true;
+  }
+
+  /// Reports spheres that are outside the domain of scenes, here where their rows are known.
+  void check_domain(const Rows& rows, const scene::PointArray& centers, const scene::NumberArray& radii) {
+    const data::Transform placement = transform_of(points_.transform);
+    std::size_t bad = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!is_good(centers[i], radii[i])) continue;  // reported by good_rows()
+      for (const std::string& fault : scene::sphere_faults(
+               applied(placement, centers[i]), radii[i] * points_.transform.scale, scene::Precision::kExact))
+        if (++bad <= scene::kMaxReported) faults_.error(".file", row_name(rows[i]) + ": " + fault);
+    }
+    report_rest(bad);
+  }
+  /// Reports the number of similar faults of which only the first are reported.
+  void report_rest(std::size_t faults) {
+    if (faults > scene::kMaxReported)
+      faults_.error(".file", "and " + std::to_string(faults - scene::kMaxReported) + " more (" +
+                                 std::to_string(faults) + " in all)");
   }
 
   /// Returns the indices of rows with finite coordinates and radii. Reports the others, as errors unless they are to be
@@ -296,9 +324,7 @@ class Loader {
         faults_.error(".file", row_name(rows[i]) + " has material " + scene::number_text(v) + "; the scene has " +
                                    std::to_string(request_.materials) + ", counted from 0");
     });
-    if (bad > scene::kMaxReported)
-      faults_.error(".file",
-                    "and " + std::to_string(bad - scene::kMaxReported) + " more (" + std::to_string(bad) + " in all)");
+    report_rest(bad);
   }
 
   const LoadRequest& request_;

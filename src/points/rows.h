@@ -26,6 +26,8 @@ class Rows {
   explicit Rows(std::vector<std::uint32_t> rows) : rows_(std::move(rows)), count_(rows_.size()), is_list_(true) {}
 
   std::size_t size() const { return count_; }
+  /// All rows of the table, in its order.
+  bool is_all() const { return !is_list_; }
   /// The rows, each by its number.
   std::vector<std::uint32_t> list() const {
     std::vector<std::uint32_t> out = rows_;

@@ -99,7 +99,7 @@ void add_to_extent(const data::Table& positions, double radius, plot::ViewExtent
       const math::Vec3d center{static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
       if (!math::is_finite(center))
         throw base::Error(base::ErrorKind::kBadData,
-                          "positions[" + std::to_string(i) + "] is not finite; leave such rows out");
+                          "row " + std::to_string(i + 1) + " of positions is not finite; leave such rows out");
       extent.add(center, radius);
     }
   });

@@ -91,7 +91,8 @@ display::Settings display_settings(const std::string& display, const std::string
 }
 
 Picture render_scene(const SceneData& scene, double noise, double seconds, int threads, std::uint64_t memory_limit,
-                     const std::string& isa, const py::object& on_progress, const py::object& on_warning) {
+                     const std::string& isa, bool denoise, const py::object& on_progress,
+                     const py::object& on_warning) {
   job::Job job;
   job.scene = scene.source();
   job.sampling.noise = noise;
@@ -99,6 +100,7 @@ Picture render_scene(const SceneData& scene, double noise, double seconds, int t
   job.resources.threads = threads;
   job.resources.memory_limit = memory_limit;
   job.resources.isa = isa;
+  job.denoise = denoise;
   return render(std::move(job), on_progress, on_warning);
 }
 
@@ -143,6 +145,7 @@ py::dict statistics(const Picture& picture) {
   out["compile_seconds"] = report.phases.compile_s;
   out["build_seconds"] = report.phases.build_s;
   out["render_seconds"] = report.phases.render_s;
+  out["denoise_seconds"] = report.phases.denoise_s;
   return out;
 }
 
@@ -152,12 +155,18 @@ py::list list_of(math::Vec3d v) {
   return out;
 }
 
-/// The camera that sees an extent, as keys of [camera].
-py::dict camera_of(const plot::ViewExtent& extent, double aspect) {
-  const scene::Camera camera = extent.camera(aspect);
+/// The camera that sees spheres of a larger radius around an extent, as keys of [camera]: a perspective camera if there
+/// is a field of view, else an orthographic one.
+py::dict camera_of(const plot::ViewExtent& extent, double aspect, double radius, std::optional<double> vfov_deg) {
+  const plot::ViewExtent seen = extent.grown(radius);
+  const scene::Camera camera = vfov_deg ? seen.perspective_camera(aspect, *vfov_deg) : seen.camera(aspect);
   py::dict out;
-  out["projection"] = "orthographic";
-  out["width"] = camera.width.value_or(1);
+  if (vfov_deg) {
+    out["vfov"] = *vfov_deg;
+  } else {
+    out["projection"] = "orthographic";
+    out["width"] = camera.width.value_or(1);
+  }
   out["look_from"] = list_of(camera.look_from);
   out["look_at"] = list_of(camera.look_at);
   out["up"] = list_of(camera.up);
@@ -190,6 +199,7 @@ void bind_scene(py::module_& m) {
           },
           ReleaseGil())
       .def("save", &save, ReleaseGil())
+      .def("largest_radius", &largest_radius, ReleaseGil())
       .def("render", &render_scene);
   // Pickled as its bytes, for processes on the same machine.
   static_assert(std::is_trivially_copyable_v<plot::ViewExtent>);

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "python/scene_data.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/output_file.h"
 #include "data/table_file.h"
 #include "data/write_table.h"
 #include "format/named_files.h"
+#include "format/read_scene.h"
 #include "format/source_text.h"
 #include "format/write_ply.h"
 #include "format/write_tree.h"
 #include "job/job_files.h"
 #include "job/load_scene.h"
+#include "job/memory.h"
 
 namespace orrery::python {
 namespace {
@@ -72,6 +77,23 @@ std::vector<base::Diagnostic> check(const SceneData& scene) {
   job::SceneRequest request;
   request.source = scene.source();
   return job::load_scene(request).warnings;
+}
+
+double largest_radius(const SceneData& scene, std::uint64_t memory_limit) {
+  const job::SceneSource source = scene.source();
+  format::ReadOptions options;
+  options.text = source.text;
+  options.frame = source.frame;
+  options.open_data = source.open_data;
+  options.memory_limit = memory_limit > 0 ? memory_limit : job::available_memory().value_or(0);
+  double out = 0;
+  try {
+    for (const scene::Points& points : format::read_scene(source.file, source.overrides, options).scene.points)
+      for (const double radius : points.radii) out = std::max(out, std::abs(radius));
+  } catch (const base::Error&) {
+    return 0;
+  }
+  return out;
 }
 
 void save(const SceneData& scene, const fs::path& file) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -36,6 +37,12 @@ std::string read_scene_text(const std::filesystem::path& file);
 /// Result     warnings
 /// Errors     those of job::load_scene
 std::vector<base::Diagnostic> check(const SceneData& scene);
+
+/// Returns the largest absolute radius of the spheres of all [[points]], scene units; 0 if there are none, or if the
+/// scene has errors, which a render reports.
+///
+/// `memory_limit`   bytes that the spheres may take while they are read; 0: the free memory
+double largest_radius(const SceneData& scene, std::uint64_t memory_limit);
 
 /// Writes the scene as a scene file, and its arrays as PLY files beside it. Both read back to the same scene. A PLY
 /// file is replaced only if orrery wrote it.

@@ -6,6 +6,7 @@
 
 #include "base/repeated.h"
 #include "math/single.h"
+#include "scene/validate.h"
 
 namespace orrery::scene {
 namespace {
@@ -42,8 +43,12 @@ class SphereIndex {
 };
 
 std::string key_of(const Place& place) {
-  const std::string index = "[" + std::to_string(place.index) + "]";
-  return place.is_table ? "sphere" + index : "points[" + std::to_string(place.points) + "]" + index;
+  return place.is_table ? "sphere[" + std::to_string(place.index) + "]"
+                        : "points[" + std::to_string(place.points) + "].file";
+}
+
+std::string name_of(const Scene& scene, const Place& place) {
+  return place.is_table ? "" : sphere_name(scene, place.points, place.index);
 }
 
 }  // namespace
@@ -78,8 +83,11 @@ Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, con
                                                                : base::find_repeated<4>(spheres.count(), place_of);
   Coincidents out;
   out.count = found.size();
-  for (std::size_t i = 0; i < found.size() && i < max_reported; ++i)
-    out.reported.push_back({key_of(spheres.at(found[i].index)), key_of(spheres.at(found[i].first))});
+  for (std::size_t i = 0; i < found.size() && i < max_reported; ++i) {
+    const Place place = spheres.at(found[i].index), first = spheres.at(found[i].first);
+    out.reported.push_back(
+        {key_of(place), name_of(scene, place), first.is_table ? key_of(first) : name_of(scene, first)});
+  }
   return out;
 }
 

@@ -9,10 +9,11 @@
 
 namespace orrery::scene {
 
-/// The keys of a sphere and of the first earlier sphere with exactly the same centre and absolute radius: "sphere[3]",
-/// "points[0][17]".
+/// A sphere, and the first earlier sphere with exactly the same centre and absolute radius.
 struct Coincident {
-  std::string key, first;
+  std::string key;    ///< "sphere[3]", "points[0].file"
+  std::string name;   ///< in a points file: see sphere_name(); otherwise empty
+  std::string first;  ///< the earlier one: "sphere[0]", "row 1 of a.csv"
 };
 
 struct Coincidents {

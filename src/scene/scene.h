@@ -209,6 +209,7 @@ struct Points {
   std::optional<Interval> color_range = {};   ///< of the colour map, if there is one
   std::vector<std::string> color_names = {};  ///< of the colours in `palette`, if they stand for types or elements
   std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
+  bool spheres_are_rows = true;  ///< sphere i is row i of the file: nothing was selected, sorted, copied or clipped
 
   /// Frees the memory of the spheres. The keys stay.
   void release_spheres() {

@@ -169,11 +169,15 @@ std::string material_fault(std::uint32_t material, const Scene& scene) {
          std::to_string(scene.materials.size()) + ", counted from 0";
 }
 
+std::string center_fault(Vec3d center) {
+  if (in_domain(center)) return {};
+  return "center " + vector_text(center) + " is not finite or exceeds " + number_text(kLargestLength);
+}
+
 /// Calls `report(key suffix, text)` for each fault of a sphere.
 template <class Report>
 void check_sphere(Vec3d center, double radius, std::uint32_t material, const Scene& scene, Report report) {
-  if (!in_domain(center))
-    report(".center", "center " + vector_text(center) + " is not finite or exceeds " + number_text(kLargestLength));
+  if (const std::string fault = center_fault(center); !fault.empty()) report(".center", fault);
   if (const std::string fault = radius_fault(radius, scene.render.precision); !fault.empty()) report(".radius", fault);
   if (const std::string fault = material_fault(material, scene); !fault.empty()) report(".material", fault);
 }
@@ -187,7 +191,9 @@ void check_spheres(const Scene& scene, Problems& diagnostics) {
   }
 }
 
-void check_points(const Points& points, const std::string& key, const Scene& scene, Problems& diagnostics) {
+void check_points(std::size_t number, const Scene& scene, Problems& diagnostics) {
+  const Points& points = scene.points[number];
+  const std::string key = "points[" + std::to_string(number) + "]";
   if (points.radii.size() != points.centers.size() ||
       (!points.materials.empty() && points.materials.size() != points.centers.size()) ||
       (!points.colors.empty() && points.colors.size() != points.centers.size())) {
@@ -206,11 +212,11 @@ void check_points(const Points& points, const std::string& key, const Scene& sce
     const std::uint32_t material = points.materials.empty() ? 0 : points.materials[i];
     check_sphere(points.centers[i], points.radii[i], material, scene, [&](const std::string& part, std::string text) {
       if (points.materials.empty() && part == ".material") return;  // reported once, above
-      if (++faults <= kMaxReported) diagnostics.error(key + "[" + std::to_string(i) + "]" + part, std::move(text));
+      if (++faults <= kMaxReported) diagnostics.error(key + ".file", sphere_name(scene, number, i) + ": " + text);
     });
   }
   if (faults > kMaxReported)
-    diagnostics.error(key,
+    diagnostics.error(key + ".file",
                       "and " + std::to_string(faults - kMaxReported) + " more (" + std::to_string(faults) + " in all)");
 }
 
@@ -246,6 +252,19 @@ std::string exposure_fault(double radiance, double exposure) {
          number_text(kBrightestLight) + "; reduce the exposure";
 }
 
+std::vector<std::string> sphere_faults(Vec3d center, double radius, Precision precision) {
+  std::vector<std::string> out;
+  for (std::string fault : {center_fault(center), radius_fault(radius, precision)})
+    if (!fault.empty()) out.push_back(std::move(fault));
+  return out;
+}
+
+std::string sphere_name(const Scene& scene, std::size_t points, std::size_t index) {
+  const Points& file = scene.points[points];
+  return (file.spheres_are_rows ? "row " : "sphere ") + std::to_string(index + 1) + " of " +
+         (file.file.empty() ? "points[" + std::to_string(points) + "]" : file.file.string());
+}
+
 std::vector<SceneDiagnostic> validate(const Scene& scene) {
   Problems diagnostics;
   check_image(scene.image, diagnostics);
@@ -256,8 +275,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_projection(scene.camera, diagnostics);
   check_shutter(scene.camera, diagnostics);
   check_spheres(scene, diagnostics);
-  for (std::size_t p = 0; p < scene.points.size(); ++p)
-    check_points(scene.points[p], "points[" + std::to_string(p) + "]", scene, diagnostics);
+  for (std::size_t p = 0; p < scene.points.size(); ++p) check_points(p, scene, diagnostics);
   if (scene.sphere_count() > kMostSpheres)
     diagnostics.error(
         "", "has " + std::to_string(scene.sphere_count()) + " spheres; the maximum is " + std::to_string(kMostSpheres));
@@ -272,7 +290,8 @@ std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene*
   Problems diagnostics;
   const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
   for (const Coincident& c : found.reported)
-    diagnostics.warning(c.key, "has exactly the same centre and radius as " + c.first + "; only the first is rendered");
+    diagnostics.warning(c.key, (c.name.empty() ? "" : c.name + " ") + "has exactly the same centre and radius as " +
+                                   c.first + "; only the first is rendered");
   if (found.count > kMaxReported)
     diagnostics.warning("", "and " + std::to_string(found.count - kMaxReported) + " more coincident spheres (" +
                                 std::to_string(found.count) + " in all)");

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxReported = 10;
 /// A diagnostic that concerns several values of the scene, or one element of bulk data.
 struct SceneDiagnostic {
   base::Severity severity = base::Severity::kError;
-  std::string key;  ///< "camera.up", "sphere[3].radius", "points[0][17].center", 0-based; empty: the whole scene
+  std::string key;  ///< "camera.up", "sphere[3].radius", "points[0].file", 0-based; empty: the whole scene
   std::string text;
   base::ErrorKind kind = base::ErrorKind::kBadData;  ///< of an error; kBadData or kMissingInput
 };
@@ -27,6 +27,16 @@ struct SceneDiagnostic {
 /// `radiance`  its largest component
 /// `exposure`  stops
 std::string exposure_fault(double radiance, double exposure);
+
+/// Returns what is wrong with a centre and a radius, one text for each; none if the sphere is in the domain.
+std::vector<std::string> sphere_faults(Vec3d center, double radius, Precision precision);
+
+/// Returns the name of a sphere of a points file for messages: "row 3 of melt.dump", counted from 1; "sphere 3 of
+/// melt.dump" if the spheres are not the rows of the file.
+///
+/// `points`   index into scene.points
+/// `index`    of the sphere, from 0
+std::string sphere_name(const Scene& scene, std::size_t points, std::size_t index);
 
 /// Checks what the type and range of a single key cannot: a camera without direction, a lens that is too large, lights
 /// that are too bright, numbers outside the domain, materials that do not exist, names of light groups, layers that the

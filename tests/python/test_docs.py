@@ -2,6 +2,7 @@
 """The examples of docs/python.md run, and the stub file agrees with the package."""
 
 import ast
+import glob
 import inspect
 import io
 import os
@@ -44,6 +45,16 @@ def parameters_of(function):
     if a.kwarg:
         out.append((a.kwarg.arg, kind.VAR_KEYWORD, None))
     return [(n, k, kind.empty if d is None else ast.literal_eval(d)) for n, k, d in out]
+
+
+class Tests(unittest.TestCase):
+    def test_no_test_replaces_another_of_the_same_name(self):
+        for file in glob.glob(os.path.join(ROOT, "tests/python/test_*.py")):
+            with open(file, encoding="utf-8") as text:
+                module = ast.parse(text.read())
+            for parent in [module, *(node for node in module.body if isinstance(node, ast.ClassDef))]:
+                names = [node.name for node in parent.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
+                self.assertEqual(len(names), len(set(names)), f"{file}: {names}")
 
 
 class Stub(unittest.TestCase):
@@ -90,6 +101,15 @@ class Stub(unittest.TestCase):
                 self.expect_same_signature(found, definition, f"{name}.{member}")
                 compared += 1
         self.assertGreater(compared, 25)
+
+    def test_textures(self):
+        for name in ("Lambertian", "Hemisphere", "Metal", "Dielectric", "Emitter"):
+            init = next(node for node in self.nodes[name].body if node.name == "__init__")
+            arguments = [*init.args.args, *init.args.kwonlyargs]
+            found = {a.arg: ast.unparse(a.annotation) for a in arguments if a.arg in ("albedo", "fuzz", "radiance")}
+            self.assertTrue(found, name)
+            for argument, types in found.items():
+                self.assertIn("_Texture", types, f"{name}: {argument}")
 
     def test_docstrings(self):
         for name in orrery.__all__:

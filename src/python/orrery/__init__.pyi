@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 _Path = str | PathLike[str]
 _Vector = Sequence[float] | NDArray[np.floating[Any]]
 _Color = float | _Vector
+_Texture = Mapping[str, Any]
 
 __version__: str
 color_maps: tuple[str, ...]
@@ -38,9 +39,14 @@ class Camera(_Keys):
     ) -> None: ...
     @classmethod
     def fit(
-        cls, positions: ArrayLike, radius: float = 0.0, *, look_from: str = "iso", up: Literal["x", "y", "z"] = "z"
+        cls,
+        positions: ArrayLike,
+        radius: float | None = None,
+        *,
+        look_from: str = "iso",
+        up: Literal["x", "y", "z"] = "z",
     ) -> Camera: ...
-    def keys_for(self, aspect: float) -> dict[str, Any]: ...
+    def keys_for(self, aspect: float, radius: float = 0.0, vfov: float | None = None) -> dict[str, Any]: ...
 
 class Constant(_Keys):
     def __init__(self, color: _Color | None = None, **keys: Any) -> None: ...
@@ -64,19 +70,23 @@ class Sky(_Keys):
     ) -> None: ...
 
 class Lambertian(_Keys):
-    def __init__(self, albedo: _Color | None = None, **keys: Any) -> None: ...
+    def __init__(self, albedo: _Color | _Texture | None = None, **keys: Any) -> None: ...
 
 class Hemisphere(_Keys):
-    def __init__(self, albedo: _Color | None = None, **keys: Any) -> None: ...
+    def __init__(self, albedo: _Color | _Texture | None = None, **keys: Any) -> None: ...
 
 class Metal(_Keys):
-    def __init__(self, albedo: _Color | None = None, fuzz: float | None = None, **keys: Any) -> None: ...
+    def __init__(
+        self, albedo: _Color | _Texture | None = None, fuzz: float | _Texture | None = None, **keys: Any
+    ) -> None: ...
 
 class Dielectric(_Keys):
-    def __init__(self, ior: float | None = None, **keys: Any) -> None: ...
+    def __init__(self, ior: float | None = None, *, fuzz: float | _Texture | None = None, **keys: Any) -> None: ...
 
 class Emitter(_Keys):
-    def __init__(self, radiance: _Color | None = None, exposure: float | None = None, **keys: Any) -> None: ...
+    def __init__(
+        self, radiance: _Color | _Texture | None = None, exposure: float | None = None, **keys: Any
+    ) -> None: ...
 
 class ColorMap:
     values: NDArray[Any]
@@ -201,6 +211,7 @@ class Scene:
         threads: int | None = None,
         frame: int = 1,
         memory_limit: int | None = None,
+        denoise: bool = False,
         on_progress: Callable[[Progress], object] | None = None,
     ) -> Picture: ...
 

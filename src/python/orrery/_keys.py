@@ -62,26 +62,38 @@ class Camera(Keys):
     def __init__(self, look_from=None, look_at=None, *, vfov=None, up=None, **keys):
         super().__init__(look_from=look_from, look_at=look_at, vfov=vfov, up=up, **keys)
         self._extent = None
+        self._completes_radius = False
 
     @classmethod
-    def fit(cls, positions, radius=0.0, *, look_from="iso", up="z"):
-        """Returns an orthographic camera that sees spheres of a radius around all positions, with a margin of 5 %.
+    def fit(cls, positions, radius=None, *, look_from="iso", up="z"):
+        """Returns a camera that sees spheres around all positions in an image of any size, with a margin of 5 %.
+
+        It is orthographic, or a perspective camera if "camera.vfov" of the scene is set.
 
         positions  shape (n, 3)
+        radius     of the spheres; by default the largest radius of the scene's points when it is rendered or saved
         look_from  "iso", "+x", "-x" .. "-z", or "azimuth,elevation" in degrees, as for `orrery plot`
         up         "x", "y" or "z"
         """
-        if not 0 <= radius < float("inf"):
+        if radius is not None and not 0 <= radius < float("inf"):
             raise ValueError(f"radius is {radius!r}; must be a finite number, at least 0")
         columns = [(axis, column) for axis, column in zip("xyz", _arrays.positions(positions).T)]
         camera = cls()
-        camera._extent = Extent(columns, float(radius), look_from, up)
-        camera.keys = camera._extent.camera(16 / 9)
+        camera._extent = Extent(columns, float(radius or 0), look_from, up)
+        camera._completes_radius = radius is None
+        camera.keys = camera.keys_for(16 / 9)
         return camera
 
-    def keys_for(self, aspect):
-        """Returns the keys for an image of this aspect ratio; only those of a fitted camera depend on it."""
-        return self.keys if self._extent is None else self._extent.camera(aspect)
+    def keys_for(self, aspect, radius=0.0, vfov=None):
+        """Returns the keys for an image of this aspect ratio; only those of a fitted camera depend on the arguments.
+
+        aspect  width divided by height, as displayed
+        radius  of the spheres, if fit() was not given one
+        vfov    vertical field of view in degrees, for a perspective camera
+        """
+        if self._extent is None:
+            return self.keys
+        return self._extent.camera(aspect, radius if self._completes_radius else 0.0, vfov)
 
 
 class Constant(Keys):
@@ -115,35 +127,35 @@ class Sky(Keys):
 
 
 class Lambertian(Keys):
-    """A diffuse material. Its albedo is linear; a number is a grey."""
+    """A diffuse material. Its albedo is linear: a number is a grey, a dict is a texture."""
 
     def __init__(self, albedo=None, **keys):
         super().__init__(type="lambertian", albedo=_color(albedo), **keys)
 
 
 class Hemisphere(Keys):
-    """The first diffuse material of the book "Ray Tracing in One Weekend"."""
+    """The first diffuse material of the book "Ray Tracing in One Weekend"; its albedo may be a texture."""
 
     def __init__(self, albedo=None, **keys):
         super().__init__(type="hemisphere", albedo=_color(albedo), **keys)
 
 
 class Metal(Keys):
-    """A metal; its fuzz is from 0, a mirror, to 1."""
+    """A metal; its fuzz is from 0, a mirror, to 1. Albedo and fuzz may be textures."""
 
     def __init__(self, albedo=None, fuzz=None, **keys):
         super().__init__(type="metal", albedo=_color(albedo), fuzz=fuzz, **keys)
 
 
 class Dielectric(Keys):
-    """Glass or water, by its index of refraction."""
+    """Glass or water, by its index of refraction; its fuzz, a number or a texture, makes it rough."""
 
-    def __init__(self, ior=None, **keys):
-        super().__init__(type="dielectric", ior=ior, **keys)
+    def __init__(self, ior=None, *, fuzz=None, **keys):
+        super().__init__(type="dielectric", ior=ior, fuzz=fuzz, **keys)
 
 
 class Emitter(Keys):
-    """A light: emits the same linear radiance in all directions."""
+    """A light: emits the same linear radiance, which may be a texture, in all directions."""
 
     def __init__(self, radiance=None, exposure=None, **keys):
         super().__init__(type="emitter", radiance=_color(radiance), exposure=exposure, **keys)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: the text of a scene file, settings that override it, and arrays in place of data files."""
 
+import math
 import operator
 import os
 import re
@@ -57,6 +58,7 @@ class Scene:
         self._text = _NEW_SCENE
         self._settings = {}
         self._arrays = {}
+        self._radii = {}  # of the arrays; None if they are not a number for all
         if camera is not None:
             self.set("camera", camera)
         if background is not None:
@@ -116,6 +118,9 @@ class Scene:
         # Cryptomatte names spheres after their file, which is another one in a scene that was saved.
         self._add_table("points", {"file": name, "name": name, **keys})
         self._arrays[name] = list(table.items())
+        value = keys.get("radius")
+        is_one = _keys.is_number(value) and math.isfinite(value) and "transform" not in keys
+        self._radii[name] = abs(float(value)) if is_one else None
 
     def check(self):
         """Reads the scene and checks everything that a render would reject. Returns the warnings."""
@@ -139,6 +144,7 @@ class Scene:
         threads=None,
         frame=1,
         memory_limit=None,
+        denoise=False,
         on_progress=None,
     ):
         """Renders the scene and returns a Picture, with the same bits as `orrery render`.
@@ -150,15 +156,17 @@ class Scene:
         threads        by default all CPUs available to the process
         frame          of an animation
         memory_limit   bytes; by default the free memory
+        denoise        filters the beauty and the light layers, as `orrery render --denoise`
         on_progress    called with a Progress, at most ten times a second
 
         Other Python threads run meanwhile. KeyboardInterrupt, and an exception in on_progress, stop the render.
         """
         sizes = [_whole("width", width), _whole("height", height)]
-        data = self._data(*sizes, _whole("samples", samples), _whole("frame", frame))
+        samples, frame = _whole("samples", samples), _whole("frame", frame)
         limits = [_limit("noise", noise, 1e-6, 1), _limit("time", time, 1e-3, 1e9)]
         threads = _limit("threads", _whole("threads", threads), 1, 1024)
         memory = int(_limit("memory_limit", memory_limit, 1, 2**63))
+        data = self._data(*sizes, samples, frame, memory)
 
         def report(*values):
             on_progress(Progress(*values))
@@ -166,7 +174,7 @@ class Scene:
         def warn(text):
             warnings.warn(text.rstrip("\n"), SceneWarning, stacklevel=3)
 
-        return Picture(data.render(*limits, threads, memory, "", report if on_progress else None, warn))
+        return Picture(data.render(*limits, threads, memory, "", bool(denoise), report if on_progress else None, warn))
 
     def _add_table(self, name, keys):
         lines = [f"{key} = {_keys.toml_text(value)}\n" for key, value in keys.items() if value is not None]
@@ -179,31 +187,65 @@ class Scene:
             number += 1
         return f"positions-{number}"
 
-    def _image_size(self):
-        """Returns the width and height of the scene's image, as far as they are valid."""
+    def _table(self, name):
+        """Returns the keys of a table such as "image", of the text and of the settings, as far as they are valid."""
         try:
-            image = dict(tomllib.loads(self._text).get("image", {}))
-        except (tomllib.TOMLDecodeError, TypeError, ValueError):
-            image = {}
+            table = _table_of(tomllib.loads(self._text).get(name))
+        except (tomllib.TOMLDecodeError, ValueError):
+            table = {}
         for key, value in self._settings.items():
-            if key in ("image.width", "image.height") and value.isdigit():
-                image[key[6:]] = int(value)
-        sizes = [image.get("width", 1200), image.get("height", 675)]
-        return [size if isinstance(size, int) and size > 0 else 1 for size in sizes]
+            if isinstance(value, str) and (key == name or key.startswith(name + ".")):
+                try:
+                    value = tomllib.loads(f"value = {value}")["value"]
+                except (tomllib.TOMLDecodeError, ValueError):
+                    continue
+                if key == name:
+                    table = _table_of(value)
+                else:
+                    table[key[len(name) + 1 :]] = value
+        return table
 
-    def _data(self, width=None, height=None, samples=None, frame=1):
-        sizes = self._image_size()
+    def _aspect(self, width, height):
+        """Returns the width of the image divided by its height, as displayed; of keys that are not valid any number."""
+        image = self._table("image")
+        sides = width or image.get("width", 1200), height or image.get("height", 675), image.get("pixel_aspect", 1)
+        width, height, pixel = (n if _keys.is_number(n) and 0 < n < math.inf else 1 for n in sides)
+        return width / height * pixel
+
+    def _data(self, width=None, height=None, samples=None, frame=1, memory_limit=0):
         own = {"image.width": width, "image.height": height, "render.samples": samples}
-        overrides = []
-        for key, value in self._settings.items():
-            if isinstance(value, _keys.Camera):
-                value = _keys.toml_text(value.keys_for((width or sizes[0]) / (height or sizes[1])))
-            overrides.append(f"{key}={value}")
-        overrides += [f"{key}={_keys.toml_text(value)}" for key, value in own.items() if value is not None]
-        data = _orrery.SceneData(self._file, self._is_file, self._text, overrides, frame)
-        for name, columns in self._arrays.items():
-            data.add_table(name, columns)
-        return data
+        aspect = self._aspect(width, height)
+        vfov = self._table("camera").get("vfov") if "camera.vfov" in self._settings else None
+        if not _keys.is_number(vfov) or not 0 < vfov < 180 or "camera.projection" in self._settings:
+            vfov = None
+
+        def data(radius=0.0):
+            overrides = []
+            for key, value in self._settings.items():
+                if isinstance(value, _keys.Camera):
+                    value = _keys.toml_text(value.keys_for(aspect, radius, vfov))
+                overrides.append(f"{key}={value}")
+            overrides += [f"{key}={_keys.toml_text(value)}" for key, value in own.items() if value is not None]
+            out = _orrery.SceneData(self._file, self._is_file, self._text, overrides, frame)
+            for name, columns in self._arrays.items():
+                out.add_table(name, columns)
+            return out
+
+        camera = self._settings.get("camera")
+        if not isinstance(camera, _keys.Camera) or not camera._completes_radius:
+            return data()
+        radius = self._uniform_radius()
+        return data(data().largest_radius(memory_limit) if radius is None else radius)
+
+    def _uniform_radius(self):
+        """Returns the largest radius of the points if it is known without reading them, or None."""
+        if self._is_file or None in self._radii.values() or any(key.startswith("points") for key in self._settings):
+            return None
+        return max(self._radii.values(), default=0.0)
+
+
+def _table_of(value):
+    return dict(value) if isinstance(value, Mapping) else {}
 
 
 def _limit(name, value, low, high):

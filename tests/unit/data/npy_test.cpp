@@ -90,8 +90,8 @@ TEST_F(DataNpy, UnsignedIntegersBeyondInt64AreRefused) {
        {std::uint64_t{9223372036854775807u}, std::uint64_t{9223372036854775808u}, ~std::uint64_t{0}})
     rows += std::string(12, '\0') + number_bytes(id);
   EXPECT_EQ(faults(npy_bytes(description, false, "(3,)", rows)),
-            "row 1: `id` is 9223372036854775808, larger than the largest int64\n"
-            "row 2: `id` is 18446744073709551615, larger than the largest int64\n");
+            "row 2: `id` is 9223372036854775808, larger than the largest int64\n"
+            "row 3: `id` is 18446744073709551615, larger than the largest int64\n");
 }
 
 TEST_F(DataNpy, FieldsHaveCustomaryRoles) {
@@ -138,7 +138,7 @@ TEST_F(DataNpy, TextsAreUnicodeOfBothByteOrders) {
   for (const std::uint32_t invalid : {0xD800u, 0x110000u})
     EXPECT_EQ(faults(npy_bytes("[('x','<f4'),('y','<f4'),('z','<f4'),('name','<U1')]", false, "(1,)",
                                std::string(12, '\0') + number_bytes(invalid))),
-              "row 0: `name` has an invalid character\n");
+              "row 1: `name` has an invalid character\n");
 }
 
 TEST_F(DataNpy, VersionsTwoAndThreeHaveALongLength) {

@@ -173,16 +173,16 @@ TEST_F(DataPly, RowsThatDifferFromTheHeaderAreRefused) {
   const std::string colors = "element vertex 1\n" + std::string(kXyz) + "property uchar red\n";
   EXPECT_NE(faults(header("ascii", colors) + "1 2 3 0.5\n"), "");
   EXPECT_EQ(faults(header("ascii", colors + "element e 1\nproperty int e\n") + "1 2 3 0.5\n7\n"),
-            "11: vertex 0 of 1, `red`: not an integer of 64 bits\n");
+            "11: vertex 1 of 1, `red`: not an integer of 64 bits\n");
 }
 
 TEST_F(DataPly, ElementsAfterTheVerticesMustBeComplete) {
   const std::string elements = std::string(kTwo) + "element face 1\nproperty list uchar int v\n";
   EXPECT_EQ(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n3 1 2 3\n"), "");
   EXPECT_EQ(faults(header("ascii", elements) + "1 2 3 4\n1 2 3 4\n3 1 2\n"),
-            "13: row 0 of `face`, `v`: unexpected end of line; a row must be one line\n");
+            "13: row 1 of `face`, `v`: unexpected end of line; a row must be one line\n");
   EXPECT_EQ(faults(header("binary_little_endian", elements) + std::string(2 * 16, '\0') + "\2abcd"),
-            "8: row 0 of `face`, `v`: unexpected end of file\n");
+            "8: row 1 of `face`, `v`: unexpected end of file\n");
   EXPECT_EQ(faults(header("binary_little_endian", elements + "element none 0\nproperty int n\n") +
                    std::string(2 * 16, '\0') + std::string("\1abcde")),
             "8: 1 bytes follow the last row that the header declares; the counts are wrong, or the file is damaged\n")

@@ -441,8 +441,8 @@ TEST(FormatReadScene, RadiiOfPointsAreChecked) {
   const std::string told =
       files.diagnostics("[material.a]\ntype = \"dielectric\"\n[[points]]\nfile = \"tiny.ply\"\nmaterial = \"a\"\n");
   EXPECT_EQ(told,
-            "scene.toml:3:1: error: points[0][1].radius: radius is 1e-40; its magnitude must be in 1e-30..1e+18\n"
-            "    [[points]]\n    ^~~~~~~~~~\n");
+            "scene.toml:4:8: error: points[0].file: row 2 of tiny.ply: radius is 1e-40; its magnitude must be in "
+            "1e-30..1e+18\n    file = \"tiny.ply\"\n           ^~~~~~~~~~\n");
 }
 
 TEST(FormatReadScene, ManyErrorsAreReportedQuickly) {

@@ -148,16 +148,28 @@ std::vector<std::filesystem::path> write_all(const support::TempDir& folder, int
 
 TEST_F(ImageRead, ATruncatedFileIsBadData) {
   for (const auto& file : write_all(folder_, 100, 80)) {
-    if (file.extension() == ".jpg") continue;  // the decoder fills the rest with grey and reports no error
     const std::string bytes = support::file_bytes(file);
     for (const std::size_t size :
          {std::size_t{0}, std::size_t{3}, std::size_t{40}, bytes.size() / 2, bytes.size() - 50}) {
       SCOPED_TRACE(file.filename().string() + " cut to " + std::to_string(size) + " of " +
                    std::to_string(bytes.size()));
       support::write_bytes(file, bytes.substr(0, size));
+      testing::internal::CaptureStderr();
       expect_error(ErrorKind::kBadData, {file.filename().string()}, [&] { read(file); });
+      EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "a library printed";
     }
   }
+}
+
+TEST_F(ImageRead, ADamagedPngIsBadDataAndNothingIsPrinted) {
+  const auto file = folder_ / "a.png";
+  write_encoded(file, test_encoded(30, 20, 8), {});
+  std::string bytes = support::file_bytes(file);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  support::write_bytes(file, bytes);
+  testing::internal::CaptureStderr();
+  expect_error(ErrorKind::kBadData, {"a.png", "a checksum does not match"}, [&] { read(file); });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(ImageRead, AFileOfAnotherFormatIsBadData) {

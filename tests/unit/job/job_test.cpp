@@ -170,8 +170,8 @@ TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
   };
   job_.scene.overrides.push_back("render.seed=2");
   expect_refused("scene hash");
-  job_.sampling.noise = 0.1;
-  expect_refused("--noise");
+  job_.sampling.noise = 0.0008;  // the nearest double is 0.00080000000000000004
+  expect_refused("--noise 0, not 0.0008;");
   job_.sampling.shard = {0, 2};
   expect_refused("--shard 1/1, not 1/2");
   job_.scene.overrides.push_back("output.layers=[\"N\"]");

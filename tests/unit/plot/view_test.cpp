@@ -73,6 +73,44 @@ TEST(PlotView, IsoShowsThreeFacesEqually) {
   EXPECT_LT(difference(view_axes("iso", "y").back, Vec3d{1, 1, 1} / std::sqrt(3.0)), 1e-14);
 }
 
+TEST(PlotView, PerspectiveCamerasSeeTheBoxWithAMargin) {
+  for (const double aspect : {0.2, 1.0, 1.78})
+    for (const double vfov : {1.0, 30.0, 120.0, 179.0}) {
+      const ViewAxes axes = view_axes("30,20", "z");
+      ViewExtent extent(axes);
+      for (const Vec3d center : {Vec3d{0, 0, 0}, Vec3d{7, 1, -2}, Vec3d{-1, 3, 2}}) extent.add(center, 0.5);
+      const scene::Camera camera = extent.perspective_camera(aspect, vfov);
+      EXPECT_EQ(camera.projection, scene::Projection::kPerspective);
+      EXPECT_EQ(camera.vfov, vfov);
+      EXPECT_LT(difference(math::normalized(camera.look_from - camera.look_at), axes.back), 1e-12);
+      // The corners of the box that the orthographic camera shows, on its face in front.
+      const double tangent = std::tan(vfov / 360 * 3.14159265358979);
+      double widest = 0;
+      for (const Vec3d center : {Vec3d{0, 0, 0}, Vec3d{7, 1, -2}, Vec3d{-1, 3, 2}})
+        for (const Vec3d to : {axes.right, axes.right * -1.0, axes.up, axes.up * -1.0}) {
+          const Vec3d p = center + to * 0.5 - camera.look_from;
+          const double distance = -math::dot(p, axes.back);
+          EXPECT_GT(distance, 0);
+          widest = std::max(widest, std::abs(math::dot(p, axes.right)) / (distance * tangent * aspect));
+          widest = std::max(widest, std::abs(math::dot(p, axes.up)) / (distance * tangent));
+        }
+      EXPECT_LE(widest, 0.9 + 1e-9) << "5 % on each side";
+    }
+  EXPECT_GT(math::length(ViewExtent(view_axes("iso", "z")).perspective_camera(1, 30).look_from), 0);
+}
+
+TEST(PlotView, GrownExtentsAreThoseOfLargerSpheres) {
+  ViewExtent points(view_axes("iso", "z")), spheres = points;
+  EXPECT_TRUE(points.grown(1).is_empty());
+  for (const Vec3d center : {Vec3d{0, 0, 0}, Vec3d{7, 1, -2}}) {
+    points.add(center, 0);
+    spheres.add(center, 1.5);
+  }
+  const scene::Camera grown = points.grown(1.5).camera(1.78), camera = spheres.camera(1.78);
+  EXPECT_NEAR(*grown.width, *camera.width, 1e-12);
+  EXPECT_LT(difference(grown.look_from, camera.look_from), 1e-12);
+}
+
 TEST(PlotView, MalformedViewsAreUsageErrors) {
   for (const char* view : {"", "isometric", "x", "+w", "+X", "30", "30,", ",20", "30,20,10", "30, 20", "30,91",
                            "30,-90.5", "nan,0", "inf,0", "30,nan"}) {

@@ -215,6 +215,43 @@ TEST_F(PointsLoadPoints, UnusedColumnsAreListed) {
   EXPECT_EQ(points.unused, std::vector<std::string>{"name"});
 }
 
+TEST_F(PointsLoadPoints, RowsOutsideTheDomainAreNamed) {
+  const std::string text = "x,y,z,radius\n0,0,0,1\n1,0,0,1e-40\n2e18,0,0,1\n3,0,0,1\n";
+  write("a.csv", text);
+  points.select = "x > 0";
+  const std::vector<scene::SceneDiagnostic> diagnostics = load_points(request, points);
+  ASSERT_EQ(diagnostics.size(), 2u) << text_of(diagnostics);
+  EXPECT_EQ(diagnostics[0].key, "points[0].file");
+  EXPECT_EQ(diagnostics[0].text, "row 2 of a.csv: radius is 1e-40; its magnitude must be in 1e-30..1e+18");
+  EXPECT_EQ(diagnostics[1].text, "row 3 of a.csv: center [2e+18, 0, 0] is not finite or exceeds 1e+18");
+  points.transform.scale = 1e15;
+  points.transform.translate = {-1e18, 0, 0};
+  EXPECT_EQ(load_points(request, points)[0].text.substr(0, 24), "row 3 of a.csv: center [");
+  points.select.clear();
+  points.transform.scale = 0.1;
+  points.transform.translate = {0, 0, 0};
+  write("a.csv", "x,y,z,radius\n2e18,0,0,2e18\n0,0,0,1\n");
+  EXPECT_EQ(load_points(request, points).size(), 0u) << "in the domain after the transform";
+  EXPECT_EQ(points.centers[0].x, 2e17);
+}
+
+TEST_F(PointsLoadPoints, SpheresThatAreRowsAreMarked) {
+  const auto are_rows = [this] {
+    EXPECT_TRUE(load_points(request, points).empty());
+    return points.spheres_are_rows;
+  };
+  write("a.csv", "x,y,z,radius\n0,0,0,1\n1,0,0,1\n");
+  EXPECT_TRUE(are_rows());
+  points.select = "x > 0";
+  EXPECT_FALSE(are_rows());
+  points.select.clear();
+  points.clip[0] = scene::Interval{-1, 0.5};
+  EXPECT_FALSE(are_rows());
+  points.clip[0].reset();
+  write("a.csv", "x,y,z,radius,id\n0,0,0,1,2\n1,0,0,1,1\n");
+  EXPECT_FALSE(are_rows());
+}
+
 /// Twelve rows without usable numbers, one good row in front.
 std::string bad_rows() {
   std::string out = "x,y,z,radius\n0,0,0,1\n";

@@ -62,10 +62,17 @@ TEST(SceneCoincident, ComparesAcrossTablesAndPointsFiles) {
   scene.points[2].radii = {2, 2, 2};
   const auto found = coincident_spheres(scene, 10);
   ASSERT_EQ(found.reported.size(), 2u);
-  EXPECT_EQ(found.reported[0].key, "points[2][0]");
+  EXPECT_EQ(found.reported[0].key, "points[2].file");
+  EXPECT_EQ(found.reported[0].name, "row 1 of points[2]");
   EXPECT_EQ(found.reported[0].first, "sphere[0]");
-  EXPECT_EQ(found.reported[1].key, "points[2][2]");
-  EXPECT_EQ(found.reported[1].first, "points[0][0]");
+  EXPECT_EQ(found.reported[1].name, "row 3 of points[2]");
+  EXPECT_EQ(found.reported[1].first, "row 1 of points[0]");
+  scene.points[0].file = "a.csv";
+  scene.points[2].file = "b.csv";
+  scene.points[2].spheres_are_rows = false;
+  const Coincident named = coincident_spheres(scene, 10).reported[1];
+  EXPECT_EQ(named.name, "sphere 3 of b.csv");
+  EXPECT_EQ(named.first, "row 1 of a.csv");
 }
 
 TEST(SceneCoincident, CountsAllAndListsTheFirst) {

@@ -228,9 +228,10 @@ TEST(SceneValidate, MaterialMustExist) {
   scene.points[1] = scene.points[0];
   scene.points[1].centers = {{7, 0, 0}, {8, 0, 0}};
   scene.points[1].materials = {0, 3};
-  EXPECT_EQ(told(scene),
-            (Told{"points[0].material: there is no material with index 9; the scene has 1, counted from 0",
-                  "points[1][1].material: there is no material with index 3; the scene has 1, counted from 0"}));
+  EXPECT_EQ(
+      told(scene),
+      (Told{"points[0].material: there is no material with index 9; the scene has 1, counted from 0",
+            "points[1].file: row 2 of points[1]: there is no material with index 3; the scene has 1, counted from 0"}));
 }
 
 TEST(SceneValidate, MissingMaterialOfAPointsFileIsReportedOnce) {
@@ -259,8 +260,8 @@ TEST(SceneValidate, OfInvalidPointsTenAreReportedAndAllCounted) {
   for (std::size_t i = 20; i < 50; ++i) scene.points[1].radii.set(i, 0);
   const Told lines = told(scene);
   ASSERT_EQ(lines.size(), 11u);
-  EXPECT_EQ(lines[0].rfind("points[1][20].radius: radius is 0", 0), 0u) << lines[0];
-  EXPECT_EQ(lines[10], "points[1]: and 20 more (30 in all)");
+  EXPECT_EQ(lines[0].rfind("points[1].file: row 21 of points[1]: radius is 0", 0), 0u) << lines[0];
+  EXPECT_EQ(lines[10], "points[1].file: and 20 more (30 in all)");
 }
 
 TEST(SceneValidate, ArraysOfDifferentLengthsAreNotIndexed) {
