@@ -287,7 +287,7 @@ TEST_F(CliConvert, ErrorsOfAPlotHaveNoLinesOfItsScene) {
   write("far.csv", "x,y,z\n1e30,0,0\n0,0,0\n");
   const Outcome r = run("plot far.csv -o far.png");
   EXPECT_EQ(r.status, 65);
-  EXPECT_TRUE(contains(r.err, "far.csv: error: camera.width")) << r.err;
+  EXPECT_TRUE(contains(r.err, "far.csv: error: row 1 of far.csv: center")) << r.err;
 }
 
 TEST_F(CliConvert, FilesOfOtherLayoutsAreRefused) {
