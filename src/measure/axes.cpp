@@ -2,6 +2,7 @@
 #include "measure/axes.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "base/text.h"
 
@@ -34,6 +35,9 @@ class Planner {
     fresnel();
     direct_lighting();
     accelerator();
+    if (compiled_.sampler.kind == kernel::SamplerKind::kBlueNoise)
+      for (Choice& choice : out_.choices)
+        if (choice.is_shortcut && !choice.is_denoised) take_sobol(choice);
     return std::move(out_);
   }
 
@@ -45,6 +49,15 @@ class Planner {
     choice.flags = flags;
     choice.samples = samples;
     return choice;
+  }
+
+  /// Whether a shortcut has a bias is judged by pixels with random numbers of their own, unlike those of blue noise.
+  static void take_sobol(Choice& choice) {
+    choice.flags += " --set render.sampler=sobol";
+    choice.apply = [apply = choice.apply](CompiledScene& w) {
+      w.sampler.kind = kernel::SamplerKind::kSobol;
+      if (apply) apply(w);
+    };
   }
 
   static std::string flag(int samples) { return "--samples " + std::to_string(samples); }
@@ -159,11 +172,23 @@ class Planner {
       out_.left_out.push_back("no lights: no direct lighting axis");
       return;
     }
+    // Built now, while the scene has its spheres. Its own tree is in each copy of it.
+    std::shared_ptr<const compile::LightTree> missing_tree;
+    if (compiled_.light_tree.spheres.empty() && !compiled_.emission.empty())
+      missing_tree = std::make_shared<const compile::LightTree>(compile::build_light_tree(compiled_.view()));
     const auto add_one = [&](const char* name, kernel::DirectLighting mode) {
+      std::shared_ptr<const compile::EnvironmentMap> environment = compiled_.environment;
+      if (environment && mode != compiled_.direct_lighting)
+        environment = environment->with_sampling(compile::environment_sampling(mode));
       add("direct lighting", name, flag(kCompared) + " --set render.direct_lighting=" + name, kCompared).apply =
-          [mode](CompiledScene& w) {
+          [mode, environment, missing_tree](CompiledScene& w) {
             w.direct_lighting = mode;
-            if (w.light_tree.spheres.empty() && !w.emission.empty()) w.light_tree = compile::build_light_tree(w.view());
+            w.environment = environment;
+            if (mode == kernel::DirectLighting::kBsdf) {
+              w.light_tree = {};
+            } else if (missing_tree) {
+              w.light_tree = *missing_tree;
+            }
           };
     };
     add_one("mis", kernel::DirectLighting::kMis);
