@@ -47,6 +47,35 @@ radius = 0.2
 material = "lamp"
 """
 
+# Balls under the image of a clear sky, a few texels of which hold the sun.
+IMAGE_SKY = """
+[camera]
+look_from = [0, 3, 8]
+look_at = [0, 0.8, 0]
+vfov = 30
+[background]
+type = "image"
+file = "sky.exr"
+[render]
+max_depth = 5
+[material]
+floor = { type = "lambertian", albedo = [0.5, 0.5, 0.5] }
+ball = { type = "lambertian", albedo = [0.7, 0.3, 0.2] }
+brushed = { type = "metal", albedo = [0.8, 0.8, 0.8], fuzz = 0.5 }
+[[sphere]]
+center = [0, -1000, 0]
+radius = 1000
+material = "floor"
+[[sphere]]
+center = [-1, 1, 0]
+radius = 1
+material = "ball"
+[[sphere]]
+center = [1, 1, 0]
+radius = 1
+material = "brushed"
+"""
+
 
 def run(program, *words):
     return subprocess.run([program, *map(str, words)], check=True, capture_output=True, text=True).stdout
@@ -74,7 +103,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         (work / "penumbra.toml").write_text(PENUMBRA)
-        scenes = {"penumbra": work / "penumbra.toml"}
+        (work / "image-sky.toml").write_text(IMAGE_SKY)
+        run(options.program, "generate", "env", "sky", "-o", work / "sky.exr")
+        scenes = {"penumbra": work / "penumbra.toml", "image-sky": work / "image-sky.toml"}
         for name in ("three-point", "thousand-lamps", "caustic", "eclipse-ground"):
             scenes[name] = ROOT / f"scenes/light/{name}.toml"
         print(f"{'scene':16} {'time of a sample':>17} {'error, same samples':>20} {'error, same time':>17}")

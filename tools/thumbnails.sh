@@ -46,13 +46,26 @@ done
 for name in three-point thousand-lamps caustic eclipse-ground eclipse-space; do
   picture "scenes/light/$name.toml" "light-$name" --samples 1000
 done
+picture scenes/light/eclipse-ground.toml light-eclipse-ground-fast --samples 1000 --precision fast
+echo light-three-point-relit
+"$program" render scenes/light/three-point.toml -o "$work/three.exr" --layers light_groups --type float --denoise \
+  --width 240 --height 135 --samples 1000 --quiet
+group() { echo "--ch R=$1.R,G=$1.G,B=$1.B"; }
+# shellcheck disable=SC2046 # words
+oiiotool "$work/three.exr" $(group default) "$work/three.exr" $(group key) --mulc 0.15,0.2,0.35 --add \
+  "$work/three.exr" $(group fill) --mulc 0.5 --add "$work/three.exr" $(group rim) --mulc 3 --add \
+  "$work/three.exr" --ch A --chappend -o "$work/relit.exr"
+"$program" develop "$work/relit.exr" -o "$out/light-three-point-relit.png" --quiet
 balls=scenes/light/grey-and-chrome.toml
 picture $balls light-grey-and-chrome --samples 400
-for elevation in 12 3; do
+for elevation in 60 12; do
   picture $balls light-grey-and-chrome-$elevation --samples 400 --set background.sun_elevation=$elevation
 done
+picture $balls light-grey-and-chrome-3 --samples 4000 --denoise --set background.sun_elevation=3 \
+  --set background.exposure=3
+picture $balls light-grey-and-chrome-m4 --samples 1000 --set background.sun_elevation=-4 --set background.exposure=7
 "$program" generate env studio -o "$work/studio.exr"
-picture $balls light-studio --samples 400 --set background.type=image --set "background.file=$work/studio.exr"
+picture $balls light-studio --samples 400 --set "background={ type = \"image\", file = \"$work/studio.exr\" }"
 "$program" generate planet -o "$work/planet.exr" --width 2048
 cp scenes/next-week/*.toml "$work"
 for name in 01-bouncing-spheres 02-checkered-spheres 03-planet 04-perlin-noise 05-turbulence 06-marble 07-lamp; do

@@ -46,8 +46,8 @@ struct SceneInfo {
   double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; valid if spheres > 0
   double smallest_radius = 0, largest_radius = 0;
   std::vector<std::pair<std::string, std::uint64_t>> materials;  ///< number of compiled materials by type
-  std::uint64_t emitters = 0;                                    ///< spheres that emit
-  std::string lights;                                            ///< number of emitters and how they are sampled
+  std::uint64_t emitters = 0;                                    ///< spheres that emit; black ones do not
+  std::string lights;                                            ///< emitters, background and how they are sampled
   std::vector<PointsInfo> points;
   std::vector<std::string> layers, available_layers;  ///< layers requested in [output], and all that the scene supports
   std::vector<Feature> features;

@@ -93,15 +93,6 @@ void add_motion(const scene::Scene& opening, const scene::Scene& closing, double
   compiled.features.motion = camera_moves || !compiled.motion.empty();
 }
 
-EnvironmentSampling sampling_of(scene::DirectLighting lighting) {
-  switch (lighting) {
-    case scene::DirectLighting::kMis: return EnvironmentSampling::kCompensated;
-    case scene::DirectLighting::kBsdf: return EnvironmentSampling::kNone;
-    case scene::DirectLighting::kLight: return EnvironmentSampling::kComplete;
-  }
-  return EnvironmentSampling::kNone;
-}
-
 /// Compiles an image background or a sky; without one, the gradient or constant colour.
 void set_background(const scene::Scene& scene, CompiledScene& compiled) {
   const scene::Background& from = scene.background;
@@ -112,7 +103,7 @@ void set_background(const scene::Scene& scene, CompiledScene& compiled) {
     EnvironmentSettings settings;
     settings.rotation = from.rotation;
     settings.scale = stops_to_factor(from.exposure);
-    settings.sampling = sampling_of(scene.render.direct_lighting);
+    settings.sampling = environment_sampling(compiled.direct_lighting);
     settings.light_group = light_group(compiled, from.light_group);
     settings.visible = from.visible;
     compiled.environment = std::make_shared<const EnvironmentMap>(image, settings);
@@ -214,6 +205,11 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
     case scene::Shading::kNormal: compiled.shading = kernel::Shading::kNormal; break;
     case scene::Shading::kFlat: compiled.shading = kernel::Shading::kFlat; break;
   }
+  switch (scene.render.direct_lighting) {
+    case scene::DirectLighting::kMis: compiled.direct_lighting = kernel::DirectLighting::kMis; break;
+    case scene::DirectLighting::kBsdf: compiled.direct_lighting = kernel::DirectLighting::kBsdf; break;
+    case scene::DirectLighting::kLight: compiled.direct_lighting = kernel::DirectLighting::kLight; break;
+  }
   compiled.accelerator = scene.render.accelerator;
   compiled.features.lens = scene.camera.defocus_angle > 0 || (closing != nullptr && closing->camera.defocus_angle > 0);
   const double scale = compiled.features.lens ? 1 : view_scale(scene.camera);
@@ -228,11 +224,6 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing) {
   if (std::all_of(compiled.materials.begin(), compiled.materials.end(), is_dark)) compiled.emission.clear();
   compiled.features.lit = !compiled.emission.empty() || compiled.environment != nullptr;
   if (closing != nullptr) add_motion(scene, *closing, scale, compiled);
-  switch (scene.render.direct_lighting) {
-    case scene::DirectLighting::kMis: compiled.direct_lighting = kernel::DirectLighting::kMis; break;
-    case scene::DirectLighting::kBsdf: compiled.direct_lighting = kernel::DirectLighting::kBsdf; break;
-    case scene::DirectLighting::kLight: compiled.direct_lighting = kernel::DirectLighting::kLight; break;
-  }
   update_lights(compiled);
   compiled.bounds = bounds_of(compiled.spheres);
   return compiled;

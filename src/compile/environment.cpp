@@ -183,8 +183,23 @@ std::uint64_t EnvironmentMap::bytes() const noexcept {
          sums_.size() * sizeof(float);
 }
 
+EnvironmentSampling environment_sampling(kernel::DirectLighting lighting) noexcept {
+  switch (lighting) {
+    case kernel::DirectLighting::kMis: return EnvironmentSampling::kCompensated;
+    case kernel::DirectLighting::kBsdf: return EnvironmentSampling::kNone;
+    case kernel::DirectLighting::kLight: return EnvironmentSampling::kComplete;
+  }
+  return EnvironmentSampling::kNone;
+}
+
+std::shared_ptr<const EnvironmentMap> EnvironmentMap::with_sampling(EnvironmentSampling sampling) const {
+  EnvironmentSettings settings = settings_;
+  settings.sampling = sampling;
+  return std::make_shared<const EnvironmentMap>(image_, settings);
+}
+
 EnvironmentMap::EnvironmentMap(std::shared_ptr<const EnvironmentImage> image, const EnvironmentSettings& settings)
-    : image_(std::move(image)) {
+    : image_(std::move(image)), settings_(settings) {
   view_.texels = image_->row(0);
   view_.width = static_cast<std::uint32_t>(image_->width());
   view_.height = static_cast<std::uint32_t>(image_->height());

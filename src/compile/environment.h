@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernel/environment.h"
+#include "kernel/lights.h"
 #include "scene/environment_image.h"
 
 namespace orrery::compile {
@@ -16,6 +17,9 @@ enum class EnvironmentSampling {
   kCompensated,  ///< together with BSDF sampling: only what is brighter than the mean
   kComplete,     ///< alone: wherever there is radiance
 };
+
+/// How an environment is sampled with a scene's direct lighting.
+EnvironmentSampling environment_sampling(kernel::DirectLighting lighting) noexcept;
 
 struct EnvironmentSettings {
   double rotation = 0;  ///< degrees about +y, of map and sun
@@ -40,6 +44,9 @@ class EnvironmentMap {
   EnvironmentMap(const EnvironmentMap&) = delete;
   EnvironmentMap& operator=(const EnvironmentMap&) = delete;
 
+  /// The same background with tables for another sampling.
+  std::shared_ptr<const EnvironmentMap> with_sampling(EnvironmentSampling sampling) const;
+
   /// The view for the kernel; valid as long as this object.
   const kernel::Environment& view() const noexcept { return view_; }
 
@@ -48,6 +55,7 @@ class EnvironmentMap {
 
  private:
   std::shared_ptr<const scene::EnvironmentImage> image_;
+  EnvironmentSettings settings_;
   std::vector<float> sums_;  ///< all levels
   std::vector<kernel::EnvironmentRow> rows_;
   kernel::Environment view_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "compile/emitters.h"
@@ -19,6 +20,16 @@ using kernel::Lights;
 /// Rounding may make a bounding sphere this much too small, relative to its radius.
 constexpr double kRounding = 1 + 0x1p-45;
 
+/// A leaf while the tree is built.
+struct Leaf {
+  LightNode node;
+  std::uint32_t sphere;
+};
+
+/// A table of all ids from the first to the last emitter may have this many entries per emitter. Otherwise a leaf is
+/// found by a binary search.
+constexpr std::uint32_t kMostEntries = 2;
+
 /// Sorts leaves so that halves of every range are separated along its longest axis, and computes the nodes.
 class Builder {
  public:
@@ -29,16 +40,15 @@ class Builder {
 
   void build() {
     tree_.nodes.resize(leaves_.size());
+    if (leaves_.size() <= Lights::kFew) {
+      for (std::size_t i = 0; i < leaves_.size(); ++i) tree_.nodes[i] = leaves_[i].node;
+      return;
+    }
     divide({0, static_cast<std::uint32_t>(leaves_.size())});
     for (std::size_t i = 0; i < leaves_.size(); ++i) tree_.spheres[i] = leaves_[i].sphere;
   }
 
  private:
-  struct Leaf {
-    LightNode node;
-    std::uint32_t sphere;
-  };
-
   /// Returns the power of the range. Nothing depends on the order in which the library leaves the halves.
   double divide(LightRange range) {
     if (range.end - range.begin == 1) return leaves_[range.begin].node.power;
@@ -83,6 +93,24 @@ class Builder {
   std::vector<Leaf> leaves_;
 };
 
+/// Builds the lookup of leaves by sphere.
+void index_leaves(LightTree& tree) {
+  const auto count = static_cast<std::uint32_t>(tree.spheres.size());
+  const auto [first, last] = std::minmax_element(tree.spheres.begin(), tree.spheres.end());
+  tree.first_sphere = *first;
+  tree.end_sphere = *last + 1;
+  tree.scattered = (tree.end_sphere - tree.first_sphere) / kMostEntries > count;
+  if (tree.scattered) {
+    tree.leaves.resize(count);
+    std::iota(tree.leaves.begin(), tree.leaves.end(), 0U);
+    std::sort(tree.leaves.begin(), tree.leaves.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return tree.spheres[a] < tree.spheres[b]; });
+    return;
+  }
+  tree.leaves.assign(tree.end_sphere - tree.first_sphere, Lights::kNoLeaf);
+  for (std::uint32_t leaf = 0; leaf < count; ++leaf) tree.leaves[tree.spheres[leaf] - tree.first_sphere] = leaf;
+}
+
 }  // namespace
 
 Lights LightTree::view() const noexcept {
@@ -91,14 +119,17 @@ Lights LightTree::view() const noexcept {
   out.nodes = nodes.data();
   out.leaves = leaves.data();
   out.first_sphere = first_sphere;
-  out.end_sphere = first_sphere + static_cast<std::uint32_t>(leaves.size());
+  out.end_sphere = end_sphere;
   out.count = static_cast<std::uint32_t>(spheres.size());
+  out.scattered = scattered;
   return out;
 }
 
 std::size_t LightTree::bytes() const noexcept {
   return spheres.size() * sizeof(spheres[0]) + nodes.size() * sizeof(nodes[0]) + leaves.size() * sizeof(leaves[0]);
 }
+
+std::size_t LightTree::bytes_of_build() const noexcept { return bytes() + spheres.size() * sizeof(Leaf); }
 
 LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision precision) {
   LightTree tree;
@@ -109,11 +140,8 @@ LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision pre
   }
   tree.spheres = without_coincident(scene, precision, std::move(tree.spheres));
   if (tree.spheres.empty()) return tree;
-  tree.first_sphere = tree.spheres.front();
-  tree.leaves.assign(tree.spheres.back() - tree.first_sphere + 1, Lights::kNoLeaf);
   Builder(scene, tree).build();
-  for (std::uint32_t leaf = 0; leaf < tree.spheres.size(); ++leaf)
-    tree.leaves[tree.spheres[leaf] - tree.first_sphere] = leaf;
+  index_leaves(tree);
   return tree;
 }
 

@@ -15,21 +15,25 @@ namespace orrery::compile {
 /// leaves are split at the median of their longest axis, ties by id.
 struct LightTree {
   std::vector<std::uint32_t> spheres;    ///< sphere id of each leaf
-  std::vector<kernel::LightNode> nodes;  ///< one per leaf; the first is unused
-  std::vector<std::uint32_t> leaves;     ///< leaf of each sphere from first_sphere on, or kernel::Lights::kNoLeaf
+  std::vector<kernel::LightNode> nodes;  ///< one per leaf; the first is unused unless there are few
+  std::vector<std::uint32_t> leaves;     ///< see kernel::Lights
   std::uint32_t first_sphere = 0;
+  std::uint32_t end_sphere = 0;
+  bool scattered = false;                      ///< see kernel::Lights
   std::optional<kernel::Precision> precision;  ///< in which its spheres do not coincide; empty: there is no tree
 
   /// Valid until the tree is modified or destroyed.
   kernel::Lights view() const noexcept;
+  /// At most 52 per emitter, 48 if the ids of the emitters are consecutive.
   std::size_t bytes() const noexcept;
+  /// With what build_light_tree allocated in addition.
+  std::size_t bytes_of_build() const noexcept;
 };
 
 /// Builds the tree of all spheres that emit and do not coincide with an earlier sphere, which in `fast` depends on the
 /// precision. Deterministic; scaling the scene by a power of two changes no choice.
 ///
-/// Cost       O(n log n) for n emitters; 48 bytes each if their ids are consecutive, and 96 during the build; that of
-///            without_coincident
+/// Cost       O(n log n) for n emitters; twice the memory of the tree; that of without_coincident
 LightTree build_light_tree(const kernel::SceneView& scene, kernel::Precision precision);
 
 }  // namespace orrery::compile

@@ -76,6 +76,7 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs) {
   m.spheres = needs.sphere_bytes;
   m.background = needs.background;
   m.textures = needs.textures;
+  m.lights = needs.lights;
   m.accelerator = needs.embree ? needs.spheres_in_bvh * kBvhBytesPerSphere +
                                      (needs.spheres - needs.spheres_in_bvh) * kAcceleratorBytesPerSphere
                                : 0;
@@ -91,6 +92,7 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   needs.sphere_bytes = compiled.spheres.bytes() + compiled.sphere_materials.bytes();
   if (compiled.environment) needs.background = compiled.environment->bytes();
   needs.textures = compiled.textures.bytes();
+  needs.lights = compiled.light_tree.bytes_of_build();
   needs.layer_planes = film::planes_of(layers).size();
   needs.records = layers.records();
   needs.guides = layers.guides();
@@ -124,6 +126,7 @@ std::string text_of(const MemoryEstimate& m) {
                                 base::bytes_text(m.spheres), base::bytes_text(m.accelerator));
   if (m.background > 0) out += ", background " + base::bytes_text(m.background);
   if (m.textures > 0) out += ", textures " + base::bytes_text(m.textures);
+  if (m.lights > 0) out += ", lights " + base::bytes_text(m.lights);
   return out;
 }
 

@@ -13,9 +13,9 @@ namespace orrery::job {
 
 /// Estimated peak memory of a render, in bytes, computed without building anything.
 struct MemoryEstimate {
-  std::uint64_t film = 0, spheres = 0, accelerator = 0, background = 0, textures = 0;
+  std::uint64_t film = 0, spheres = 0, accelerator = 0, background = 0, textures = 0, lights = 0;
 
-  std::uint64_t total() const { return film + spheres + accelerator + background + textures; }
+  std::uint64_t total() const { return film + spheres + accelerator + background + textures + lights; }
 };
 
 /// Properties of a render that determine its memory use.
@@ -26,6 +26,7 @@ struct MemoryNeeds {
   std::uint64_t sphere_bytes = 0;    ///< of the compiled spheres and their material indices
   std::uint64_t background = 0;      ///< bytes of an image background
   std::uint64_t textures = 0;        ///< bytes of image textures
+  std::uint64_t lights = 0;          ///< compile::LightTree::bytes_of_build()
   std::uint64_t layer_planes = 0;    ///< besides R, G, B, A
   bool records = false;              ///< LayerRequest::records()
   bool guides = false;               ///< LayerRequest::guides()

@@ -9,6 +9,9 @@
 
 #include <hwy/highway.h>
 
+#include <cmath>
+#include <limits>
+
 #include "kernel/gather-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/lights.h"
@@ -39,6 +42,13 @@ HWY_INLINE Vec3<hn::Vec<D>> to_center(const Vertex<D>& at, const Vec3<hn::Vec<D>
   return (center - at.origin) - at.origin_low;
 }
 
+/// A node's power in the lanes' precision. The powers of giant emitters exceed a float's range; choosing between them
+/// as if they were equal is not biased.
+template <class T>
+HWY_INLINE T power_of(const LightNode& node) {
+  return static_cast<T>(std::fmin(node.power, static_cast<double>(std::numeric_limits<T>::max())));
+}
+
 /// Tree nodes, one per lane.
 template <class D>
 class LightNodes {
@@ -64,15 +74,15 @@ class LightNodes {
     gather4(
         d, [&](std::size_t i) { return node_[i]->center; }, sphere);
     HWY_ALIGN T power[kMax];
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) power[i] = static_cast<T>(node_[i]->power);
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) power[i] = power_of<T>(*node_[i]);
     const V radius = sphere[3];
     const Vec3<V> to = to_center<D>(at, {sphere[0], sphere[1], sphere[2]});
     const auto cone = subtended_cone(d, to, radius);
-    const V sin = radius / cone.distance;
     const V cos_center = dot(to, at.normal) / cone.distance;
     const V sin_center = hn::Sqrt(hn::Max(hn::NegMulAdd(cos_center, cos_center, one), zero));
     // cos(max(angle to the centre - half apex angle, 0))
-    const V nearest = hn::IfThenElse(cos_center > cone.cos, one, hn::MulAdd(cos_center, cone.cos, sin_center * sin));
+    const V nearest =
+        hn::IfThenElse(cos_center > cone.cos, one, hn::MulAdd(cos_center, cone.cos, sin_center * cone.sin));
     const auto outside = cone.distance > radius;
     const V cosine = hn::IfThenElse(outside, hn::Max(nearest, zero), one);
     const V distance = hn::Max(cone.distance, radius);
@@ -142,10 +152,59 @@ HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, 
   }
 }
 
+/// Calls visit(i, importance) for each of a few emitters. The importance is the irradiance at the vertices without
+/// occlusion, divided by pi: power / distance^2 times the cosine to the normal. Where the horizon cuts the emitter, a
+/// parabola with the same value and slope leads to zero, where all of it is below. From inside, the cosine is 1.
+template <class D, class Visit>
+HWY_INLINE void for_each_light(D d, const SceneView& scene, const Vertex<D>& at, Visit visit) {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+  for (std::uint32_t i = 0; i < scene.lights.count; ++i) {
+    const LightNode& node = scene.lights.nodes[i];
+    const V radius = hn::Set(d, static_cast<T>(node.radius)), radius2 = radius * radius;
+    const Vec3<V> to = to_center<D>(at, set3(d, node.center));
+    const V distance2 = dot(to, to);
+    const V inverse2 = one / hn::Max(distance2, radius2);
+    const V inverse = hn::Sqrt(inverse2);
+    const V cosine = dot(to, at.normal) * inverse, sin = radius * inverse;  // of the centre; of half the apex angle
+    const V above = hn::Max(cosine + sin, zero);
+    const V cut = above * above * (distance2 * inverse) * hn::Set(d, static_cast<T>(0.25 / node.radius));
+    const V visible = hn::IfThenElse(cosine < sin, cut, cosine);
+    visit(i, hn::Set(d, power_of<T>(node)) * inverse2 * hn::IfThenElse(distance2 > radius2, visible, one));
+  }
+}
+
+/// Chooses between few emitters, by their importance.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE ChosenLights<D> choose_from_few(D d, const SceneView& scene, const Vertex<D>& at, V u) {
+  using Id = hn::TFromD<IdTag<D>>;
+  const IdTag<D> du;
+  const V zero = hn::Zero(d);
+  V of_light[Lights::kFew];
+  V whole = zero;
+  for_each_light(d, scene, at, [&](std::uint32_t i, V value) {
+    of_light[i] = value;
+    whole = whole + value;
+  });
+  // The last emitter of any importance at which the sum of those before has not passed u.
+  const V target = u * whole;
+  V before = zero, chosen = zero;
+  auto spheres = hn::Set(du, static_cast<Id>(scene.lights.spheres[0]));
+  for (std::uint32_t i = 0; i < scene.lights.count; ++i) {
+    const auto reached = hn::And(of_light[i] > zero, before <= target);
+    chosen = hn::IfThenElse(reached, of_light[i], chosen);
+    spheres =
+        hn::IfThenElse(hn::RebindMask(du, reached), hn::Set(du, static_cast<Id>(scene.lights.spheres[i])), spheres);
+    before = before + of_light[i];
+  }
+  return {spheres, hn::IfThenElseZero(whole > zero, chosen / whole)};
+}
+
 /// After this many levels of the light tree a second random number is used, since a choice uses up bits of the first.
 inline constexpr int kLevelsPerNumber = 8;
 
-/// Chooses an emitter for each vertex, by the nodes' importance.
+/// Chooses an emitter for each vertex: a few by their importance, more by that of the tree's nodes.
 ///
 /// `u`, `fresh`  uniform in 0..1; `fresh` is used after kLevelsPerNumber levels
 /// Domain        scene.lights.count > 0
@@ -155,6 +214,8 @@ HWY_INLINE ChosenLights<D> choose_light(D d, const SceneView& scene, const Verte
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
   const V one = hn::Set(d, hn::TFromD<D>(1));
+  if (scene.lights.count == 1) return {hn::Set(IdTag<D>(), static_cast<Id>(scene.lights.spheres[0])), one};
+  if (scene.lights.few()) return choose_from_few(d, scene, at, u);
   LightRange range[kMax];
   const V probability = descend(d, scene, at, range, [&](V share, hn::Mask<D> inner, const auto&, int level) {
     if (level == kLevelsPerNumber) u = fresh;
@@ -176,6 +237,15 @@ HWY_INLINE V choice_probability(D d, const SceneView& scene, const Vertex<D>& at
   using Id = hn::TFromD<IdTag<D>>;
   constexpr std::size_t kMax = hn::MaxLanes(D());
   if (scene.lights.count == 1) return hn::Set(d, T(1));
+  if (scene.lights.few()) {
+    V whole = hn::Zero(d), chosen = hn::Zero(d);
+    for_each_light(d, scene, at, [&](std::uint32_t i, V value) {
+      const auto is_it = spheres == hn::Set(IdTag<D>(), static_cast<Id>(scene.lights.spheres[i]));
+      chosen = hn::IfThenElse(hn::RebindMask(d, is_it), value, chosen);
+      whole = whole + value;
+    });
+    return hn::IfThenElseZero(whole > hn::Zero(d), chosen / whole);
+  }
   HWY_ALIGN Id ids[kMax];
   HWY_ALIGN T goes_left[kMax];
   hn::Store(spheres, IdTag<D>(), ids);

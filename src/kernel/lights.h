@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -26,21 +27,31 @@ struct LightRange {
 };
 
 /// The emitting spheres, as leaves of an implicit balanced tree: a range of leaves is split in the middle, down to
-/// single leaves. Owns nothing.
+/// single leaves. A few are no tree, but a list. Owns nothing.
 struct Lights {
   static constexpr std::uint32_t kNoLeaf = 0xffffffffu;
+  /// Up to this many emitters are chosen from a list. Measured: docs/decisions/0022-direct-lighting.md.
+  static constexpr std::uint32_t kFew = 16;
 
   const std::uint32_t* spheres = nullptr;  ///< sphere id of each leaf
-  const LightNode* nodes = nullptr;        ///< of each range of two leaves or more, at its `middle`
-  const std::uint32_t* leaves = nullptr;   ///< leaf of each sphere from `first_sphere` on, or kNoLeaf
+  /// Of each range of two leaves or more, at its `middle`; of each leaf if there are few.
+  const LightNode* nodes = nullptr;
+  /// Leaf of each sphere from `first_sphere` to `end_sphere`, or kNoLeaf. If the emitters' ids are `scattered`: the
+  /// leaves by ascending sphere id.
+  const std::uint32_t* leaves = nullptr;
   std::uint32_t first_sphere = 0;
   std::uint32_t end_sphere = 0;
   std::uint32_t count = 0;  ///< leaves; 0: no emitter is sampled
+  bool scattered = false;
 
+  bool few() const noexcept { return count <= kFew; }
   static std::uint32_t middle(LightRange r) noexcept { return r.begin + (r.end - r.begin) / 2; }
   /// The leaf of a sphere, or kNoLeaf.
   std::uint32_t leaf(std::uint32_t sphere) const noexcept {
-    return sphere >= first_sphere && sphere < end_sphere ? leaves[sphere - first_sphere] : kNoLeaf;
+    if (!scattered) return sphere >= first_sphere && sphere < end_sphere ? leaves[sphere - first_sphere] : kNoLeaf;
+    const std::uint32_t* const found = std::lower_bound(
+        leaves, leaves + count, sphere, [&](std::uint32_t at, std::uint32_t id) { return spheres[at] < id; });
+    return found != leaves + count && spheres[*found] == sphere ? *found : kNoLeaf;
   }
 };
 

@@ -62,7 +62,7 @@ HWY_INLINE Frame<V> frame_around(D d, const Vec3<V>& axis) {
 template <class V>
 struct SubtendedCone {
   V distance;       ///< to the centre
-  V sin2, cos;      ///< of half the apex angle: squared sine, and cosine
+  V sin, cos;       ///< of half the apex angle
   V one_minus_cos;  ///< does not cancel, at any distance
 };
 
@@ -76,7 +76,7 @@ HWY_INLINE SubtendedCone<V> subtended_cone(D d, const Vec3<V>& to_center, V radi
   const V distance = hn::Sqrt(dot(to_center, to_center));
   const V sin = radius / distance;
   const V cos = hn::Sqrt(hn::Max((distance - radius) * (distance + radius), hn::Zero(d))) / distance;
-  return {distance, sin * sin, cos, sin * sin / (one + cos)};
+  return {distance, sin, cos, sin * sin / (one + cos)};
 }
 
 /// The solid angle of a cone with this 1 - cos, in steradians.
@@ -107,10 +107,9 @@ HWY_INLINE SphereSample<V> sample_visible_sphere(D d, const Vec3<V>& to_center, 
   const V incidence2 = u * (two - versine) / (one + cone.cos);
   const V sin_incidence = hn::Sqrt(incidence2);
   const V cos_incidence = hn::Sqrt(hn::Max(one - incidence2, zero));
-  const V rim = hn::Sqrt(cone.sin2);
-  const V sin = rim * sin_incidence;
-  const V sin_center = sin_incidence * hn::NegMulAdd(rim, cos_incidence, cos);
-  const V cos_center = hn::MulAdd(cos_incidence, cos, rim * incidence2);
+  const V sin = cone.sin * sin_incidence;
+  const V sin_center = sin_incidence * hn::NegMulAdd(cone.sin, cos_incidence, cos);
+  const V cos_center = hn::MulAdd(cos_incidence, cos, cone.sin * incidence2);
   const Vec3<V> axis = to_center * (one / cone.distance);
   const auto frame = frame_around(d, axis);
   const auto turn = sin_cos_turn(d, v);

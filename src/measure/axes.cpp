@@ -2,6 +2,7 @@
 #include "measure/axes.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "base/text.h"
 
@@ -34,6 +35,9 @@ class Planner {
     fresnel();
     direct_lighting();
     accelerator();
+    if (compiled_.sampler.kind == kernel::SamplerKind::kBlueNoise)
+      for (Choice& choice : out_.choices)
+        if (choice.is_shortcut && !choice.is_denoised) take_sobol(choice);
     return std::move(out_);
   }
 
@@ -45,6 +49,15 @@ class Planner {
     choice.flags = flags;
     choice.samples = samples;
     return choice;
+  }
+
+  /// Whether a shortcut has a bias is judged by pixels with random numbers of their own, unlike those of blue noise.
+  static void take_sobol(Choice& choice) {
+    choice.flags += " --set render.sampler=sobol";
+    choice.apply = [apply = choice.apply](CompiledScene& w) {
+      w.sampler.kind = kernel::SamplerKind::kSobol;
+      if (apply) apply(w);
+    };
   }
 
   static std::string flag(int samples) { return "--samples " + std::to_string(samples); }
@@ -160,8 +173,14 @@ class Planner {
       return;
     }
     const auto add_one = [&](const char* name, kernel::DirectLighting mode) {
+      std::shared_ptr<const compile::EnvironmentMap> environment = compiled_.environment;
+      if (environment && mode != compiled_.direct_lighting)
+        environment = environment->with_sampling(compile::environment_sampling(mode));
       add("direct lighting", name, flag(kCompared) + " --set render.direct_lighting=" + name, kCompared).apply =
-          [mode](CompiledScene& w) { w.direct_lighting = mode; };
+          [mode, environment](CompiledScene& w) {
+            w.direct_lighting = mode;
+            w.environment = environment;
+          };
     };
     add_one("mis", kernel::DirectLighting::kMis);
     add_one("bsdf", kernel::DirectLighting::kBsdf);

@@ -47,6 +47,7 @@ struct Case {
   Precision precision = Precision::kExact;
   kernel::Features features;
   std::optional<accel::Traversal> traversal;
+  bool samples_lights = true;  ///< false: direct_lighting = "bsdf"
   int samples = 1;
   std::vector<double> paths_per_s, tracing;
 };
@@ -74,7 +75,10 @@ compile::CompiledScene reduced_scene(const BenchRequest& request) {
 class Subject {
  public:
   explicit Subject(const BenchRequest& request)
-      : request_(request), compiled_(reduced_scene(request)), required_(compiled_.features) {}
+      : request_(request),
+        compiled_(reduced_scene(request)),
+        required_(compiled_.features),
+        direct_lighting_(compiled_.direct_lighting) {}
 
   const compile::CompiledScene& compiled() const { return compiled_; }
   /// The features that the scene requires; compiled() has those of the last case.
@@ -136,6 +140,7 @@ class Subject {
     compiled_.accelerator = c.tracer == Tracer::kEmbree ? compile::Accelerator::kEmbree : compile::Accelerator::kList;
     compiled_.precision = c.precision;
     compiled_.features = c.features;
+    compiled_.direct_lighting = c.samples_lights ? direct_lighting_ : kernel::DirectLighting::kBsdf;
     compile::update_lights(compiled_);
   }
 
@@ -157,6 +162,7 @@ class Subject {
   const BenchRequest& request_;
   compile::CompiledScene compiled_;
   kernel::Features required_;
+  kernel::DirectLighting direct_lighting_;
   std::map<std::pair<Tracer, Precision>, std::unique_ptr<accel::Accel>> accels_;
   std::map<Precision, render::RecordedRays<kernel::RayPacket>> rays_;
   render::RecordedRays<kernel::RayPacketFast> fast_rays_;
@@ -173,10 +179,15 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
       {"exact", Precision::kExact}, {"fast", Precision::kFast}, {"book", Precision::kBook}};
   for (const auto& [name, precision] : precisions)
     cases.push_back(
-        {std::string("embree ") + name, Tracer::kEmbree, precision, compiled.features, std::nullopt, 1, {}, {}});
+        {std::string("embree ") + name, Tracer::kEmbree, precision, compiled.features, std::nullopt, true, 1, {}, {}});
   for (const auto& [name, traversal] :
        {std::pair{"exact packet", accel::Traversal::kPacket}, std::pair{"exact single", accel::Traversal::kSingle}})
-    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, traversal, 1, {}, {}});
+    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, traversal, true, 1, {}, {}});
+  if (compiled.features.lit && compiled.direct_lighting != kernel::DirectLighting::kBsdf) {
+    cases.push_back(cases.front());
+    cases.back().name = "exact bsdf";
+    cases.back().samples_lights = false;
+  }
   if (!lists_are_bearable(compiled)) {
     out.left_out.push_back("lists: with this many spheres one sample per pixel would take more than " +
                            std::to_string(static_cast<int>(kLongestListSeconds)) + " s");
@@ -185,7 +196,8 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
   for (const auto& [name, accelerator] :
        {std::pair{"SIMD list ", Tracer::kSimdList}, std::pair{"list ", Tracer::kList}})
     for (const auto& [suffix, precision] : precisions)
-      cases.push_back({std::string(name) + suffix, accelerator, precision, compiled.features, std::nullopt, 1, {}, {}});
+      cases.push_back(
+          {std::string(name) + suffix, accelerator, precision, compiled.features, std::nullopt, true, 1, {}, {}});
   return cases;
 }
 
@@ -194,7 +206,7 @@ std::vector<Case> feature_cases_of(const compile::CompiledScene& compiled) {
   if (compiled.shading != kernel::Shading::kPath) return cases;
   for (const auto& [name, feature] : known_features()) {
     if (compiled.features.*feature) continue;
-    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, std::nullopt, 1, {}, {}});
+    cases.push_back({name, Tracer::kEmbree, Precision::kExact, compiled.features, std::nullopt, true, 1, {}, {}});
     cases.back().features.*feature = true;
   }
   return cases;
@@ -284,7 +296,7 @@ Benchmark bench_scene(const BenchRequest& request) {
     measure_all(subject, cases, round, [&](Case& c, const render::Statistics& did) {
       if (c.tracer == Tracer::kEmbree && request.threads == 1 && &c < &cases[case_count])
         c.tracing.push_back(subject.trace_alone(c) * c.paths_per_s.back());
-      out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
+      if (&c == &cases[0]) out.rays_per_path = static_cast<double>(did.rays) / static_cast<double>(did.paths);
       if (c.tracer == Tracer::kEmbree) out.accelerator = did.accelerator;
       out.isa = did.isa;
       report_progress();

@@ -40,7 +40,7 @@ double noise_of_mean(const Pair& pair) {
 Errors errors_of(const Pair& choice, const Pair& reference) {
   const metrics::ColorView x = metrics::color_of(choice.first), y = metrics::color_of(choice.second);
   const metrics::ColorView r = metrics::color_of(reference.first), s = metrics::color_of(reference.second);
-  double sum = 0, sum_of_squares = 0;
+  double sum = 0, sum_of_squares = 0, sum_of_fourths = 0;
   double noise = 0, excess = 0, all_light = 0;
   for (std::size_t i = 0; i < r.pixels(); ++i) {
     double products = 0, squares = 0, light = 0;
@@ -55,13 +55,17 @@ Errors errors_of(const Pair& choice, const Pair& reference) {
     noise += film::display_error_squared(squares, light);
     const double bias_squared = film::display_error_squared(products, light);
     sum += bias_squared;
-    sum_of_squares += bias_squared * bias_squared;
+    const double square = bias_squared * bias_squared;
+    sum_of_squares += square;
+    sum_of_fourths += square * square;
   }
   const auto n = static_cast<double>(r.pixels());
   Errors out;
   out.noise = std::sqrt(noise / n);
   out.bias_squared = sum / n;
-  if (sum > 0) out.bias_chance = std::exp(-sum * sum / sum_of_squares / 2);
+  // Quotients, because squares of large sums overflow.
+  const double evidence = sum > 0 ? sum_of_squares / (sum_of_fourths / sum_of_squares) : 0;
+  if (evidence >= kLeastEvidence) out.bias_chance = std::exp(-sum * sum / sum_of_squares / 2);
   out.energy = all_light != 0 ? excess / all_light : 0;
   return out;
 }

@@ -16,6 +16,9 @@ film::Picture mean_of(const Pair& pair);
 /// The display error of that mean, estimated from the difference of the two images.
 double noise_of_mean(const Pair& pair);
 
+/// Effective number of pixels that must show a bias.
+inline constexpr double kLeastEvidence = 20;
+
 /// Error estimates of a pair; the members are those of Point.
 struct Errors {
   double noise = 0;
@@ -29,10 +32,13 @@ struct Errors {
 /// With x, y the choice and r, s the reference, the mean over pixels of (x - r)(y - s) estimates the squared bias
 /// without any contribution of noise, since the four images are independent. Without bias its terms are symmetric
 /// around zero or skewed to the right. Their sum divided by the root of the sum of their squares then exceeds t with a
-/// probability of at most exp(-t^2 / 2), however much the noise varies between pixels. A bias confined to fewer than
-/// about 20 pixels is not detected.
+/// probability of at most exp(-t^2 / 2), however much the noise varies between pixels.
 ///
-/// Domain     images of one size with planes R, G, B
+/// Light that a handful of paths have found breaks that: it is missing in most pixels of both renders. So bias_chance
+/// is 1 unless the terms that dominate the sum are kLeastEvidence or more: n terms of equal size count as n, rarer and
+/// larger ones as few. A bias confined to fewer pixels is not detected.
+///
+/// Domain     images of one size with planes R, G, B; pixels do not share random numbers
 /// Reference  efron1969
 Errors errors_of(const Pair& choice, const Pair& reference);
 

@@ -20,8 +20,9 @@ void judge_bias(std::vector<Point>& points) {
   auto untested = static_cast<double>(points.size());
   for (Point* p : by_chance) {
     if (p->bias_chance * untested-- > kFalseAlarm) break;
-    p->bias = std::sqrt(p->bias_squared);
-    p->error = std::hypot(p->noise, p->bias);
+    const double common = std::sqrt(p->bias_squared);
+    p->error = std::hypot(p->noise, common);
+    if (p->is_shortcut) p->bias = common;
   }
   for (Point& p : points) p.efficiency = 1 / (p.error * p.error * p.seconds);
 }

@@ -10,7 +10,10 @@ namespace orrery::measure {
 /// Family-wise error rate: the probability that a study of unbiased choices reports a bias in any of them.
 inline constexpr double kFalseAlarm = 0.01;
 
-/// Tests all points for bias together, and sets bias, error and efficiency of every point.
+/// Tests all points for an error that both renders have in common, and sets bias, error and efficiency of every point.
+///
+/// Only shortcuts have a bias. Other choices converge to the same image as the reference: what both of their renders
+/// lack is light that neither has found yet, and counts as error only.
 ///
 /// Reference  holm1979
 void judge_bias(std::vector<Point>& points);

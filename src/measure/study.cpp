@@ -258,6 +258,8 @@ class Runner {
     job::MemoryNeeds needs = choice.is_denoised ? denoise_needs_ : memory_needs_;
     needs.embree = compiled.accelerator == compile::Accelerator::kEmbree;
     needs.is_adaptive = choice.noise > 0;
+    needs.lights = compiled.light_tree.bytes_of_build();
+    if (compiled.environment) needs.background = compiled.environment->bytes();
     point.memory = job::estimate_memory(needs).total();
     const Errors e = errors_of(pair, reference_);
     point.noise = point.error = e.noise;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace orrery::test {
 struct NamedScene {
   std::string name;
   scene::Scene scene;
+  std::optional<scene::Scene> closing = {};  ///< at shutter close, if something moves
 };
 
 /// A floor, a diffuse ball and a black sky; material 0 is the floor, 1 the ball.
@@ -90,6 +92,13 @@ inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
   scene::Scene& hemisphere = add("hemisphere material beside a lamp that touches the floor");
   hemisphere.materials[1].model = scene::Hemisphere{{0.6, 0.6, 0.6}};
   add_lamp(hemisphere, {1.5, 0.4, 1}, 0.4, {8, 8, 8});
+  scene::Scene& moving = add("moving lamps");
+  add_lamp(moving, {-2, 2, 1}, 0.5, {15, 12, 10});
+  add_lamp(moving, {1, 1.5, 1}, 0.3, {5, 10, 15});
+  out.back().closing = moving;
+  out.back().closing->spheres[2].center = {2, 2.5, 1.5};
+  out.back().closing->spheres[3].center.y = 3;
+  out.back().closing->spheres[3].radius = 0.5;
   scene::Scene& image = add("image sky with a bright texel");
   image.background.type = scene::BackgroundType::kImage;
   image.background.image = bright_texel_map(60);

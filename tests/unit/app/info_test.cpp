@@ -87,6 +87,45 @@ TEST_F(AppInfo, ReportsRequiredAndOmittedFeatures) {
   EXPECT_NE(text.find("unused      thin lens (pinhole camera: no lens sampling);"), std::string::npos) << text;
 }
 
+constexpr const char* kLamps = R"(
+material.black = { type = "emitter", radiance = [0, 0, 0] }
+material.lamp = { type = "emitter", radiance = [1, 0, 0] }
+sphere = [{ center = [0, 0, -1], radius = 0.5, material = "black" },
+  { center = [2, 0, -1], radius = 0.5, material = "lamp" },
+  { center = [4, 0, -1], radius = 0.5, material = "lamp" }]
+)";
+
+TEST_F(AppInfo, ReportsHowLightIsSampled) {
+  EXPECT_EQ(info(kScene).lights, "");
+  const SceneInfo lamps = info(kLamps);
+  EXPECT_EQ(lamps.emitters, 2u) << "a black emitter is none";
+  EXPECT_EQ(lamps.lights, "2 emitters; light and BSDF sampling; emitters by their irradiance");
+  EXPECT_NE(info_text(lamps).find("\nlights      2 emitters; "), std::string::npos);
+  EXPECT_EQ(info(kLamps, {"render.direct_lighting=bsdf"}).lights, "2 emitters; found by BSDF sampling only");
+  EXPECT_EQ(info(kLamps, {"render.direct_lighting=light", "sphere[2].material=black"}).lights,
+            "1 emitter; light sampling");
+  std::string many = "material.lamp = { type = \"emitter\", radiance = [1, 1, 1] }\n";
+  for (int i = 0; i < 20; ++i)
+    many += "[[sphere]]\ncenter = [" + std::to_string(3 * i) + ", 0, 0]\nradius = 1\nmaterial = \"lamp\"\n";
+  EXPECT_EQ(info(many).lights, "20 emitters; light and BSDF sampling; emitters by a light tree of 0.9 KiB");
+}
+
+TEST_F(AppInfo, ReportsHowTheBackgroundIsSampled) {
+  const std::string sky = "background.type = \"sky\"\n";
+  const std::string both = info(sky + kLamps).lights;
+  EXPECT_EQ(
+      both.rfind("2 emitters, background; light and BSDF sampling, half of the light samples to each; emitters by "
+                 "their irradiance; background by texels above the mean and the sun (",
+                 0),
+      0u)
+      << both;
+  EXPECT_EQ(info(sky, {"background.sun=false"}).lights,
+            "background; light and BSDF sampling; background by texels above the mean");
+  EXPECT_EQ(info(sky, {"background.sun=false", "render.direct_lighting=light"}).lights,
+            "background; light sampling; background by all texels");
+  EXPECT_EQ(info(sky, {"render.direct_lighting=bsdf"}).lights, "background; found by BSDF sampling only");
+}
+
 TEST_F(AppInfo, TheListNeedsNoMemoryForABvh) {
   EXPECT_GT(info(kScene).memory.accelerator, 0u);
   EXPECT_EQ(info(kScene, {"render.accelerator=list"}).memory.accelerator, 0u);

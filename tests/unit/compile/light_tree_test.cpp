@@ -117,6 +117,30 @@ TEST(CompileLightTree, NoTreeIfLightsAreNotSampled) {
 
 TEST(CompileLightTree, FortyEightBytesPerEmitter) {
   EXPECT_LE(compile(random_lamps(1000, 2)).light_tree.bytes(), 48u * 1000u);
+  scene::Scene million = random_lamps(1, 2);
+  while (million.spheres.size() < 1'000'002) million.spheres.push_back(million.spheres.back());
+  for (std::size_t i = 2; i < million.spheres.size(); ++i) million.spheres[i].center.x = static_cast<double>(i);
+  const CompiledScene compiled = compile(million);
+  EXPECT_EQ(compiled.light_tree.spheres.size(), 1'000'000u);
+  EXPECT_LE(compiled.light_tree.bytes(), 48u * 1'000'000u);
+}
+
+/// Three or a hundred emitters around other spheres take no table of all ids.
+TEST(CompileLightTree, MemoryDependsOnTheEmittersAlone) {
+  for (const int count : {3, 100}) {
+    scene::Scene s = random_lamps(count, 2);
+    std::swap(s.spheres.front(), s.spheres.back());
+    s.spheres.insert(s.spheres.begin() + 1, 100'000, s.spheres.back());
+    const CompiledScene compiled = compile(s);
+    const LightTree& tree = compiled.light_tree;
+    ASSERT_EQ(tree.spheres.size(), static_cast<std::size_t>(count));
+    EXPECT_TRUE(tree.scattered);
+    EXPECT_LE(tree.bytes(), 52U * static_cast<std::size_t>(count));
+    const kernel::Lights lights = tree.view();
+    for (std::uint32_t leaf = 0; leaf < lights.count; ++leaf) EXPECT_EQ(lights.leaf(tree.spheres[leaf]), leaf);
+    for (const std::uint32_t id : {1U, 50'000U, 100'001U + static_cast<std::uint32_t>(count), 0xffffffffU})
+      EXPECT_EQ(lights.leaf(id), kernel::Lights::kNoLeaf) << id;
+  }
 }
 
 TEST(CompileLightTree, MovingEmittersAreBoundedDuringTheirWholeMotion) {
@@ -173,6 +197,33 @@ TEST(KernelLights, ChoicesHaveTheProbabilityThatIsReported) {
     for (std::uint32_t id = 2; id < 39; ++id) {
       const double p = test::choice_probability(compiled.view(), point, normal, id);
       EXPECT_NEAR(count[id], p * kDraws, 6) << id;
+    }
+  }
+}
+
+/// Few emitters are chosen with the probability of their importance itself, without bounds of groups.
+TEST(KernelLights, FewEmittersAreChosenWithTheReportedProbability) {
+  for (int lamps = 1; lamps <= static_cast<int>(kernel::Lights::kFew) + 1; ++lamps) {
+    const CompiledScene compiled = compile(random_lamps(lamps, 5));
+    const kernel::SceneView view = compiled.view();
+    for (const auto& [point, normal] : vertices()) {
+      constexpr int kDraws = 2000;
+      std::vector<int> count(static_cast<std::size_t>(lamps) + 2);
+      double sum = 0;
+      for (int i = 0; i < kDraws; ++i) {
+        const test::Choice c = test::choose_light(view, point, normal, (i + 0.5) / kDraws, 0.5);
+        if (c.probability == 0) continue;
+        ++count[c.sphere];
+        ASSERT_NEAR(c.probability, test::choice_probability(view, point, normal, c.sphere), 1e-14 * c.probability);
+      }
+      for (std::uint32_t id = 2; id < count.size(); ++id) {
+        const double p = test::choice_probability(view, point, normal, id);
+        EXPECT_NEAR(count[id], p * kDraws, lamps > static_cast<int>(kernel::Lights::kFew) ? 3 : 1.01) << id;
+        sum += p;
+      }
+      if (view.lights.few()) {
+        EXPECT_TRUE(std::abs(sum - 1) < 1e-14 || sum == 0) << sum;
+      }
     }
   }
 }

@@ -16,6 +16,8 @@
 #include "base/error.h"
 #include "image/partial_file.h"
 #include "image/read.h"
+#include "job/merge_shards.h"
+#include "support/exr_file.h"
 #include "support/temp_dir.h"
 
 namespace orrery::job {
@@ -153,6 +155,60 @@ TEST_F(JobRun, ResumesFromTheCheckpointOfAStoppedRenderToTheSameBytes) {
   EXPECT_EQ(statistics()["resumed"], true);
   EXPECT_GT(statistics()["rays"], rays);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.checkpoint.exr"));
+}
+
+/// A sky with the sun and an image background, each with a lamp and light groups: the checkpoint of a stopped render
+/// and two shards lead to the bytes of an uninterrupted render.
+TEST_F(JobRun, ResumedRendersAndShardsUnderASkyOrAnImageHaveTheSameBytes) {
+  support::ExrFile map = support::ExrFile::constant(32, 16, {0.2F, 0.3F, 0.4F});
+  map.rgb[3 * (4 * 32 + 10)] = 500;
+  support::write_bytes(folder_ / "map.exr", map.bytes());
+  const std::string lamp =
+      "material.lamp = { type = \"emitter\", radiance = [4, 3, 2], light_group = \"lamp\" }\n"
+      "material.grey = { type = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n"
+      "sphere = [{ center = [0, -100.5, -1], radius = 100, material = \"grey\" }, "
+      "{ center = [0, 0, -1], radius = 0.5, material = \"grey\" }, "
+      "{ center = [1, 1, -1], radius = 0.25, material = \"lamp\" }]\n";
+  for (const char* background :
+       {"{ type = \"sky\", light_group = \"sky\" }", "{ type = \"image\", file = \"map.exr\" }"}) {
+    support::write_bytes(folder_ / "scene.toml", "background = " + std::string(background) + "\n" + lamp);
+    const auto file = [&](const char* name) {
+      job_.outputs.images = {folder_ / name};
+      return folder_ / name;
+    };
+    job_.scene.overrides = {"image.width=96", "image.height=64", "render.samples=64",
+                            "output.layers=[\"light_groups\"]"};
+    job_.outputs.reproducible = true;
+    job_.checkpoint.resume = false;
+    const auto whole = file("whole.exr");
+    run_job(job_);
+    const std::string expected = support::file_bytes(whole);
+
+    const auto resumed = file("resumed.exr");
+    stop_while_rendering();
+    run_job(job_);
+    EXPECT_EQ(statistics()["resumed"], true);
+    EXPECT_TRUE(support::file_bytes(resumed) == expected) << background;
+
+    Job merge = job_;
+    std::vector<std::filesystem::path> shards;
+    for (int shard = 0; shard < 2; ++shard) {
+      Job part = job_;
+      part.checkpoint.resume = false;
+      part.sampling.shard = {shard, 2};
+      part.outputs.images = {shards.emplace_back(folder_ / ("shard" + std::to_string(shard) + ".exr"))};
+      run_job(part);
+    }
+    merge.merge.shards = read_shards(shards);
+    merge.outputs.images = {folder_ / "merged.exr"};
+    take_scene(merge.merge.shards.front(), merge);
+    run_job(merge);
+    const film::Picture a = image::read(whole), b = image::read(folder_ / "merged.exr");
+    ASSERT_EQ(a.planes.size(), b.planes.size());
+    EXPECT_NE(a.find("lamp_diffuse_direct.R"), nullptr);
+    for (std::size_t i = 0; i < a.planes.size(); ++i)
+      EXPECT_TRUE(a.planes[i].values == b.planes[i].values) << background << ' ' << a.planes[i].name;
+  }
 }
 
 TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {

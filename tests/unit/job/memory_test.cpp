@@ -126,6 +126,19 @@ TEST(JobMemoryEstimate, CountsTheHalvesOnlyWhereTheyAreNeeded) {
   EXPECT_EQ(film() - beauty, 1000 * (sizeof(film::Halves) + kPlanes));
 }
 
+TEST(JobMemoryEstimate, CountsTheLightTreeAndItsBuild) {
+  scene::Scene scene;
+  scene.materials = {{"lamp", scene::Emitter{{1, 1, 1}, 0, ""}}};
+  for (int i = 0; i < 1000; ++i) scene.spheres.push_back({{1.0 * i, 0, 0}, 0.1, 0, ""});
+  const MemoryEstimate lit = estimate_memory(memory_needs(compile::compile(scene), {}));
+  EXPECT_EQ(lit.lights, 1000u * (48 + 48));
+  scene.render.direct_lighting = scene::DirectLighting::kBsdf;
+  const MemoryEstimate without = estimate_memory(memory_needs(compile::compile(scene), {}));
+  EXPECT_EQ(without.lights, 0u) << "no tree is built";
+  EXPECT_EQ(lit.total(), without.total() + lit.lights);
+  EXPECT_NE(text_of(lit).find(", lights 93.8 KiB"), std::string::npos) << text_of(lit);
+}
+
 TEST(JobMemoryEstimate, CountsTheBackgroundOnce) {
   MemoryNeeds needs;
   needs.background = 1000 * kMega;

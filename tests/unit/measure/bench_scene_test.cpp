@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <fstream>
 
@@ -87,6 +88,37 @@ TEST_F(MeasureBenchScene, MeasuresTheFeaturesThatTheSceneLacks) {
 
 TEST_F(MeasureBenchScene, RequiredFeaturesAreThoseOfTheScene) {
   for (const FeatureCost& cost : bench_features(request())) EXPECT_EQ(cost.required, cost.name == "gradient sky");
+}
+
+/// What sampling lights costs is the speed of "embree exact" relative to that of the same scene without.
+TEST_F(MeasureBenchScene, ALitSceneIsMeasuredWithoutLightSampling) {
+  BenchRequest r = request();
+  std::ofstream(r.scene.file, std::ios::app)
+      << "material.lamp = { type = \"emitter\", radiance = [1, 1, 1] }\nbackground.type = \"constant\"\n";
+  r.scene.overrides = {"camera.vfov=20"};
+  const auto has_row = [&] {
+    const auto all = names(bench_scene(r).cases);
+    return std::count(all.begin(), all.end(), "exact bsdf") == 1;
+  };
+  EXPECT_FALSE(has_row());
+  r.scene.overrides = {"sphere[0].material=lamp"};
+  EXPECT_TRUE(has_row());
+  r.scene.overrides.push_back("render.direct_lighting=bsdf");
+  EXPECT_FALSE(has_row());
+}
+
+/// Shadow rays are rays of "embree exact" only.
+TEST_F(MeasureBenchScene, RaysPerPathAreThoseOfTheScene) {
+  BenchRequest r = request();
+  std::ofstream(r.scene.file)
+      << "image = { width = 300, height = 200 }\nbackground = { type = \"constant\", color = [0, 0, 0] }\n"
+         "material.grey = { type = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n"
+         "material.lamp = { type = \"emitter\", radiance = [1, 1, 1] }\n"
+         "sphere = [{ center = [0, 0, -2], radius = 1, material = \"grey\" },\n"
+         "  { center = [0, 9, -2], radius = 1, material = \"lamp\" }]\n";
+  const double with = bench_scene(r).rays_per_path;
+  r.scene.overrides = {"render.direct_lighting=bsdf"};
+  EXPECT_GT(with, bench_scene(r).rays_per_path + 0.05);
 }
 
 TEST_F(MeasureBenchScene, MeasuresMotionBlur) {

@@ -50,6 +50,7 @@ Point point_of(const Pair& choice, const Pair& reference) {
   p.noise = e.noise;
   p.bias_squared = e.bias_squared;
   p.bias_chance = e.bias_chance;
+  p.is_shortcut = true;
   return p;
 }
 
@@ -85,6 +86,46 @@ TEST(MeasureBias, ABiasIsDetectedAndMeasured) {
   EXPECT_EQ(points[1].error, points[1].noise);
   EXPECT_NEAR(points[2].bias, 0.25 * std::sqrt(40.0 / (kWidth * kHeight)), 0.005) << "bias in a part of the image";
   EXPECT_NEAR(points[2].error, std::hypot(points[2].noise, points[2].bias), 1e-12);
+}
+
+/// The light of a sun that bounced paths rarely hit: `hits` of all paths carry a fifth of the image's light.
+film::Picture sun_found_by_chance(std::mt19937_64& engine, double hits) {
+  film::Picture out;
+  out.width = kWidth;
+  out.height = kHeight;
+  constexpr int kPixels = kWidth * kHeight;
+  std::vector<float> values(kPixels, 0.8F);
+  for (int n = std::poisson_distribution<int>(hits)(engine); n > 0; --n)
+    values[std::uniform_int_distribution<std::size_t>(0, kPixels - 1)(engine)] +=
+        static_cast<float>(0.2 * kPixels / hits);
+  for (const char* name : {"R", "G", "B"}) out.planes.push_back({name, values});
+  return out;
+}
+
+TEST(MeasureBias, LightThatFewPathsHaveFoundIsNoBias) {
+  std::mt19937_64 engine(6);
+  Noise noise(6);
+  const Pair reference = noise.pair(1 << 20);
+  int alarms = 0;
+  constexpr int kStudies = 3000;
+  for (int i = 0; i < kStudies; ++i)
+    alarms += biased_points({point_of({sun_found_by_chance(engine, 4), sun_found_by_chance(engine, 4)}, reference)});
+  EXPECT_LE(alarms, kStudies * kFalseAlarm);
+}
+
+/// Where no path has found it, it cannot be distinguished from a bias; but only shortcuts can have one.
+TEST(MeasureBias, LightThatNoPathHasFoundIsAnError) {
+  std::mt19937_64 engine(7);
+  Noise noise(7);
+  Point missing = point_of({sun_found_by_chance(engine, 0.01), sun_found_by_chance(engine, 0.01)}, noise.pair(1 << 20));
+  std::vector<Point> points = {missing};
+  judge_bias(points);
+  EXPECT_NEAR(points[0].bias, 0.1, 0.001);
+  missing.is_shortcut = false;
+  points = {missing};
+  judge_bias(points);
+  EXPECT_EQ(points[0].bias, 0);
+  EXPECT_NEAR(points[0].error, 0.1, 0.001);
 }
 
 TEST(MeasureBias, ReferenceNoiseIsThatOfTheMeanImage) {

@@ -13,6 +13,7 @@
 #include "compile/compile.h"
 #include "measure/axes.h"
 #include "support/everything.h"
+#include "support/lit_scenes.h"
 #include "support/temp_dir.h"
 
 namespace orrery::measure {
@@ -38,6 +39,53 @@ TEST(MeasureAxes, OnlyAxesThatAffectTheSceneArePlanned) {
   EXPECT_NE(std::find(few.left_out.begin(), few.left_out.end(), "no glass: no Fresnel axis"), few.left_out.end());
   plain.spheres = {};
   EXPECT_FALSE(has_axis(plan_of(plain), "depth"));
+}
+
+/// A choice of direct lighting renders as the scene does with that setting, whichever setting the scene has itself. The
+/// study has lent its spheres when it applies a choice.
+TEST(MeasureAxes, DirectLightingIsThatOfAScenesOwnMode) {
+  scene::Scene s = test::lit_scenes(16, 9).back().scene;
+  ASSERT_NE(s.background.image, nullptr);
+  ASSERT_EQ(s.spheres.size(), 3U);
+  using scene::DirectLighting;
+  for (const DirectLighting own : {DirectLighting::kMis, DirectLighting::kBsdf, DirectLighting::kLight}) {
+    s.render.direct_lighting = own;
+    compile::CompiledScene compiled = compile::compile(s);
+    const AxisPlan plan = plan_axes(s, compiled, 0.01);
+    compiled.spheres = {};
+    compiled.sphere_materials = {};
+    for (const auto& [name, mode] :
+         {std::pair{"mis", DirectLighting::kMis}, std::pair{"bsdf", DirectLighting::kBsdf}}) {
+      const auto choice = std::find_if(plan.choices.begin(), plan.choices.end(),
+                                       [&](const Choice& c) { return c.axis == "direct lighting" && c.name == name; });
+      ASSERT_NE(choice, plan.choices.end());
+      compile::CompiledScene changed = compiled;
+      choice->apply(changed);
+      s.render.direct_lighting = mode;
+      const compile::CompiledScene expected = compile::compile(s);
+      EXPECT_EQ(changed.direct_lighting, expected.direct_lighting);
+      EXPECT_EQ(changed.light_tree.spheres, expected.light_tree.spheres) << name;
+      const kernel::Environment &a = changed.environment->view(), &b = expected.environment->view();
+      EXPECT_EQ(a.is_sampled, b.is_sampled) << name;
+      EXPECT_EQ(a.map_density, b.map_density) << name;
+      EXPECT_EQ(a.weight_offset, b.weight_offset) << name;
+      EXPECT_EQ(a.sun_probability, b.sun_probability) << name;
+    }
+  }
+}
+
+/// Pixels of blue noise share random numbers, which the test for bias must not assume.
+TEST(MeasureAxes, ShortcutsDoNotTakeBlueNoise) {
+  scene::Scene s = test::everything();
+  s.render.sampler = scene::Sampler::kBlueNoise;
+  compile::CompiledScene compiled = compile::compile(s);
+  for (const Choice& choice : plan_axes(s, compiled, 0.01).choices) {
+    if (!choice.is_shortcut) continue;
+    compile::CompiledScene changed = compiled;
+    choice.apply(changed);
+    EXPECT_EQ(changed.sampler.kind, kernel::SamplerKind::kSobol) << choice.name;
+    EXPECT_NE(choice.flags.find("render.sampler=sobol"), std::string::npos) << choice.flags;
+  }
 }
 
 /// Time is counted in paths, so that the tests do not depend on the speed of the machine.
@@ -191,6 +239,25 @@ TEST_F(MeasureRun, ATooSmallBudgetIsRefusedWithTheTimeNeeded) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kUsage);
     EXPECT_NE(std::string(error.what()).find("a reference and two choices take 0.467 s"), std::string::npos)
         << error.what();
+  }
+}
+
+/// Each choice has the memory of a render with its options.
+TEST_F(MeasureRun, MemoryIncludesTheLightTreeOfTheChoice) {
+  const auto file = *folder / "lamps.toml";
+  std::string text =
+      "image = { width = 64, height = 36 }\nmaterial.lamp = { type = \"emitter\", radiance = [1, 1, 1] }\n";
+  for (int i = 0; i < 100; ++i)
+    text += "[[sphere]]\ncenter = [" + std::to_string(3 * i) + ", 0, -9]\nradius = 1\nmaterial = \"lamp\"\n";
+  std::ofstream(file) << text;
+  for (const char* own : {"mis", "bsdf"}) {
+    const Study lamps = small_study(file, 14, {std::string("render.direct_lighting=") + own});
+    const auto memory = [&](const char* name) {
+      for (const Point& p : lamps.points)
+        if (p.axis == "direct lighting" && p.name == name) return p.memory;
+      throw std::runtime_error(std::string("no point ") + name);
+    };
+    EXPECT_EQ(memory("mis"), memory("bsdf") + 9600) << own;
   }
 }
 

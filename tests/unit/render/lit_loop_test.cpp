@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "accel/accel.h"
@@ -172,6 +173,74 @@ TEST(RenderLitLoop, AFurnaceHasItsSeries) {
         }
       }
     }
+  }
+}
+
+/// A grey ball in an emissive shell, seen from within the shell.
+scene::Scene ball_in_a_shell(double albedo, scene::DirectLighting mode) {
+  scene::Scene s;
+  s.image = {32, 32};
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {1e30, 1e30, 1e30};  // never seen
+  s.camera.look_from = {0, 0, 4};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 60;
+  s.materials = {{"grey", scene::Lambertian{{albedo, albedo, albedo}}}, {"shell", scene::Emitter{{3, 2, 1}, 0, ""}}};
+  s.spheres = {{{0, 0, 0}, 1, 0, ""}, {{1, 0, 2}, 50, 1, ""}};
+  s.render.samples = 64;
+  s.render.sampler = scene::Sampler::kIndependent;
+  s.render.direct_lighting = mode;
+  return s;
+}
+
+/// Every path carries the shell's radiance, or that times the albedo if it met the ball, without noise. How many meet
+/// it follows from its outline, a disc.
+TEST(RenderLitLoop, ABallInAnEmissiveShellHasItsAlbedoTimesTheRadiance) {
+  constexpr int kSamples = 64;
+  const double angle = std::asin(1.0 / 4), half_height = std::tan(std::numbers::pi / 6);
+  const double covered = std::numbers::pi * std::pow(std::tan(angle), 2) / (4 * half_height * half_height);
+  for (const double albedo : {0.0, 0.5, 1.0}) {
+    for (const auto mode : {scene::DirectLighting::kMis, scene::DirectLighting::kBsdf, scene::DirectLighting::kLight}) {
+      const compile::CompiledScene compiled = compile::compile(ball_in_a_shell(albedo, mode));
+      Rendered out;
+      render_tile(compiled, compiled.view(), Kind::kLit, false, out);
+      EXPECT_EQ(out.counts.bad_samples, 0u);
+      int on_ball = 0, pixels_on_ball = 0;
+      for (const kernel::PixelSum& sum : out.sums) {
+        ASSERT_EQ(sum.weight, kSamples);
+        const double red = kernel::from_fixed_point(sum.rgb[0]);
+        const double hits = albedo == 1 ? 0 : (3 * kSamples - red) / (3 * (1 - albedo));
+        ASSERT_NEAR(hits, std::round(hits), 1e-11);
+        on_ball += static_cast<int>(std::round(hits));
+        for (int c = 0; c < 3; ++c) {
+          const double radiance = 3 - c;
+          const double expected = radiance * (kSamples - std::round(hits) * (1 - albedo));
+          ASSERT_NEAR(kernel::from_fixed_point(sum.rgb[c]), expected, 1e-12 * radiance * kSamples);
+        }
+        pixels_on_ball += std::round(hits) == kSamples;
+      }
+      if (albedo == 1) continue;
+      EXPECT_GT(pixels_on_ball, 20);
+      const double paths = kSamples * static_cast<double>(out.sums.size());
+      const double z = (on_ball - covered * paths) / std::sqrt(paths * covered * (1 - covered));
+      EXPECT_LT(std::abs(z), 4) << albedo;
+    }
+  }
+}
+
+/// Balls that see each other: with albedo 1 every path carries the radiance of the shell, after any number of bounces.
+TEST(RenderLitLoop, WhiteBallsInAnEmissiveShellAreInvisible) {
+  for (const auto mode : {scene::DirectLighting::kMis, scene::DirectLighting::kBsdf, scene::DirectLighting::kLight}) {
+    scene::Scene s = ball_in_a_shell(1, mode);
+    s.spheres.push_back({{1.5, 0.2, 1}, 0.7, 0, ""});
+    s.spheres.push_back({{-1, -0.4, 1.2}, 0.5, 0, ""});
+    s.render.max_depth = 10000;
+    const compile::CompiledScene compiled = compile::compile(s);
+    Rendered out;
+    render_tile(compiled, compiled.view(), Kind::kLit, false, out);
+    for (const kernel::PixelSum& sum : out.sums)
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(kernel::from_fixed_point(sum.rgb[c]) / (64 * (3 - c)), 1, 1e-12) << static_cast<int>(mode);
   }
 }
 
