@@ -19,6 +19,10 @@ constexpr int kRounds = 4;
 /// In the second round a pixel counts up to that many times the limit of a window beside it, however bright it is.
 constexpr float kOfWindowBeside = 8;
 
+/// Noise, in limits, up to which an outlier is reduced to its limit, so that nothing of note is lost where there are
+/// many. From twice that on it is reduced to its darker half, since the limit would still show as a dot.
+constexpr float kFading = 8;
+
 /// An outlier keeps at least this fraction of its light, so that it can be computed from what is left.
 constexpr float kLeastFactor = 0x1p-40F;
 
@@ -72,9 +76,10 @@ Values noise_limits(const Values& noises, const Values& darker_halves, Frame fra
   return limits;
 }
 
-/// `limit`    noise to keep
+/// `limit`    that its noise exceeds
 Outlier outlier_of(std::size_t pixel, const std::array<float, 3>& a, const std::array<float, 3>& b, float limit) {
-  Outlier out{pixel, sum(a) > sum(b), true, limit / noise(a, b), {}};
+  const float limits = noise(a, b) / limit;
+  Outlier out{pixel, sum(a) > sum(b), true, std::clamp(2 - limits / kFading, 0.0F, 1.0F) / limits, {}};
   for (std::size_t c = 0; c < 3; ++c) {
     const float low = out.is_in_a ? b[c] : a[c], whole = a[c] + b[c];
     const float left = low + low + out.kept * (whole - low - low);
