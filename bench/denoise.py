@@ -6,8 +6,9 @@
                                            [--seeds 4] [--scene NAME]
 
 error      factor by which --denoise divides the mean squared display error at 32 samples, over all seeds and its range
-           over single ones, and the largest change of the image's mean, on the scenes of trade.py and four lit ones;
-           against a reference of --reference samples
+           over single ones; the same for values clamped to 0..1 and encoded for the display, which no pixel dominates;
+           and the largest change of the image's mean, on the scenes of trade.py and four lit ones; against a reference
+           of --reference samples
 converged  the same at 4,096 samples, against 16,384
 time       seconds of --denoise at 64 samples on the final scene at 1920 x 1080, as a fraction of the render
 flicker    mean squared difference of consecutive frames to that of the reference, over 12 frames of a moving camera:
@@ -42,27 +43,40 @@ def mean(file):
     return sum(float(word) for word in line.split(":")[1].split()[:3]) / 3
 
 
+def displayed_error(program, file, reference):
+    """Root mean square difference of the display values of two images, 0..1."""
+    codes = [image.with_suffix(".tif") for image in (file, reference)]
+    for image, code in zip((file, reference), codes):
+        trade.run(program, "develop", image, "-o", code, "--bits", 16, "-q")
+    return trade.compared(program, *codes)["rmse"]
+
+
 def measure_error(program, scenes, work, options, samples, reference_samples):
-    factors = []
+    factors, displayed_factors = [], []
     print(f"{'scene':16} {'samples':>8} {'error':>9} {'denoised':>9} {'factor':>8} {'of one seed':>16} "
-          f"{'change of the mean':>19}")
+          f"{'displayed':>9} {'factor':>8} {'of one seed':>16} {'change of the mean':>19}")
     for name, scene in scenes.items():
         reference, noisy, clean = (work / f"{kind}.exr" for kind in ("reference", "noisy", "clean"))
         render(program, scene, reference, options, "--samples", reference_samples, "--seed", 999)
-        squares, changes = {noisy: [], clean: []}, []
+        squares, displayed, changes = {noisy: [], clean: []}, {noisy: [], clean: []}, []
         for seed in range(1, options.seeds + 1):
             render(program, scene, noisy, options, "--samples", samples, "--layers", "halves", "--seed", seed)
             trade.run(program, "denoise", noisy, "-o", clean, "-q")
-            for file, errors in squares.items():
-                errors.append(trade.compared(program, file, reference)["display"] ** 2)
+            for file in (noisy, clean):
+                squares[file].append(trade.compared(program, file, reference)["display"] ** 2)
+                displayed[file].append(displayed_error(program, file, reference) ** 2)
             changes.append(mean(clean) / mean(noisy) - 1)
-        before, after = (statistics.fmean(errors) for errors in squares.values())
-        of_seed = [b / a if a > 0 else 1 for b, a in zip(*squares.values())]
-        factors.append(before / after if after > 0 else 1)
-        spread = f"{min(of_seed):.2f} .. {max(of_seed):.2f}"
-        print(f"{name:16} {samples:8} {before ** 0.5:9.5f} {after ** 0.5:9.5f} {factors[-1]:8.2f} {spread:>16} "
-              f"{max(changes, key=abs):19.1e}", flush=True)
-    print(f"median factor {statistics.median(factors):.2f}, smallest {min(factors):.2f}\n", flush=True)
+        columns = [f"{name:16} {samples:8} {statistics.fmean(squares[noisy]) ** 0.5:9.5f}"]
+        for errors, to in ((squares, factors), (displayed, displayed_factors)):
+            before, after = (statistics.fmean(errors[file]) for file in (noisy, clean))
+            of_seed = [b / a if a > 0 else 1 for b, a in zip(errors[noisy], errors[clean])]
+            to.append(before / after if after > 0 else 1)
+            spread = f"{min(of_seed):.2f} .. {max(of_seed):.2f}"
+            columns.append(f"{after ** 0.5:9.5f} {to[-1]:8.2f} {spread:>16}")
+        print(*columns, f"{max(changes, key=abs):19.1e}", flush=True)
+    for kind, of in (("", factors), (" of displayed values", displayed_factors)):
+        print(f"median factor{kind} {statistics.median(of):.2f}, smallest {min(of):.2f}", flush=True)
+    print()
 
 
 def measure_time(program, scene, work, options):

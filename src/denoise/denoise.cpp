@@ -23,7 +23,7 @@ namespace {
 
 /// Squared differences of patches of the beauty, in variances, from which on they have nothing in common: of filtered
 /// halves, and without halves.
-constexpr float kTolerance = 8, kToleranceOfImage = 2.5F;
+constexpr float kTolerance = 12, kToleranceOfImage = 2.5F;
 
 /// The weights' source for the beauty.
 WeightSource beauty_source(const SourcePlanes& planes, const FilteredHalves& halves,
@@ -52,22 +52,35 @@ struct ChannelLight {
 /// layers.
 ///
 /// `before`   the beauty before filtering
-void finish_channel(film::Picture& picture, const LightChannel& channel, const PaddedPlane& before,
-                    const PaddedPlane& valid, ChannelLight light) {
+void finish_channel(film::Picture& picture, const SourcePlanes& planes, std::size_t c, const LightChannel& channel,
+                    const std::vector<PaddedPlane>& noisy_cells, ChannelLight light) {
+  const PaddedPlane &before = planes.beauty[c], &valid = planes.valid;
   const Frame frame{picture.width, picture.height};
   std::vector<float>& beauty = picture.planes[channel.beauty].values;
-  const LightBalance balance(before, beauty, valid, frame);
+  std::vector<RemovedLight> removed;
+  for (const Outlier& outlier : planes.outliers.pixels) {
+    if (!outlier.is_spread) continue;
+    const auto value = static_cast<double>(*before.at(frame.x(outlier.pixel), frame.y(outlier.pixel)));
+    removed.push_back({outlier.pixel, std::max(value * (1 / static_cast<double>(outlier.factors[c]) - 1), 0.0)});
+  }
+  const LightBalance balance(before, beauty, valid, frame, removed);
   tbb::parallel_for(0, frame.height, [&](int y) {
     std::vector<double> cells(channel.cells.size());
+    auto outlier = planes.outliers.first_from(frame.at(0, y));
     for (int x = 0; x < frame.width; ++x) {
       if (*valid.at(x, y) == 0) continue;
       const std::size_t i = frame.at(x, y);
       const double factor = balance.at(x, y, *before.at(x, y), beauty[i]);
-      beauty[i] = static_cast<float>(factor * static_cast<double>(beauty[i]));
+      while (outlier != planes.outliers.pixels.end() && outlier->pixel < i) ++outlier;
+      const bool is_outlier = outlier != planes.outliers.pixels.end() && outlier->pixel == i;
+      const double returned = is_outlier && !outlier->is_spread ? 1 / static_cast<double>(outlier->factors[c]) - 1 : 0;
+      beauty[i] = static_cast<float>(factor * static_cast<double>(beauty[i]) +
+                                     returned * static_cast<double>(*before.at(x, y)));
       // The regression may overshoot below zero.
       if (light.is_positive) beauty[i] = std::max(beauty[i], 0.0F);
       for (std::size_t k = 0; k < cells.size(); ++k)
-        cells[k] = factor * static_cast<double>(picture.planes[channel.cells[k]].values[i]);
+        cells[k] = factor * static_cast<double>(picture.planes[channel.cells[k]].values[i]) +
+                   returned * static_cast<double>(*noisy_cells[k].at(x, y));
       round_to_sum(cells, beauty[i], light.is_complete);
       for (std::size_t k = 0; k < cells.size(); ++k)
         picture.planes[channel.cells[k]].values[i] = static_cast<float>(cells[k]);
@@ -106,9 +119,13 @@ Report filter(film::Picture& picture) {
   const FilteredHalves halves = planes.has_halves ? filtered_halves(planes, guides, frame, tiles) : FilteredHalves();
   const WeightSource source = beauty_source(planes, halves, guides);
   std::vector<std::vector<PaddedPlane>> cells;
-  for (const LightChannel& channel : lights.channels) {
+  for (std::size_t c = 0; c < 3; ++c) {
     cells.emplace_back();
-    for (const std::size_t cell : channel.cells) cells.back().push_back(padded(picture.planes[cell].values, frame));
+    for (const std::size_t cell : lights.channels[c].cells) {
+      cells.back().push_back(padded(picture.planes[cell].values, frame));
+      for (const Outlier& outlier : planes.outliers.pixels)
+        scale_pixel(cells.back().back(), frame, outlier.pixel, outlier.factors[c]);
+    }
   }
   // Colours are premultiplied: where they spread, so must alpha.
   const std::optional<std::size_t> alpha = partial_alpha(picture);
@@ -133,7 +150,7 @@ Report filter(film::Picture& picture) {
   if (alpha)
     for (float& a : picture.planes[*alpha].values) a = std::clamp(a, 0.0F, 1.0F);
   for (std::size_t c = 0; c < 3; ++c)
-    finish_channel(picture, lights.channels[c], planes.beauty[c], planes.valid, {is_positive[c], is_complete});
+    finish_channel(picture, planes, c, lights.channels[c], cells[c], {is_positive[c], is_complete});
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) report.bad_pixels += *planes.valid.at(x, y) == 0 ? 1 : 0;
   return report;

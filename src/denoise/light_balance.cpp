@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace orrery::denoise {
@@ -11,6 +12,8 @@ namespace {
 
 /// The light of a few very bright pixels, spread over a dark part, would be visible.
 constexpr double kLargestLift = 0.05;
+/// The same for the light of a single outlier. It would flicker from frame to frame.
+constexpr double kLargestLiftOfOutlier = 0.02;
 
 /// Position of a pixel between two parts: the first of them, and the weight of the second.
 struct Between {
@@ -24,42 +27,70 @@ double gain(float before, float after) {
   return std::max(static_cast<double>(after) - static_cast<double>(std::max(before, 0.0F)), 0.0);
 }
 
+/// Light of a part: sums weighted by its tent.
+struct Light {
+  double loss = 0, gains = 0, after = 0;
+  double removed = 0, removed_squares = 0;
+
+  /// Fraction of the light by which a part is brightened for what it lost to the filter.
+  double lift_of_loss() const { return loss > 0 && after > 0 ? std::min(loss / after, kLargestLift) : 0; }
+  /// The same for the light of outliers. Where there are more of them, their number is better known.
+  double lift_of_removed() const {
+    if (!(removed > 0 && after > 0)) return 0;
+    return std::min(removed / after, kLargestLiftOfOutlier * std::max(removed / std::sqrt(removed_squares), 1.0));
+  }
+};
+
 }  // namespace
 
-LightBalance::LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame)
+LightBalance::LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame,
+                           const std::vector<RemovedLight>& removed)
     : columns_(between(frame.width - 1).part + 2) {
   const int rows = between(frame.height - 1).part + 2;
   parts_.resize(static_cast<std::size_t>(columns_ * rows));
+  std::vector<Light> sums(parts_.size());
   tbb::parallel_for(0, rows, [&](int row) {
-    struct Light {
-      double loss = 0, gains = 0, after = 0;
-    };
-    std::vector<Light> sums(static_cast<std::size_t>(columns_));
+    Light* const of_row = sums.data() + row * columns_;
     const int end = std::min((row + 1) * kPartSpacing, frame.height);
     for (int y = std::max((row - 1) * kPartSpacing, 0); y < end; ++y) {
       const Between vertical = between(y);
-      const double of_row = vertical.part == row ? 1 - vertical.weight : vertical.weight;
+      const double weight_of_row = vertical.part == row ? 1 - vertical.weight : vertical.weight;
+      const auto add = [&](int x, auto add_to) {
+        const Between horizontal = between(x);
+        add_to(of_row[horizontal.part], weight_of_row * (1 - horizontal.weight));
+        add_to(of_row[horizontal.part + 1], weight_of_row * horizontal.weight);
+      };
       for (int x = 0; x < frame.width; ++x) {
         if (*valid.at(x, y) == 0) continue;
         const float was = *before.at(x, y), is = after[frame.at(x, y)];
-        const Between horizontal = between(x);
-        const auto add = [&](int column, double weight) {
-          Light& sum = sums[static_cast<std::size_t>(column)];
+        add(x, [&](Light& sum, double weight) {
           sum.loss += weight * (static_cast<double>(was) - static_cast<double>(is));
           sum.gains += weight * gain(was, is);
           sum.after += weight * static_cast<double>(is);
-        };
-        add(horizontal.part, of_row * (1 - horizontal.weight));
-        add(horizontal.part + 1, of_row * horizontal.weight);
+        });
       }
+      const auto is_before = [](const RemovedLight& r, std::size_t pixel) { return r.pixel < pixel; };
+      const std::size_t first = frame.at(0, y), next_row = first + static_cast<std::size_t>(frame.width);
+      for (auto r = std::lower_bound(removed.begin(), removed.end(), first, is_before);
+           r != removed.end() && r->pixel < next_row; ++r)
+        add(static_cast<int>(r->pixel - first), [&](Light& sum, double weight) {
+          sum.removed += weight * r->light;
+          sum.removed_squares += weight * r->light * weight * r->light;
+        });
     }
     for (int column = 0; column < columns_; ++column) {
-      const Light& sum = sums[static_cast<std::size_t>(column)];
+      const Light& sum = of_row[column];
       Part& part = parts_[static_cast<std::size_t>(row * columns_ + column)];
-      if (sum.loss > 0 && sum.after > 0) part.lift = std::min(sum.loss / sum.after, kLargestLift);
+      part.lift = sum.lift_of_loss() + sum.lift_of_removed();
       if (sum.loss < 0 && sum.gains > 0) part.share = std::min(-sum.loss / sum.gains, 1.0);
     }
   });
+  double rest = 0, all = 0;
+  for (const Light& sum : sums) {
+    all += sum.after;
+    rest += sum.removed - sum.lift_of_removed() * sum.after;
+  }
+  if (rest > 0 && all > 0) lift_ = rest / all;
 }
 
 double LightBalance::at(int x, int y, float before, float after) const {
@@ -74,7 +105,7 @@ double LightBalance::at(int x, int y, float before, float after) const {
     return first + (in_row(above + columns_) - first) * vertical.weight;
   };
   const double given_back = interpolate(&Part::share) * gain(before, after);
-  return 1 + interpolate(&Part::lift) - given_back / static_cast<double>(after);
+  return 1 + lift_ + interpolate(&Part::lift) - given_back / static_cast<double>(after);
 }
 
 }  // namespace orrery::denoise

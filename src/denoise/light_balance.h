@@ -10,19 +10,31 @@ namespace orrery::denoise {
 /// Distance between the centres of neighbouring parts, px.
 inline constexpr int kPartSpacing = 64;
 
+/// Light that was taken from a pixel.
+struct RemovedLight {
+  std::size_t pixel;  ///< index
+  double light;       ///< not negative
+};
+
 /// Factors that restore the light of each part of a filtered plane to its value before filtering. The filter does not
 /// preserve it: what a pixel receives from others can differ from what it contributes to them.
 ///
 /// Parts are overlapping tents, 2 * kPartSpacing wide, that add up to 1 in each pixel, so that factors interpolated
 /// between parts preserve the sum over the image. A part that lost light is multiplied by a factor of up to 1.05. In a
 /// part that gained light, the pixels that are brighter than before give back the same fraction of their gain.
+///
+/// The light of outliers, which was taken from the image before filtering, counts as lost. Where a part has N of them,
+/// its factor may be larger by the square root of N, since their number is then as well known. Light beyond the limits
+/// is spread over the whole image; what would change that too much is returned to the outliers.
 class LightBalance {
  public:
   /// Computes the factors of a plane.
   ///
   /// `before`, `after`   plane before and after filtering
   /// `valid`             1, or 0 for pixels to ignore, whose values may be anything
-  LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame);
+  /// `removed`           light that was taken from the plane before `before`
+  LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame,
+               const std::vector<RemovedLight>& removed = {});
 
   /// The factor for a valid pixel; not negative.
   ///
@@ -36,6 +48,7 @@ class LightBalance {
   };
 
   int columns_;
+  double lift_ = 0;  ///< of the whole image
   std::vector<Part> parts_;
 };
 

@@ -23,16 +23,32 @@ Values window_means(const Values& in, Frame frame, int radius_px) {
   return out;
 }
 
-Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px) {
+Values least_around(const Values& in, Frame frame, int distance_px) {
+  return frame.each([&](int x, int y) {
+    return std::min({in[frame.at(x, y)], in[frame.at(x - distance_px, y)], in[frame.at(x + distance_px, y)],
+                     in[frame.at(x, y - distance_px)], in[frame.at(x, y + distance_px)]});
+  });
+}
+
+Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px, const Values* limits) {
   const Values squares = frame.each_index([&](std::size_t i) {
     float sum = 0;
     for (const Halves& plane : planes) {
       const float difference = (usable((*plane.a)[i]) - usable((*plane.b)[i])) * plane.scale;
       sum += difference * difference / 4;
     }
-    return sum;
+    return limits != nullptr ? std::min(sum, (*limits)[i] * (*limits)[i]) : sum;
   });
   return window_means(squares, frame, radius_px);
+}
+
+void scale_pixel(PaddedPlane& plane, Frame frame, std::size_t pixel, float factor) {
+  constexpr int kBorder = PaddedPlane::kBorder;
+  const int x = frame.x(pixel), y = frame.y(pixel);
+  const float value = factor * *plane.at(x, y);
+  for (int row = y == 0 ? -kBorder : y; row <= (y == frame.height - 1 ? y + kBorder : y); ++row)
+    for (int column = x == 0 ? -kBorder : x; column <= (x == frame.width - 1 ? x + kBorder : x); ++column)
+      *plane.at(column, row) = value;
 }
 
 PaddedPlane padded(const Values& values, Frame frame, float scale) {

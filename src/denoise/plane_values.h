@@ -32,6 +32,8 @@ struct Frame {
     return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(std::clamp(x, 0, width - 1));
   }
+  int x(std::size_t pixel) const { return static_cast<int>(pixel % static_cast<std::size_t>(width)); }
+  int y(std::size_t pixel) const { return static_cast<int>(pixel / static_cast<std::size_t>(width)); }
   /// Returns the plane of the values f(x, y).
   template <class F>
   Values each(F f) const {
@@ -55,6 +57,9 @@ struct Frame {
 /// Means over square windows. Edge pixels are repeated beyond the image.
 Values window_means(const Values& in, Frame frame, int radius_px);
 
+/// The least value of each pixel and of the four at a distance from it to the left, to the right, above and below.
+Values least_around(const Values& in, Frame frame, int distance_px);
+
 /// The same plane of two independent halves of the samples.
 struct Halves {
   const Values* a;
@@ -63,7 +68,12 @@ struct Halves {
 };
 
 /// Variance of the mean of two halves, averaged over square windows; sum over the planes.
-Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px);
+///
+/// `limits`   largest standard deviation of each pixel, if any
+Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px, const Values* limits = nullptr);
+
+/// Multiplies the value of a pixel, and its repetitions in the border.
+void scale_pixel(PaddedPlane& plane, Frame frame, std::size_t pixel, float factor);
 
 /// Copies values into a padded plane, whose border repeats the edge pixels. Values that are not finite or too large
 /// become 0.

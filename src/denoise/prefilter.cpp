@@ -14,6 +14,9 @@ constexpr int kGuideRadius = 2, kRadius = 1;
 /// Radius of the windows over which the variance of the filtered halves is averaged, px: they differ over larger areas
 /// than the noisy ones.
 constexpr int kNoiseRadius = 3;
+/// Distance of the windows of which the one with the smallest variance counts, px. At an edge between light with much
+/// noise and with little, it is on the side of the pixel, or on the one with less.
+constexpr int kNoiseStep = 2;
 
 /// Fraction of the noisy variance that filtered halves keep at least. They can be equal by chance.
 constexpr float kLeastVariance = 0.06F;
@@ -76,7 +79,8 @@ FilteredHalves filtered_halves(const SourcePlanes& planes, const std::vector<Pad
     out.b[c] = padded(b, frame);
     halves.push_back({&a, &b});
   }
-  const Values variance = variance_of(halves, frame, kNoiseRadius);
+  const Values variance =
+      least_around(variance_of(halves, frame, kNoiseRadius, &planes.outliers.limits), frame, kNoiseStep);
   out.variance = padded(
       frame.each([&](int x, int y) { return variance[frame.at(x, y)] + kLeastVariance * *planes.variance.at(x, y); }),
       frame);

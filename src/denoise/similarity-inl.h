@@ -36,11 +36,13 @@ inline constexpr std::size_t kDistanceStride = kHaloWidth + kMaxLanes;
 /// The product of the differences in two independent halves is an unbiased estimate of the squared difference. Without
 /// halves, the part that noise explains is subtracted. The variance is mostly the smaller of the two pixels', so that a
 /// pixel with little noise, for instance in a shadow, takes no light from a different, noisy neighbour.
+///
+/// Negative products are limited: a single one, in which noise has no part that both halves agree on, would make up for
+/// the differences of the whole patch.
 template <bool kHalves>
 HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int dx, int dy, float* out) {
   const D d;
-  constexpr float kLeastNoise = 1e-30F, kFarthest = 1e6F;
-  constexpr float kOfSmaller = 1.8F, kOfLarger = 0.2F;
+  constexpr float kLeastNoise = 1e-30F, kFarthest = 1e6F, kLeast = -3;
   for (int row = 0; row < kHaloHeight; ++row) {
     const int y = y0 + row - kPatchRadius;
     for (int column = 0; column < kHaloWidth; column += static_cast<int>(hn::Lanes(d))) {
@@ -56,10 +58,8 @@ HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int 
         const V a = step(*channel.a);
         difference = add_product(difference, a, kHalves ? step(*channel.b) : a);
       }
-      V noise = add_product(hn::Set(d, kLeastNoise), hn::Set(d, kOfSmaller), smaller);
-      noise = add_product(noise, hn::Set(d, kOfLarger), hn::Max(here, there));
-      const V far = hn::Set(d, kFarthest);
-      const V distance = hn::Min(far, hn::Max(hn::Neg(far), hn::Div(difference, noise)));
+      const V noise = add_product(hn::Set(d, kLeastNoise), hn::Set(d, 2.0F), smaller);
+      const V distance = hn::Min(hn::Set(d, kFarthest), hn::Max(hn::Set(d, kLeast), hn::Div(difference, noise)));
       hn::StoreU(distance, d, out + static_cast<std::size_t>(row) * kDistanceStride + column);
     }
   }

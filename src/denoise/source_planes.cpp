@@ -162,6 +162,18 @@ Values variance_without_halves(const Planes& planes, bool has_variance, Frame fr
   return sum;
 }
 
+/// Reduces an outlier to what its halves have in common.
+void reduce(SourcePlanes& planes, const std::vector<Halves>& halves, Frame frame, const Outlier& outlier) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    scale_pixel(planes.beauty[c], frame, outlier.pixel, outlier.factors[c]);
+    const float a = usable((*halves[c].a)[outlier.pixel]), b = usable((*halves[c].b)[outlier.pixel]);
+    const float bright = outlier.is_in_a ? a : b, dark = outlier.is_in_a ? b : a;
+    if (bright != 0)
+      scale_pixel(outlier.is_in_a ? planes.a[c] : planes.b[c], frame, outlier.pixel,
+                  (dark + outlier.kept * (bright - dark)) / bright);
+  }
+}
+
 }  // namespace
 
 SourcePlanes source_planes(const film::Picture& picture) {
@@ -187,7 +199,11 @@ SourcePlanes source_planes(const film::Picture& picture) {
     out.a[c] = padded(*halves.back().a, frame);
     out.b[c] = padded(*halves.back().b, frame);
   }
-  out.variance = padded(out.has_halves ? variance_of(halves, frame, kBeautyNoiseRadius)
+  if (out.has_halves) {
+    out.outliers = find_outliers(halves, frame);
+    for (const Outlier& outlier : out.outliers.pixels) reduce(out, halves, frame, outlier);
+  }
+  out.variance = padded(out.has_halves ? variance_of(halves, frame, kBeautyNoiseRadius, &out.outliers.limits)
                                        : variance_without_halves(planes, has_variance, frame),
                         frame);
   if (!out.has_halves) out.missing.push_back(has_planes ? "halves (one half has no samples)" : "halves");

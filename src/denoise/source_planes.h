@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "denoise/outliers.h"
 #include "denoise/plane_values.h"
 #include "denoise/tile_filter.h"
 #include "film/picture.h"
@@ -15,6 +16,7 @@ namespace orrery::denoise {
 struct SourcePlanes {
   bool has_halves = false;                  ///< `a` and `b` are independent
   std::array<PaddedPlane, 3> beauty, a, b;  ///< the beauty, and that of two halves of the samples
+  Outliers outliers;                        ///< already reduced in `beauty`, `a` and `b`
   PaddedPlane variance;                     ///< of the beauty, sum over the channels
   std::vector<PaddedPlane> guides;          ///< kGuides, or empty
   PaddedPlane guide_variance;               ///< sum over the guides

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
 
@@ -73,6 +74,34 @@ TEST(DenoiseLightBalance, WhatWasGainedIsGivenBackByThoseWhoGainedIt) {
   EXPECT_NEAR(balanced_sum(balance, before, after, kFrame) / sum(before), 1, 1e-6);
   EXPECT_EQ(balance.at(30, 50, 0.1F, 0.1F), 1);
   EXPECT_LT(balance.at(45, 50, 0.1F, 15), 0.6);
+}
+
+TEST(DenoiseLightBalance, RestoresTheLightOfOutliers) {
+  constexpr Frame kFrame{400, 200};
+  const Values plane(kFrame.pixels(), 1);
+  const PaddedPlane valid = padded(plane, kFrame);
+  const auto lift = [&](const std::vector<RemovedLight>& removed, int x, int y) {
+    return LightBalance(valid, plane, valid, kFrame, removed).at(x, y, 1, 1) - 1;
+  };
+  const auto sum_of_lifts = [&](const std::vector<RemovedLight>& removed) {
+    const LightBalance balance(valid, plane, valid, kFrame, removed);
+    double out = 0;
+    for (int y = 0; y < kFrame.height; ++y)
+      for (int x = 0; x < kFrame.width; ++x) out += balance.at(x, y, 1, 1) - 1;
+    return out;
+  };
+  const std::size_t at = kFrame.at(64, 64);
+  EXPECT_NEAR(sum_of_lifts({{at, 40}}), 40, 1e-3);
+  EXPECT_GT(lift({{at, 40}}, 64, 64), 0.005);
+  EXPECT_EQ(lift({{at, 40}}, 300, 64), 0) << "nearby";
+  EXPECT_NEAR(sum_of_lifts({{at, 2000}}), 2000, 1e-3);
+  EXPECT_LT(lift({{at, 2000}}, 64, 64), 0.05) << "limited";
+  EXPECT_GT(lift({{at, 2000}}, 300, 64), 0.01) << "the rest is spread over the image";
+  std::vector<RemovedLight> many;
+  for (int i = 0; i < 100; ++i) many.push_back({kFrame.at(64 + i % 10, 64 + i / 10), 5});
+  std::sort(many.begin(), many.end(), [](const auto& a, const auto& b) { return a.pixel < b.pixel; });
+  EXPECT_NEAR(sum_of_lifts(many), 500, 1e-3);
+  EXPECT_EQ(lift(many, 300, 150), 0) << "the number of many is known";
 }
 
 TEST(DenoiseLightBalance, IsLimitedAndIgnoresInvalidPixels) {

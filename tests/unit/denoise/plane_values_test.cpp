@@ -49,6 +49,38 @@ TEST(DenoisePlaneValues, VarianceOfHalvesIsThatOfTheirMeanAndAddsUpOverPlanes) {
   EXPECT_NEAR(sum / static_cast<double>(kLarge.pixels()), 1.25, 0.03);
 }
 
+TEST(DenoisePlaneValues, VarianceCountsPixelsUpToALimit) {
+  Values a(kFrame.pixels()), b = a;
+  const Values limits(kFrame.pixels(), 3);
+  a[kFrame.at(4, 3)] = 1000;
+  EXPECT_FLOAT_EQ(variance_of({{&a, &b}}, kFrame, 1, &limits)[kFrame.at(5, 3)], 1);
+}
+
+TEST(DenoisePlaneValues, TheLeastValueAroundAPixel) {
+  Values in(kFrame.pixels(), 5);
+  in[kFrame.at(3, 3)] = 1;
+  const Values out = least_around(in, kFrame, 2);
+  EXPECT_EQ(out[kFrame.at(3, 3)], 1);
+  EXPECT_EQ(out[kFrame.at(5, 3)], 1);
+  EXPECT_EQ(out[kFrame.at(3, 1)], 1);
+  EXPECT_EQ(out[kFrame.at(4, 3)], 5);
+  EXPECT_EQ(out[kFrame.at(4, 4)], 5);
+}
+
+TEST(DenoisePlaneValues, APixelIsScaledWithItsRepetitions) {
+  const Values in = random_values(3);
+  for (const std::size_t pixel : {kFrame.at(0, 0), kFrame.at(kFrame.width - 1, 2), kFrame.at(4, 3)}) {
+    PaddedPlane plane = padded(in, kFrame);
+    scale_pixel(plane, kFrame, pixel, 0.5F);
+    Values scaled = in;
+    scaled[pixel] *= 0.5F;
+    constexpr int kBorder = PaddedPlane::kBorder;
+    for (int y = -kBorder; y < kFrame.height + kBorder; ++y)
+      for (int x = -kBorder; x < kFrame.width + kBorder; ++x)
+        ASSERT_EQ(*plane.at(x, y), scaled[kFrame.at(x, y)]) << x << " " << y;
+  }
+}
+
 TEST(DenoisePlaneValues, PaddedPlanesRepeatTheEdgeAndAreFinite) {
   Values in = random_values(3);
   in[kFrame.at(4, 2)] = std::numeric_limits<float>::quiet_NaN();

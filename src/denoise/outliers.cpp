@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "denoise/outliers.h"
+
+#include <cmath>
+
+namespace orrery::denoise {
+namespace {
+
+/// Noise of a pixel from which on it is an outlier: times the mean light and the mean noise of its window. A pixel
+/// whose light is averaged over the window changes it by 1 / kOffsets of its own: at most by 1 / 60 of the light where
+/// there is little noise, and less than the rest of the noise does where there is much.
+constexpr float kOfLight = 2, kOfNoise = 12;
+/// The same, times the light of the pixel's own darker half: that much both halves saw.
+constexpr float kOfDarkerHalf = 2;
+
+/// Number of times that the means are computed. Each time a pixel counts up to its limit before, so that a pixel has
+/// little effect on its own limit.
+constexpr int kRounds = 4;
+/// In the second round a pixel counts up to that many times the limit of a window beside it, however bright it is.
+constexpr float kOfWindowBeside = 8;
+
+/// Noise, in limits, up to which an outlier is reduced to its limit, so that nothing of note is lost where there are
+/// many. From twice that on it is reduced to its darker half, since the limit would still show as a dot.
+constexpr float kFading = 8;
+
+/// An outlier keeps at least this fraction of its light, so that it can be computed from what is left.
+constexpr float kLeastFactor = 0x1p-40F;
+
+/// Largest standard deviation of the image's mean, as a fraction of it, by light of outliers that is spread over the
+/// image. It would flicker from frame to frame.
+constexpr double kLargestFlicker = 0.02;
+
+/// A colour of a half.
+std::array<float, 3> color(const std::vector<Halves>& halves, const Values* Halves::*half, std::size_t pixel) {
+  std::array<float, 3> out{};
+  for (std::size_t c = 0; c < 3; ++c) out[c] = usable((*(halves[c].*half))[pixel]);
+  return out;
+}
+float sum(const std::array<float, 3>& v) { return v[0] + v[1] + v[2]; }
+
+/// Square root of the variance of a pixel, summed over the channels.
+float noise(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+  float squares = 0;
+  for (std::size_t c = 0; c < 3; ++c) squares += (a[c] - b[c]) * (a[c] - b[c]);
+  return std::sqrt(squares) / 2;
+}
+
+/// Light of the darker half, in the unit of noise().
+float darker(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+  return std::max(std::min(sum(a), sum(b)), 0.0F) / std::sqrt(3.0F);
+}
+
+/// Means over the windows of pixels, moved to be within the image: the mean of a repeated edge would be that of few
+/// pixels.
+Values means_inside(const Values& in, Frame frame) {
+  const Values means = window_means(in, frame, kWindowRadius);
+  const auto inside = [](int at, int length) {
+    const int middle = (length - 1) / 2;
+    return std::clamp(at, std::min(kWindowRadius, middle), std::max(length - 1 - kWindowRadius, middle));
+  };
+  return frame.each([&](int x, int y) { return means[frame.at(inside(x, frame.width), inside(y, frame.height))]; });
+}
+
+/// Limits of the noise of each pixel by that and by the light of its window.
+Values noise_limits(const Values& noises, const Values& darker_halves, Frame frame) {
+  Values limits = noises;
+  for (int round = 0; round < kRounds; ++round) {
+    const Values sums = frame.each_index([&](std::size_t i) {
+      return kOfLight * darker_halves[i] + (kOfLight + kOfNoise) * std::min(noises[i], limits[i]);
+    });
+    limits = means_inside(sums, frame);
+    if (round > 0) continue;
+    limits = least_around(limits, frame, kWindowRadius + 1);
+    for (float& limit : limits) limit *= kOfWindowBeside;
+  }
+  return limits;
+}
+
+/// `limit`    that its noise exceeds
+Outlier outlier_of(std::size_t pixel, const std::array<float, 3>& a, const std::array<float, 3>& b, float limit) {
+  const float limits = noise(a, b) / limit;
+  Outlier out{pixel, sum(a) > sum(b), true, std::clamp(2 - limits / kFading, 0.0F, 1.0F) / limits, {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float low = out.is_in_a ? b[c] : a[c], whole = a[c] + b[c];
+    const float left = low + low + out.kept * (whole - low - low);
+    out.factors[c] = whole > 0 ? std::clamp(left / whole, kLeastFactor, 1.0F) : 1.0F;
+  }
+  return out;
+}
+
+/// Keeps the light of the brightest outliers where it is, so that the rest can be spread over an image of `light`
+/// without changing it visibly.
+void return_brightest(std::vector<Outlier>& outliers, const std::vector<double>& removed, double light) {
+  std::vector<std::size_t> order(outliers.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t i, std::size_t k) { return removed[i] != removed[k] ? removed[i] < removed[k] : i < k; });
+  double squares = 0;
+  for (const std::size_t i : order) {
+    squares += removed[i] * removed[i];
+    outliers[i].is_spread = std::sqrt(squares) <= kLargestFlicker * light;
+  }
+}
+
+}  // namespace
+
+Outliers find_outliers(const std::vector<Halves>& halves, Frame frame) {
+  const auto a = [&](std::size_t i) { return color(halves, &Halves::a, i); };
+  const auto b = [&](std::size_t i) { return color(halves, &Halves::b, i); };
+  const Values noises = frame.each_index([&](std::size_t i) { return noise(a(i), b(i)); });
+  const Values darker_halves = frame.each_index([&](std::size_t i) { return darker(a(i), b(i)); });
+  Outliers out;
+  out.limits = noise_limits(noises, darker_halves, frame);
+  struct Row {
+    std::vector<Outlier> outliers;
+    std::vector<double> removed;  ///< light, of each outlier
+    double light = 0;             ///< that is left
+  };
+  std::vector<Row> rows(static_cast<std::size_t>(frame.height));
+  tbb::parallel_for(0, frame.height, [&](int y) {
+    Row& row = rows[static_cast<std::size_t>(y)];
+    for (std::size_t i = frame.at(0, y); i < frame.at(0, y) + static_cast<std::size_t>(frame.width); ++i) {
+      const float limit = std::max(out.limits[i], kOfDarkerHalf * darker_halves[i]);
+      row.light += static_cast<double>(sum(a(i)) + sum(b(i))) / 2;
+      if (noises[i] <= limit) continue;
+      row.outliers.push_back(outlier_of(i, a(i), b(i), limit));
+      double removed = 0;
+      for (std::size_t c = 0; c < 3; ++c)
+        removed += static_cast<double>((a(i)[c] + b(i)[c]) / 2 * (1 - row.outliers.back().factors[c]));
+      row.removed.push_back(removed);
+      row.light -= removed;
+    }
+  });
+  std::vector<double> removed;
+  double light = 0;
+  for (const Row& row : rows) {
+    out.pixels.insert(out.pixels.end(), row.outliers.begin(), row.outliers.end());
+    removed.insert(removed.end(), row.removed.begin(), row.removed.end());
+    light += row.light;
+  }
+  return_brightest(out.pixels, removed, light);
+  return out;
+}
+
+}  // namespace orrery::denoise
