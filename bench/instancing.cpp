@@ -43,8 +43,8 @@ Sphere transformed(const Transform& t, const Sphere& s) {
 RTCScene scene_of(RTCDevice device, const std::vector<Sphere>& spheres) {
   const RTCScene scene = rtcNewScene(device);
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-  auto* const to = static_cast<Sphere*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                                                                sizeof(Sphere), spheres.size()));
+  auto* const to = static_cast<Sphere*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(Sphere), spheres.size()));
   for (std::size_t i = 0; i < spheres.size(); ++i) to[i] = spheres[i];
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
@@ -62,7 +62,8 @@ int main(int argc, char** argv) {
   std::ifstream in(argv[1]);
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with("ATOM  ") && line.size() >= 54)
-      unit.push_back({std::strtof(line.substr(30, 8).c_str(), nullptr), std::strtof(line.substr(38, 8).c_str(), nullptr),
+      unit.push_back({std::strtof(line.substr(30, 8).c_str(), nullptr),
+                      std::strtof(line.substr(38, 8).c_str(), nullptr),
                       std::strtof(line.substr(46, 8).c_str(), nullptr), 1.7F});
     const std::size_t at = line.find("BIOMT");
     float v[4];
