@@ -109,7 +109,7 @@ void PdbReader::load(int frame) {
   atoms_ = {};
   const PdbModel& model = index_.models[static_cast<std::size_t>(frame)];
   // Measured: 3.7 with residues of 8 atoms, 5.5 if all are water.
-  constexpr double kMemoryPerByte = 4;
+  constexpr double kMemoryPerByte = 5.5;
   require_parse_memory(bytes_->file(), model.end - model.begin, kMemoryPerByte, memory_limit_);
   const std::string text = text_of(model);
   gemmi::Structure structure;

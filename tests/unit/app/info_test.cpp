@@ -183,7 +183,7 @@ TEST_F(AppInfo, OfCoincidentEmittersOnlyTheFirstCounts) {
                             lamp("[8, 0, -1.000000000001]");
   EXPECT_EQ(info(scene).emitters, 2u);
   EXPECT_EQ(info(scene, {"render.direct_lighting=\"bsdf\""}).emitters, 2u);
-  EXPECT_EQ(info(scene, {"render.precision=\"fast\""}).lights, "1 emitter, light and BSDF sampling");
+  EXPECT_EQ(info(scene, {"render.precision=\"fast\""}).lights, "1 emitter; light and BSDF sampling");
 }
 
 }  // namespace

@@ -285,9 +285,9 @@ TEST_F(DataPdb, MemoryIsCheckedBeforeAtomsAreParsed) {
   for (int i = 0; i < 100; ++i) text += atom(" C", "ALA", 'A', i, {1, 2, 3}, " C");
   opened(text);
   OpenOptions options;
-  options.limit_memory(4 * text.size());
+  options.limit_memory(text.size() * 11 / 2 + 1);
   EXPECT_EQ(open(folder_ / "a.pdb", options)->describe(0).rows, 100u);
-  options.limit_memory(4 * text.size() - 1);
+  options.limit_memory(text.size() * 11 / 2 - 1);
   try {
     open(folder_ / "a.pdb", options)->describe(0);
     FAIL() << "no error";

@@ -42,7 +42,7 @@ TEST(MeasureAxes, OnlyAxesThatAffectTheSceneArePlanned) {
 }
 
 /// A choice of direct lighting renders as the scene does with that setting, whichever setting the scene has itself. The
-/// study has lent its spheres when it applies a choice.
+/// study has lent its spheres when it applies a choice; with them, the renderer updates the light tree.
 TEST(MeasureAxes, DirectLightingIsThatOfAScenesOwnMode) {
   scene::Scene s = test::lit_scenes(16, 9).back().scene;
   ASSERT_NE(s.background.image, nullptr);
@@ -50,7 +50,8 @@ TEST(MeasureAxes, DirectLightingIsThatOfAScenesOwnMode) {
   using scene::DirectLighting;
   for (const DirectLighting own : {DirectLighting::kMis, DirectLighting::kBsdf, DirectLighting::kLight}) {
     s.render.direct_lighting = own;
-    compile::CompiledScene compiled = compile::compile(s);
+    const compile::CompiledScene whole = compile::compile(s);
+    compile::CompiledScene compiled = whole;
     const AxisPlan plan = plan_axes(s, compiled, 0.01);
     compiled.spheres = {};
     compiled.sphere_materials = {};
@@ -61,6 +62,9 @@ TEST(MeasureAxes, DirectLightingIsThatOfAScenesOwnMode) {
       ASSERT_NE(choice, plan.choices.end());
       compile::CompiledScene changed = compiled;
       choice->apply(changed);
+      changed.spheres = whole.spheres;
+      changed.sphere_materials = whole.sphere_materials;
+      compile::update_lights(changed);
       s.render.direct_lighting = mode;
       const compile::CompiledScene expected = compile::compile(s);
       EXPECT_EQ(changed.direct_lighting, expected.direct_lighting);
