@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "cli/commands.h"
+#include "cli/option_checks.h"
 #include "cli/output.h"
 #include "cli/signals.h"
 #include "cli/usage.h"
@@ -71,6 +72,9 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error, con
 }
 
 int parse_and_act(int argc, const char* const* argv) {
+  const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
+  if (const std::string option = option_without_value(words); !option.empty())
+    refuse(option + " needs a value; `" + option + "=` is followed by none");
   CLI::App program("orrery is a path tracer for scenes made of spheres.", "orrery");
   configure(program);
   Command commands(program);
@@ -81,7 +85,7 @@ int parse_and_act(int argc, const char* const* argv) {
   } catch (const CLI::Success& success) {
     return print_success(program, success);
   } catch (const CLI::ParseError& error) {
-    return print_usage_error(program, error, {argv + (argc > 0 ? 1 : 0), argv + argc});
+    return print_usage_error(program, error, words);
   }
   return action();
 }

@@ -14,6 +14,12 @@ const CLI::App& innermost(const CLI::App& program);
 /// The full name of a command: "orrery generate final".
 std::string full_name(const CLI::App& command);
 
+/// The first option that is written as `--name=`, without a value, as happens with an unset variable; empty if there is
+/// none. The parser would take the next word for its value.
+///
+/// `words`    argv without the program's name
+std::string option_without_value(const std::vector<std::string>& words);
+
 /// The message for a wrong command line: what is wrong and what to type instead.
 ///
 /// Domain     `words` are argv without the program's name; parsing them in `program` threw `error`

@@ -54,6 +54,12 @@ TEST_F(CliUsage, ARepeatableOptionTakesOneValueEachTime) {
   EXPECT_EQ(scene_, "a.toml");
 }
 
+TEST_F(CliUsage, AnEqualsSignNeedsAValue) {
+  EXPECT_EQ(option_without_value({"render", "a.toml", "--samples=", "-o", "a.png"}), "--samples");
+  EXPECT_EQ(option_without_value({"render", "a.toml", "--samples=1", "--set", "camera.vfov=", "-q"}), "");
+  EXPECT_EQ(option_without_value({"render", "--", "--samples="}), "");
+}
+
 TEST_F(CliUsage, UnknownOptionsGetASuggestion) {
   EXPECT_EQ(message({"render", "a.toml", "-o", "a.png", "--samlpes", "3"}),
             "unknown option --samlpes; did you mean `--samples`?");
