@@ -37,5 +37,7 @@ for name in "${names[@]}"; do
   fi
   (cd "$work/$name" && bash -euo pipefail "$work/$name.sh")
   # Less detail than orrery writes, for pages that load quickly.
-  oiiotool "$work/$name/$name.jpg" --compression jpeg:70 -o "$root/docs/gallery/$name.jpg"
+  # Attributes hold the command with its paths.
+  oiiotool --nosoftwareattrib "$work/$name/$name.jpg" --eraseattrib ".*" --compression jpeg:70 \
+    -o "$root/docs/gallery/$name.jpg"
 done
