@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "compile/compile.h"
@@ -117,7 +118,7 @@ double relative_noise(const scene::Scene& scene, int pairs) {
 /// A texel a million times as bright as the rest is sampled as well as a sphere that gives the same light.
 TEST(StatisticalDirectLight, ASunOfOneTexelIsAsGoodAsASphere) {
   constexpr int kTexels = 64;
-  constexpr double kPi = 3.14159265358979323846;
+  constexpr double pi = std::numbers::pi;
   scene::Scene texel = dark_stage(kWidth, kHeight);
   texel.render.samples = 64;
   texel.background.type = scene::BackgroundType::kImage;
@@ -131,10 +132,10 @@ TEST(StatisticalDirectLight, ASunOfOneTexelIsAsGoodAsASphere) {
   scene::Scene sphere = texel;
   sphere.background.image = map(1e-3F);
   // The bilinear lookup spreads the texel over its neighbours; its light is that of one texel.
-  const double polar = kPi * (kTexels / 8 + 0.5) / (kTexels / 2);
-  const double longitude = kPi - 2 * kPi * (kTexels / 4 + 5.5) / kTexels;
-  const double solid_angle = 2 * kPi / kTexels * (std::cos(polar - kPi / kTexels) - std::cos(polar + kPi / kTexels));
-  const double distance = 1e5, radius = distance * std::sqrt(solid_angle / kPi);
+  const double polar = pi * (kTexels / 8 + 0.5) / (kTexels / 2);
+  const double longitude = pi - 2 * pi * (kTexels / 4 + 5.5) / kTexels;
+  const double solid_angle = 2 * pi / kTexels * (std::cos(polar - pi / kTexels) - std::cos(polar + pi / kTexels));
+  const double distance = 1e5, radius = distance * std::sqrt(solid_angle / pi);
   add_lamp(sphere,
            math::Vec3d{std::sin(polar) * std::sin(longitude), std::cos(polar), std::sin(polar) * std::cos(longitude)} *
                distance,

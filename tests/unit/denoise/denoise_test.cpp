@@ -158,7 +158,8 @@ double sum_of(const film::Picture& picture, const std::string& name) {
 /// Mean squared error of values clamped to 0..1 to a constant light.
 double clamped_error(const film::Picture& picture, double light) {
   double out = 0;
-  for (const float v : values(picture, "G")) out += std::pow(std::clamp(static_cast<double>(v), 0.0, 1.0) - light, 2);
+  const std::string green = "G";
+  for (const float v : values(picture, green)) out += std::pow(std::clamp(static_cast<double>(v), 0.0, 1.0) - light, 2);
   return out / kPixels;
 }
 
