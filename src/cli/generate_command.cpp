@@ -32,7 +32,7 @@ constexpr std::uint64_t kMaxSeed = std::numeric_limits<std::uint64_t>::max();
 
 /// Adds the option that other commands have for scripts.
 void add_quiet(Command& command, GenerateOptions& options) {
-  command.add_flag("-q,--quiet", options.quiet, "Print only errors, as always");
+  command.add_flag("-q,--quiet", options.quiet, "Print only errors, which is the default");
 }
 
 /// Adds the options of all scene generators.

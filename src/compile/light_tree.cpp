@@ -28,7 +28,7 @@ struct Leaf {
 
 /// A table of all ids from the first to the last emitter may have this many entries per emitter. Otherwise a leaf is
 /// found by a binary search.
-constexpr std::uint32_t kMostEntries = 2;
+constexpr std::uint32_t kMaxEntries = 2;
 
 /// Sorts leaves so that halves of every range are separated along its longest axis, and computes the nodes.
 class Builder {
@@ -99,7 +99,7 @@ void index_leaves(LightTree& tree) {
   const auto [first, last] = std::minmax_element(tree.spheres.begin(), tree.spheres.end());
   tree.first_sphere = *first;
   tree.end_sphere = *last + 1;
-  tree.scattered = (tree.end_sphere - tree.first_sphere) / kMostEntries > count;
+  tree.scattered = (tree.end_sphere - tree.first_sphere) / kMaxEntries > count;
   if (tree.scattered) {
     tree.leaves.resize(count);
     std::iota(tree.leaves.begin(), tree.leaves.end(), 0U);

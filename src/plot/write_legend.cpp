@@ -55,10 +55,10 @@ points::Legend legend_of(const LegendColors& colors, const display::Settings& di
 }
 
 void write_image(const std::filesystem::path& file, const points::Legend& legend) {
-  if (legend.patches.size() > points::kMostImagePatches)
+  if (legend.patches.size() > points::kMaxImagePatches)
     throw base::Error(
         base::ErrorKind::kUsage,
-        "--legend: an image shows up to " + std::to_string(points::kMostImagePatches) + " values; name an .svg file");
+        "--legend: an image shows up to " + std::to_string(points::kMaxImagePatches) + " values; name an .svg file");
   const points::LegendImage image = points::legend_image(legend);
   film::EncodedPicture picture;
   picture.width = image.width;

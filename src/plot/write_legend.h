@@ -31,8 +31,8 @@ struct LegendColors {
   void add(const scene::Points& frame);
 };
 
-/// Writes the legend of a plot's colours as SVG or as an image. The colours go through the display transform of the
-/// image, so that they match it.
+/// Writes the legend of a plot's colours as SVG or as an image. The display transform of the image is applied to
+/// the colours, so that they match it.
 ///
 /// `display`  of the image; its working space is not used
 /// Errors     base::Error: kUsage for another extension, and if there are neither labels nor a colour map with a range;

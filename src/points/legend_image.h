@@ -10,7 +10,7 @@
 namespace orrery::points {
 
 /// Patches that legend_image() can show; more would be an image that few programs open.
-inline constexpr std::size_t kMostImagePatches = 500;
+inline constexpr std::size_t kMaxImagePatches = 500;
 
 /// An image in display-referred sRGB.
 struct LegendImage {
@@ -21,7 +21,7 @@ struct LegendImage {
 /// Returns the legend of legend_svg() as pixels, with texts in a built-in font of ASCII characters. Others are shown as
 /// question marks, long texts are truncated.
 ///
-/// Domain     at most kMostImagePatches patches
+/// Domain     at most kMaxImagePatches patches
 LegendImage legend_image(const Legend& legend);
 
 }  // namespace orrery::points

@@ -34,7 +34,7 @@ class CliPlot : public ProgramTest {
   }
 };
 
-/// The legend goes through the display transform of the image, however that is set.
+/// The display transform of the image applies to the legend, whichever option sets it.
 TEST_F(CliPlot, LegendsHaveTheSettingsOfTheImage) {
   const auto legend = [&](const std::string& options) {
     const Outcome r = plot("c.csv -o a.ppm --color-by q -q --legend l.svg " + options);

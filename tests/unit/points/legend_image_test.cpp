@@ -69,7 +69,7 @@ TEST(PointsLegendImage, AnyTextAndAnyRangeIsDrawn) {
   legend.bar = {kBlue};
   legend.first = -1e308;
   legend.last = 1e308;
-  for (std::size_t i = 0; i < kMostImagePatches; ++i) legend.patches.push_back({std::string(i, '~'), kRed});
+  for (std::size_t i = 0; i < kMaxImagePatches; ++i) legend.patches.push_back({std::string(i, '~'), kRed});
   const LegendImage image = legend_image(legend);
   EXPECT_LT(image.width, 1000) << "long texts are truncated";
   EXPECT_EQ(std::count(image.pixels.begin(), image.pixels.end(), kBlue), 48 * 512);
