@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/outliers.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace orrery::denoise {
 namespace {
