@@ -34,8 +34,8 @@ inline constexpr std::size_t kDistanceStride = kHaloWidth + kMaxLanes;
 /// Squared difference of each pixel of the tile, and of its halo, to the pixel at an offset, in units of the variance.
 ///
 /// The product of the differences in two independent halves is an unbiased estimate of the squared difference. Without
-/// halves, the part that noise explains is subtracted. The variance is the smaller of the two pixels', so that a pixel
-/// with little noise, for instance in a shadow, takes no light from a different, noisy neighbour.
+/// halves, the part that noise explains is subtracted. The variance is twice the smaller of the two pixels', so that a
+/// pixel with little noise, for instance in a shadow, takes no light from a different, noisy neighbour.
 ///
 /// Negative products are limited: a single one, in which noise has no part that both halves agree on, would make up for
 /// the differences of the whole patch.
