@@ -64,8 +64,8 @@ inline constexpr std::size_t kNoBvh = ~std::size_t{0};
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor = {}, std::size_t threshold = bvh_threshold());
 
-/// The number of spheres, to within a few, that make_embree puts into its BVH of many spheres: 13 bytes each instead of
-/// Embree's hundred.
+/// The number of spheres, to within a few, that make_embree puts into its BVH of many spheres: 10 to 13 bytes each
+/// instead of Embree's hundred.
 std::size_t spheres_in_bvh(const kernel::SceneView& scene);
 
 /// Embree's built-in sphere points, traced one ray at a time in float, as in a renderer without its own intersection.

@@ -185,7 +185,7 @@ HWY_INLINE unsigned trace_single(const SphereBvh& bvh, const EmbreeQuery<Packet>
   const hn::RebindToUnsigned<decltype(d)> du;
   SingleRay states[kWidth];
   const auto self = [&](int i) { return static_cast<std::uint32_t>(query.packet->self[query.first + i]); };
-  for (int i = 0; i < kWidth; ++i) hwy::Prefetch(&bvh.places[self(i) < bvh.places.size() ? self(i) : 0]);
+  for (int i = 0; i < kWidth; ++i) hwy::Prefetch(bvh.homes.address(self(i) < bvh.homes.size() ? self(i) : 0));
   const float* const origin[3] = {&RTCRayN_org_x(rays, kWidth, 0), &RTCRayN_org_y(rays, kWidth, 0),
                                   &RTCRayN_org_z(rays, kWidth, 0)};
   const float* const direction[3] = {&RTCRayN_dir_x(rays, kWidth, 0), &RTCRayN_dir_y(rays, kWidth, 0),

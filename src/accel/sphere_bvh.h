@@ -9,13 +9,13 @@
 
 #include "accel/box_frame.h"
 #include "base/huge_pages.h"
+#include "base/packed_array.h"
 #include "kernel/sphere_array.h"
 
 namespace orrery::accel {
 
 /// A BVH over many static spheres, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds in 8
-/// bits relative to the parent. It takes 13 bytes per sphere, or
-/// 14 if radii differ.
+/// bits relative to the parent. It takes 10 to 12 bytes per sphere, and one more if radii differ.
 ///
 /// Like Embree's boxes it only selects candidates. All bounds enclose the spheres plus the rounding errors of a
 /// single-precision ray in box space (docs/decisions/0027-bvh-for-many-spheres.md), so no hit is lost.
@@ -78,8 +78,8 @@ class SphereBvh {
 
   /// The node above a sphere's leaf; kNoSphere if the sphere is not in the tree.
   std::uint32_t home_of(std::uint32_t id) const noexcept {
-    const std::uint32_t place = id < places.size() ? places[id] : kernel::kNoSphere;
-    return place == kernel::kNoSphere ? place : place / (kArity * kArity);
+    const std::uint32_t node = id < homes.size() ? homes[id] : no_home;
+    return node == no_home ? kernel::kNoSphere : node;
   }
 
   /// Spheres in a leaf; all leaves but the last are full.
@@ -88,9 +88,9 @@ class SphereBvh {
     return rest < kArity ? static_cast<unsigned>(rest) : kArity;
   }
 
-  std::size_t count = 0;  ///< of spheres
-  base::HugeVector<std::uint32_t>
-      places;  ///< of each sphere of the scene: leaf * kArity + index; kNoSphere: not in the tree
+  std::size_t count = 0;      ///< of spheres
+  base::PackedArray homes;    ///< of each sphere of the scene: the node above its leaf, or no_home
+  std::uint32_t no_home = 0;  ///< stands for spheres that are not in the tree
   base::HugeVector<Leaf> leaves;
   base::HugeVector<LeafRadii> radii;                   ///< one per leaf; empty if all spheres have `radius`
   base::HugeVector<Node> nodes;                        ///< level by level, those above the leaves first

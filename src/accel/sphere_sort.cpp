@@ -24,7 +24,7 @@ constexpr std::size_t kArity = SphereBvh::kArity;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Ranges larger than this are binned from a sample.
-constexpr std::size_t kSampleSize = 1 << 14;
+constexpr std::size_t kSampleSize = 1 << 11;
 
 /// Ranges larger than this are divided between threads.
 constexpr std::size_t kParallelSize = 1 << 14;
@@ -39,11 +39,20 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Four = hn::FixedTag<float, 4>;
 constexpr Four kFour;
 
+/// An item's centre, and 0. Its id would be a subnormal number, with which some processors take a hundred cycles.
+hn::Vec<Four> center_of(const Item& item) {
+  alignas(16) static constexpr std::uint32_t kThree[4] = {~0u, ~0u, ~0u, 0};
+  return hn::And(hn::LoadU(kFour, item.center), hn::BitCast(kFour, hn::Load(hn::RebindToUnsigned<Four>(), kThree)));
+}
+
 /// Bounds and number of the centres in one bin.
 struct alignas(16) Bin {
-  float lower[4] = {kInfinity, kInfinity, kInfinity, kInfinity};
-  float upper[4] = {-kInfinity, -kInfinity, -kInfinity, -kInfinity};
-  std::size_t count = 0;
+  float lower[4], upper[4];
+  std::size_t count;
+
+  static Bin empty() {
+    return {{kInfinity, kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity, -kInfinity}, 0};
+  }
 
   void add(hn::Vec<Four> low, hn::Vec<Four> high, std::size_t more) {
     hn::Store(hn::Min(hn::Load(kFour, lower), low), kFour, lower);
@@ -59,12 +68,51 @@ struct alignas(16) Bin {
   }
 };
 
-/// Where to divide a range: the first `left` items along `axis`, which is about where their coordinate is `at`.
+/// Where to divide a range: the first `left` items along `axis`.
 struct Split {
   int axis = 0;
-  float at = 0;
   std::size_t left = 0;
+  float at = 0;      ///< an estimate of the coordinate of that division
+  float spread = 0;  ///< how far off it may be; more is slower
 };
+
+/// Moves the items before a plane to the front, in any order. Without branches, which would be mispredicted for half of
+/// the items.
+///
+/// Result     the first of the other items
+Item* partition(Item* first, Item* last, int axis, float at) {
+  for (Item* item = first; item != last; ++item) {
+    const bool is_before = item->center[axis] < at;
+    // All four lanes: the centre and the id.
+    const auto moved = hn::LoadU(kFour, item->center);
+    hn::StoreU(hn::LoadU(kFour, first->center), kFour, item->center);
+    hn::StoreU(moved, kFour, first->center);
+    first += is_before;
+  }
+  return first;
+}
+
+/// Orders items as std::nth_element does for `middle`, quickly if the split's estimate is good.
+///
+/// Result     the coordinate of the division: no item on the left is beyond it, none on the right before it
+float divide_at(Item* first, Item* middle, Item* last, const Split& split) {
+  Item* const cut = partition(first, last, split.axis, split.at);
+  if (cut == middle) return split.at;
+  // Few items are between the estimate and the rank: a second plane separates most of the others.
+  Item *begin = first, *end = last;
+  if (cut < middle) {
+    begin = cut;
+    Item* const beyond = partition(cut, last, split.axis, split.at + split.spread);
+    (beyond > middle ? end : begin) = beyond;
+  } else {
+    end = cut;
+    Item* const before = partition(first, cut, split.axis, split.at - split.spread);
+    (before > middle ? end : begin) = before;
+  }
+  std::nth_element(begin, middle, end,
+                   [&](const Item& a, const Item& b) { return a.center[split.axis] < b.center[split.axis]; });
+  return middle->center[split.axis];
+}
 
 class Sorter {
  public:
@@ -105,19 +153,10 @@ class Sorter {
       return;
     }
     const Split split = best_split(begin, end, unit);
-    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(begin),
-               last = items_.begin() + static_cast<std::ptrdiff_t>(end);
-    const auto middle = first + static_cast<std::ptrdiff_t>(split.left);
-    const int axis = split.axis;
-    // A partition at the chosen coordinate is quick; only the part in which the rank lies needs a selection.
-    const auto cut = std::partition(first, last, [&](const Item& i) { return i.center[axis] < split.at; });
-    const auto by_axis = [axis](const Item& a, const Item& b) { return a.center[axis] < b.center[axis]; };
     stop_.check();
-    if (cut > middle) std::nth_element(first, middle, cut, by_axis);
-    if (cut < middle) std::nth_element(cut, middle, last, by_axis);
     const std::size_t at = begin + split.left;
-    // No centre on the left is beyond the plane, and none on the right before it.
-    const float plane = cut == middle ? split.at : middle->center[axis];
+    const int axis = split.axis;
+    const float plane = divide_at(&items_[begin], &items_[at], &items_[0] + end, split);
     Cell left = cell, right = cell;
     left.upper[axis] = std::min(left.upper[axis], plane - reach_);
     right.lower[axis] = std::max(right.lower[axis], plane + reach_);
@@ -129,41 +168,50 @@ class Sorter {
     }
   }
 
+  /// The split of a range into two parts by the surface area heuristic, with a multiple of `unit` items on the left.
   Split best_split(std::size_t begin, std::size_t end, std::size_t unit) const {
     const std::size_t count = end - begin, stride = std::max<std::size_t>(1, count / kSampleSize);
-    const int bin_count = count <= kSmallRange ? kFewBins : kBins;
-    // The fourth lane is an item's id, and is ignored.
     auto low = hn::Set(kFour, kInfinity), high = hn::Set(kFour, -kInfinity);
     for (std::size_t i = begin; i < end; i += stride) {
-      const auto center = hn::LoadU(kFour, items_[i].center);
+      const auto center = center_of(items_[i]);
       low = hn::Min(low, center);
       high = hn::Max(high, center);
     }
-    alignas(16) float lower[4], upper[4], per_width[4] = {0, 0, 0, 0};
+    alignas(16) float lower[4], width[4];
     hn::Store(low, kFour, lower);
-    hn::Store(high, kFour, upper);
-    for (int axis = 0; axis < 3; ++axis) {
-      const float width = upper[axis] - lower[axis];
-      per_width[axis] = width > 0 ? static_cast<float>(bin_count) * (1 - 0x1p-20F) / width : 0;
+    hn::Store(high - low, kFour, width);
+    if (count <= 2 * unit) {
+      // There is one split along each axis. That of the longest is nearly always the best.
+      const int axis = static_cast<int>(std::max_element(width, width + 3) - width);
+      return {axis, unit, lower[axis] + width[axis] * static_cast<float>(unit) / static_cast<float>(count),
+              width[axis] / 8};
     }
+
+    const int bin_count = count <= kSmallRange ? kFewBins : kBins;
     Bin bins[3][kBins];
+    alignas(16) float per_width[4] = {0, 0, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (width[axis] > 0) per_width[axis] = static_cast<float>(bin_count) * (1 - 0x1p-20F) / width[axis];
+      std::fill_n(bins[axis], bin_count, Bin::empty());
+    }
     const auto factors = hn::Load(kFour, per_width);
     const auto last = hn::Set(hn::RebindToSigned<Four>(), bin_count - 1);
     for (std::size_t i = begin; i < end; i += stride) {
-      const auto center = hn::LoadU(kFour, items_[i].center);
+      const auto center = center_of(items_[i]);
       alignas(16) std::int32_t at[4];
       const auto bin_of = hn::ConvertTo(hn::RebindToSigned<Four>(), (center - low) * factors);
       hn::Store(hn::Max(hn::Min(bin_of, last), hn::Zero(hn::RebindToSigned<Four>())), hn::RebindToSigned<Four>(), at);
       for (int axis = 0; axis < 3; ++axis) bins[axis][at[axis]].add(center, center, 1);
     }
+
     const std::size_t units = (count + unit - 1) / unit, sampled = (count + stride - 1) / stride;
-    const float items_per_sample = static_cast<float>(count) / static_cast<float>(sampled);
+    const float units_per_sample = static_cast<float>(count) / (static_cast<float>(sampled) * static_cast<float>(unit));
     Split best;
     float least = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {
       if (per_width[axis] == 0) continue;
       float right_area[kBins];
-      Bin right, left;
+      Bin right = Bin::empty(), left = Bin::empty();
       for (int b = bin_count; b-- > 1;) {
         right.add(bins[axis][b]);
         right_area[b] = right.area(margin_);
@@ -173,15 +221,20 @@ class Sorter {
         if (left.count == 0) continue;
         if (left.count == sampled) break;
         // The split is moved to the next multiple of the unit, which makes it worse the further it moves.
-        const float wanted = static_cast<float>(left.count) * items_per_sample / static_cast<float>(unit);
+        const float wanted = static_cast<float>(left.count) * units_per_sample;
         const auto left_units = std::clamp<std::size_t>(static_cast<std::size_t>(wanted + 0.5F), 1, units - 1);
-        const float moved = std::abs(static_cast<float>(left_units) - wanted) / static_cast<float>(units);
+        const float moved = static_cast<float>(left_units) - wanted;
         const float cost = (left.area(margin_) * static_cast<float>(left_units) +
                             right_area[b] * static_cast<float>(units - left_units)) *
-                           (1 + moved);
+                           (1 + std::abs(moved) / static_cast<float>(units));
         if (cost < least) {
           least = cost;
-          best = {axis, lower[axis] + static_cast<float>(b) / per_width[axis], left_units * unit};
+          // Centres are taken for evenly distributed within the bin into which the split moves.
+          const std::size_t in_bin = bins[axis][moved > 0 ? b : b - 1].count;
+          const float bins_moved =
+              std::clamp(moved / std::max(static_cast<float>(in_bin) * units_per_sample, 0x1p-20F), -1.0F, 1.0F);
+          best = {axis, left_units * unit, lower[axis] + (static_cast<float>(b) + bins_moved) / per_width[axis],
+                  0.5F / per_width[axis]};
         }
       }
     }

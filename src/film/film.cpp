@@ -14,7 +14,7 @@ void Film::add(const Film& other) {
   for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
 }
 
-Picture Film::picture() const {
+Picture Film::picture(const Film* second) const {
   Picture out;
   out.width = width_;
   out.height = height_;
@@ -22,7 +22,8 @@ Picture Film::picture() const {
   for (int c = 0; c < 3; ++c) {
     Plane plane{names[c], std::vector<float>(sums_.size(), 0.0f)};
     for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const kernel::PixelSum& sum = sums_[i];
+      kernel::PixelSum sum = sums_[i];
+      if (second != nullptr) sum += second->sums_[i];
       if (sum.weight > 0)
         plane.values[i] = static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.weight));
     }

@@ -29,7 +29,9 @@ class Film {
   void add(const Film& other);
 
   /// The mean of every pixel's samples as planes R, G, B, and A = 1. Pixels without samples are black.
-  film::Picture picture() const;
+  ///
+  /// `second`   more samples, of a film of the same size; null: none
+  film::Picture picture(const Film* second = nullptr) const;
 
  private:
   int width_, height_;

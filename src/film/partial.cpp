@@ -37,15 +37,11 @@ bool Partial::has_known_spheres(std::size_t count) const {
 void Partial::mean(int x, int y, float* rgb) const {
   const std::size_t i =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width()) + static_cast<std::size_t>(x);
-  const auto convert = [rgb](const kernel::PixelSum& sum) {
-    for (int c = 0; c < 3; ++c)
-      rgb[c] = sum.weight > 0
-                   ? static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.weight))
-                   : 0.0f;
-  };
-  if (!is_adaptive()) return convert(film.sums()[i]);
-  kernel::PixelSum sum = film.sums()[i];
-  convert(sum += second.sums()[i]);
+  const kernel::PixelSum total = sum(i);
+  for (int c = 0; c < 3; ++c)
+    rgb[c] = total.weight > 0
+                 ? static_cast<float>(kernel::from_fixed_point(total.rgb[c]) / static_cast<double>(total.weight))
+                 : 0.0f;
 }
 
 }  // namespace orrery::film

@@ -50,8 +50,14 @@ struct Partial {
   /// Whether the layers name spheres below `count` only. A damaged file may name others.
   bool has_known_spheres(std::size_t count) const;
 
-  /// Writes the mean of a pixel's samples, R, G and B, of both halves if there are two; 0 without samples. These are
-  /// the bits of the finished image.
+  /// The sum of a pixel's samples, of both halves if there are two.
+  kernel::PixelSum sum(std::size_t pixel) const {
+    kernel::PixelSum out = film.sums()[pixel];
+    if (is_adaptive()) out += second.sums()[pixel];
+    return out;
+  }
+
+  /// Writes the mean of a pixel's samples, R, G and B; 0 without samples. These are the bits of the finished image.
   void mean(int x, int y, float* rgb) const;
 
   Film film;                          ///< sample sums; those of the first half in adaptive sampling

@@ -56,10 +56,7 @@ void stop_job(const std::string& remedy) {
 }
 
 film::Picture preview(const compile::CompiledScene& compiled, const film::Partial& partial) {
-  film::Partial shown(0, 0);
-  shown.film = partial.film;
-  shown.second = partial.second;
-  return render::finished(compiled, {}, shown, 1).picture;
+  return render::finished(compiled, {}, partial, 1).picture;
 }
 
 render::Result merge_job(const Job& job, const compile::CompiledScene& compiled, const render::Settings& settings,

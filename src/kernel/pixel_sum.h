@@ -13,7 +13,10 @@ __extension__ using Int128 = __int128;
 /// A floating-point sum depends on the order, and with it on threads, tiles, shards and resumption; an integer sum does
 /// not. A sum is less than 2^67; 2^31 samples of kLargestSample are 2^66, in each of two halves.
 struct PixelSum {
-  Int128 rgb[3] = {0, 0, 0};
+  /// Aligned to eight bytes, so that no pixel is padded.
+  typedef Int128 Sum __attribute__((aligned(8)));
+
+  Sum rgb[3] = {0, 0, 0};
   std::int64_t weight = 0;  ///< of all samples but bad ones: 1 each, or -1 in a PixelFilter's negative lobes
 
   PixelSum& operator+=(const PixelSum& other) noexcept {
@@ -43,5 +46,7 @@ inline Int128 to_fixed_point(double value) noexcept {
 
 /// Converts back to the nearest double: one rounding to 53 bits and an exact scaling.
 inline double from_fixed_point(Int128 sum) noexcept { return static_cast<double>(sum) * 0x1p-60; }
+
+static_assert(sizeof(PixelSum) == 56);
 
 }  // namespace orrery::kernel

@@ -88,23 +88,20 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
                 int threads) {
   Result result;
   result.completed = true;
-  std::optional<film::Film> both_halves;
-  if (partial.is_adaptive()) both_halves.emplace(partial.film).add(partial.second);
-  const film::Film& film = both_halves ? *both_halves : partial.film;
-  result.picture = film.picture();
+  result.picture = partial.film.picture(partial.is_adaptive() ? &partial.second : nullptr);
   result.picture.x = compiled.window_x;
   result.picture.y = compiled.window_y;
   result.picture.frame_width = compiled.frame_width;
   result.picture.frame_height = compiled.frame_height;
   result.picture.pixel_aspect = compiled.pixel_aspect;
-  if (partial.layers.empty() && partial.halves.empty()) return result;
+  if (!request.any()) return result;
   film::LayerFilm layers(request, compiled.view(), compiled.width, compiled.height);
   const film::LayerPixel no_layers;
   const film::Halves no_halves;
   const auto set_pixels = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
       layers.set(i, partial.layers.empty() ? no_layers : partial.layers[i],
-                 partial.halves.empty() ? no_halves : partial.halves[i], film.sums()[i]);
+                 partial.halves.empty() ? no_halves : partial.halves[i], partial.sum(i));
   };
   TilePool(threads > 0 ? threads : available_threads()).execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, partial.pixel_count(), 1024), set_pixels);
