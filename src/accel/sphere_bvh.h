@@ -77,7 +77,7 @@ class SphereBvh {
   std::size_t bytes() const noexcept;
 
   /// The node above a sphere's leaf; kNoSphere if the sphere is not in the tree.
-  std::uint32_t home_of(std::uint32_t id) const noexcept {
+  std::uint32_t start_node(std::uint32_t id) const noexcept {
     const std::uint32_t place = id < places.size() ? places[id] : kernel::kNoSphere;
     return place == kernel::kNoSphere ? place : place / (kArity * kArity);
   }

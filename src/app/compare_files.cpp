@@ -93,8 +93,8 @@ film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
   for (int k = 0; k < 3; ++k) {
     film::Plane plane{names[k], std::vector<float>(c.picture.pixels())};
     for (std::size_t i = 0; i < plane.values.size(); ++i) {
-      const bool is_left_out = !c.left_out.empty() && c.left_out[i];
-      const float d = is_left_out ? 0 : c.picture.channel[k][i] - c.reference.channel[k][i];
+      const bool is_excluded = !c.excluded.empty() && c.excluded[i];
+      const float d = is_excluded ? 0 : c.picture.channel[k][i] - c.reference.channel[k][i];
       plane.values[i] = for_display ? 0.5f + d / 2 : d;
     }
     plane.kind = film::PlaneKind::kVector;  // negative values are valid
@@ -184,10 +184,10 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
   out.is_matte = c.is_matte;
   out.no_hit = c.no_hit;
   out.no_hit_in_one = c.no_hit_in_one;
-  out.errors = metrics::pixel_errors(c.picture, c.reference, c.left_out);
+  out.errors = metrics::pixel_errors(c.picture, c.reference, c.excluded);
   if (out.errors.values == 0 && out.errors.not_finite + out.no_hit_in_one > 0)
     throw bad_data("nothing to compare: no value of " + base::joined(c.names) + " is finite and a hit in both images");
-  out.display_map = metrics::display_error_map(c.picture, c.reference, c.left_out);
+  out.display_map = metrics::display_error_map(c.picture, c.reference, c.excluded);
   if (!layer.empty() || c.names.size() < 3) return out;
   const Codes code_a(c.picture, encoding), code_b(c.reference, encoding);
   out.ssim = metrics::ssim(code_a.view, code_b.view);
@@ -227,7 +227,7 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
       write_numbers(pictures.difference, difference_picture(channels, false));
     }
   }
-  write_map(pictures.heat, out.display_map, metrics::kHottest);
+  write_map(pictures.heat, out.display_map, metrics::kFalseColorMax);
   write_map(pictures.flip, out.flip_map, 1);
   return out;
 }

@@ -83,7 +83,7 @@ float differing_share(const std::vector<Rank>& a, const std::vector<Rank>& b, st
   return static_cast<float>(sum / 2);
 }
 
-void leave_out_no_hit(ComparedChannels& c) {
+void exclude_misses(ComparedChannels& c) {
   const auto has_no_hit = [](const metrics::ColorView& view, std::size_t i) {
     return view.channel[0][i] >= film::kNothingHit || view.channel[1][i] >= film::kNothingHit ||
            view.channel[2][i] >= film::kNothingHit;
@@ -91,8 +91,8 @@ void leave_out_no_hit(ComparedChannels& c) {
   for (std::size_t i = 0; i < c.picture.pixels(); ++i) {
     const bool a = has_no_hit(c.picture, i), b = has_no_hit(c.reference, i);
     if (!a && !b) continue;
-    c.left_out.resize(c.picture.pixels());
-    c.left_out[i] = true;
+    c.excluded.resize(c.picture.pixels());
+    c.excluded[i] = true;
     ++c.no_hit;
     c.no_hit_in_one += a != b;
   }
@@ -147,7 +147,7 @@ ComparedChannels compared_channels(const film::Picture& picture, const film::Pic
     out.picture.channel[c] = out.picture.channel[c - 1];
     out.reference.channel[c] = out.reference.channel[c - 1];
   }
-  if (!layer.empty()) leave_out_no_hit(out);
+  if (!layer.empty()) exclude_misses(out);
   return out;
 }
 

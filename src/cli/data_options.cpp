@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -58,10 +59,9 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
     const auto counts =
         numbers_of(arguments.replicate, ',', 3,
                    "--replicate: `" + arguments.replicate + "` must be three numbers of copies, e.g. 2,2,1");
-    constexpr double kMaxCopies = 1000;
     for (const double n : counts)
-      if (!(n >= 1 && n <= kMaxCopies && n == std::floor(n)))
-        refuse("--replicate: the numbers of copies must be integers from 1 to 1000");
+      if (!(n >= 1 && n <= scene::kMaxCopies && n == std::floor(n)))
+        refuse("--replicate: the numbers of copies must be integers from 1 to " + std::to_string(scene::kMaxCopies));
     points.replicate = {counts[0], counts[1], counts[2]};
   }
 }

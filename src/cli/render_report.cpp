@@ -33,7 +33,7 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
   out += fmt::format("wrote {}: {} x {}, {:.5g} samples per pixel in {:.1f} s, {:.2f} M samples/s", files, report.width,
                      report.height, static_cast<double>(r.paths) / pixels, r.render_s,
                      r.render_s > 0 ? static_cast<double>(r.paths) / r.render_s / 1e6 : 0.0);
-  if (r.noise) out += fmt::format("; noise {:.3g}, {} to {} samples", *r.noise, r.fewest_samples, r.most_samples);
+  if (r.noise) out += fmt::format("; noise {:.3g}, {} to {} samples", *r.noise, r.min_samples, r.max_samples);
   if (detail.has_total) out += fmt::format("; {:.1f} s in all", report.phases.total_s());
   out += '\n';
   if (!detail.is_verbose) return;

@@ -96,7 +96,7 @@ int run(int argc, const char* const* argv) {
   prepare_signals();
   try {
     return parse_and_act(argc, argv);
-  } catch (const ReaderLeft&) {
+  } catch (const BrokenPipe&) {
     return base::exit_status(base::ErrorKind::kIo);
   } catch (const base::Error& error) {
     return print_error(error);

@@ -63,8 +63,8 @@ class CsvFile final : public SingleFrame {
   explicit CsvFile(const Bytes& bytes) : SingleFrame(data::Format::kCsv, bytes), shape_(csv_shape(*bytes)) {
     Faults faults(bytes->file());
     if (shape_.columns.empty()) faults.fail(0, "the file has no rows");
-    if (shape_.columns.size() > kMostColumns)
-      faults.fail(shape_.first_line, "there are more than " + std::to_string(kMostColumns) + " columns");
+    if (shape_.columns.size() > kMaxColumns)
+      faults.fail(shape_.first_line, "there are more than " + std::to_string(kMaxColumns) + " columns");
     TextLayout all = layout({});
     all.surveys = true;
     const TextTable survey = read_text_rows(*bytes, all, faults);

@@ -142,10 +142,10 @@ bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name) {
 }
 
 std::string listed(const std::vector<ColumnInfo>& columns) {
-  constexpr std::size_t kMostListed = 30;
+  constexpr std::size_t kMaxListed = 30;
   std::string out;
-  for (std::size_t i = 0; i < std::min(columns.size(), kMostListed); ++i) out += (i > 0 ? ", " : "") + columns[i].name;
-  if (columns.size() > kMostListed) out += ", ... (" + std::to_string(columns.size()) + " in all)";
+  for (std::size_t i = 0; i < std::min(columns.size(), kMaxListed); ++i) out += (i > 0 ? ", " : "") + columns[i].name;
+  if (columns.size() > kMaxListed) out += ", ... (" + std::to_string(columns.size()) + " in all)";
   return out;
 }
 

@@ -113,8 +113,8 @@ class FrameReader {
 
   void read_columns(const std::string& name) {
     const auto words = words_of(name);
-    if (words.size() > kMostColumns)
-      faults_.fail(item_line(), "there are more than " + std::to_string(kMostColumns) + " columns");
+    if (words.size() > kMaxColumns)
+      faults_.fail(item_line(), "there are more than " + std::to_string(kMaxColumns) + " columns");
     UniqueNames names;
     for (std::size_t i = 1; i < words.size(); ++i) frame_.columns.push_back(names.add(std::string(words[i])));
   }

@@ -16,7 +16,7 @@ using namespace std::string_view_literals;
 
 constexpr std::string_view kNpySignature = "\x93NUMPY"sv;
 /// NumPy's own limit.
-constexpr std::size_t kMostDimensions = 64;
+constexpr std::size_t kMaxDimensions = 64;
 
 /// Parses the type of an item, e.g. `<f4`.
 ///
@@ -77,8 +77,8 @@ std::string parse_field(const PythonLiteral& source, NpyHeader& header) {
       return "the shape of field " + quoted_word(field.name) + " is not a tuple";
     for (const PythonLiteral& length : source.items[2].items) {
       if (!length.is(Kind::kInteger)) return "the shape of field " + quoted_word(field.name) + " is not integers";
-      if (length.integer > kMostColumns || (count *= length.integer) > kMostColumns)
-        return "field " + quoted_word(field.name) + " has more than " + std::to_string(kMostColumns) + " components";
+      if (length.integer > kMaxColumns || (count *= length.integer) > kMaxColumns)
+        return "field " + quoted_word(field.name) + " has more than " + std::to_string(kMaxColumns) + " components";
     }
   }
   field.offset = header.item_size;
@@ -105,15 +105,14 @@ std::string parse_description(const PythonLiteral& source, NpyHeader& header) {
     const std::size_t fields = header.fields.size();
     if (std::string fault = parse_field(field, header); !fault.empty()) return fault;
     if (header.fields.size() > fields) columns += header.fields.back().components;
-    if (columns > kMostColumns) return "it has more than " + std::to_string(kMostColumns) + " components";
+    if (columns > kMaxColumns) return "it has more than " + std::to_string(kMaxColumns) + " components";
   }
   return {};
 }
 
 std::string parse_shape(const PythonLiteral& source, NpyHeader& header) {
   if (!source.is(Kind::kSequence)) return "`shape` is not a tuple";
-  if (source.items.size() > kMostDimensions)
-    return "it has more than " + std::to_string(kMostDimensions) + " dimensions";
+  if (source.items.size() > kMaxDimensions) return "it has more than " + std::to_string(kMaxDimensions) + " dimensions";
   for (const PythonLiteral& length : source.items) {
     if (!length.is(Kind::kInteger)) return "`shape` is not a tuple of integers";
     header.shape.push_back(length.integer);

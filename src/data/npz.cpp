@@ -17,7 +17,7 @@ namespace {
 using namespace std::string_view_literals;
 
 /// More members than that are not a file of columns.
-constexpr std::size_t kMostMembers = 10000;
+constexpr std::size_t kMaxMembers = 10000;
 
 struct Member {
   std::string name;  ///< without ".npy"
@@ -41,8 +41,8 @@ Member described(ZipReader& zip) {
   head.insert(head.end(), rest.begin(), rest.end());
   member.fault = parse_npy_header({head.data(), head.size()}, member.header);
   const NpyHeader& header = member.header;
-  const bool is_table = header.shape.size() == 1 ||
-                        (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMostColumns);
+  const bool is_table =
+      header.shape.size() == 1 || (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMaxColumns);
   if (member.fault.empty() && !is_table) member.fault = "the shape " + shape_text(header) + " is not that of columns";
   return member;
 }
@@ -64,8 +64,8 @@ class NpzFile final : public SingleFrame {
     Faults faults(bytes->file());
     for (ZipReader zip(*bytes); zip.next();) {
       members_.push_back(described(zip));
-      if (members_.size() > kMostMembers)
-        faults.fail(0, "the archive has more than " + std::to_string(kMostMembers) + " members");
+      if (members_.size() > kMaxMembers)
+        faults.fail(0, "the archive has more than " + std::to_string(kMaxMembers) + " members");
     }
     const auto positions = std::find_if(members_.begin(), members_.end(), has_positions);
     if (positions == members_.end())
@@ -111,8 +111,8 @@ class NpzFile final : public SingleFrame {
     Faults faults(bytes_->file());
     for (const NpyColumn& column : member.columns)
       if (has_column(before, column.name)) faults.fail(0, "duplicate column " + quoted_word(column.name));
-    if (info_.columns.size() > kMostColumns)
-      faults.fail(0, "there are more than " + std::to_string(kMostColumns) + " columns");
+    if (info_.columns.size() > kMaxColumns)
+      faults.fail(0, "there are more than " + std::to_string(kMaxColumns) + " columns");
   }
 
   std::string listed_members() const {

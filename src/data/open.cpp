@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "data/readers.h"
 
 namespace orrery::data {
@@ -12,16 +12,10 @@ namespace {
 
 constexpr std::size_t kHeadBytes = std::size_t{64} << 10;
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 std::string extension_of(const std::filesystem::path& file) {
-  const std::string last = lower(file.extension().string());
+  const std::string last = base::lower(file.extension().string());
   const bool is_compressed = last == ".gz" || last == ".zst" || last == ".bz2" || last == ".xz";
-  return is_compressed ? lower(file.stem().extension().string()) : last;
+  return is_compressed ? base::lower(file.stem().extension().string()) : last;
 }
 
 /// Whether a file begins as an EXR, PNG, JPEG, TIFF or Radiance image.

@@ -32,7 +32,7 @@ class PlyFile final : public SingleFrame {
     std::uint64_t left = bytes->size() - header_.bytes;
     for (const PlyElement& element : header_.elements) {
       check_count(faults, element, header_, left);
-      left -= std::min(left, element.count * fewest_bytes(element, header_.encoding));
+      left -= std::min(left, element.count * min_bytes(element, header_.encoding));
     }
     describe_columns(faults);
   }
@@ -89,8 +89,8 @@ class PlyFile final : public SingleFrame {
     RecordLayout layout;
     layout.begin = header_.bytes;
     for (std::size_t e = 0; e < vertex_; ++e)
-      layout.begin += header_.elements[e].count * fewest_bytes(header_.elements[e], header_.encoding);
-    layout.stride = fewest_bytes(vertex(), header_.encoding);
+      layout.begin += header_.elements[e].count * min_bytes(header_.elements[e], header_.encoding);
+    layout.stride = min_bytes(vertex(), header_.encoding);
     layout.rows = vertex().count;
     check_rest(layout.begin + layout.rows * layout.stride, faults);
     std::vector<std::uint64_t> offsets;
@@ -110,7 +110,7 @@ class PlyFile final : public SingleFrame {
   void check_rest(std::uint64_t at, Faults& faults) const {
     std::size_t e = vertex_ + 1;
     for (; e < header_.elements.size() && !header_.elements[e].has_list(); ++e)
-      at += header_.elements[e].count * fewest_bytes(header_.elements[e], header_.encoding);
+      at += header_.elements[e].count * min_bytes(header_.elements[e], header_.encoding);
     const std::string rest = bytes_->text(at, static_cast<std::size_t>(bytes_->size() - at));
     PlyCursor cursor(rest, header_.encoding, 0);
     for (; e < header_.elements.size(); ++e) {

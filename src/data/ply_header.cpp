@@ -73,8 +73,8 @@ std::string parse_property(const std::vector<std::string_view>& words, PlyHeader
     return "unknown type; allowed are char .. double, int8 .. float64";
   property.name = words.back();
   if (is_named(header.elements.back().properties, property.name)) return "duplicate property `" + property.name + "`";
-  if (header.elements.back().properties.size() == kMostColumns)
-    return "more than " + std::to_string(kMostColumns) + " properties of an element";
+  if (header.elements.back().properties.size() == kMaxColumns)
+    return "more than " + std::to_string(kMaxColumns) + " properties of an element";
   header.elements.back().properties.push_back(property);
   return {};
 }

@@ -86,9 +86,9 @@ void* resized(Values& column, std::uint64_t rows) {
 
 /// Reads one table. Chunks are read, and their lines counted, in parallel; in order, they get their rows of the
 /// columns; in parallel, they are parsed in place; in order, their words and faults are collected.
-class Reading {
+class TableReader {
  public:
-  Reading(const ByteSource& bytes, const TextLayout& layout, Faults& faults)
+  TableReader(const ByteSource& bytes, const TextLayout& layout, Faults& faults)
       : bytes_(bytes),
         layout_(layout),
         faults_(faults),
@@ -136,10 +136,10 @@ class Reading {
   /// An upper bound, by which declared numbers of rows are checked before memory is reserved. It has room for some
   /// malformed rows, so that those are reported.
   std::uint64_t possible_rows() const {
-    constexpr std::uint64_t kRoom = 1000;
+    constexpr std::uint64_t kMargin = 1000;
     const std::uint64_t bytes_per_value = layout_.separator == ' ' ? 2 : 1;
     const std::uint64_t bytes_per_row = std::max<std::uint64_t>(1, bytes_per_value * layout_.columns.size());
-    return (bytes_.size() - begin_) / bytes_per_row + kRoom;
+    return (bytes_.size() - begin_) / bytes_per_row + kMargin;
   }
 
   std::uint64_t counted_rows() const {
@@ -243,7 +243,7 @@ class Reading {
 }  // namespace
 
 TextTable read_text_rows(const ByteSource& bytes, const TextLayout& layout, Faults& faults) {
-  return Reading(bytes, layout, faults).run();
+  return TableReader(bytes, layout, faults).run();
 }
 
 }  // namespace orrery::data

@@ -91,8 +91,8 @@ class VtkFile final : public SingleFrame {
     const std::uint64_t rows = document_.integer(piece, "NumberOfPoints");
     if (rows == 0) return;
     // Compressed or not, a byte holds no more points than that.
-    constexpr std::uint64_t kMostPerByte = 1000;
-    if (rows / kMostPerByte > bytes_->size() || info_.rows / kMostPerByte > bytes_->size())
+    constexpr std::uint64_t kMaxPerByte = 1000;
+    if (rows / kMaxPerByte > bytes_->size() || info_.rows / kMaxPerByte > bytes_->size())
       document_.fail("a piece declares " + std::to_string(rows) + " points, more than the file can contain");
     info_.rows += rows;
     pieces_.push_back(rows);
@@ -113,8 +113,8 @@ class VtkFile final : public SingleFrame {
       document_.fail("array " + quoted_word(name) + " has the unknown type " + quoted_word(type));
     auto array = std::find_if(arrays_.begin(), arrays_.end(), [&](const VtkArray& a) { return a.name == name; });
     if (array == arrays_.end()) {
-      if (arrays_.size() == kMostColumns)
-        document_.fail("there are more than " + std::to_string(kMostColumns) + " arrays");
+      if (arrays_.size() == kMaxColumns)
+        document_.fail("there are more than " + std::to_string(kMaxColumns) + " arrays");
       arrays_.push_back({name, *vtk_number_type(type), components, {}});
       array = arrays_.end() - 1;
     }
@@ -125,8 +125,8 @@ class VtkFile final : public SingleFrame {
 
   void add_columns(std::size_t index) {
     const VtkArray& array = arrays_[index];
-    if (info_.columns.size() + array.components > kMostColumns || array.components > kMostColumns)
-      document_.fail("there are more than " + std::to_string(kMostColumns) + " columns");
+    if (info_.columns.size() + array.components > kMaxColumns || array.components > kMaxColumns)
+      document_.fail("there are more than " + std::to_string(kMaxColumns) + " columns");
     const auto names = component_names(array.name, static_cast<std::size_t>(array.components), info_.columns);
     for (std::size_t i = 0; i < names.size(); ++i) {
       const std::string name = names_.add(names[i]);

@@ -117,7 +117,7 @@ bool take_length(Stream& stream, const VtkStorage& storage, std::uint64_t& out) 
 /// blocks.
 std::string decompress(Stream& stream, const VtkStorage& storage, std::vector<char>& out) {
   /// No zlib stream expands more than that.
-  constexpr std::uint64_t kMostExpansion = 1040;
+  constexpr std::uint64_t kMaxExpansion = 1040;
   constexpr const char* kBadHeader = "the header of the compressed data is wrong";
   std::uint64_t blocks = 0, block_bytes = 0, last_bytes = 0;
   if (!take_length(stream, storage, blocks) || !take_length(stream, storage, block_bytes) ||
@@ -135,7 +135,7 @@ std::string decompress(Stream& stream, const VtkStorage& storage, std::vector<ch
     const std::uint64_t bytes = i + 1 < sizes.size() ? block_bytes : last_bytes;
     compressed.clear();
     if (!stream.take(sizes[i], compressed)) return kTruncated;
-    if (bytes > kMostExpansion * (sizes[i] + 1)) return kBadHeader;
+    if (bytes > kMaxExpansion * (sizes[i] + 1)) return kBadHeader;
     if (bytes > storage.limit - std::min<std::uint64_t>(storage.limit, out.size()))
       return "the array exceeds the limit of " + base::bytes_text(storage.limit) + " of decompressed data";
     const std::size_t begin = out.size();

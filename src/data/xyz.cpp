@@ -134,7 +134,7 @@ class XyzHeaderReader {
       add("element", ColumnType::kText);
     }
     out_.info.roles.position = add_three(kXyz, ColumnType::kFloat64);
-    for (std::size_t i = 4; i < std::min<std::size_t>(first.size(), kMostColumns); ++i) {
+    for (std::size_t i = 4; i < std::min<std::size_t>(first.size(), kMaxColumns); ++i) {
       double ignored = 0;
       add("column" + std::to_string(i + 1), parse_number(first[i], ignored) ? ColumnType::kFloat64 : ColumnType::kText);
     }

@@ -99,7 +99,7 @@ std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t lin
     begin = end + 1;
   }
   std::vector<XyzProperty> out;
-  constexpr auto kMaxColumns = static_cast<std::int64_t>(kMostColumns);
+  constexpr auto kMaxCount = static_cast<std::int64_t>(kMaxColumns);
   std::int64_t columns = 0;
   for (std::size_t i = 0; i < parts.size(); i += 3) {
     XyzProperty property;
@@ -116,10 +116,10 @@ std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t lin
     else
       faults.fail(line, shown + "unknown type '" + std::string(parts[i + 1]) + "'", std::string(kRemedy));
     std::int64_t count = 0;
-    if (!parse_integer(parts[i + 2], count) || count < 1 || count > kMaxColumns || (columns += count) > kMaxColumns)
+    if (!parse_integer(parts[i + 2], count) || count < 1 || count > kMaxCount || (columns += count) > kMaxCount)
       faults.fail(line,
                   shown + "'" + std::string(parts[i + 2]) + "' is not a number of columns; at most " +
-                      std::to_string(kMaxColumns) + " in all",
+                      std::to_string(kMaxCount) + " in all",
                   std::string(kRemedy));
     property.count = static_cast<std::size_t>(count);
     out.push_back(std::move(property));

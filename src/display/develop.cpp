@@ -17,7 +17,7 @@ namespace ocio = OCIO_NAMESPACE;
 constexpr std::size_t kPixelsAtATime = std::size_t{1} << 14;
 
 /// Limit of the exposure: beyond it every half is black or white. Keeps the gain within the range of float.
-constexpr double kMaxStops = 120;
+constexpr double kMaxGainStops = 120;
 
 const std::vector<float>& plane(const film::Picture& picture, const char* name) {
   const film::Plane* found = picture.find(name);
@@ -28,7 +28,7 @@ const std::vector<float>& plane(const film::Picture& picture, const char* name) 
 }
 
 float gain_of(const Settings& settings) {
-  return static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMaxStops, kMaxStops)));
+  return static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMaxGainStops, kMaxGainStops)));
 }
 
 /// Applies the gain and clamps to the range of half, since beyond it a view's curves can overflow to NaN.

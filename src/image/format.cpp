@@ -63,6 +63,6 @@ void check_size(const std::filesystem::path& file, int width_px, int height_px) 
                                                  std::to_string(largest) + "; use TIFF or EXR for larger images");
 }
 
-int most_bits(Format format) { return format == Format::kPng || format == Format::kTiff ? 16 : 8; }
+int max_bits(Format format) { return format == Format::kPng || format == Format::kTiff ? 16 : 8; }
 
 }  // namespace orrery::image

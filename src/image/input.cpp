@@ -2,6 +2,7 @@
 #include "image/input.h"
 
 #include "base/error.h"
+#include "base/image_limits.h"
 #include "base/input_file.h"
 #include "image/damage.h"
 #include "image/format.h"
@@ -9,9 +10,6 @@
 
 namespace orrery::image {
 namespace {
-
-/// Maximum side of an image, as in scenes, px. A header with a larger one is rejected as damaged.
-constexpr int kLargestSide = 65536;
 
 /// Rows decoded at a time: a multiple of the block height of every EXR compression except dwab.
 constexpr int kRowsAtATime = 64;
@@ -40,10 +38,10 @@ void fail_for_memory(const std::filesystem::path& file) {
 }
 
 void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
-  const auto too_large = [](int side) { return side < 1 || side > kLargestSide; };
+  const auto too_large = [](int side) { return side < 1 || side > base::kLargestSide; };
   if (too_large(spec.width) || too_large(spec.height) || too_large(spec.full_width) || too_large(spec.full_height))
     fail_to_read(file, "its header says " + std::to_string(spec.full_width) + " x " + std::to_string(spec.full_height) +
-                           " pixels; a side must be 1 to " + std::to_string(kLargestSide));
+                           " pixels; a side must be 1 to " + std::to_string(base::kLargestSide));
   if (spec.deep) fail_to_read(file, "its pixels are deep; flatten them first");
 }
 
@@ -54,10 +52,10 @@ bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO:
   return in->read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
 }
 
-std::string first_complaint(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string first_message(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-std::string Input::complaint() const {
-  const std::string text = first_complaint(in->geterror());
+std::string Input::error_message() const {
+  const std::string text = first_message(in->geterror());
   return text.empty() ? "its pixels cannot be decoded" : text;
 }
 
@@ -71,7 +69,7 @@ Input open_input(const std::filesystem::path& file, Alpha alpha) {
     throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read " + file.string() + OIIO::geterror());
   OIIO::ImageSpec settings;
   if (alpha == Alpha::kAsInFile) settings.attribute("oiio:UnassociatedAlpha", 1);
-  if (!out.in->open(file.string(), out.spec, settings)) fail_to_read(file, first_complaint(out.in->geterror()));
+  if (!out.in->open(file.string(), out.spec, settings)) fail_to_read(file, first_message(out.in->geterror()));
   check_spec(file, out.spec);
   return out;
 }

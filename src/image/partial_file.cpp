@@ -13,9 +13,9 @@
 
 #include "base/error.h"
 #include "film/partial_words.h"
+#include "image/digest.h"
 #include "image/exr_spec.h"
 #include "image/library.h"
-#include "image/seal.h"
 #include "image/whole_file.h"
 
 namespace orrery::image {
@@ -37,7 +37,7 @@ constexpr int kMaxWordsInRow = 4096;
 
 std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
   prepare_library();
-  require_seal(file);
+  require_digest(file);
   auto in = ImageInput::create("openexr");
   if (!in) throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read EXR" + OIIO::geterror());
   ImageSpec spec;

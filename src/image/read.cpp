@@ -29,12 +29,12 @@ std::string decode_rows(const Input& input, int begin, int end, std::vector<floa
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   const std::size_t pixels = static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(spec.width);
   out.resize(pixels * channels);
-  if (!input.decode(begin, end, 0, spec.nchannels, TypeDesc::FLOAT, out.data())) return input.complaint();
+  if (!input.decode(begin, end, 0, spec.nchannels, TypeDesc::FLOAT, out.data())) return input.error_message();
   // Conversion to float would scale the maximum integer to 1, which is wrong for counts and ids.
   for (int c = 0; c < spec.nchannels; ++c) {
     if (spec.channelformat(c) != TypeDesc::UINT) continue;
     std::vector<std::uint32_t> whole(pixels);
-    if (!input.decode(begin, end, c, c + 1, TypeDesc::UINT, whole.data())) return input.complaint();
+    if (!input.decode(begin, end, c, c + 1, TypeDesc::UINT, whole.data())) return input.error_message();
     for (std::size_t i = 0; i < pixels; ++i)
       out[i * channels + static_cast<std::size_t>(c)] = static_cast<float>(whole[i]);
   }

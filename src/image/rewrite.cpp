@@ -64,7 +64,7 @@ NativePart read_part(const std::filesystem::path& file, const Input& input, int 
                                                                       TypeDesc::UNKNOWN, &out.bytes[at])
                                            : input.in->read_tiles(part, 0, spec.x, spec.x + spec.width, y, end, 0, 1, 0,
                                                                   spec.nchannels, TypeDesc::UNKNOWN, &out.bytes[at]);
-    if (!good) fail_to_read(file, input.complaint());
+    if (!good) fail_to_read(file, input.error_message());
   }
   return out;
 }

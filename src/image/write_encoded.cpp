@@ -37,7 +37,7 @@ const char* add_format(Format format, ImageSpec& spec) {
 void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
                    const std::string& stamp) {
   const Format format = format_of(file);
-  if (picture.bits > most_bits(format))
+  if (picture.bits > max_bits(format))
     throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits per channel; PNG and TIFF hold 16");
   check_size(file, picture.width, picture.height);
   if (picture.channels > 3 && !holds_alpha(format))

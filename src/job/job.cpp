@@ -109,10 +109,10 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
   if (job.sampling.noise > 0 && statistics.noise && *statistics.noise > job.sampling.noise)
     out = fmt::format("noise {:.3g} instead of {:.3g}: {}", *statistics.noise, job.sampling.noise,
                       ended_by_time ? "the time budget ended" : "the pixels that need more samples reached the limit");
-  if (job.sampling.noise > 0 && statistics.unjudged_pixels > 0)
+  if (job.sampling.noise > 0 && statistics.unreliable_pixels > 0)
     out +=
         fmt::format("{}the noise of {} pixels cannot be estimated: too few paths found light near them; allow more {}",
-                    out.empty() ? "" : "; ", statistics.unjudged_pixels, ended_by_time ? "time" : "samples");
+                    out.empty() ? "" : "; ", statistics.unreliable_pixels, ended_by_time ? "time" : "samples");
   return out;
 }
 

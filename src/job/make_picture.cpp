@@ -81,8 +81,8 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   const film::RenderWork work = merged.partial.work;
   const auto [fewest, most] = std::minmax_element(merged.partial.counts.begin(), merged.partial.counts.end());
   render::Statistics statistics;
-  statistics.fewest_samples = *fewest;
-  statistics.most_samples = *most;
+  statistics.min_samples = *fewest;
+  statistics.max_samples = *most;
   statistics.paths = work.paths;
   statistics.rays = work.rays;
   statistics.bad_samples = work.bad_samples;

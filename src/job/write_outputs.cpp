@@ -10,7 +10,7 @@ namespace orrery::job {
 
 void require_bits(const display::Choice& display, const Outputs& outputs) {
   for (const ImageFile& output : outputs.images) {
-    if (display.is_hdr && image::is_display_format(output.format) && image::most_bits(output.format) < 16)
+    if (display.is_hdr && image::is_display_format(output.format) && image::max_bits(output.format) < 16)
       throw base::Error(base::ErrorKind::kUsage, output.path.string() +
                                                      " holds 8 bits per channel, too few for display " +
                                                      display.display + "; PNG and TIFF hold 16");

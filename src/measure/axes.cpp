@@ -17,7 +17,7 @@ constexpr int kCompared = 64;
 constexpr int kTimed = 16;
 
 /// Maximum number of spheres for which the list is measured.
-constexpr std::size_t kMostListSpheres = 5000;
+constexpr std::size_t kMaxListSpheres = 5000;
 
 class Planner {
  public:
@@ -195,7 +195,7 @@ class Planner {
         accel::Traversal::kPacket;
     add("accelerator", "embree, single rays", flag(kTimed) + " --traversal single", kTimed).traversal =
         accel::Traversal::kSingle;
-    if (compiled_.spheres.size() > kMostListSpheres) {
+    if (compiled_.spheres.size() > kMaxListSpheres) {
       out_.left_out.push_back("more than 5000 spheres: the list is too slow");
       return;
     }

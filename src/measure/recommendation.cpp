@@ -13,7 +13,7 @@ namespace orrery::measure {
 namespace {
 
 /// Minimum samples per pixel of a render with --noise.
-constexpr double kFewestAdaptiveSamples = 16;
+constexpr double kMinAdaptiveSamples = 16;
 
 class Recommender {
  public:
@@ -107,7 +107,7 @@ class Recommender {
   Pilots pilot(compile::CompiledScene& compiled) {
     const double full_pixels = static_cast<double>(compiled.width) * compiled.height;
     Pilots out;
-    if (kFewestAdaptiveSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
+    if (kMinAdaptiveSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
       study_.left_out.push_back("test of the recommendation at full resolution: exceeds the budget");
       const Point& p = point_near(request_.noise);
       out.push_back({p.error, p.seconds * full_pixels / pixels(), p.samples});
@@ -127,7 +127,7 @@ class Recommender {
     const Point* nearest = nullptr;
     const auto distance = [noise](const Point& p) { return std::abs(std::log(p.error / noise)); };
     for (const Point& p : study_.points)
-      if ((p.axis == "samples" || p.axis == "noise") && p.samples >= kFewestAdaptiveSamples &&
+      if ((p.axis == "samples" || p.axis == "noise") && p.samples >= kMinAdaptiveSamples &&
           (nearest == nullptr || distance(p) < distance(*nearest)))
         nearest = &p;
     return *nearest;  // never null: the second choice has 16 samples
@@ -149,8 +149,8 @@ class Recommender {
       const double power = std::clamp(std::log(b.*what / a.*what) / std::log(a.error / b.error), 1.0, 2.5);
       return std::log(b.*what) + power * std::log(b.error / error);
     };
-    constexpr double kUsual = 1.75;  // between independent sampling, 2, and quasi-Monte Carlo
-    return line.size() < 2 ? std::pow(reached / noise, kUsual) : std::exp(at(noise) - at(reached));
+    constexpr double kTypicalExponent = 1.75;  // between independent sampling, 2, and quasi-Monte Carlo
+    return line.size() < 2 ? std::pow(reached / noise, kTypicalExponent) : std::exp(at(noise) - at(reached));
   }
 
   Baseline baseline() const {

@@ -23,7 +23,7 @@ const data::ColumnInfo* find_column(const data::FrameInfo& info, const std::stri
 }
 
 /// Frames of larger files are not counted for a message: that would read the whole file.
-constexpr std::uintmax_t kMostCountedBytes = std::uintmax_t{2} << 30;
+constexpr std::uintmax_t kMaxCountedBytes = std::uintmax_t{2} << 30;
 
 [[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
 
@@ -62,7 +62,7 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
 std::optional<int> DataFrames::frame_count() const {
   if (is_sequence_) return 1;
   std::error_code unknown;
-  if (std::filesystem::file_size(file_of(1), unknown) > kMostCountedBytes || unknown) return {};
+  if (std::filesystem::file_size(file_of(1), unknown) > kMaxCountedBytes || unknown) return {};
   try {
     return file_->frame_count();
   } catch (const base::Error&) {

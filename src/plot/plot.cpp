@@ -50,7 +50,7 @@ class PlotMaker {
     if (options_.slice) slice(*options_.slice, axes, out_.points);
     ViewExtent extent(axes);
     visit_frames(extent, up);
-    if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: " + nothing_text());
+    if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: " + empty_scene_reason());
     const double aspect = static_cast<double>(options_.width) / options_.height;
     const scene::Camera camera = extent.camera(aspect);
     chose("view " + options_.look_from + ", " + number_text(rounded(*camera.width)) + " wide",
@@ -94,7 +94,7 @@ class PlotMaker {
   }
 
   /// What has no spheres, and what to do.
-  std::string nothing_text() const {
+  std::string empty_scene_reason() const {
     if (out_.frames.size() > 1) return "none of the " + std::to_string(out_.frames.size()) + " frames has spheres";
     const std::optional<int> count = data_.frame_count();
     if (count == 1 || data_.is_sequence())

@@ -145,10 +145,10 @@ class Loader {
     need.images = n.x * n.y * n.z;
     need.spheres = static_cast<double>(count) * need.images;
     need.copies = copies_.size();
-    if (need.spheres > static_cast<double>(scene::kMostSpheres))
+    if (need.spheres > static_cast<double>(scene::kMaxSpheres))
       throw base::Error(base::ErrorKind::kBadData, request_.file.string() + " and its copies are " +
                                                        scene::number_text(need.spheres) + " spheres; the maximum is " +
-                                                       std::to_string(scene::kMostSpheres));
+                                                       std::to_string(scene::kMaxSpheres));
     points::require_memory(need, request_.memory_limit, request_.file);
   }
 
@@ -167,9 +167,9 @@ class Loader {
     scene::PointArray centers = centers_of(table, rows);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
-    if (!all_good(centers, radii)) {
+    if (!all_valid(centers, radii)) {
       check_domain(rows, centers, radii);
-      const std::vector<std::uint32_t> good = good_rows(rows, centers, radii);
+      const std::vector<std::uint32_t> good = valid_rows(rows, centers, radii);
       if (faults_.has_errors()) return;
       rows = kept(rows, good, centers, radii);
     }
@@ -233,10 +233,10 @@ class Loader {
   bool may_be_negative() const {
     return radius_.kind == RadiusSource::Kind::kValue || file_->format() == data::Format::kPly;
   }
-  bool is_good(Vec3d center, double radius) const {
+  bool is_valid(Vec3d center, double radius) const {
     return math::is_finite(center) && std::isfinite(radius) && (radius > 0 || (radius < 0 && may_be_negative()));
   }
-  bool all_good(const scene::PointArray& centers, const scene::NumberArray& radii) const {
+  bool all_valid(const scene::PointArray& centers, const scene::NumberArray& radii) const {
     const auto is_inside = [](double x) { return std::abs(x) <= scene::kLargestLength; };
     for (std::size_t i = 0; i < centers.size(); ++i) {
       const Vec3d center = centers[i];
@@ -253,7 +253,7 @@ class Loader {
     const data::Transform placement = transform_of(points_.transform);
     std::size_t bad = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!is_good(centers[i], radii[i])) continue;  // reported by good_rows()
+      if (!is_valid(centers[i], radii[i])) continue;  // reported by valid_rows()
       for (const std::string& fault : scene::sphere_faults(
                applied(placement, centers[i]), radii[i] * points_.transform.scale, scene::Precision::kExact))
         if (++bad <= scene::kMaxReported) faults_.error(".file", row_name(rows[i]) + ": " + fault);
@@ -269,12 +269,12 @@ class Loader {
 
   /// Returns the indices of rows with finite coordinates and radii. Reports the others, as errors unless they are to be
   /// skipped.
-  std::vector<std::uint32_t> good_rows(const Rows& rows, const scene::PointArray& centers,
-                                       const scene::NumberArray& radii) {
+  std::vector<std::uint32_t> valid_rows(const Rows& rows, const scene::PointArray& centers,
+                                        const scene::NumberArray& radii) {
     std::vector<std::uint32_t> good;
     std::size_t bad = 0;
     for (std::uint32_t i = 0; i < rows.size(); ++i) {
-      if (is_good(centers[i], radii[i])) {
+      if (is_valid(centers[i], radii[i])) {
         good.push_back(i);
       } else if (!points_.skip_bad && ++bad <= scene::kMaxReported) {
         faults_.error(".file", row_name(rows[i]) + " has center " + scene::vector_text(centers[i]) + " and radius " +

@@ -35,7 +35,7 @@ Preview::~Preview() {
   thread_.join();
 }
 
-void Preview::begin(const PictureInfo& picture) {
+void Preview::begin(const display::PictureInfo& picture) {
   end();
   picture_ = picture;
   canvas_ = std::make_unique<Canvas>(picture.width, picture.height);

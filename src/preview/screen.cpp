@@ -47,8 +47,8 @@ int checked_descriptor(int descriptor, const Environment& environment) {
 
 Screen::Screen(int descriptor, const Environment& environment) : tty_(checked_descriptor(descriptor, environment)) {
   const std::string text = queries(environment);
-  answers_ = parse_answers(tty_.ask(text, [](const std::string& bytes) { return parse_answers(bytes).is_complete; }));
-  graphics_ = best_graphics(environment, answers_);
+  reply_ = parse_reply(tty_.ask(text, [](const std::string& bytes) { return parse_reply(bytes).is_complete; }));
+  graphics_ = best_graphics(environment, reply_);
   // Removes what a terminal may have printed instead of answering.
   if (!text.empty() && !tty_.is_in_background()) output_ = "\r\033[K";
   send();
@@ -70,19 +70,19 @@ void Screen::note(const std::string& text) {
   notes_ += text;
 }
 
-Screen::Room Screen::room() const {
+Screen::CellGrid Screen::cell_grid() const {
   const TerminalSize size = tty_.size();
-  Room room;
-  room.columns = size.columns;
-  room.rows = size.rows - kOtherRows;
-  if (is_text(graphics_)) return room;
-  room.cell_width = answers_.cell_width;
-  room.cell_height = answers_.cell_height;
-  if (room.cell_width == 0) {
-    room.cell_width = size.width >= size.columns ? size.width / size.columns : kCellWidth;
-    room.cell_height = size.height >= size.rows ? size.height / size.rows : kCellHeight;
+  CellGrid grid;
+  grid.columns = size.columns;
+  grid.rows = size.rows - kOtherRows;
+  if (is_text(graphics_)) return grid;
+  grid.cell_width = reply_.cell_width;
+  grid.cell_height = reply_.cell_height;
+  if (grid.cell_width == 0) {
+    grid.cell_width = size.width >= size.columns ? size.width / size.columns : kCellWidth;
+    grid.cell_height = size.height >= size.rows ? size.height / size.rows : kCellHeight;
   }
-  return room;
+  return grid;
 }
 
 void Screen::show(std::string drawing, int rows) {

@@ -18,7 +18,7 @@ constexpr std::size_t kCellsPerPacket = 32;
 constexpr auto kRetry = 2s;
 
 /// A viewer that has read nothing for this time hangs.
-constexpr auto kHangingViewer = 1s;
+constexpr auto kViewerTimeout = 1s;
 
 /// Maximum time to send the last pixels of an image.
 constexpr auto kLongestFinish = 10s;
@@ -28,7 +28,7 @@ constexpr auto kLongestFinish = 10s;
 TevSink::TevSink(const std::string& host, const std::string& port, OnNote on_note)
     : connection_(host, port), on_note_(std::move(on_note)), address_(host + ":" + port) {}
 
-void TevSink::begin(const PictureInfo& picture, const Canvas& canvas) {
+void TevSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   canvas_ = &canvas;
   name_ = picture.name;
   seen_.assign(canvas.cell_count(), false);
@@ -51,13 +51,13 @@ void TevSink::poll() {
 void TevSink::finish() {
   const auto end = Clock::now() + kLongestFinish;
   if (connection_.state() == Connection::State::kOpen && packet_.empty()) last_sent_ = Clock::now();
-  const auto connects_until = Clock::now() + kHangingViewer;
+  const auto connects_until = Clock::now() + kViewerTimeout;
   for (;;) {
     poll();
     const auto now = Clock::now();
     if (connection_.state() == Connection::State::kClosed || now > end) break;
     if (connection_.state() == Connection::State::kConnecting ? now > connects_until
-                                                              : now - last_sent_ > kHangingViewer)
+                                                              : now - last_sent_ > kViewerTimeout)
       break;
     if (connection_.state() == Connection::State::kOpen && is_done()) break;
     connection_.wait(50);

@@ -17,7 +17,7 @@
 namespace orrery::scene {
 namespace {
 
-class Problems {
+class DiagnosticList {
  public:
   void error(std::string key, std::string text) {
     list_.push_back({base::Severity::kError, std::move(key), std::move(text), base::ErrorKind::kBadData});
@@ -40,7 +40,7 @@ bool in_domain(Vec3d c) {
 double max(Vec3d v) { return std::max({v.x, v.y, v.z}); }
 bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
 
-void check_image(const Image& image, Problems& diagnostics) {
+void check_image(const Image& image, DiagnosticList& diagnostics) {
   if (image.crop) {
     const Window& w = *image.crop;
     if (w.width < 1 || w.height < 1 || w.x < 0 || w.y < 0 || w.width > image.width - w.x ||
@@ -56,7 +56,7 @@ void check_image(const Image& image, Problems& diagnostics) {
                       "frame plus overscan exceeds the limit of " + std::to_string(kLargestSide) + " pixels per side");
 }
 
-void check_camera(const Camera& camera, Problems& diagnostics) {
+void check_camera(const Camera& camera, DiagnosticList& diagnostics) {
   bool usable = true;
   for (const auto& [name, v] :
        {std::pair{"look_from", camera.look_from}, {"look_at", camera.look_at}, {"up", camera.up}}) {
@@ -83,7 +83,7 @@ void check_camera(const Camera& camera, Problems& diagnostics) {
 }
 
 /// Checks that the keys of the camera belong to its projection.
-void check_projection(const Camera& camera, Problems& diagnostics) {
+void check_projection(const Camera& camera, DiagnosticList& diagnostics) {
   const bool is_orthographic = camera.projection == Projection::kOrthographic;
   if (is_orthographic && !camera.width)
     diagnostics.error("camera.projection", "orthographic needs `width`, the width of the image in scene units");
@@ -93,7 +93,7 @@ void check_projection(const Camera& camera, Problems& diagnostics) {
     diagnostics.warning("camera.width", "has no effect; set camera.projection to \"orthographic\"");
 }
 
-void check_shutter(const Camera& camera, Problems& diagnostics) {
+void check_shutter(const Camera& camera, DiagnosticList& diagnostics) {
   if (camera.shutter_close < camera.shutter_open)
     diagnostics.error("camera.shutter_close", "the shutter closes at " + number_text(camera.shutter_close) +
                                                   ", before it opens at " + number_text(camera.shutter_open));
@@ -102,7 +102,7 @@ void check_shutter(const Camera& camera, Problems& diagnostics) {
 /// Checks that the keys of the background belong to its type. The colours of other types are ignored silently, so that
 /// switching the type with --set is convenient; a setting of an image or a sky that is not used is probably
 /// a mistake.
-void check_background(const Background& background, Problems& diagnostics) {
+void check_background(const Background& background, DiagnosticList& diagnostics) {
   const bool is_image = background.type == BackgroundType::kImage;
   const bool is_sky = background.type == BackgroundType::kSky, has_map = is_image || is_sky;
   const Background unset;
@@ -128,7 +128,7 @@ void check_background(const Background& background, Problems& diagnostics) {
 }
 
 /// Checks the exposure of emitters, except where the radiance is an image.
-void check_emitters(const Scene& scene, Problems& diagnostics) {
+void check_emitters(const Scene& scene, DiagnosticList& diagnostics) {
   for (const Material& material : scene.materials) {
     const auto* const emitter = std::get_if<Emitter>(&material.model);
     if (emitter == nullptr) continue;
@@ -142,7 +142,7 @@ void check_emitters(const Scene& scene, Problems& diagnostics) {
 }
 
 /// Ray origins on the lens must be inside the domain of coordinates.
-void check_lens(const Camera& camera, Problems& diagnostics) {
+void check_lens(const Camera& camera, DiagnosticList& diagnostics) {
   if (!(camera.defocus_angle > 0)) return;
   const double focus = camera.focus_distance.value_or(math::length(camera.look_at - camera.look_from));
   const double radius = std::tan(camera.defocus_angle / 360 * std::numbers::pi) * focus;
@@ -182,7 +182,7 @@ void check_sphere(Vec3d center, double radius, std::uint32_t material, const Sce
   if (const std::string fault = material_fault(material, scene); !fault.empty()) report(".material", fault);
 }
 
-void check_spheres(const Scene& scene, Problems& diagnostics) {
+void check_spheres(const Scene& scene, DiagnosticList& diagnostics) {
   for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
     check_sphere(s.center, s.radius, s.material, scene, [&](const char* part, std::string text) {
@@ -191,7 +191,7 @@ void check_spheres(const Scene& scene, Problems& diagnostics) {
   }
 }
 
-void check_points(std::size_t number, const Scene& scene, Problems& diagnostics) {
+void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagnostics) {
   const Points& points = scene.points[number];
   const std::string key = "points[" + std::to_string(number) + "]";
   if (points.radii.size() != points.centers.size() ||
@@ -220,13 +220,13 @@ void check_points(std::size_t number, const Scene& scene, Problems& diagnostics)
                       "and " + std::to_string(faults - kMaxReported) + " more (" + std::to_string(faults) + " in all)");
 }
 
-void check_layers(const Scene& scene, Problems& diagnostics) {
+void check_layers(const Scene& scene, DiagnosticList& diagnostics) {
   for (std::size_t i = 0; i < scene.output.layers.size(); ++i)
     if (const std::string fault = layer_fault(scene, scene.output.layers[i]); !fault.empty())
       diagnostics.error("output.layers[" + std::to_string(i) + "]", fault);
 }
 
-void check_light_groups(const Scene& scene, Problems& diagnostics) {
+void check_light_groups(const Scene& scene, DiagnosticList& diagnostics) {
   std::set<std::string> names = {kDefaultLightGroup};  // the background's light, or that of an emitter without a group
   const auto check = [&](const std::string& key, const std::string& name) {
     if (const std::string fault = light_group_fault(name); !fault.empty())
@@ -266,7 +266,7 @@ std::string sphere_name(const Scene& scene, std::size_t points, std::size_t inde
 }
 
 std::vector<SceneDiagnostic> validate(const Scene& scene) {
-  Problems diagnostics;
+  DiagnosticList diagnostics;
   check_image(scene.image, diagnostics);
   check_camera(scene.camera, diagnostics);
   check_background(scene.background, diagnostics);
@@ -276,9 +276,9 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_shutter(scene.camera, diagnostics);
   check_spheres(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p) check_points(p, scene, diagnostics);
-  if (scene.sphere_count() > kMostSpheres)
+  if (scene.sphere_count() > kMaxSpheres)
     diagnostics.error(
-        "", "has " + std::to_string(scene.sphere_count()) + " spheres; the maximum is " + std::to_string(kMostSpheres));
+        "", "has " + std::to_string(scene.sphere_count()) + " spheres; the maximum is " + std::to_string(kMaxSpheres));
   check_light_groups(scene, diagnostics);
   check_layers(scene, diagnostics);
   return diagnostics.take();
@@ -287,7 +287,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
 std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene* closing) {
   for (const Points& p : scene.points)
     if (p.radii.size() != p.centers.size()) return {};  // an error of validate(); the arrays must not be indexed
-  Problems diagnostics;
+  DiagnosticList diagnostics;
   const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
   for (const Coincident& c : found.reported)
     diagnostics.warning(c.key, (c.name.empty() ? "" : c.name + " ") + "has exactly the same centre and radius as " +

@@ -76,7 +76,7 @@ TEST(AccelSphereBvh, EverySphereHasOnePlace) {
       const std::uint32_t place = tree.bvh.places[id];
       EXPECT_EQ(tree.bvh.leaves[place / SphereBvh::kArity].ids[place % SphereBvh::kArity], id);
       bool found = false;
-      tree.each_below(tree.bvh.home_of(id), [&](std::uint32_t other) { found = found || other == id; });
+      tree.each_below(tree.bvh.start_node(id), [&](std::uint32_t other) { found = found || other == id; });
       EXPECT_TRUE(found) << id;
     }
   }
