@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "film/layers.h"
@@ -141,7 +143,7 @@ ComparedChannels compared_channels(const film::Picture& picture, const film::Pic
     for (const film::Plane& plane : picture.planes) channels.push_back(plane.name);
     for (const auto& known : layers_of(channels)) names.push_back(known.first);
     throw base::Error(base::ErrorKind::kBadData,
-                      "layer " + layer + " is not in both images; the first has " + base::joined(names));
+                      fmt::format("layer {} is not in both images; the first has {}", layer, base::joined(names)));
   }
   for (std::size_t c = out.names.size(); c < 3; ++c) {
     out.picture.channel[c] = out.picture.channel[c - 1];
@@ -156,10 +158,10 @@ std::string channels_text(const std::vector<std::string>& channels) {
   std::string out;
   for (std::size_t i = 0; i < layers.size() && i < kMaxNamed; ++i) {
     out += (i == 0 ? "" : ", ") + layers[i].first;
-    if (layers[i].second > 1) out += " (" + std::to_string(layers[i].second) + ")";
+    if (layers[i].second > 1) out += fmt::format(" ({})", layers[i].second);
   }
   if (layers.size() == kMaxNamed + 1) out += " and 1 more layer";
-  if (layers.size() > kMaxNamed + 1) out += " and " + std::to_string(layers.size() - kMaxNamed) + " more layers";
+  if (layers.size() > kMaxNamed + 1) out += fmt::format(" and {} more layers", layers.size() - kMaxNamed);
   return out;
 }
 

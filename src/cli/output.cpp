@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/messages.h"
@@ -22,7 +24,7 @@ void print_result(const std::string& unchecked) {
 std::string error_text(const base::Error& error) {
   std::string out;
   for (const base::Diagnostic& diagnostic : error.diagnostics()) out += base::formatted(diagnostic);
-  return out + "orrery: " + base::printable_lines(error.what()) + "\n";
+  return fmt::format("{}orrery: {}\n", out, base::printable_lines(error.what()));
 }
 
 int print_error(const base::Error& error) {

@@ -8,6 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "cli/messages.h"
 
 namespace orrery::cli {
@@ -53,7 +55,7 @@ void ProgressPrinter::building(double fraction) {
   const int percent = static_cast<int>(fraction * 100);
   if (finished_ || state_.done > 0 || percent <= last_percent_) return;
   last_percent_ = percent;
-  print_bar("building  " + std::to_string(percent) + " %");
+  print_bar(fmt::format("building  {} %", percent));
 }
 
 void ProgressPrinter::note(const std::string& text) {

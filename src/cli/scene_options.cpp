@@ -53,8 +53,8 @@ std::vector<format::Override> SceneOptions::overrides() const {
       if (format::Override(setting).sets(option.key))
         throw base::Error(base::ErrorKind::kUsage,
                           fmt::format("{} and --set {} set the same key; omit one of them", option.name, setting));
-    const std::string value = option.is_list ? "[" + option.value + "]" : option.value;
-    out.emplace_back(std::string(option.key) + "=" + value, option.name, option.value);
+    const std::string value = option.is_list ? fmt::format("[{}]", option.value) : option.value;
+    out.emplace_back(fmt::format("{}={}", option.key, value), option.name, option.value);
   }
   out.insert(out.end(), set_.begin(), set_.end());
   return out;

@@ -3,6 +3,8 @@
 #include <iterator>
 #include <string_view>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "data/readers.h"
@@ -52,9 +54,10 @@ void refuse_folder(const std::filesystem::path& file) {
     remedy = "`oiiotool --info -v` shows its layers and attributes";
   } else if (signature.extension == ".pqr") {
     text = "PQR files are not supported";
-    remedy =
-        "convert it to a table: (echo x y z radius; awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' " +
-        bytes.file().filename().string() + ") > atoms.txt";
+    remedy = fmt::format(
+        "convert it to a table: (echo x y z radius; awk '/^(ATOM|HETATM)/ {{print $(NF-4), $(NF-3), $(NF-2), $NF}}' "
+        "{}) > atoms.txt",
+        bytes.file().filename().string());
   } else if (is_adios(signature.extension)) {
     refuse_adios(bytes.file());
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include <fmt/core.h>
+
 namespace orrery::data {
 
 std::uint64_t min_bytes(const PlyElement& element, PlyEncoding encoding) {
@@ -19,8 +21,9 @@ void check_count(Faults& faults, const PlyElement& element, const PlyHeader& hea
   const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
   if (element.count > bytes / each)
     faults.fail(static_cast<std::uint64_t>(element.line),
-                "the header declares " + std::to_string(element.count) + " rows of `" + element.name + "`, but only " +
-                    std::to_string(bytes_left) + " bytes follow; the file is truncated, or the count is wrong");
+                fmt::format("the header declares {} rows of `{}`, but only {} bytes follow; the file is truncated, or "
+                            "the count is wrong",
+                            element.count, element.name, bytes_left));
 }
 
 void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor) {
@@ -29,7 +32,7 @@ void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& he
     return cursor.skip_bytes(element.count * min_bytes(element, header.encoding));
   for (std::uint64_t i = 0; i < element.count; ++i)
     read_row(
-        faults, element, cursor, [&] { return "row " + std::to_string(i + 1) + " of `" + element.name + "`"; },
+        faults, element, cursor, [&] { return fmt::format("row {} of `{}`", i + 1, element.name); },
         [&](const PlyProperty& property, std::size_t) { return cursor.skip(property); });
 }
 

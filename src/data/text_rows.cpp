@@ -15,6 +15,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/stop_point.h"
 #include "data/text_row_parser.h"
 
@@ -118,10 +120,8 @@ class TableReader {
               tbb::make_filter<Chunk*, Chunk*>(filter_mode::parallel, [&](Chunk* c) { return parse(c); }) &
               tbb::make_filter<Chunk*, void>(filter_mode::serial_in_order, [&](Chunk* c) { finish(*c); }));
     if (layout_.rows != kRowsToEnd && table_.rows < layout_.rows)
-      faults_.add(
-          next_line_,
-          "the file ends after " + std::to_string(table_.rows) + " of " + std::to_string(layout_.rows) + " rows",
-          "the file is truncated, or its header declares too many");
+      faults_.add(next_line_, fmt::format("the file ends after {} of {} rows", table_.rows, layout_.rows),
+                  "the file is truncated, or its header declares too many");
     faults_.raise_if_any();
     return std::move(table_);
   }
@@ -214,7 +214,7 @@ class TableReader {
       auto at = indices.find(word);
       if (at == indices.end()) {
         if (words.size() == std::numeric_limits<std::uint32_t>::max())
-          faults_.fail(chunk.first_line, "column " + std::to_string(column + 1) + " has too many distinct strings");
+          faults_.fail(chunk.first_line, fmt::format("column {} has too many distinct strings", column + 1));
         at = indices.emplace(word, static_cast<std::uint32_t>(words.size())).first;
         words.emplace_back(word);
       }

@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "data/quoted_word.h"
 #include "data/text_rows.h"
@@ -137,7 +139,7 @@ std::string decompress(Stream& stream, const VtkStorage& storage, std::vector<ch
     if (!stream.take(sizes[i], compressed)) return kTruncated;
     if (bytes > kMaxExpansion * (sizes[i] + 1)) return kBadHeader;
     if (bytes > storage.limit - std::min<std::uint64_t>(storage.limit, out.size()))
-      return "the array exceeds the limit of " + base::bytes_text(storage.limit) + " of decompressed data";
+      return fmt::format("the array exceeds the limit of {} of decompressed data", base::bytes_text(storage.limit));
     const std::size_t begin = out.size();
     out.resize(begin + static_cast<std::size_t>(bytes));
     uLongf got = bytes;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "display/view.h"
 
@@ -23,7 +25,7 @@ const std::vector<float>& plane(const film::Picture& picture, const char* name) 
   const film::Plane* found = picture.find(name);
   if (found == nullptr) throw base::Error(base::ErrorKind::kBadData, std::string("the image has no channel ") + name);
   if (found->values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))
-    throw base::Error(base::ErrorKind::kInternal, std::string("plane ") + name + " does not have the image's size");
+    throw base::Error(base::ErrorKind::kInternal, fmt::format("plane {} does not have the image's size", name));
   return found->values;
 }
 

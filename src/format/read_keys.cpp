@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 namespace orrery::format {
 namespace {
 
@@ -26,7 +28,7 @@ std::string type_name(const toml::node& node) {
 }
 
 void wrong_type(ReadState& state, const toml::node& node, const std::string& name, const std::string& wanted) {
-  state.error(place_of(node), name + " must be " + wanted + ", not " + type_name(node));
+  state.error(place_of(node), fmt::format("{} must be {}, not {}", name, wanted, type_name(node)));
 }
 
 std::optional<double> read_number(ReadState& state, const toml::node& node, const std::string& name,
@@ -37,7 +39,7 @@ std::optional<double> read_number(ReadState& state, const toml::node& node, cons
   }
   const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!range.contains(x)) {
-    state.error(place_of(node), name + " is " + scene::number_text(x) + "; " + range.requirement());
+    state.error(place_of(node), fmt::format("{} is {}; {}", name, scene::number_text(x), range.requirement()));
     return {};
   }
   return x;
@@ -48,14 +50,14 @@ std::optional<Value> read_vector(ReadState& state, const toml::node& node, const
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 3) {
     state.error(place_of(node),
-                name + " must be three numbers like [0, 1, 0], not " +
-                    (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+                fmt::format("{} must be three numbers like [0, 1, 0], not {}", name,
+                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
   double v[3];
   bool good = true;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto x = read_number(state, *array->get(i), name + "[" + std::to_string(i) + "]", range);
+    const auto x = read_number(state, *array->get(i), fmt::format("{}[{}]", name, i), range);
     good = good && x.has_value();
     v[i] = x.value_or(0);
   }
@@ -73,7 +75,7 @@ std::optional<Value> read_integer(ReadState& state, const toml::node& node, cons
   if (!range.contains(static_cast<double>(x))) {
     const auto whole = [](double end) { return std::to_string(static_cast<std::int64_t>(end)); };
     state.error(place_of(node),
-                name + " is " + std::to_string(x) + "; must be in " + whole(range.from) + ".." + whole(range.to));
+                fmt::format("{} is {}; must be in {}..{}", name, x, whole(range.from), whole(range.to)));
     return {};
   }
   return x;
@@ -87,7 +89,7 @@ std::optional<Value> read_text(ReadState& state, const toml::node& node, const s
   }
   const std::string& text = node.as_string()->get();
   if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
-    state.error(place_of(node), name + " is \"" + text + "\"; must be one of " + base::joined(choices),
+    state.error(place_of(node), fmt::format("{} is \"{}\"; must be one of {}", name, text, base::joined(choices)),
                 base::did_you_mean(text, choices));
     return {};
   }
@@ -99,13 +101,13 @@ std::optional<Value> read_window(ReadState& state, const toml::node& node, const
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 4) {
     state.error(place_of(node),
-                name + " must be x, y, width and height like [0, 0, 640, 360], not " +
-                    (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+                fmt::format("{} must be x, y, width and height like [0, 0, 640, 360], not {}", name,
+                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
   std::int64_t v[4];
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto x = read_integer(state, *array->get(i), name + "[" + std::to_string(i) + "]", range);
+    const auto x = read_integer(state, *array->get(i), fmt::format("{}[{}]", name, i), range);
     if (!x) return {};
     v[i] = std::get<std::int64_t>(*x);
   }
@@ -117,16 +119,16 @@ std::optional<Value> read_interval(ReadState& state, const toml::node& node, con
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 2) {
     state.error(place_of(node),
-                name + " must be two numbers like [0, 1], not " +
-                    (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+                fmt::format("{} must be two numbers like [0, 1], not {}", name,
+                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
   const auto low = read_number(state, *array->get(0), name + "[0]", range);
   const auto high = read_number(state, *array->get(1), name + "[1]", range);
   if (!low || !high) return {};
   if (!(*low < *high)) {
-    state.error(place_of(node), name + " is " + scene::interval_text({*low, *high}) +
-                                    "; the first number must be less than the second");
+    state.error(place_of(node), fmt::format("{} is {}; the first number must be less than the second", name,
+                                            scene::interval_text({*low, *high})));
     return {};
   }
   return scene::Interval{*low, *high};
@@ -143,14 +145,14 @@ std::optional<Value> read_words(ReadState& state, const toml::node& node, const 
                                 const std::vector<std::string>& choices) {
   const toml::array* array = node.as_array();
   if (array == nullptr) {
-    wrong_type(state, node, name, "a list like [\"" + choices.front() + "\"]");
+    wrong_type(state, node, name, fmt::format("a list like [\"{}\"]", choices.front()));
     return {};
   }
   std::vector<std::string> words;
   bool good = true;
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::node& element = *array->get(i);
-    const std::string element_name = name + "[" + std::to_string(i) + "]";
+    const std::string element_name = fmt::format("{}[{}]", name, i);
     const auto word = read_text(state, element, element_name, choices);
     good = good && word.has_value();
     if (!word) continue;
@@ -207,7 +209,7 @@ void report_unknown_keys(ReadState& state, const toml::table& table, const std::
       std::vector<std::string> inner;
       for (const std::string& k : known)
         if (k.starts_with(name + ".")) inner.push_back(k.substr(name.size() + 1));
-      report_unknown_keys(state, *node.as_table(), table_name + "." + name, inner);
+      report_unknown_keys(state, *node.as_table(), fmt::format("{}.{}", table_name, name), inner);
     } else if (std::find(known.begin(), known.end(), name) == known.end()) {
       std::vector<std::string> direct;
       for (const std::string& k : known)
@@ -224,7 +226,7 @@ void report_unknown_key(ReadState& state, const toml::key& key, const std::strin
   const std::string name(key.str());
   std::string remedy = hint.empty() ? base::did_you_mean(name, known) : hint;
   if (remedy.empty()) remedy = "known keys are " + base::joined(known);
-  state.error(place_of(key), "unknown key `" + name + "` in " + table_name, remedy);
+  state.error(place_of(key), fmt::format("unknown key `{}` in {}", name, table_name), remedy);
 }
 
 }  // namespace orrery::format

@@ -6,6 +6,8 @@
 #include <string>
 #include <tuple>
 
+#include <fmt/core.h>
+
 #include "base/frames.h"
 #include "format/overrides.h"
 
@@ -18,7 +20,7 @@ std::string other_type_with(const std::string& key) {
   for (const scene::MaterialType& type : scene::material_types())
     for (const auto& known : type.keys)
       if (known.name == key) owners.push_back(type.name);
-  return owners.empty() ? "" : "`" + key + "` belongs to " + base::joined(owners);
+  return owners.empty() ? "" : fmt::format("`{}` belongs to {}", key, base::joined(owners));
 }
 
 /// Reports the keys that no material type has, for a material of unknown type.
@@ -81,9 +83,9 @@ void read_textures(ReadState& state, const toml::table& table, const std::string
   for (const scene::TexturedKey& key : type.textured) {
     const toml::node* node = table.get(key.name);
     if (node == nullptr || !node->is_table()) continue;
-    key.at(model) =
-        read_texture(state, *node->as_table(), full_name + "." + key.name, frame, scene::texture_types(key.use));
-    for (const auto& [word, value] : *node->as_table()) also.push_back(key.name + "." + std::string(word.str()));
+    key.at(model) = read_texture(state, *node->as_table(), fmt::format("{}.{}", full_name, key.name), frame,
+                                 scene::texture_types(key.use));
+    for (const auto& [word, value] : *node->as_table()) also.push_back(fmt::format("{}.{}", key.name, word.str()));
     also.push_back(key.name + ".texture");
   }
 }
@@ -98,7 +100,7 @@ void read_material(ReadState& state, const toml::table& table, int frame, scene:
   for (const auto& [key, node] : table) {
     const std::string word(key.str());
     if (std::find(known.begin(), known.end(), word) != known.end() || other_type_with(word).empty()) continue;
-    report_unknown_key(state, key, full_name + " of type " + type->name, known, other_type_with(word));
+    report_unknown_key(state, key, fmt::format("{} of type {}", full_name, type->name), known, other_type_with(word));
     also.push_back(word);
   }
   material.model = type->model;
@@ -139,7 +141,8 @@ void read_materials(ReadState& state, const toml::table& root, int frame, std::v
     if (const toml::table* table = entry.value->as_table()) {
       read_material(state, *table, frame, materials.back());
     } else {
-      state.error(place_of(*entry.value), "material." + name + " must be a table", "write [material." + name + "]");
+      state.error(place_of(*entry.value), fmt::format("material.{} must be a table", name),
+                  fmt::format("write [material.{}]", name));
     }
   }
 }

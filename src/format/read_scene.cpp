@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/frames.h"
 #include "format/overrides.h"
@@ -30,8 +32,8 @@ const toml::array* tables_under(ReadState& state, const toml::table& root, const
   if (node == nullptr) return nullptr;
   const toml::array* array = node->as_array();
   if (array == nullptr || (!array->empty() && !array->is_array_of_tables())) {
-    state.error(place_of(*node), std::string("`") + name + "` must be an array of tables",
-                std::string("write [[") + name + "]]");
+    state.error(place_of(*node), fmt::format("`{}` must be an array of tables", name),
+                fmt::format("write [[{}]]", name));
     return nullptr;
   }
   return array;
@@ -44,7 +46,8 @@ void read_single_tables(ReadState& state, const toml::table& root, scene::Scene&
     if (const toml::table* found = node->as_table()) {
       read_keys(state, *found, table.name, table.keys, {}, scene);
     } else {
-      state.error(place_of(*node), "`" + table.name + "` must be a table", "write [" + table.name + "]");
+      state.error(place_of(*node), fmt::format("`{}` must be a table", table.name),
+                  fmt::format("write [{}]", table.name));
     }
   }
 }
@@ -70,7 +73,7 @@ std::uint32_t read_material_name(ReadState& state, const toml::table& table, con
     std::string remedy = base::did_you_mean(name, names);
     if (remedy.empty() && names.empty()) remedy = "the scene defines no materials";
     if (remedy.empty() && names.size() <= kMaxNamed) remedy = "defined are " + base::joined(names);
-    state.error(place_of(*node), full_name + " is \"" + name + "\", which is not defined", remedy);
+    state.error(place_of(*node), fmt::format("{} is \"{}\", which is not defined", full_name, name), remedy);
   }
   state.unread.insert(full_name);
   return 0;
@@ -82,7 +85,7 @@ void read_spheres(ReadState& state, const toml::table& root, const MaterialIndex
   scene.spheres.reserve(list->size());
   for (std::size_t i = 0; i < list->size(); ++i) {
     const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = "sphere[" + std::to_string(i) + "]";
+    const std::string full_name = fmt::format("sphere[{}]", i);
     scene::Sphere sphere;
     read_keys(state, table, full_name, scene::sphere_keys(), {"material"}, sphere);
     sphere.material = read_material_name(state, table, full_name, scene, index);
@@ -125,10 +128,10 @@ void read_points_file(ReadState& state, const toml::table& root, const std::stri
   const std::string& full_name = request.key;
   try {
     for (const scene::SceneDiagnostic& diagnostic : points::load_points(request, points))
-      add_problem(state, root, scene_file, diagnostic, diagnostic.key + ": " + diagnostic.text);
+      add_problem(state, root, scene_file, diagnostic, fmt::format("{}: {}", diagnostic.key, diagnostic.text));
   } catch (const base::Error& error) {
     if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
-    state.error(place, full_name + ".file: " + error.what(), {}, error.kind());
+    state.error(place, fmt::format("{}.file: {}", full_name, error.what()), {}, error.kind());
     for (const base::Diagnostic& diagnostic : error.diagnostics())
       state.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
                             [&] { return diagnostic; });
@@ -141,14 +144,14 @@ void read_types(ReadState& state, const toml::table& table, const std::string& t
                 scene::ValueType type, scene::Range range, std::vector<std::pair<std::string, T>>& types) {
   const toml::node* const node = node_at(table, name);
   if (node == nullptr) return;
-  const std::string full_name = table_name + "." + name;
+  const std::string full_name = fmt::format("{}.{}", table_name, name);
   const toml::table* const entries = node->as_table();
   if (entries == nullptr) {
     state.error(place_of(*node), full_name + " must be a table", "write e.g. type = { 1 = 0.5, 2 = 0.7 }");
     return;
   }
   for (const auto& [key, value] : *entries) {
-    const auto read = read_value(state, value, full_name + "." + std::string(key.str()), type, range, {});
+    const auto read = read_value(state, value, fmt::format("{}.{}", full_name, key.str()), type, range, {});
     if (read) types.emplace_back(std::string(key.str()), std::get<T>(*read));
   }
 }
@@ -159,7 +162,7 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
   if (list == nullptr) return;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = "points[" + std::to_string(i) + "]";
+    const std::string full_name = fmt::format("points[{}]", i);
     scene::Points points;
     read_keys(state, table, full_name, scene::points_keys(), {"material", "radius.type", "color.type"}, points);
     read_types(state, table, full_name, "radius.type", scene::ValueType::kNumber,
@@ -195,7 +198,7 @@ void add_problems(ReadState& state, const toml::table& root, const std::vector<s
     if (has_errors && diagnostic.severity == base::Severity::kWarning) continue;
     if (state.unread.count(diagnostic.key) != 0 || (is_of_camera(diagnostic.key) && !camera_is_read)) continue;
     add_problem(state, root, file, diagnostic,
-                diagnostic.key.empty() ? diagnostic.text : diagnostic.key + ": " + diagnostic.text);
+                diagnostic.key.empty() ? diagnostic.text : fmt::format("{}: {}", diagnostic.key, diagnostic.text));
   }
 }
 
@@ -228,10 +231,11 @@ void pose(ReadState& state, const toml::table& root, const std::string& file, in
   scene = scene::posed(scene, opens);
   if (!is_open) return;
   for (const scene::SceneDiagnostic& diagnostic : errors_at_close(scene, *result.closing))
-    add_problem(state, root, file, diagnostic, diagnostic.key + " when the shutter closes: " + diagnostic.text);
+    add_problem(state, root, file, diagnostic,
+                fmt::format("{} when the shutter closes: {}", diagnostic.key, diagnostic.text));
   for (std::size_t i = 0; i < scene.spheres.size(); ++i)
     if ((scene.spheres[i].radius < 0) != (result.closing->spheres[i].radius < 0)) {
-      const std::string key = "sphere[" + std::to_string(i) + "].radius";
+      const std::string key = fmt::format("sphere[{}].radius", i);
       add_problem(state, root, file, {base::Severity::kError, key, ""},
                   key + " changes sign while the shutter is open; keep it positive or negative");
     }
@@ -243,7 +247,7 @@ bool sets_target(const Override& override, const scene::Track& track, const scen
   if (override.text.find("sphere") == std::string::npos) return false;  // names of spheres take time to find
   const std::vector<std::size_t> spheres = scene::spheres_of_target(scene, track.target);
   return spheres.size() == 1 &&
-         override.sets("sphere[" + std::to_string(spheres[0]) + "]" + track.target.substr(track.target.rfind('.')));
+         override.sets(fmt::format("sphere[{}]{}", spheres[0], track.target.substr(track.target.rfind('.'))));
 }
 
 /// A track replaces what an override sets.
@@ -252,7 +256,7 @@ void warn_of_animated_overrides(ReadState& state, const std::vector<Override>& o
     for (std::size_t t = 0; t < scene.tracks.size(); ++t)
       if (sets_target(overrides[i], scene.tracks[t], scene))
         state.add(base::Severity::kWarning, Place{kOverrideName, static_cast<int>(i) + 1, 1, 1},
-                  scene.tracks[t].target + " is animated by key[" + std::to_string(t) + "], which takes precedence",
+                  fmt::format("{} is animated by key[{}], which takes precedence", scene.tracks[t].target, t),
                   "remove all animation with --set key=[]");
 }
 
@@ -277,9 +281,9 @@ std::vector<Setting> settings_of(const SourceText& source, const toml::table& ro
         origin = place.text_name == kOverrideName ? source.option_at(place.line)
                                                   : place.text_name + ':' + std::to_string(place.line);
       }
-      const std::string full_name = table.name + "." + key.name;
+      const std::string full_name = fmt::format("{}.{}", table.name, key.name);
       for (std::size_t i = 0; i < scene.tracks.size(); ++i)
-        if (scene.tracks[i].target == full_name) origin = "key[" + std::to_string(i) + "]";
+        if (scene.tracks[i].target == full_name) origin = fmt::format("key[{}]", i);
       settings.push_back({full_name, key.text(scene), origin});
     }
   }
@@ -323,8 +327,6 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<Overr
   return result;
 }
 
-std::string toml_version() {
-  return std::to_string(TOML_LIB_MAJOR) + "." + std::to_string(TOML_LIB_MINOR) + "." + std::to_string(TOML_LIB_PATCH);
-}
+std::string toml_version() { return fmt::format("{}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH); }
 
 }  // namespace orrery::format

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "scene/animation.h"
 #include "scene/limits.h"
 
@@ -20,8 +22,8 @@ const toml::array* list_at(ReadState& state, const toml::table& table, const std
   const toml::node* node = table.get(key);
   const toml::array* list = node == nullptr ? nullptr : node->as_array();
   if (list != nullptr && !list->empty()) return list;
-  const std::string what = full_name + (node == nullptr ? " needs `" + std::string(key) + "`"
-                                                        : "." + std::string(key) + " must be a non-empty list");
+  const std::string what = full_name + (node == nullptr ? fmt::format(" needs `{}`", key)
+                                                        : fmt::format(".{} must be a non-empty list", key));
   state.error(node == nullptr ? place_of(table) : place_of(*node), what);
   return nullptr;
 }
@@ -32,8 +34,8 @@ bool read_frames(ReadState& state, const toml::array& list, const std::string& n
     const auto value = read_value(state, node, name, ValueType::kNumber, {-scene::kMaxFrame, scene::kMaxFrame}, {});
     const double frame = value ? std::get<double>(*value) : 0;
     if (value && !frames.empty() && good && frame <= frames.back()) {
-      state.error(place_of(node), name + " must ascend: " + scene::number_text(frame) + " follows " +
-                                      scene::number_text(frames.back()));
+      state.error(place_of(node), fmt::format("{} must ascend: {} follows {}", name, scene::number_text(frame),
+                                              scene::number_text(frames.back())));
       good = false;
     }
     good = good && value.has_value();
@@ -69,25 +71,25 @@ std::optional<scene::Animated> read_target(ReadState& state, const toml::table& 
   auto target = scene::find_animated(scene, name);
   if (const auto spheres = scene::spheres_of_target(scene, name); spheres.size() > 1) {
     const auto numbered = [&](std::size_t i) {
-      return "sphere[" + std::to_string(spheres[i]) + "]" + name.substr(name.rfind('.'));
+      return fmt::format("sphere[{}]{}", spheres[i], name.substr(name.rfind('.')));
     };
-    state.error(place_of(*node),
-                full_name + ".target: \"" + name + "\" matches " + std::to_string(spheres.size()) + " spheres",
-                "use an index, such as " + numbered(0) + " or " + numbered(1));
+    state.error(place_of(*node), fmt::format("{}.target: \"{}\" matches {} spheres", full_name, name, spheres.size()),
+                fmt::format("use an index, such as {} or {}", numbered(0), numbered(1)));
     return {};
   }
   if (target) return target;
   const std::vector<std::string> names = scene::animated_names(scene);
   const bool is_textured = std::find(names.begin(), names.end(), name) != names.end();
   if (is_textured) {
-    state.error(place_of(*node), full_name + ".target: \"" + name + "\" has a texture and cannot be animated",
+    state.error(place_of(*node), fmt::format("{}.target: \"{}\" has a texture and cannot be animated", full_name, name),
                 "animate a number of the material that has no texture");
     return {};
   }
   std::string remedy = base::did_you_mean(name, names);
   if (remedy.empty())
     remedy = "targets are numbers of camera, background, material.NAME, sphere.NAME and sphere[INDEX]";
-  state.error(place_of(*node), full_name + ".target: \"" + name + "\" is not a number that can be animated", remedy);
+  state.error(place_of(*node), fmt::format("{}.target: \"{}\" is not a number that can be animated", full_name, name),
+              remedy);
   return {};
 }
 
@@ -97,7 +99,7 @@ void read_tracks(ReadState& state, const toml::array& list, scene::Scene& scene)
   static const std::vector<std::string> known = {"target", "frames", "values", "interpolation"};
   for (std::size_t i = 0; i < list.size(); ++i) {
     const toml::table& table = *list.get(i)->as_table();
-    const std::string full_name = "key[" + std::to_string(i) + "]";
+    const std::string full_name = fmt::format("key[{}]", i);
     for (const auto& [key, node] : table)
       if (std::find(known.begin(), known.end(), key.str()) == known.end())
         report_unknown_key(state, key, full_name, known);
@@ -113,11 +115,12 @@ void read_tracks(ReadState& state, const toml::array& list, scene::Scene& scene)
     const toml::array* const values = list_at(state, table, full_name, "values");
     if (!target || frames == nullptr || values == nullptr) continue;
     if (frames->size() != values->size())
-      state.error(place_of(*table.get("values")), full_name + " has " + std::to_string(frames->size()) +
-                                                      " frames but " + std::to_string(values->size()) + " values");
+      state.error(place_of(*table.get("values")),
+                  fmt::format("{} has {} frames but {} values", full_name, frames->size(), values->size()));
     const auto is_same = [&](const Track& other) { return other.target == track.target; };
     if (std::any_of(scene.tracks.begin(), scene.tracks.end(), is_same))
-      state.error(place_of(*table.get("target")), full_name + ": " + track.target + " already has an animation track",
+      state.error(place_of(*table.get("target")),
+                  fmt::format("{}: {} already has an animation track", full_name, track.target),
                   "put all its keyframes into one [[key]]");
     const bool frames_are_good = read_frames(state, *frames, full_name + ".frames", track.frames);
     const bool values_are_good = read_values(state, *values, full_name + ".values", *target, track.values);
@@ -135,8 +138,9 @@ void check_tracks(ReadState& state, const toml::array& list, const scene::Scene&
     if (target->range.contains(v.x) && (!is_vector || (target->range.contains(v.y) && target->range.contains(v.z))))
       continue;
     state.error(place_of(*list.get(i)),
-                track.target + " is " + (is_vector ? scene::vector_text(v) : scene::number_text(v.x)) + " at frame " +
-                    scene::number_text(frame) + "; " + target->range.requirement(),
+                fmt::format("{} is {} at frame {}; {}", track.target,
+                            is_vector ? scene::vector_text(v) : scene::number_text(v.x), scene::number_text(frame),
+                            target->range.requirement()),
                 "cubic interpolation may overshoot; add keyframes, or make it linear");
   }
 }

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/input_file.h"
 
@@ -34,7 +36,7 @@ std::string digest_line(std::FILE* in, std::uint64_t size) {
     digest.append(bytes.data(), wanted);
     size -= wanted;
   }
-  std::string text = kPrefix + digest.digest() + "\n";
+  std::string text = fmt::format("{}{}\n", kPrefix, digest.digest());
   for (std::size_t i = kPrefixSize; i < text.size(); ++i)
     if (text[i] >= 'A' && text[i] <= 'F') text[i] = static_cast<char>(text[i] - 'A' + 'a');
   return text;
@@ -44,7 +46,7 @@ std::string digest_line(std::FILE* in, std::uint64_t size) {
 
 void append_digest(const std::filesystem::path& file, const std::filesystem::path& name) {
   const auto fail = [&](int error) {
-    throw base::Error(base::ErrorKind::kIo, "writing " + name.string() + " failed: " + std::strerror(error));
+    throw base::Error(base::ErrorKind::kIo, fmt::format("writing {} failed: {}", name.string(), std::strerror(error)));
   };
   File in(std::fopen(file.c_str(), "rb"), &std::fclose);
   std::error_code failed;
@@ -65,7 +67,8 @@ void require_digest(const std::filesystem::path& file) {
   base::require_readable(file);
   const File in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in)
-    throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + std::strerror(errno));
+    throw base::Error(base::ErrorKind::kMissingInput,
+                      fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)));
   const auto damaged = [&](const char* why) { throw base::Error(base::ErrorKind::kBadData, file.string() + why); };
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);

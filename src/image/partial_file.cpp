@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "film/partial_words.h"
 #include "image/digest.h"
@@ -32,7 +34,8 @@ constexpr const char* kSumsName = "orrery.sums";
 constexpr int kMaxWordsInRow = 4096;
 
 [[noreturn]] void damaged(const std::filesystem::path& file, const std::string& why) {
-  throw base::Error(base::ErrorKind::kBadData, file.string() + " is not a usable checkpoint or shard: " + why);
+  throw base::Error(base::ErrorKind::kBadData,
+                    fmt::format("{} is not a usable checkpoint or shard: {}", file.string(), why));
 }
 
 std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
@@ -110,7 +113,7 @@ PartialFile read_partial(const std::filesystem::path& file, int width_px, int he
     damaged(file, error.what());
   } catch (const std::bad_alloc&) {
     throw base::Error(base::ErrorKind::kNoMemory,
-                      "cannot read " + file.string() + ": there is not enough memory for its samples");
+                      fmt::format("cannot read {}: there is not enough memory for its samples", file.string()));
   } catch (const std::length_error&) {
     damaged(file, "its samples would not fit into any memory");
   }

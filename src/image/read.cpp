@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "image/format.h"
@@ -72,10 +74,9 @@ film::Picture decode_all(const std::filesystem::path& file, const Input& input, 
   const ImageSpec& spec = input.spec;
   if (memory_limit > 0 && plane_bytes(spec) > memory_limit)
     throw base::Error(base::ErrorKind::kNoMemory,
-                      "cannot read image " + file.string() + ": " + std::to_string(spec.full_width) + " x " +
-                          std::to_string(spec.full_height) + " pixels of " + std::to_string(spec.nchannels) +
-                          " channels need " + base::bytes_text(plane_bytes(spec)) + ", and " +
-                          base::bytes_text(memory_limit) + " is free");
+                      fmt::format("cannot read image {}: {} x {} pixels of {} channels need {}, and {} is free",
+                                  file.string(), spec.full_width, spec.full_height, spec.nchannels,
+                                  base::bytes_text(plane_bytes(spec)), base::bytes_text(memory_limit)));
   film::Picture picture;
   picture.width = spec.full_width;
   picture.height = spec.full_height;
@@ -113,7 +114,7 @@ void add_other_parts(const std::filesystem::path& file, Input& input, std::uint6
     check_spec(file, spec);
     const std::string name = std::string(spec.get_string_attribute("oiio:subimagename"));
     for (film::Plane& plane : decode_all(file, input, memory_limit).planes) {
-      if (picture.find(plane.name) != nullptr) plane.name = name + "." + plane.name;
+      if (picture.find(plane.name) != nullptr) plane.name = fmt::format("{}.{}", name, plane.name);
       if (picture.find(plane.name) == nullptr) picture.planes.push_back(std::move(plane));
     }
   }

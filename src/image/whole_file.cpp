@@ -8,6 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/checked_file.h"
@@ -19,7 +21,7 @@ namespace orrery::image {
 namespace {
 
 [[noreturn]] void io_failed(const std::filesystem::path& file, const std::string& reason) {
-  throw base::Error(base::ErrorKind::kIo, "writing " + file.string() + " failed: " + reason);
+  throw base::Error(base::ErrorKind::kIo, fmt::format("writing {} failed: {}", file.string(), reason));
 }
 
 /// Encodes all parts with OpenImageIO.
@@ -85,7 +87,7 @@ std::string read_back(const std::string& name, const std::string& format, const 
       wrong = "its last row cannot be read back";
     }
     const std::string reason = in->geterror();
-    if (!wrong.empty()) return reason.empty() ? wrong : wrong + ": " + reason;
+    if (!wrong.empty()) return reason.empty() ? wrong : fmt::format("{}: {}", wrong, reason);
   }
   return {};
 }
@@ -99,20 +101,20 @@ void write_whole(const std::filesystem::path& file, const std::string& format, O
   const std::string name = target.temporary().string();
   // Declared before its user: a failed encoder may still write in its destructor.
   CheckedFile bytes(target.temporary());
-  std::string error;
+  std::string message;
   std::unique_ptr<OIIO::ImageOutput> out;
   if (format == "jpeg") {
-    error = encode_jpeg(parts.front().spec, static_cast<const std::uint8_t*>(parts.front().pixels), bytes);
+    message = encode_jpeg(parts.front().spec, static_cast<const std::uint8_t*>(parts.front().pixels), bytes);
   } else {
     out = OIIO::ImageOutput::create(format);
     if (!out || !out->supports("ioproxy"))
       throw base::Error(base::ErrorKind::kInternal,
-                        "this OpenImageIO cannot write " + format + " files " + OIIO::geterror());
+                        fmt::format("this OpenImageIO cannot write {} files {}", format, OIIO::geterror()));
     out->set_ioproxy(&bytes);
-    error = encode(*out, name, type, parts);
+    message = encode(*out, name, type, parts);
   }
   if (const int error = bytes.finish(); error != 0) io_failed(file, std::strerror(error));
-  if (!error.empty()) io_failed(file, error);
+  if (!message.empty()) io_failed(file, message);
   if (const std::string wrong = read_back(name, format, parts); !wrong.empty()) io_failed(file, wrong);
   if (with_digest) append_digest(target.temporary(), file);
   target.commit();

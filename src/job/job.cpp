@@ -173,11 +173,12 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
     checkpoint.write(partial);
   } catch (const base::Error& also) {
     throw base::Error(error.kind(),
-                      std::string(error.what()) + "; the checkpoint cannot be written, either: " + also.what());
+                      fmt::format("{}; the checkpoint cannot be written, either: {}", error.what(), also.what()));
   }
   report.checkpoint = checkpoint.file();
-  throw base::Error(error.kind(), std::string(error.what()) + "; " + checkpoint.file().string() +
-                                      " holds the samples; when the cause is removed, continue with --resume");
+  throw base::Error(error.kind(),
+                    fmt::format("{}; {} holds the samples; when the cause is removed, continue with --resume",
+                                error.what(), checkpoint.file().string()));
 }
 
 /// Read, check, compile, render or merge, develop, write.

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/stop_point.h"
 #include "base/text.h"
@@ -189,8 +191,8 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
     cases.back().samples_lights = false;
   }
   if (!lists_are_affordable(compiled)) {
-    out.left_out.push_back("lists: with this many spheres one sample per pixel would take more than " +
-                           std::to_string(static_cast<int>(kLongestListSeconds)) + " s");
+    out.left_out.push_back(fmt::format("lists: with this many spheres one sample per pixel would take more than {} s",
+                                       static_cast<int>(kLongestListSeconds)));
     return cases;
   }
   for (const auto& [name, accelerator] :

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "format/read_scene.h"
 
@@ -58,13 +60,14 @@ class Recommender {
     const bool is_faster = baseline.seconds > r.seconds;
     if (baseline.seconds > 0 && !is_faster) {
       // --noise needs more samples than this. Sobol points have no larger error than as many independent ones.
-      flags = "--samples " + std::to_string(baseline.samples) + sampler_flag;
+      flags = fmt::format("--samples {}{}", baseline.samples, sampler_flag);
       r.noise = request_.noise;
       r.bias = 0;
       r.seconds = baseline.seconds;
       r.samples = baseline.samples;
     }
-    r.command = "orrery render " + base::shell_quoted(study_.scene) + " -o final.exr " + scene_flags() + flags;
+    r.command =
+        fmt::format("orrery render {} -o final.exr {}{}", base::shell_quoted(study_.scene), scene_flags(), flags);
     base::append(r.words, "for %.3g %% noise: %s, %.3g s", request_.noise * 100, flags.c_str(), r.seconds);
     if (is_faster) base::append(r.words, " instead of %.3g s", baseline.seconds);
     if (r.bias > 0) base::append(r.words, ", bias %.2g %%", r.bias * 100);
@@ -97,7 +100,8 @@ class Recommender {
   std::string scene_flags() const {
     std::string flags;
     for (const format::Override& override : request_.scene.overrides)
-      if (!override.sets("render.samples")) flags += override.option + " " + base::shell_quoted(override.typed) + " ";
+      if (!override.sets("render.samples"))
+        flags += fmt::format("{} {} ", override.option, base::shell_quoted(override.typed));
     if (request_.scene.frame != format::kFirstFrame) base::append(flags, "--frames %d ", request_.scene.frame);
     return flags;
   }

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
@@ -206,11 +208,11 @@ class Runner {
         names += (names.empty() ? "" : "; ") + choice.name;
         continue;
       }
-      report_progress(choice.axis + ": " + choice.name);
+      report_progress(fmt::format("{}: {}", choice.axis, choice.name));
       measure(choice);
     }
     for (const auto& [axis, names] : too_expensive)
-      out_.left_out.push_back(axis + " (" + names + "): exceeds the budget");
+      out_.left_out.push_back(fmt::format("{} ({}): exceeds the budget", axis, names));
   }
 
   CompiledScene scene_for(const Choice& choice) const {

@@ -84,11 +84,11 @@ std::string half_blocks(const Bitmap& bitmap, bool true_color) {
       const std::uint8_t* const below = y + 1 < bitmap.height ? bitmap.row(y + 1) + 3 * x : black;
       const std::string fore = sgr(3, above, true_color), back = sgr(4, below, true_color);
       if (fore != upper && back != lower) {
-        out += "\033[" + fore + ";" + back + "m";
+        out += fmt::format("\033[{};{}m", fore, back);
       } else if (fore != upper) {
-        out += "\033[" + fore + "m";
+        out += fmt::format("\033[{}m", fore);
       } else if (back != lower) {
-        out += "\033[" + back + "m";
+        out += fmt::format("\033[{}m", back);
       }
       upper = fore;
       lower = back;

@@ -39,7 +39,7 @@ int checked_descriptor(int descriptor, const Environment& environment) {
   const std::string fault = missing_colors(environment);
   if (!fault.empty())
     throw base::Error(base::ErrorKind::kUsage,
-                      "--preview terminal: " + fault + "; use --preview FILE.png or --preview tev");
+                      fmt::format("--preview terminal: {}; use --preview FILE.png or --preview tev", fault));
   return descriptor;
 }
 
@@ -105,14 +105,14 @@ void Screen::compose() {
   const TerminalSize size = tty_.size();
   if (!(size == shown_size_) && shown_rows_ > 0) {
     // The terminal may have wrapped or cut the image; a new one begins below.
-    output_ += "\r" + removed(graphics_) + "\033[J";
+    output_ += fmt::format("\r{}\033[J", removed(graphics_));
     shown_rows_ = 0;
     is_drawn_ = drawing_.empty();
   }
   shown_size_ = size;
   if (!notes_.empty()) {
-    output_ += "\r" + up(shown_rows_) + (shown_rows_ > 0 ? removed(graphics_) : std::string()) + "\033[J" +
-               with_returns(notes_);
+    output_ += fmt::format("\r{}{}\033[J{}", up(shown_rows_), shown_rows_ > 0 ? removed(graphics_) : std::string(),
+                           with_returns(notes_));
     notes_.clear();
     shown_rows_ = 0;
     is_drawn_ = drawing_.empty();
@@ -120,15 +120,15 @@ void Screen::compose() {
   }
   if (!is_drawn_ && rows_ <= size.rows - kOtherRows) {
     if (rows_ != shown_rows_) {
-      output_ += "\r" + up(shown_rows_) + (shown_rows_ > 0 ? removed(graphics_) : std::string()) + "\033[J";
+      output_ += fmt::format("\r{}{}\033[J", up(shown_rows_), shown_rows_ > 0 ? removed(graphics_) : std::string());
       for (int i = 0; i < rows_; ++i) output_ += "\r\n";
       shown_rows_ = rows_;
     }
-    output_ += "\r" + up(rows_) + "\0337" + drawing_ + "\0338" + down(rows_) + "\r";
+    output_ += fmt::format("\r{}\0337{}\0338{}\r", up(rows_), drawing_, down(rows_));
     is_drawn_ = true;
     bar_changed_ = true;
   }
-  if (bar_changed_) output_ += "\r" + bar_ + "\033[K";
+  if (bar_changed_) output_ += fmt::format("\r{}\033[K", bar_);
   bar_changed_ = false;
 }
 

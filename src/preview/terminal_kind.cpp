@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <vector>
 
+#include <fmt/core.h>
+
 namespace orrery::preview {
 namespace {
 
@@ -45,7 +47,7 @@ std::string missing_colors(const Environment& environment) {
   if (term.empty()) return "TERM is not set";
   const bool is_dec = term.size() > 2 && term.starts_with("vt") && term[2] >= '0' && term[2] <= '9';
   if (term == "dumb" || term == "unknown" || is_dec || term.ends_with("-m") || term.ends_with("-mono"))
-    return "the terminal `" + term + "` has no colours";
+    return fmt::format("the terminal `{}` has no colours", term);
   return {};
 }
 

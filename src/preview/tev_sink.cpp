@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/core.h>
+
+#include "base/diagnostic.h"
 #include "preview/tev_packets.h"
 
 namespace orrery::preview {
@@ -26,7 +29,7 @@ constexpr auto kLongestFinish = 10s;
 }  // namespace
 
 TevSink::TevSink(const std::string& host, const std::string& port, OnNote on_note)
-    : connection_(host, port), on_note_(std::move(on_note)), address_(host + ":" + port) {}
+    : connection_(host, port), on_note_(std::move(on_note)), address_(fmt::format("{}:{}", host, port)) {}
 
 void TevSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   canvas_ = &canvas;
@@ -64,7 +67,7 @@ void TevSink::finish() {
   }
   const bool incomplete = connection_.state() != Connection::State::kOpen || !is_done();
   if (was_open_ && incomplete && !std::exchange(reported_, true))
-    on_note_("warning: tev at " + address_ + " does not respond; its image is incomplete\n");
+    on_note_(base::warning_line(fmt::format("tev at {} does not respond; its image is incomplete", address_)));
   // The rest of a packet must be sent before anything else.
   pending_.clear();
   pending_count_ = 0;
@@ -87,8 +90,9 @@ void TevSink::check_connection() {
       connection_.check();
       retry_ = Clock::now() + kRetry;
       if (connection_.state() == Connection::State::kClosed && !std::exchange(reported_, true))
-        on_note_("warning: tev cannot be reached at " + address_ + ": " + connection_.reason() +
-                 "; the render continues, and the preview begins when tev is started\n");
+        on_note_(base::warning_line(fmt::format(
+            "tev cannot be reached at {}: {}; the render continues, and the preview begins when tev is started",
+            address_, connection_.reason())));
     }
   }
   if (connection_.state() == Connection::State::kOpen && !was_open_) {

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include <fmt/core.h>
+
 namespace orrery::scene {
 namespace {
 
@@ -125,7 +127,7 @@ std::vector<std::string> animated_names(const Scene& scene) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& owner, const auto& keys) {
     for (const auto& key : keys)
-      if (is_number(key.type)) names.push_back(owner + "." + key.name);
+      if (is_number(key.type)) names.push_back(fmt::format("{}.{}", owner, key.name));
   };
   for (const Table& table : tables())
     if (is_singleton_table(table.name)) add(table.name, table.keys);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "base/duplicates.h"
 #include "math/single.h"
 #include "scene/validate.h"
@@ -43,8 +45,7 @@ class SphereIndex {
 };
 
 std::string key_of(const Place& place) {
-  return place.is_table ? "sphere[" + std::to_string(place.index) + "]"
-                        : "points[" + std::to_string(place.points) + "].file";
+  return place.is_table ? fmt::format("sphere[{}]", place.index) : fmt::format("points[{}].file", place.points);
 }
 
 std::string name_of(const Scene& scene, const Place& place) {
