@@ -82,11 +82,11 @@ def measure_error(program, scenes, work, options, samples, reference_samples):
 def measure_time(program, scene, work, options):
     options = argparse.Namespace(width=1920)
     plain = render(program, scene, work / "plain.exr", options, "--samples", 64)["seconds"]
-    told = render(program, scene, work / "time.exr", options, "--samples", 64, "--denoise")["seconds"]
-    print(f"1920 x 1080, 64 samples: render {plain['render']:.2f} s, with --denoise {told['render']:.2f} s, "
-          f"finish {told['finish']:.2f} s, denoise {told['denoise']:.2f} s: "
-          f"{100 * told['denoise'] / plain['render']:.1f} % of the render; "
-          f"in total {100 * (sum(told.values()) / sum(plain.values()) - 1):.1f} % more time\n", flush=True)
+    denoised = render(program, scene, work / "time.exr", options, "--samples", 64, "--denoise")["seconds"]
+    print(f"1920 x 1080, 64 samples: render {plain['render']:.2f} s, with --denoise {denoised['render']:.2f} s, "
+          f"finish {denoised['finish']:.2f} s, denoise {denoised['denoise']:.2f} s: "
+          f"{100 * denoised['denoise'] / plain['render']:.1f} % of the render; "
+          f"in total {100 * (sum(denoised.values()) / sum(plain.values()) - 1):.1f} % more time\n", flush=True)
 
 
 def measure_flicker(program, work, options):

@@ -22,7 +22,7 @@ enum class Method { kEmbree, kList };
 
 template <class Packet>
 std::vector<Packet>& choose(render::RecordedRays<Packet>& rays, Rays which) {
-  return which == Rays::kCamera ? rays.camera : rays.bounced;
+  return which == Rays::kCamera ? rays.camera : rays.secondary;
 }
 
 /// One packet per iteration.

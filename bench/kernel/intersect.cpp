@@ -33,7 +33,7 @@ IntersectFunctions<kernel::RayPacketFast, float> functions_for(const kernel::Ray
 template <class Packet>
 std::vector<Packet> full_packets(const Workload<Packet>& work) {
   std::vector<Packet> full;
-  for (const Packet& packet : work.rays.bounced) {
+  for (const Packet& packet : work.rays.secondary) {
     if (packet.count == kernel::kPacketSize) full.push_back(packet);
     if (full.size() == kPackets) break;
   }
@@ -56,13 +56,13 @@ SphereLanes<T> spheres_of(const compile::CompiledScene& compiled, const Packet& 
 }
 
 template <class Packet>
-void nearest(benchmark::State& state, Precision precision, Lanes lanes) {
+void closest_distance(benchmark::State& state, Precision precision, Lanes lanes) {
   auto& work = workload<Packet>(0, precision);
   const auto functions = functions_for(static_cast<const Packet*>(nullptr), precision, lanes);
   Packet packet = full_packets(work).front();
   for (auto _ : state) {
     kernel::reset_hits(packet);
-    functions.nearest(packet, work.compiled.spheres.view().plain, kSpheres);
+    functions.closest_distance(packet, work.compiled.spheres.view().plain, kSpheres);
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSpheres) * kernel::kPacketSize);
@@ -91,8 +91,8 @@ void hit_point(benchmark::State& state, Precision precision, Lanes lanes) {
       const bool fast = precision == Precision::kFast;
       const std::string end = "/" + name_of(precision) + (lanes == Lanes::kOne ? "/one_lane" : "/all_lanes");
       benchmark::RegisterBenchmark(("kernel/intersect/nearest" + end).c_str(),
-                                   fast ? nearest<kernel::RayPacketFast> : nearest<kernel::RayPacket>, precision,
-                                   lanes);
+                                   fast ? closest_distance<kernel::RayPacketFast> : closest_distance<kernel::RayPacket>,
+                                   precision, lanes);
       benchmark::RegisterBenchmark(("kernel/intersect/hit_point" + end).c_str(),
                                    fast ? hit_point<kernel::RayPacketFast> : hit_point<kernel::RayPacket>, precision,
                                    lanes);

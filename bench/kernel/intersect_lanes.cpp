@@ -27,7 +27,7 @@ HWY_INLINE void nearest_of_all(Packet& packet, const kernel::Sphere* spheres, st
     const auto id = hn::Set(du, static_cast<Id>(i));
     for (int v = 0; v < kernel::kPacketSize; v += static_cast<int>(hn::Lanes(d))) {
       const auto ray = k::load_rays(d, packet, v);
-      const auto found = k::nearest<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == id));
+      const auto found = k::closest_distance<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == id));
       const auto best = hn::Load(d, packet.distance + v);
       const auto nearer = hn::And(found.mask, found.value < best);
       hn::Store(hn::IfThenElse(nearer, found.value, best), d, packet.distance + v);

@@ -27,7 +27,7 @@ struct alignas(64) PointLanes {
 template <class Packet, class T>
 struct IntersectFunctions {
   /// Intersects all rays with each sphere in turn, and sets distance and hit as a traversal does.
-  void (*nearest)(Packet& packet, const kernel::Sphere* spheres, std::size_t count);
+  void (*closest_distance)(Packet& packet, const kernel::Sphere* spheres, std::size_t count);
 
   /// Computes each ray's hit point on its own sphere, packet.hit, at packet.distance.
   void (*hit_point)(const Packet& packet, const SphereLanes<T>& spheres, PointLanes<T>& out);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "accel/duplicates.h"
 
-#include "base/repeated.h"
+#include "base/duplicates.h"
 #include "kernel/coincidence.h"
 
 namespace orrery::accel {
@@ -10,11 +10,12 @@ std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Pr
   if (kernel::is_distinct(scene, precision)) return {};
   const auto place = [&](std::size_t id) { return kernel::coincidence_key<4>(scene, id, precision); };
   const auto path = [&](std::size_t id) { return kernel::coincidence_key<8>(scene, id, precision); };
-  const std::vector<base::Repeated> found = scene.moving_count > 0 ? base::find_repeated<8>(scene.sphere_count, path)
-                                                                   : base::find_repeated<4>(scene.sphere_count, place);
+  const std::vector<base::Duplicate> found = scene.moving_count > 0
+                                                 ? base::find_duplicates<8>(scene.sphere_count, path)
+                                                 : base::find_duplicates<4>(scene.sphere_count, place);
   std::vector<std::uint32_t> ids;
   ids.reserve(found.size());
-  for (const base::Repeated& r : found) ids.push_back(static_cast<std::uint32_t>(r.index));
+  for (const base::Duplicate& r : found) ids.push_back(static_cast<std::uint32_t>(r.index));
   return ids;
 }
 

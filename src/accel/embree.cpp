@@ -25,7 +25,7 @@ std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
   std::vector<std::uint32_t> without;
   std::set_union(scene.outliers.begin(), scene.outliers.end(), scene.duplicates.begin(), scene.duplicates.end(),
                  std::back_inserter(without));
-  return all_but(without, count);
+  return complement_of(without, count);
 }
 
 /// A part of a whole's progress, from `begin` to `end`.
@@ -187,7 +187,7 @@ class SimdList final : public Accel {
     scene_.spheres = view.spheres;
     scene_.motion = view.motion;
     scene_.moving_count = view.moving_count;
-    scene_.outliers = all_but(duplicates(view, precision), view.sphere_count);
+    scene_.outliers = complement_of(duplicates(view, precision), view.sphere_count);
   }
 
   kernel::Tracer tracer() const noexcept override { return functions_.tracer_of(scene_); }

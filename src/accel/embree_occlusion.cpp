@@ -30,8 +30,8 @@ HWY_INLINE hn::Mask<D> occlude_by_sphere(D d, const EmbreeScene& scene, std::uin
   const auto ids = hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(id));
   const auto ray = k::load_rays(d, packet, first);
   const auto is_target = hn::RebindMask(d, hn::Load(du, packet.target + first) == ids);
-  const auto found = k::nearest<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first),
-                                               hn::RebindMask(d, ray.self == ids));
+  const auto found = k::closest_distance<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first),
+                                                        hn::RebindMask(d, ray.self == ids));
   const auto hits =
       hn::And(hn::And(hn::AndNot(is_target, lanes), found.mask), found.value < hn::Load(d, packet.distance + first));
   if (!hn::AllFalse(d, hits)) {
@@ -95,7 +95,7 @@ void occlude(const void* self, Packet& packet) {
     set_rays<false, kMoves>(query, rays, valid);
     for (int i = 0; i < kWidth; ++i)
       if (packet.occluded[first + i] != 0) valid[i] = 0;
-    if (scene.traversals.bounced == Traversal::kPacket || scene.has_bvh) {
+    if (scene.traversals.secondary == Traversal::kPacket || scene.has_bvh) {
       accel::occluded(valid, scene.scene, query.context, rays);
       continue;
     }

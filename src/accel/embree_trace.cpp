@@ -22,10 +22,10 @@ using EmbreeRays =
 /// Intersects rays, one per lane, with one sphere.
 template <class D, kernel::Precision kPrecision>
 HWY_INLINE void intersect_sphere(D d, const k::Rays<D>& ray, const k::Spheres<D>& sphere, std::uint32_t id,
-                                 hn::Mask<D> lanes, ClosestHit<D>& nearest) {
+                                 hn::Mask<D> lanes, ClosestHit<D>& closest) {
   const auto ids = hn::Set(k::IdTag<D>(), static_cast<hn::TFromD<k::IdTag<D>>>(id));
   const auto is_self = hn::RebindMask(d, ray.self == ids);
-  nearest.take(d, k::nearest<D, kPrecision>(d, ray, sphere, is_self), ids, lanes);
+  closest.take(d, k::closest_distance<D, kPrecision>(d, ray, sphere, is_self), ids, lanes);
 }
 
 /// Embree's callback for one ray.
@@ -36,16 +36,16 @@ void intersect_single(const RTCIntersectFunctionNArguments* arguments, const Emb
   const EmbreeScene& scene = *query.scene;
   Packet& packet = *query.packet;
   const std::uint32_t id = scene.sphere_id(kMoves ? arguments->geomID : 0, arguments->primID);
-  auto nearest = ClosestHit<D>::load(d, packet, query.first);
+  auto closest = ClosestHit<D>::load(d, packet, query.first);
   intersect_sphere<D, kPrecision>(d, k::load_rays(d, packet, query.first),
                                   k::sphere_at<kMoves>(d, scene, id, packet, query.first), id, hn::FirstN(d, 1),
-                                  nearest);
-  if (hn::AllFalse(d, nearest.is_new)) {
+                                  closest);
+  if (hn::AllFalse(d, closest.is_new)) {
     arguments->valid[0] = 0;
     return;
   }
-  nearest.store(d, packet, query.first);
-  const auto limit = far_limits(d, nearest.distance, scene.frame.scale, hn::Load(d, query.start));
+  closest.store(d, packet, query.first);
+  const auto limit = far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query.start));
   RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, 1), 1, 0) = static_cast<float>(hn::GetLane(limit));
 }
 
@@ -69,16 +69,16 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const auto valid = is_valid(d, flags);
     const int first = query.first + v;
     const auto ray = k::load_rays(d, packet, first);
-    auto nearest = ClosestHit<D>::load(d, packet, first);
-    intersect_sphere<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first), id, valid, nearest);
-    if (hn::AllFalse(d, nearest.is_new)) {
+    auto closest = ClosestHit<D>::load(d, packet, first);
+    intersect_sphere<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, first), id, valid, closest);
+    if (hn::AllFalse(d, closest.is_new)) {
       hn::StoreU(hn::Zero(di), di, arguments->valid + v);
       continue;
     }
-    nearest.store(d, packet, first);
+    closest.store(d, packet, first);
     alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
-    store_float(d, far_limits(d, nearest.distance, scene.frame.scale, hn::Load(d, query.start + v)), limits);
-    const unsigned hits = bits_of(d, nearest.is_new);
+    store_float(d, far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query.start + v)), limits);
+    const unsigned hits = bits_of(d, closest.is_new);
     for (int i = 0; i < step; ++i) {
       const bool lane_hit = (hits >> i & 1) != 0;
       if (lane_hit) to_limit[v + i] = limits[i];
@@ -116,14 +116,14 @@ void trace(const void* self, Packet& packet) {
   for (int v = 0; !scene.outliers.empty() && v < packet.count; v += step) {
     const auto ray = k::load_rays(d, packet, v);
     const auto lanes = hn::FirstN(d, static_cast<std::size_t>(packet.count - v));
-    auto nearest = ClosestHit<D>::load(d, packet, v);
+    auto closest = ClosestHit<D>::load(d, packet, v);
     for (const std::uint32_t id : scene.outliers)
-      intersect_sphere<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v), id, lanes, nearest);
-    nearest.store(d, packet, v);
+      intersect_sphere<D, kPrecision>(d, ray, k::sphere_at<kMoves>(d, scene, id, packet, v), id, lanes, closest);
+    closest.store(d, packet, v);
   }
   if (scene.scene == nullptr) return;
   const bool from_camera = packet.self[0] == kernel::kNoSphere;
-  const Traversal traversal = from_camera ? scene.traversals.camera : scene.traversals.bounced;
+  const Traversal traversal = from_camera ? scene.traversals.camera : scene.traversals.secondary;
 
   EmbreeQuery<Packet> query;
   init(query.context);

@@ -32,7 +32,7 @@ void trace_list(const void* self, Packet& packet) {
     const auto trace_up_to = [&](std::size_t end) {
       for (; id < end; ++id) {
         const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
-        const auto found = k::nearest<D, kPrecision>(
+        const auto found = k::closest_distance<D, kPrecision>(
             d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
         if (hn::AllFalse(d, found.mask)) continue;
         const T distance = hn::GetLane(found.value);
@@ -67,7 +67,7 @@ void occlude_list(const void* self, Packet& packet) {
       }
       if (packet.target[i] == id) continue;
       const auto is_self = packet.self[i] == id ? hn::FirstN(d, 1) : hn::FirstN(d, 0);
-      const auto found = k::nearest<D, kPrecision>(
+      const auto found = k::closest_distance<D, kPrecision>(
           d, ray, k::sphere_at<kMoves>(d, scene, static_cast<std::uint32_t>(id), packet, i), is_self);
       if (!hn::AllFalse(d, found.mask) && hn::GetLane(found.value) < packet.distance[i])
         packet.occluded[i] = static_cast<Id>(~Id{0});

@@ -235,7 +235,7 @@ class SharedRays {
         if (part == 0) continue;
         const int first = query_.first + v;
         const auto ray = k::load_rays(d, packet, first);
-        const auto found = k::nearest<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == ids));
+        const auto found = k::closest_distance<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == ids));
         unsigned hits = 0;
         if constexpr (kShadows) {
           hits = part & bits_of(d, hn::And(found.mask, found.value < hn::Load(d, packet.distance + first)));
@@ -245,15 +245,15 @@ class SharedRays {
             limit_[v + i] = -1;
           }
         } else {
-          auto nearest = ClosestHit<D>::load(d, packet, first);
-          nearest.take(d, found, ids, found.mask);
-          hits = part & bits_of(d, nearest.is_new);
+          auto closest = ClosestHit<D>::load(d, packet, first);
+          closest.take(d, found, ids, found.mask);
+          hits = part & bits_of(d, closest.is_new);
           if (hits == 0) continue;
           alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
-          store_float(d, far_limits(d, nearest.distance, scene.frame.scale, hn::Load(d, query_.start + v)), limits);
+          store_float(d, far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query_.start + v)), limits);
           // Lanes outside of `part` may belong to no ray.
           HWY_ALIGN DistanceOf<Packet> distance[hn::MaxLanes(D())];
-          hn::Store(nearest.distance, d, distance);
+          hn::Store(closest.distance, d, distance);
           for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
             const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
             limit_[v + i] = limits[i];

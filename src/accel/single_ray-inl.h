@@ -25,8 +25,8 @@ struct alignas(64) SingleRay {
   float origin[4], direction[4], inverse[4];
   float limit;            ///< distance beyond which nothing is searched
   std::uint32_t near[3];  ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
-  std::uint32_t home;     ///< the node below which everything has been visited once the stack is empty
-  unsigned home_level;
+  std::uint32_t subtree;  ///< the node below which everything has been visited once the stack is empty
+  unsigned subtree_level;
   std::size_t waiting;  ///< entries of `enter` and `what`: the end of the stack, then the nearest last
   int candidates;       ///< entries of `at` and `candidate`: spheres that the ray may hit
   int ordered;          ///< entries of `order`
@@ -109,14 +109,14 @@ HWY_INLINE bool stays_in(const SphereBvh::Cell& cell, const SingleRay& ray) {
   return hn::AllTrue(d, hn::And(hn::And(begin >= lower, end >= lower), hn::And(begin <= upper, end <= upper)));
 }
 
-/// Goes on above a ray's home, unless nothing there can be nearer.
+/// Goes on above a ray's subtree, unless nothing there can be nearer.
 ///
 /// Result     false if the ray is done
 HWY_INLINE bool climb(const SphereBvh& bvh, SingleRay& ray) {
-  if (ray.home == bvh.root() || ray.limit < 0 || stays_in(bvh.cells[ray.home], ray)) return false;
-  const std::uint32_t in_level = ray.home - bvh.level_begin[ray.home_level];
-  ray.home = bvh.level_begin[++ray.home_level] + in_level / SphereBvh::kArity;
-  visit_node<true>(bvh.nodes[ray.home], ray, static_cast<int>(in_level % SphereBvh::kArity));
+  if (ray.subtree == bvh.root() || ray.limit < 0 || stays_in(bvh.cells[ray.subtree], ray)) return false;
+  const std::uint32_t in_level = ray.subtree - bvh.level_begin[ray.subtree_level];
+  ray.subtree = bvh.level_begin[++ray.subtree_level] + in_level / SphereBvh::kArity;
+  visit_node<true>(bvh.nodes[ray.subtree], ray, static_cast<int>(in_level % SphereBvh::kArity));
   return true;
 }
 

@@ -64,8 +64,8 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
     if (rest == 0) continue;
     const int first = query.first + v;
     const auto ray = k::load_rays(d, packet, first);
-    ClosestHit<D> nearest;
-    if constexpr (!kShadows) nearest = ClosestHit<D>::load(d, packet, first);
+    ClosestHit<D> closest;
+    if constexpr (!kShadows) closest = ClosestHit<D>::load(d, packet, first);
     while (rest != 0) {
       HWY_ALIGN Id ids[kStep];
       hn::Store(hn::Set(du, static_cast<Id>(kernel::kNoSphere)), du, ids);
@@ -87,7 +87,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
       k::gather_spheres(
           d, scene.spheres, [&](std::size_t i) { return ids[i] == kernel::kNoSphere ? any : ids[i]; }, row);
       const k::Spheres<D> sphere{{row[0], row[1], row[2]}, row[3]};
-      const auto found = k::nearest<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == spheres));
+      const auto found = k::closest_distance<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, ray.self == spheres));
       unsigned hits = 0;
       if constexpr (kShadows) {
         hits = bits_of(d, hn::And(hn::And(found.mask, active), found.value < hn::Load(d, packet.distance + first)));
@@ -97,18 +97,18 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
         });
         rest &= ~(hits << v);
       } else {
-        nearest.is_new = hn::FirstN(d, 0);
-        nearest.take(d, found, spheres, active);
-        hits = bits_of(d, nearest.is_new);
+        closest.is_new = hn::FirstN(d, 0);
+        closest.take(d, found, spheres, active);
+        hits = bits_of(d, closest.is_new);
         if (hits != 0) {
           alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
-          store_float(d, far_limits(d, nearest.distance, scene.frame.scale, hn::Load(d, query.start + v)), limits);
+          store_float(d, far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query.start + v)), limits);
           each_bit(hits, [&](int i) { rays[v + i].limit = limits[i]; });
         }
       }
       changed |= hits << v;
     }
-    if constexpr (!kShadows) nearest.store(d, packet, first);
+    if constexpr (!kShadows) closest.store(d, packet, first);
   }
   return changed;
 }
@@ -185,7 +185,8 @@ HWY_INLINE unsigned trace_single(const SphereBvh& bvh, const EmbreeQuery<Packet>
   const hn::RebindToUnsigned<decltype(d)> du;
   SingleRay states[kWidth];
   const auto self = [&](int i) { return static_cast<std::uint32_t>(query.packet->self[query.first + i]); };
-  for (int i = 0; i < kWidth; ++i) hwy::Prefetch(bvh.homes.address(self(i) < bvh.homes.size() ? self(i) : 0));
+  for (int i = 0; i < kWidth; ++i)
+    hwy::Prefetch(bvh.start_nodes.address(self(i) < bvh.start_nodes.size() ? self(i) : 0));
   const float* const origin[3] = {&RTCRayN_org_x(rays, kWidth, 0), &RTCRayN_org_y(rays, kWidth, 0),
                                   &RTCRayN_org_z(rays, kWidth, 0)};
   const float* const direction[3] = {&RTCRayN_dir_x(rays, kWidth, 0), &RTCRayN_dir_y(rays, kWidth, 0),
@@ -216,10 +217,10 @@ HWY_INLINE unsigned trace_single(const SphereBvh& bvh, const EmbreeQuery<Packet>
     ray.enter[0] = -std::numeric_limits<float>::infinity();  // never beyond the limit
     ray.what[0] = kEndOfStack;
     ray.enter[1] = 0;
-    ray.home = bvh.home_of(self(i));
-    ray.home_level = 0;
-    if (ray.home == kernel::kNoSphere) ray.home = bvh.root();
-    ray.what[1] = ray.home;
+    ray.subtree = bvh.start_node(self(i));
+    ray.subtree_level = 0;
+    if (ray.subtree == kernel::kNoSphere) ray.subtree = bvh.root();
+    ray.what[1] = ray.subtree;
     ray.waiting = 2;
   });
   const unsigned hits = trace_rays<Packet, kPrecision>(bvh, query, lanes, states);

@@ -26,7 +26,7 @@ constexpr double kGiantRatio = 16;
 
 }  // namespace
 
-std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, std::size_t count) {
+std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& without, std::size_t count) {
   std::vector<std::uint32_t> rest;
   rest.reserve(count - without.size());
   auto next = without.begin();
@@ -42,11 +42,11 @@ std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, st
 
 std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std::size_t count,
                                          const std::vector<std::uint32_t>& duplicates) {
-  struct Large {
+  struct OutlierCandidate {
     double radius;
     std::uint32_t id;
   };
-  std::vector<Large> largest;  // descending, at most one more than there can be outliers
+  std::vector<OutlierCandidate> largest;  // descending, at most one more than there can be outliers
   auto duplicate = duplicates.begin();
   const base::StopPoint stop;
   for (std::uint32_t id = 0; id < count; ++id) {
@@ -57,7 +57,8 @@ std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std
     }
     const double radius = spheres[id].radius;
     if (largest.size() > kMaxOutliers && !(radius > largest.back().radius)) continue;
-    const auto at = std::find_if(largest.begin(), largest.end(), [&](const Large& l) { return l.radius < radius; });
+    const auto at =
+        std::find_if(largest.begin(), largest.end(), [&](const OutlierCandidate& l) { return l.radius < radius; });
     largest.insert(at, {radius, id});
     if (largest.size() > kMaxOutliers + 1) largest.pop_back();
   }
@@ -70,7 +71,7 @@ std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std
     std::sort(outliers.begin(), outliers.end());
     std::vector<std::uint32_t> without;
     std::set_union(outliers.begin(), outliers.end(), duplicates.begin(), duplicates.end(), std::back_inserter(without));
-    const BoxFrame frame(spheres, all_but(without, count));
+    const BoxFrame frame(spheres, complement_of(without, count));
     if (largest[n - 1].radius * frame.scale > kOutlierRatio * frame.reach) return outliers;
   }
   return {};

@@ -14,7 +14,7 @@ namespace orrery::accel {
 /// Ids of all spheres except those in `without`.
 ///
 /// Domain     `without` is ascending
-std::vector<std::uint32_t> all_but(const std::vector<std::uint32_t>& without, std::size_t count);
+std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& without, std::size_t count);
 
 /// Ids, ascending, of the outliers: a few spheres that are much larger than the bounds of all smaller ones, such as a
 /// ground. Duplicates count neither as outliers nor as the rest.

@@ -158,8 +158,8 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
 
   leaves.reserve(leaf_count);
   last_leaf = static_cast<std::uint32_t>(leaf_count - 1);
-  no_home = static_cast<std::uint32_t>((leaf_count + kArity - 1) / kArity);
-  homes = base::PackedArray(id_count, no_home);
+  no_start_node = static_cast<std::uint32_t>((leaf_count + kArity - 1) / kArity);
+  start_nodes = base::PackedArray(id_count, no_start_node);
   if (own_radii) radii.reserve(leaf_count);
   std::vector<Bounds> below;
   below.reserve(leaf_count);
@@ -170,7 +170,7 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
       leaves[l] = make_leaf(in_leaf, n);
       float r[kArity], most = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        homes.set(in_leaf[i].id, static_cast<std::uint32_t>(l / kArity));
+        start_nodes.set(in_leaf[i].id, static_cast<std::uint32_t>(l / kArity));
         r[i] = own_radii ? rounded_up(spheres[in_leaf[i].id].radius * frame.scale) : radius;
         most = std::max(most, r[i]);
         float lower[3], upper[3];
@@ -220,8 +220,8 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
 }
 
 std::size_t SphereBvh::bytes() const noexcept {
-  return homes.bytes() + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) + radii.size() * sizeof(LeafRadii) +
-         nodes.size() * sizeof(Node);
+  return start_nodes.bytes() + cells.size() * sizeof(Cell) + leaves.size() * sizeof(Leaf) +
+         radii.size() * sizeof(LeafRadii) + nodes.size() * sizeof(Node);
 }
 
 }  // namespace orrery::accel

@@ -77,9 +77,9 @@ class SphereBvh {
   std::size_t bytes() const noexcept;
 
   /// The node above a sphere's leaf; kNoSphere if the sphere is not in the tree.
-  std::uint32_t home_of(std::uint32_t id) const noexcept {
-    const std::uint32_t node = id < homes.size() ? homes[id] : no_home;
-    return node == no_home ? kernel::kNoSphere : node;
+  std::uint32_t start_node(std::uint32_t id) const noexcept {
+    const std::uint32_t node = id < start_nodes.size() ? start_nodes[id] : no_start_node;
+    return node == no_start_node ? kernel::kNoSphere : node;
   }
 
   /// Spheres in a leaf; all leaves but the last are full.
@@ -88,9 +88,9 @@ class SphereBvh {
     return rest < kArity ? static_cast<unsigned>(rest) : kArity;
   }
 
-  std::size_t count = 0;      ///< of spheres
-  base::PackedArray homes;    ///< of each sphere of the scene: the node above its leaf, or no_home
-  std::uint32_t no_home = 0;  ///< stands for spheres that are not in the tree
+  std::size_t count = 0;            ///< of spheres
+  base::PackedArray start_nodes;    ///< of each sphere of the scene: the node above its leaf, or no_start_node
+  std::uint32_t no_start_node = 0;  ///< stands for spheres that are not in the tree
   base::HugeVector<Leaf> leaves;
   base::HugeVector<LeafRadii> radii;                   ///< one per leaf; empty if all spheres have `radius`
   base::HugeVector<Node> nodes;                        ///< level by level, those above the leaves first

@@ -29,7 +29,7 @@ HWY_INLINE unsigned trace_valid(const void* bvh_of_geometry, const EmbreeQuery<P
   const auto& bvh = *static_cast<const SphereBvh*>(bvh_of_geometry);
   const bool from_camera = query.packet->self[0] == kernel::kNoSphere;
   const Traversals& chosen = query.scene->traversals;
-  if ((from_camera ? chosen.camera : chosen.bounced) == Traversal::kSingle)
+  if ((from_camera ? chosen.camera : chosen.secondary) == Traversal::kSingle)
     return trace_single<Packet, kPrecision>(bvh, query, valid, rays, limits);
   SharedRays<Packet, kPrecision> shared(bvh, query, valid, rays);
   const unsigned hits = shared.trace();

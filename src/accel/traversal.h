@@ -13,7 +13,7 @@ enum class Traversal : std::uint8_t {
 
 /// The traversal of camera rays and that of scattered rays.
 struct Traversals {
-  Traversal camera = Traversal::kPacket, bounced = Traversal::kPacket;
+  Traversal camera = Traversal::kPacket, secondary = Traversal::kPacket;
 };
 
 }  // namespace orrery::accel

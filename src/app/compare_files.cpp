@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <fmt/core.h>
+
 #include "app/compared_channels.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -29,9 +31,7 @@ namespace {
 
 using metrics::ColorView;
 
-std::string size_text(const film::Picture& picture) {
-  return std::to_string(picture.width) + " x " + std::to_string(picture.height);
-}
+std::string size_text(const film::Picture& picture) { return fmt::format("{} x {}", picture.width, picture.height); }
 
 base::Error bad_data(const std::string& text) { return {base::ErrorKind::kBadData, text}; }
 
@@ -93,8 +93,8 @@ film::Picture difference_picture(const ComparedChannels& c, bool for_display) {
   for (int k = 0; k < 3; ++k) {
     film::Plane plane{names[k], std::vector<float>(c.picture.pixels())};
     for (std::size_t i = 0; i < plane.values.size(); ++i) {
-      const bool is_left_out = !c.left_out.empty() && c.left_out[i];
-      const float d = is_left_out ? 0 : c.picture.channel[k][i] - c.reference.channel[k][i];
+      const bool is_excluded = !c.excluded.empty() && c.excluded[i];
+      const float d = is_excluded ? 0 : c.picture.channel[k][i] - c.reference.channel[k][i];
       plane.values[i] = for_display ? 0.5f + d / 2 : d;
     }
     plane.kind = film::PlaneKind::kVector;  // negative values are valid
@@ -166,15 +166,15 @@ double Comparison::metric(const std::string& name) const {
   if (name == "flip" && flip) return *flip;
   if (name == "z" && z_test) return std::abs(z_test->largest_z);
   throw base::Error(base::ErrorKind::kUsage,
-                    "--fail-above " + name + ": not available for these images; " +
-                        (name == "z" ? "render with --layers variance" : "it covers colours only"));
+                    fmt::format("--fail-above {}: not available for these images; {}", name,
+                                name == "z" ? "render with --layers variance" : "it covers colours only"));
 }
 
 Comparison compare(const film::Picture& picture, const film::Picture& reference, Encoding encoding,
                    const std::string& layer, int threads) {
   if (picture.width != reference.width || picture.height != reference.height)
-    throw bad_data("images of different sizes cannot be compared: " + size_text(picture) + " and " +
-                   size_text(reference));
+    throw bad_data(fmt::format("images of different sizes cannot be compared: {} and {}", size_text(picture),
+                               size_text(reference)));
   Comparison out;
   out.width = picture.width;
   out.height = picture.height;
@@ -184,10 +184,11 @@ Comparison compare(const film::Picture& picture, const film::Picture& reference,
   out.is_matte = c.is_matte;
   out.no_hit = c.no_hit;
   out.no_hit_in_one = c.no_hit_in_one;
-  out.errors = metrics::pixel_errors(c.picture, c.reference, c.left_out);
+  out.errors = metrics::pixel_errors(c.picture, c.reference, c.excluded);
   if (out.errors.values == 0 && out.errors.not_finite + out.no_hit_in_one > 0)
-    throw bad_data("nothing to compare: no value of " + base::joined(c.names) + " is finite and a hit in both images");
-  out.display_map = metrics::display_error_map(c.picture, c.reference, c.left_out);
+    throw bad_data(
+        fmt::format("nothing to compare: no value of {} is finite and a hit in both images", base::joined(c.names)));
+  out.display_map = metrics::display_error_map(c.picture, c.reference, c.excluded);
   if (!layer.empty() || c.names.size() < 3) return out;
   const Codes code_a(c.picture, encoding), code_b(c.reference, encoding);
   out.ssim = metrics::ssim(code_a.view, code_b.view);
@@ -206,8 +207,9 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
   if (developed != image::is_display_format(image::format_of(reference))) {
     const auto& linear = developed ? reference : picture;
     throw base::Error(base::ErrorKind::kUsage,
-                      linear.string() + " is scene-linear, but the other image is display-encoded; develop it first: " +
-                          "orrery develop " + linear.string() + " -o developed.png");
+                      fmt::format("{} is scene-linear, but the other image is display-encoded; develop it first: "
+                                  "orrery develop {} -o developed.png",
+                                  linear.string(), linear.string()));
   }
   check_files(picture, reference, pictures);
   if (!layer.empty() && !pictures.flip.empty())
@@ -227,7 +229,7 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
       write_numbers(pictures.difference, difference_picture(channels, false));
     }
   }
-  write_map(pictures.heat, out.display_map, metrics::kHottest);
+  write_map(pictures.heat, out.display_map, metrics::kFalseColorMax);
   write_map(pictures.flip, out.flip_map, 1);
   return out;
 }

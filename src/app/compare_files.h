@@ -57,8 +57,8 @@ struct ComparisonPictures {
 /// Compares two image files, and writes difference images.
 ///
 /// The difference is stored as is in scene-linear formats, and as half of it plus mid-grey in display formats. The heat
-/// map shows the display error in false colours up to metrics::kHottest, the FLIP map up to 1; scene-linear formats
-/// hold the values.
+/// map shows the display error in false colours up to metrics::kFalseColorMax, the FLIP map up to 1; scene-linear
+/// formats hold the values.
 ///
 /// Errors     those of compare, image::read and image::write; base::Error(kUsage) if one file is scene-linear and the
 ///            other display-encoded

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "film/layers.h"
@@ -83,7 +85,7 @@ float differing_share(const std::vector<Rank>& a, const std::vector<Rank>& b, st
   return static_cast<float>(sum / 2);
 }
 
-void leave_out_no_hit(ComparedChannels& c) {
+void exclude_misses(ComparedChannels& c) {
   const auto has_no_hit = [](const metrics::ColorView& view, std::size_t i) {
     return view.channel[0][i] >= film::kNothingHit || view.channel[1][i] >= film::kNothingHit ||
            view.channel[2][i] >= film::kNothingHit;
@@ -91,8 +93,8 @@ void leave_out_no_hit(ComparedChannels& c) {
   for (std::size_t i = 0; i < c.picture.pixels(); ++i) {
     const bool a = has_no_hit(c.picture, i), b = has_no_hit(c.reference, i);
     if (!a && !b) continue;
-    c.left_out.resize(c.picture.pixels());
-    c.left_out[i] = true;
+    c.excluded.resize(c.picture.pixels());
+    c.excluded[i] = true;
     ++c.no_hit;
     c.no_hit_in_one += a != b;
   }
@@ -141,13 +143,13 @@ ComparedChannels compared_channels(const film::Picture& picture, const film::Pic
     for (const film::Plane& plane : picture.planes) channels.push_back(plane.name);
     for (const auto& known : layers_of(channels)) names.push_back(known.first);
     throw base::Error(base::ErrorKind::kBadData,
-                      "layer " + layer + " is not in both images; the first has " + base::joined(names));
+                      fmt::format("layer {} is not in both images; the first has {}", layer, base::joined(names)));
   }
   for (std::size_t c = out.names.size(); c < 3; ++c) {
     out.picture.channel[c] = out.picture.channel[c - 1];
     out.reference.channel[c] = out.reference.channel[c - 1];
   }
-  if (!layer.empty()) leave_out_no_hit(out);
+  if (!layer.empty()) exclude_misses(out);
   return out;
 }
 
@@ -156,10 +158,10 @@ std::string channels_text(const std::vector<std::string>& channels) {
   std::string out;
   for (std::size_t i = 0; i < layers.size() && i < kMaxNamed; ++i) {
     out += (i == 0 ? "" : ", ") + layers[i].first;
-    if (layers[i].second > 1) out += " (" + std::to_string(layers[i].second) + ")";
+    if (layers[i].second > 1) out += fmt::format(" ({})", layers[i].second);
   }
   if (layers.size() == kMaxNamed + 1) out += " and 1 more layer";
-  if (layers.size() > kMaxNamed + 1) out += " and " + std::to_string(layers.size() - kMaxNamed) + " more layers";
+  if (layers.size() > kMaxNamed + 1) out += fmt::format(" and {} more layers", layers.size() - kMaxNamed);
   return out;
 }
 

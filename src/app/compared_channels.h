@@ -15,7 +15,7 @@ struct ComparedChannels {
   std::vector<std::string> names;
   metrics::ColorView picture, reference;
   /// Flags of pixels that are skipped because an image has no hit there (film::kNothingHit); empty: none.
-  std::vector<bool> left_out;
+  std::vector<bool> excluded;
   std::uint64_t no_hit = 0;         ///< number of skipped pixels
   std::uint64_t no_hit_in_one = 0;  ///< number of skipped pixels with a hit in the other image
   /// A Cryptomatte is compared by coverage: `picture` is the fraction of each pixel that belongs to different objects

@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "job/memory.h"
 #include "points/derived.h"
@@ -72,9 +74,9 @@ DataInfo data_info(const DataInfoRequest& request) {
   info.frames = file->frame_count();
   info.frame = request.frame;
   if (request.frame < 1 || request.frame > info.frames)
-    throw base::Error(base::ErrorKind::kUsage, "--frame " + std::to_string(request.frame) + ": " +
-                                                   request.file.string() + " has " + std::to_string(info.frames) +
-                                                   (info.frames == 1 ? " frame" : " frames"));
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("--frame {}: {} has {}{}", request.frame, request.file.string(), info.frames,
+                                  info.frames == 1 ? " frame" : " frames"));
   info.described = file->describe(request.frame - 1);
   for (const data::ColumnInfo& column : info.described.columns) info.columns.push_back({column});
   points::add_derived_columns(info.described);

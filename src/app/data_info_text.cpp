@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <fmt/core.h>
+
 #include "app/data_info.h"
 #include "base/file_name.h"
 #include "base/text.h"
@@ -39,16 +41,16 @@ std::string number_text(const std::optional<ColumnSummary::Number>& number, data
 }
 
 std::string vector_text(const data::Vec3d& v) {
-  return "(" + number_text(v.x) + ", " + number_text(v.y) + ", " + number_text(v.z) + ")";
+  return fmt::format("({}, {}, {})", number_text(v.x), number_text(v.y), number_text(v.z));
 }
 
 std::string box_text(const data::Box& box) {
   std::vector<std::string> periodic;
   for (std::size_t i = 0; i < box.periodic.size(); ++i)
     if (box.periodic[i]) periodic.emplace_back(1, "abc"[i]);
-  return "origin " + vector_text(box.origin) + ", edges a " + vector_text(box.edges[0]) + ", b " +
-         vector_text(box.edges[1]) + ", c " + vector_text(box.edges[2]) +
-         (periodic.empty() ? ", not periodic" : ", periodic along " + base::joined(periodic));
+  return fmt::format("origin {}, edges a {}, b {}, c {}{}", vector_text(box.origin), vector_text(box.edges[0]),
+                     vector_text(box.edges[1]), vector_text(box.edges[2]),
+                     periodic.empty() ? ", not periodic" : ", periodic along " + base::joined(periodic));
 }
 
 std::size_t copies_of(const data::Assembly& assembly) {
@@ -61,7 +63,7 @@ std::string assemblies_text(const std::vector<data::Assembly>& assemblies) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < std::min(assemblies.size(), kMaxAssemblies); ++i) {
     const std::size_t copies = copies_of(assemblies[i]);
-    out.push_back(assemblies[i].name + " (" + std::to_string(copies) + (copies == 1 ? " copy)" : " copies)"));
+    out.push_back(fmt::format("{} ({}{}", assemblies[i].name, copies, copies == 1 ? " copy)" : " copies)"));
   }
   if (assemblies.size() > kMaxAssemblies) out.push_back(std::to_string(assemblies.size() - kMaxAssemblies) + " more");
   return base::joined(out);
@@ -72,17 +74,17 @@ std::vector<std::string> list_of(const std::array<std::string, 3>& names) { retu
 std::string roles_text(const data::Roles& roles) {
   std::string out = "position " + base::joined(list_of(roles.position));
   const auto add = [&](const char* role, const std::string& column) {
-    if (!column.empty()) out += std::string("; ") + role + " " + column;
+    if (!column.empty()) out += fmt::format("; {} {}", role, column);
   };
   add("radius", roles.radius.empty() || roles.radius_scale == 1
                     ? roles.radius
-                    : roles.radius + " times " + number_text(roles.radius_scale));
+                    : fmt::format("{} times {}", roles.radius, number_text(roles.radius_scale)));
   add("element", roles.element);
   add("type", roles.type);
   add("id", roles.id);
   add("chain", roles.chain);
   if (!roles.rgb[0].empty())
-    add("rgb", base::joined(list_of(roles.rgb)) + " (0 to " + number_text(roles.rgb_maximum) + ")");
+    add("rgb", fmt::format("{} (0 to {})", base::joined(list_of(roles.rgb)), number_text(roles.rgb_maximum)));
   if (!roles.image[0].empty()) add("image", base::joined(list_of(roles.image)));
   return out;
 }
@@ -90,8 +92,8 @@ std::string roles_text(const data::Roles& roles) {
 std::string texts_text(const ColumnSummary& summary) {
   std::vector<std::string> texts;
   for (const std::string& text : summary.texts) texts.push_back(text.empty() ? "\"\"" : shortened(text, kLongestText));
-  return std::to_string(summary.distinct) + " distinct: " + base::joined(texts) +
-         (summary.distinct > summary.texts.size() ? ", ..." : "");
+  return fmt::format("{} distinct: {}{}", summary.distinct, base::joined(texts),
+                     summary.distinct > summary.texts.size() ? ", ..." : "");
 }
 
 /// A table of the columns; every line is indented.
@@ -103,10 +105,10 @@ std::string columns_text(const std::vector<ColumnSummary>& columns) {
     if (c.column.type == data::ColumnType::kText)
       rows.push_back({name, data::type_name(c.column.type), texts_text(c), "", ""});
     else
-      rows.push_back({name, data::type_name(c.column.type), number_text(c.minimum, c.column.type),
-                      number_text(c.maximum, c.column.type),
-                      std::to_string(c.nan_count) +
-                          (c.infinite_count > 0 ? ", " + std::to_string(c.infinite_count) + " infinite" : "")});
+      rows.push_back(
+          {name, data::type_name(c.column.type), number_text(c.minimum, c.column.type),
+           number_text(c.maximum, c.column.type),
+           std::to_string(c.nan_count) + (c.infinite_count > 0 ? fmt::format(", {} infinite", c.infinite_count) : "")});
   }
   std::array<std::size_t, 4> widths{};
   for (const Row& row : rows)
@@ -168,20 +170,21 @@ nlohmann::json json_of(const ColumnSummary& summary) {
 
 std::string data_info_text(const DataInfo& info) {
   const data::FrameInfo& frame = info.described;
-  std::string out = "file        " + base::printable(info.file.string()) + "\nformat      " +
-                    data::format_name(info.format) + "\nframe       " + std::to_string(info.frame) + " of " +
-                    std::to_string(info.frames);
+  std::string out =
+      fmt::format("file        {}\nformat      {}\nframe       {} of {}", base::printable(info.file.string()),
+                  data::format_name(info.format), info.frame, info.frames);
   if (frame.step) out += ", step " + number_text(*frame.step);
   out += '\n';
-  if (!frame.title.empty()) out += "title       " + shortened(frame.title, kLongestTitle) + '\n';
-  out += "rows        " + std::to_string(frame.rows) + '\n';
-  if (frame.box) out += "box         " + box_text(*frame.box) + '\n';
-  if (!frame.assemblies.empty()) out += "assemblies  " + base::printable(assemblies_text(frame.assemblies)) + '\n';
-  out += "roles       " + base::printable(roles_text(frame.roles)) + '\n';
+  if (!frame.title.empty()) out += fmt::format("title       {}\n", shortened(frame.title, kLongestTitle));
+  out += fmt::format("rows        {}\n", frame.rows);
+  if (frame.box) out += fmt::format("box         {}\n", box_text(*frame.box));
+  if (!frame.assemblies.empty())
+    out += fmt::format("assemblies  {}\n", base::printable(assemblies_text(frame.assemblies)));
+  out += fmt::format("roles       {}\n", base::printable(roles_text(frame.roles)));
   for (const data::ColumnInfo& column : frame.columns)
     if (column.is_derived)
-      out += "computed    " +
-             base::printable(column.name + ", from " + base::joined(points::sources_of(frame, column.name))) + '\n';
+      out += fmt::format("computed    {}\n", base::printable(column.name + ", from " +
+                                                             base::joined(points::sources_of(frame, column.name))));
   return out + columns_text(info.columns);
 }
 

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include <fmt/core.h>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
@@ -28,7 +30,7 @@ DenoisedFile denoise_file(const Denoising& denoising) {
     for (const char* channel : {"R", "G", "B"})
       if (picture.find(channel) == nullptr)
         throw base::Error(base::ErrorKind::kBadData,
-                          denoising.input.string() + " has no half or float channel " + channel);
+                          fmt::format("{} has no half or float channel {}", denoising.input.string(), channel));
     out.report = denoise::denoise(picture, threads);
     return std::vector<image::Attribute>{{denoise::kAttribute, "orrery " + job::program_version()}};
   };

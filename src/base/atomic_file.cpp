@@ -58,7 +58,7 @@ std::filesystem::path directory_of(const std::filesystem::path& path) {
 
 /// Returns the path to rename onto: the target of a symbolic link, so that the link itself stays. Devices and pipes are
 /// refused, because a rename would replace /dev/null by a regular file.
-std::filesystem::path renamed_onto(const std::filesystem::path& path) {
+std::filesystem::path rename_target(const std::filesystem::path& path) {
   std::error_code ignored;
   struct stat entry {};
   // Finds names that are too long, loops of links and unsearchable directories before rendering, not after.
@@ -91,7 +91,7 @@ std::string random_letters(std::size_t count) {
 /// Creates a file in the directory of `target`; messages name it `path`.
 NewFile create_beside(const std::filesystem::path& path, const std::filesystem::path& target) {
   constexpr std::size_t kLetters = 8;
-  constexpr int kTries = 16;
+  constexpr int kMaxAttempts = 16;
   std::error_code ignored;
   const std::filesystem::path directory = directory_of(target);
   if (!std::filesystem::is_directory(directory, ignored))
@@ -101,7 +101,7 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
   const std::size_t longest = limit > 0 ? static_cast<std::size_t>(limit) : kLongestFileName;
   const std::size_t room = longest - std::min(longest, 2 + kLetters);
   const std::string stem(utf8_prefix(target.filename().string(), room));
-  for (int i = 0; i < kTries; ++i) {
+  for (int i = 0; i < kMaxAttempts; ++i) {
     NewFile file;
     file.name = (directory / ("." + stem + "." + random_letters(kLetters))).string();
     // The slot is taken first: a signal right after the file is created must find its name.
@@ -123,14 +123,14 @@ NewFile create_beside(const std::filesystem::path& path, const std::filesystem::
 }  // namespace
 
 std::filesystem::path link_target(std::filesystem::path path) {
-  constexpr int kMostLinks = 40;  // as in the kernel
+  constexpr int kMaxLinks = 40;  // as in the kernel
   std::error_code error;
-  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, error); ++i)
+  for (int i = 0; i < kMaxLinks && std::filesystem::is_symlink(path, error); ++i)
     path = path.parent_path() / std::filesystem::read_symlink(path, error);
   return path;
 }
 
-AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), target_(renamed_onto(path_)) {
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), target_(rename_target(path_)) {
   const NewFile file = create_beside(path_, target_);
   temporary_ = file.name;
   slot_ = file.slot;
@@ -167,7 +167,7 @@ void remove_unfinished_files() noexcept {
 }
 
 void check_creatable(const std::filesystem::path& path) {
-  const NewFile file = create_beside(path, renamed_onto(path));
+  const NewFile file = create_beside(path, rename_target(path));
   ::unlink(file.name.c_str());
   free_slot(file.slot);
 }

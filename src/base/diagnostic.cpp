@@ -27,6 +27,8 @@ std::string caret_line(const Diagnostic& diagnostic) {
   return line;
 }
 
+constexpr const char* kWarning = "warning: ";
+
 }  // namespace
 
 std::string formatted(const Diagnostic& diagnostic) {
@@ -34,7 +36,7 @@ std::string formatted(const Diagnostic& diagnostic) {
   if (diagnostic.line > 0) out += ':' + std::to_string(diagnostic.line);
   if (diagnostic.line > 0 && diagnostic.column > 0) out += ':' + std::to_string(diagnostic.column);
   if (!out.empty()) out += ": ";
-  out += diagnostic.severity == Severity::kError ? "error: " : "warning: ";
+  out += diagnostic.severity == Severity::kError ? "error: " : kWarning;
   out += printable(diagnostic.text);
   if (!diagnostic.remedy.empty()) out += "; " + printable(diagnostic.remedy);
   out += '\n';
@@ -43,6 +45,8 @@ std::string formatted(const Diagnostic& diagnostic) {
   }
   return out;
 }
+
+std::string warning_line(std::string_view text) { return std::string(kWarning).append(text) + '\n'; }
 
 Diagnostic file_diagnostic(Severity severity, std::string file, std::string text, std::string remedy) {
   Diagnostic out;

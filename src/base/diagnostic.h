@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace orrery::base {
 
@@ -27,5 +28,8 @@ Diagnostic file_diagnostic(Severity severity, std::string file, std::string text
 ///
 /// Result     one or more lines, each ended by a newline; control characters are replaced by question marks
 std::string formatted(const Diagnostic& diagnostic);
+
+/// Formats a warning that has no location: "warning: TEXT", ended by a newline.
+std::string warning_line(std::string_view text);
 
 }  // namespace orrery::base

@@ -87,17 +87,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return back[b.size()];
 }
 
+/// Maximum length of names to compare: longer names are not typed by hand and are expensive to compare.
+constexpr std::size_t kLongestName = 64;
+
+}  // namespace
+
 std::string lower(std::string_view text) {
   std::string out(text);
   std::transform(out.begin(), out.end(), out.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return out;
 }
-
-/// Maximum length of names to compare: longer names are not typed by hand and are expensive to compare.
-constexpr std::size_t kLongestName = 64;
-
-}  // namespace
 
 std::string closest(std::string_view wrong, const std::vector<std::string>& candidates) {
   if (wrong.empty() || wrong.size() > kLongestName) return {};

@@ -19,6 +19,9 @@ std::string printable(std::string_view text);
 /// The same for a text of several lines: ends of lines stay, too.
 std::string printable_lines(std::string_view text);
 
+/// Returns a text with ASCII letters in lower case.
+std::string lower(std::string_view text);
+
 /// Quotes a word for a POSIX shell; a word without special characters stays as it is.
 std::string shell_quoted(const std::string& word);
 

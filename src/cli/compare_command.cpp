@@ -6,11 +6,15 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "app/compare_files.h"
 #include "app/compared_channels.h"
+#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
 #include "cli/signals.h"
@@ -38,7 +42,7 @@ struct CompareOptions {
 
 Limit limit_of(const std::string& text) {
   const auto wrong = [&](const std::string& reason) {
-    return base::Error(base::ErrorKind::kUsage, "--fail-above " + text + ": " + reason);
+    return base::Error(base::ErrorKind::kUsage, fmt::format("--fail-above {}: {}", text, reason));
   };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) throw wrong("write METRIC=VALUE, e.g. rmse=0.001");
@@ -61,7 +65,7 @@ void warn_of_layers(const CompareOptions& options, const app::Comparison& found)
   if (options.quiet) return;
   const auto warn = [](const std::vector<std::string>& channels, const std::filesystem::path& file) {
     if (!channels.empty())
-      std::fprintf(stderr, "warning: only in %s: %s\n", file.c_str(), app::channels_text(channels).c_str());
+      print_message(base::warning_line(fmt::format("only in {}: {}", file.string(), app::channels_text(channels))));
   };
   warn(found.only_in_picture, options.picture);
   warn(found.only_in_reference, options.reference);

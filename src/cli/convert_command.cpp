@@ -2,6 +2,8 @@
 #include <memory>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"
@@ -26,11 +28,11 @@ void print_file(const plot::ConvertedFile& written, bool quiet) {
   for (const base::Diagnostic& warning : written.warnings) text += base::formatted(warning);
   if (!quiet) {
     const std::string name = written.file.string();
-    text += base::printable("wrote " + name + ": " + std::to_string(written.spheres) +
-                            (written.spheres == 1 ? " sphere" : " spheres") + "; columns " +
-                            base::joined(written.columns)) +
+    text += base::printable(fmt::format("wrote {}: {}{}; columns {}", name, written.spheres,
+                                        written.spheres == 1 ? " sphere" : " spheres", base::joined(written.columns))) +
             "\n";
-    for (const std::string& note : written.notes) text += base::printable("note: " + name + ": " + note) + "\n";
+    for (const std::string& note : written.notes)
+      text += base::printable(fmt::format("note: {}: {}", name, note)) + "\n";
   }
   print_message(text);
 }

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include <fmt/core.h>
 
 #include "base/error.h"
 #include "base/frames.h"
@@ -47,8 +50,9 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
     }
   }
   if (!arguments.range.empty()) {
-    const auto ends = numbers_of(arguments.range, ':', 2,
-                                 "--range: `" + arguments.range + "` is not a range; write LOW:HIGH, e.g. 0:12");
+    const auto ends =
+        numbers_of(arguments.range, ':', 2,
+                   fmt::format("--range: `{}` is not a range; write LOW:HIGH, e.g. 0:12", arguments.range));
     if (std::max(std::abs(ends[0]), std::abs(ends[1])) > scene::kLargestValue)
       refuse("--range: the numbers must be from -1e+300 to 1e+300");
     if (!(ends[0] < ends[1])) refuse("--range: the first number must be less than the second");
@@ -57,18 +61,17 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
   if (!arguments.replicate.empty()) {
     const auto counts =
         numbers_of(arguments.replicate, ',', 3,
-                   "--replicate: `" + arguments.replicate + "` must be three numbers of copies, e.g. 2,2,1");
-    constexpr double kMaxCopies = 1000;
+                   fmt::format("--replicate: `{}` must be three numbers of copies, e.g. 2,2,1", arguments.replicate));
     for (const double n : counts)
-      if (!(n >= 1 && n <= kMaxCopies && n == std::floor(n)))
-        refuse("--replicate: the numbers of copies must be integers from 1 to 1000");
+      if (!(n >= 1 && n <= scene::kMaxCopies && n == std::floor(n)))
+        refuse("--replicate: the numbers of copies must be integers from 1 to " + std::to_string(scene::kMaxCopies));
     points.replicate = {counts[0], counts[1], counts[2]};
   }
 }
 
 void read_slice(const std::string& text, plot::DataOptions& data) {
   if (text.empty()) return;
-  const std::string usage = "--slice: `" + text + "` is not a plane; write AXIS=POSITION, e.g. z=10";
+  const std::string usage = fmt::format("--slice: `{}` is not a plane; write AXIS=POSITION, e.g. z=10", text);
   if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') refuse(usage);
   data.slice = std::pair{text[0] - 'x', numbers_of(text.substr(2), '=', 1, usage)[0]};
 }

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "app/denoise_file.h"
+#include "base/diagnostic.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
@@ -25,21 +26,22 @@ std::string text_of(const app::Denoising& denoising, const app::DenoisedFile& do
   std::string out =
       fmt::format("wrote {}: beauty and {} light layers\n", denoising.output.string(), report.layers.size());
   if (done.written.had_attributes)
-    out += fmt::format("warning: {} was denoised already and has been filtered again\n", denoising.input.string());
+    out += base::warning_line(
+        fmt::format("{} was denoised already and has been filtered again", denoising.input.string()));
   if (!report.missing.empty())
-    out += fmt::format("warning: {} lacks the layers {}: {}; render with --layers halves for the best result\n",
-                       denoising.input.string(), base::joined(report.missing),
-                       report.has_guides ? "noise was estimated from the beauty" : "only the beauty guided the filter");
+    out += base::warning_line(
+        fmt::format("{} lacks the layers {}: {}; render with --layers halves for the best result",
+                    denoising.input.string(), base::joined(report.missing),
+                    report.has_guides ? "noise was estimated from the beauty" : "only the beauty guided the filter"));
   if (report.bad_pixels > 0)
-    out += fmt::format("warning: {} pixels have no samples, are not finite or too large; they were left as they are\n",
-                       report.bad_pixels);
+    out += base::warning_line(fmt::format(
+        "{} pixels have no samples, are not finite or too large; they were left as they are", report.bad_pixels));
   if (!done.written.other_parts.empty())
-    out += fmt::format(
-        "warning: the parts {} have channels R, G and B of their own and were copied; denoise them as files of their "
-        "own\n",
-        base::joined(done.written.other_parts));
+    out += base::warning_line(fmt::format(
+        "the parts {} have channels R, G and B of their own and were copied; denoise them as files of their own",
+        base::joined(done.written.other_parts)));
   if (done.written.clamped > 0)
-    out += fmt::format("warning: {} values were clamped to the range of half\n", done.written.clamped);
+    out += base::warning_line(fmt::format("{} values were clamped to the range of half", done.written.clamped));
   return out;
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
 #include <memory>
 
+#include <fmt/core.h>
+
 #include "app/develop_file.h"
+#include "base/diagnostic.h"
 #include "cli/commands.h"
 #include "cli/display_options.h"
+#include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/signals.h"
 
@@ -20,10 +23,10 @@ int develop(const DevelopOptions& options) {
   end_on_signals();
   const app::DevelopReport report = app::develop_file(options.development);
   if (options.quiet) return 0;
-  for (const std::string& warning : report.display.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : report.display.warnings) print_message(base::warning_line(warning));
   if (const std::uint64_t bad = report.bad_values.nan + report.bad_values.infinite; bad > 0)
-    std::fprintf(stderr, "warning: %llu values of %s are not finite and were written as 0\n",
-                 static_cast<unsigned long long>(bad), options.development.input.c_str());
+    print_message(base::warning_line(
+        fmt::format("{} values of {} are not finite and were written as 0", bad, options.development.input.string())));
   return 0;
 }
 

@@ -4,11 +4,9 @@
 #include <string>
 
 #include "cli/option_checks.h"
+#include "scene/limits.h"
 
 namespace orrery::cli {
-
-/// More stops than the dynamic range of any scene.
-inline constexpr double kMaxStops = 100;
 
 /// Heading of these options in the help.
 inline constexpr const char* kDisplayOptions = "Display options";
@@ -37,7 +35,7 @@ void add_view_options(Command& command, Settings& settings, DisplayDefaults defa
       ->type_name("NAME");
   command.add_option("--look", settings.look, "Look of the OCIO config, applied before the view")->type_name("NAME");
   command.add_option("--exposure", settings.exposure, "Exposure in stops; default: " + scene + "0")
-      ->check(real_number(-kMaxStops, kMaxStops))
+      ->check(real_number(-scene::kMaxStops, scene::kMaxStops))
       ->type_name("STOPS");
 }
 

@@ -37,9 +37,7 @@ std::unique_ptr<preview::Preview> start_preview(const preview::Target& target, P
   if (!sink) return nullptr;
   auto out = std::make_unique<preview::Preview>(std::move(sink), std::move(note));
   preview::Preview* const started = out.get();
-  hooks.on_start = [started](const job::PictureStart& picture) {
-    started->begin({picture.name, picture.width, picture.height, picture.pixel_aspect, picture.display});
-  };
+  hooks.on_start = [started](const display::PictureInfo& picture) { started->begin(picture); };
   hooks.on_pixels = [started](const film::Partial& state, const film::RenderedPixels& rendered) {
     started->write(state, rendered);
   };

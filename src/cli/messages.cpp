@@ -46,7 +46,7 @@ void log_message(const std::string& text) {
   const std::string begin = fmt::format("{} {} ", time_text(), getpid());
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    const std::string whole = begin + line + "\n";
+    const std::string whole = fmt::format("{}{}\n", begin, line);
     // A failed write to the log must not end the render.
     [[maybe_unused]] const ssize_t written = ::write(log_file, whole.data(), whole.size());
   }
@@ -57,10 +57,12 @@ void open_log(const std::filesystem::path& file) {
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
   // Opening a pipe would wait for its reader.
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    throw base::Error(base::ErrorKind::kCannotCreate, "cannot create " + file.string() + ": it is not a regular file");
+    throw base::Error(base::ErrorKind::kCannotCreate,
+                      fmt::format("cannot create {}: it is not a regular file", file.string()));
   log_file = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   if (log_file < 0)
-    throw base::Error(base::ErrorKind::kCannotCreate, "cannot create " + file.string() + ": " + std::strerror(errno));
+    throw base::Error(base::ErrorKind::kCannotCreate,
+                      fmt::format("cannot create {}: {}", file.string(), std::strerror(errno)));
 }
 
 }  // namespace orrery::cli

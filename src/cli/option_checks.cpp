@@ -75,7 +75,7 @@ Check byte_size() {
         return {};
       }
     }
-    return "must be a size with a unit, e.g. 512M or 1.5G, not `" + text + "`";
+    return fmt::format("must be a size with a unit, e.g. 512M or 1.5G, not `{}`", text);
   };
 }
 
@@ -94,7 +94,7 @@ std::string missing_unit(const std::string& text, std::size_t next_unit) {
 std::string parse_duration(const std::string& text, double& seconds) {
   constexpr std::string_view kUnits = "hms";
   constexpr double kSeconds[] = {3600, 60, 1};
-  const std::string wrong = "must be a time such as 90s, 5m, 1.5h or 1h30m, not `" + text + "`";
+  const std::string wrong = fmt::format("must be a time such as 90s, 5m, 1.5h or 1h30m, not `{}`", text);
   seconds = 0;
   std::size_t next_unit = 0;
   for (std::size_t begin = 0; begin < text.size();) {

@@ -8,11 +8,11 @@
 namespace orrery::cli {
 
 /// Thrown if the reader of stdout, a pipe, has exited, as head(1) does. The command ends without a message.
-struct ReaderLeft {};
+struct BrokenPipe {};
 
 /// Prints a result to stdout and flushes it.
 ///
-/// Errors     ReaderLeft; base::Error(kIo) if stdout cannot be written
+/// Errors     BrokenPipe; base::Error(kIo) if stdout cannot be written
 void print_result(const std::string& text);
 
 /// An error as whole lines: each diagnostic with its location, then the error.

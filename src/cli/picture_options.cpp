@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "base/diagnostic.h"
 #include "base/text.h"
 #include "cli/display_options.h"
 #include "cli/option_checks.h"
@@ -48,8 +49,8 @@ std::string PictureOptions::unused_options(const job::Job& job, bool shows_displ
     for (const auto& [name, is_given] : options)
       if (is_given) given.emplace_back(name);
     if (!given.empty())
-      out += fmt::format("warning: {} {} no effect: {}, and none is written\n", base::joined(given),
-                         given.size() == 1 ? "has" : "have", formats);
+      out += base::warning_line(fmt::format("{} {} no effect: {}, and none is written", base::joined(given),
+                                            given.size() == 1 ? "has" : "have", formats));
   };
   const display::Settings& display = outputs.display;
   if (!outputs.has_display_format() && !shows_display)

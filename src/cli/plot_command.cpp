@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
+#include "base/diagnostic.h"
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/output_file.h"
@@ -98,14 +99,14 @@ void add_choices(const job::Job& job, const plot::PlotOptions& plot, const std::
       !is_set(overrides, "render.samples"))
     made.choices.emplace_back("samples 100: without shading there is hardly any noise");
   if (job.outputs.has_display_format() && plot.display.view.empty() && made.view == plot::kPlainView)
-    made.choices.emplace_back("view transform " + made.view + ": colours stay those of the map");
+    made.choices.emplace_back(fmt::format("view transform {}: colours stay those of the map", made.view));
 }
 
 void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) {
   if (arguments.render.quiet) return;
   std::string text;
-  for (const std::string& choice : made.choices) text += "plot: " + choice + "\n";
-  for (const std::string& warning : made.warnings) text += "warning: " + warning + "\n";
+  for (const std::string& choice : made.choices) text += fmt::format("plot: {}\n", choice);
+  for (const std::string& warning : made.warnings) text += base::warning_line(warning);
   print_message(text);
 }
 
@@ -117,7 +118,7 @@ std::string saved_text(const std::string& text, std::vector<format::Override> se
     return setting.text.starts_with("image.width=") || setting.text.starts_with("image.height=");
   });
   const auto set = [&](const char* key, const std::string& value) {
-    if (!value.empty()) settings.push_back({std::string("color.") + key + "=" + scene::string_text(value)});
+    if (!value.empty()) settings.push_back({fmt::format("color.{}={}", key, scene::string_text(value))});
   };
   if (!display.config.empty()) set("config", std::filesystem::absolute(display.config).string());
   set("display", display.display);
@@ -126,7 +127,7 @@ std::string saved_text(const std::string& text, std::vector<format::Override> se
   if (display.exposure) settings.push_back({"color.exposure=" + scene::number_text(*display.exposure)});
   if (settings.empty()) return text;
   const auto same = [](const std::string& file) { return file; };
-  return text.substr(0, text.find('\n')) + "\n\n" + format::merged_text("plot", text, settings, same);
+  return fmt::format("{}\n\n{}", text.substr(0, text.find('\n')), format::merged_text("plot", text, settings, same));
 }
 
 /// The value of an override of a string; empty if none sets the key.
@@ -176,7 +177,8 @@ void check_outputs(const PlotArguments& arguments) {
 
 int run_plot(PlotArguments& arguments) {
   if (arguments.plot.file.extension() == ".toml")
-    refuse(arguments.plot.file.string() + " is a scene; render it: orrery render " + arguments.plot.file.string());
+    refuse(fmt::format("{} is a scene; render it: orrery render {}", arguments.plot.file.string(),
+                       arguments.plot.file.string()));
   RenderOptions& render = arguments.render;
   plot::PlotOptions& plot = arguments.plot;
   const std::vector<format::Override> overrides = render.scene.overrides();

@@ -8,6 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "cli/messages.h"
 
 namespace orrery::cli {
@@ -29,7 +31,8 @@ ProgressStyle resolved(ProgressStyle style, std::FILE* to) {
 ProgressPrinter::ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat,
                                  BarDisplay* display)
     : style_(resolved(style, to)), to_(to), display_(display), heartbeat_(heartbeat), state_{0, 1, 0} {
-  if (style_ != ProgressStyle::kBar && style_ != ProgressStyle::kNone) beating_ = std::thread([this] { beat(); });
+  if (style_ != ProgressStyle::kBar && style_ != ProgressStyle::kNone)
+    printing_thread_ = std::thread([this] { print_periodically(); });
 }
 
 ProgressPrinter::~ProgressPrinter() { finish(); }
@@ -52,7 +55,7 @@ void ProgressPrinter::building(double fraction) {
   const int percent = static_cast<int>(fraction * 100);
   if (finished_ || state_.done > 0 || percent <= last_percent_) return;
   last_percent_ = percent;
-  print_bar("building  " + std::to_string(percent) + " %");
+  print_bar(fmt::format("building  {} %", percent));
 }
 
 void ProgressPrinter::note(const std::string& text) {
@@ -69,7 +72,7 @@ void ProgressPrinter::finish() {
     clear_bar();
   }
   wake_.notify_all();
-  if (beating_.joinable()) beating_.join();
+  if (printing_thread_.joinable()) printing_thread_.join();
 }
 
 void ProgressPrinter::print_bar(const std::string& bar) {
@@ -101,7 +104,7 @@ void ProgressPrinter::print_line() {
 }
 
 /// Repeats the last line whenever a heartbeat has passed without one.
-void ProgressPrinter::beat() {
+void ProgressPrinter::print_periodically() {
   std::unique_lock lock(mutex_);
   while (!finished_) {
     const auto due = last_line_ + heartbeat_;

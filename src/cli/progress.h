@@ -54,7 +54,7 @@ class ProgressPrinter {
   void print_bar(const std::string& bar);
   void clear_bar();
   void print(const std::string& lines);
-  void beat();
+  void print_periodically();
 
   ProgressStyle style_;
   std::FILE* to_;
@@ -67,7 +67,7 @@ class ProgressPrinter {
   std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
   bool bar_shown_ = false;
   bool finished_ = false;
-  std::thread beating_;
+  std::thread printing_thread_;
 };
 
 }  // namespace orrery::cli

@@ -32,7 +32,7 @@ std::string json_line(const ProgressState& state) {
   if (state.seconds_left() >= 0)
     line += fmt::format(", \"samples_per_second\": {:.0f}, \"seconds_left\": {:.1f}", state.samples_per_second(),
                         state.seconds_left());
-  if (!state.goal.empty()) line += ", \"goal\": \"" + state.goal + "\"";
+  if (!state.goal.empty()) line += fmt::format(", \"goal\": \"{}\"", state.goal);
   return line + "}";
 }
 
@@ -75,14 +75,14 @@ std::string progress_line(ProgressStyle style, const ProgressState& state) {
 
 std::string progress_bar(const ProgressState& state, int columns) {
   std::string text = fmt::format("{:3} %  {}", state.percent(), rate_text(state.samples_per_second()));
-  if (state.seconds_left() >= 0) text += "  " + time_text(state.seconds_left()) + " left";
+  if (state.seconds_left() >= 0) text += fmt::format("  {} left", time_text(state.seconds_left()));
   if (!state.goal.empty()) text += "  " + state.goal;
   // Room for brackets, a space, and the last column, after which some terminals wrap.
   const int cells = std::min(kMaxCells, columns - static_cast<int>(text.size()) - 4);
   if (cells < kMinCells) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
   std::string bar(static_cast<std::size_t>(state.fraction() * cells), '#');
   bar.resize(static_cast<std::size_t>(cells), '.');
-  return "[" + bar + "] " + text;
+  return fmt::format("[{}] {}", bar, text);
 }
 
 }  // namespace orrery::cli

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
+#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
@@ -106,7 +107,8 @@ void refuse_data_files(const std::vector<std::filesystem::path>& scenes) {
   for (const std::filesystem::path& scene : scenes)
     for (const char* extension : kExtensions)
       if (scene.extension() == extension)
-        refuse(scene.string() + " is a data file, not a scene; render it: orrery plot " + scene.string() + " -o IMAGE");
+        refuse(fmt::format("{} is a data file, not a scene; render it: orrery plot {} -o IMAGE", scene.string(),
+                           scene.string()));
 }
 
 }  // namespace
@@ -117,7 +119,7 @@ int run_render(RenderOptions& options) {
   if (job.scene.text == nullptr) refuse_data_files(batch.scenes);
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
     if (batch.scenes[i].extension() != ".toml")
-      refuse("unexpected argument `" + batch.scenes[i].string() + "`; name output files with -o");
+      refuse(fmt::format("unexpected argument `{}`; name output files with -o", batch.scenes[i].string()));
   job.scene.overrides = options.scene.overrides();
   options.picture.finish(job);
   read_shard(options, job);
@@ -148,17 +150,18 @@ int run_render(RenderOptions& options) {
   const auto preview = start_preview(target, screen.get(), note, job.hooks);
   batch.on_begin = [&](const job::Job& one, std::size_t index, std::size_t count) {
     progress.begin(index, count);
-    log_message("rendering " + farm::job_name(batch, one) + "\n");
+    log_message(fmt::format("rendering {}\n", farm::job_name(batch, one)));
   };
   batch.on_end = [&](const job::Job& one, const job::JobReport& report) {
     if (!is_many) printer.finish();
     const std::string text = report.was_skipped
-                                 ? "skipped " + farm::job_name(batch, one) + ": its files are up to date\n"
+                                 ? fmt::format("skipped {}: its files are up to date\n", farm::job_name(batch, one))
                                  : report_text(one, report, {options.verbose, is_many});
     note(text);
     if (report.target_missed.empty()) return;
     if (!options.quiet || options.strict)
-      printer.note((options.strict ? "orrery: " : "warning: ") + report.target_missed + "\n");
+      printer.note(options.strict ? fmt::format("orrery: {}\n", report.target_missed)
+                                  : base::warning_line(report.target_missed));
     if (options.strict) status = base::exit_status(base::ErrorKind::kStopped);
   };
   batch.on_failure = [&](const job::Job&, const base::Error& error) { printer.note(error_text(error)); };

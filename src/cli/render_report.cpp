@@ -3,23 +3,25 @@
 
 #include <fmt/core.h>
 
+#include "base/diagnostic.h"
+
 namespace orrery::cli {
 namespace {
 
 void add_bad_values(std::string& out, const job::JobReport& report) {
   const auto warn = [&out](std::uint64_t count, const char* what) {
-    if (count > 0) out += fmt::format("warning: {} {}\n", count, what);
+    if (count > 0) out += base::warning_line(fmt::format("{} {}", count, what));
   };
   warn(report.render.bad_samples, "samples were not finite and were excluded from their pixels");
   for (const auto& [layer, bad] : report.bad_layers) {
     const auto warn_of = [&, &name = layer](std::uint64_t count, const char* what) {
-      if (count > 0) out += fmt::format("warning: {}: {} values are {}\n", name, count, what);
+      if (count > 0) out += base::warning_line(fmt::format("{}: {} values are {}", name, count, what));
     };
     warn_of(bad.nan, "not a number");
     warn_of(bad.infinite, "infinite");
     warn_of(bad.negative, "negative");
   }
-  if (!report.missing.empty()) out += fmt::format("warning: {} are missing\n", report.missing);
+  if (!report.missing.empty()) out += base::warning_line(fmt::format("{} are missing", report.missing));
   warn(report.written.not_finite, "values that are not finite were written as 0");
   warn(report.written.clamped,
        "values exceed the range of their file and were clamped; EXR with --type float keeps them");
@@ -33,7 +35,7 @@ void add_summary(std::string& out, const job::Job& job, const job::JobReport& re
   out += fmt::format("wrote {}: {} x {}, {:.5g} samples per pixel in {:.1f} s, {:.2f} M samples/s", files, report.width,
                      report.height, static_cast<double>(r.paths) / pixels, r.render_s,
                      r.render_s > 0 ? static_cast<double>(r.paths) / r.render_s / 1e6 : 0.0);
-  if (r.noise) out += fmt::format("; noise {:.3g}, {} to {} samples", *r.noise, r.fewest_samples, r.most_samples);
+  if (r.noise) out += fmt::format("; noise {:.3g}, {} to {} samples", *r.noise, r.min_samples, r.max_samples);
   if (detail.has_total) out += fmt::format("; {:.1f} s in all", report.phases.total_s());
   out += '\n';
   if (!detail.is_verbose) return;

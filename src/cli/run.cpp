@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "cli/commands.h"
 #include "cli/option_checks.h"
@@ -20,8 +22,8 @@ namespace orrery::cli {
 namespace {
 
 std::string versions_text() {
-  std::string out = "orrery " + job::program_version() + "\n";
-  for (const auto& [name, version] : job::library_versions()) out += "  " + name + " " + version + "\n";
+  std::string out = fmt::format("orrery {}\n", job::program_version());
+  for (const auto& [name, version] : job::library_versions()) out += fmt::format("  {} {}\n", name, version);
   return out + "  CLI11 " CLI11_VERSION;
 }
 
@@ -74,7 +76,7 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error, con
 int parse_and_act(int argc, const char* const* argv) {
   const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
   if (const std::string option = option_without_value(words); !option.empty())
-    refuse(option + " needs a value; `" + option + "=` is followed by none");
+    refuse(fmt::format("{} needs a value; `{}=` is followed by none", option, option));
   CLI::App program("orrery is a path tracer for scenes made of spheres.", "orrery");
   configure(program);
   Command commands(program);
@@ -96,7 +98,7 @@ int run(int argc, const char* const* argv) {
   prepare_signals();
   try {
     return parse_and_act(argc, argv);
-  } catch (const ReaderLeft&) {
+  } catch (const BrokenPipe&) {
     return base::exit_status(base::ErrorKind::kIo);
   } catch (const base::Error& error) {
     return print_error(error);

@@ -10,6 +10,7 @@
 
 #include "app/data_info.h"
 #include "app/info.h"
+#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
@@ -83,7 +84,7 @@ std::string memory_warning(const app::SceneInfo& info) {
     job::require_memory(info.memory, 0);
     return {};
   } catch (const base::Error& error) {
-    return std::string("warning: ") + error.what() + "\n";
+    return base::warning_line(error.what());
   }
 }
 

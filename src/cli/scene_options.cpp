@@ -18,7 +18,7 @@ void SceneOptions::add_to(Command& command, bool allows_range) {
       ->type_name("KEY=VALUE")
       ->repeatable();
   const auto add = [&](const char* flag, const char* key, const char* type, const std::string& what) {
-    Short& option = short_forms_.emplace_back(Short{flag, key, {}, nullptr, false});
+    ShortForm& option = short_forms_.emplace_back(ShortForm{flag, key, {}, nullptr, false});
     option.flag = command.add_option(flag, option.value, fmt::format("{} ({})", what, key))->type_name(type);
   };
   add("--samples", "render.samples", allows_range ? "N or A:B" : "N",
@@ -34,27 +34,27 @@ void SceneOptions::add_to(Command& command, bool allows_range) {
   short_forms_.back().is_list = true;
 }
 
-bool SceneOptions::is_range(const Short& option) const {
+bool SceneOptions::is_range(const ShortForm& option) const {
   return allows_range_ && std::string_view(option.key) == "render.samples" &&
          option.value.find(':') != std::string::npos;
 }
 
 std::optional<std::string> SceneOptions::sample_range() const {
-  for (const Short& option : short_forms_)
+  for (const ShortForm& option : short_forms_)
     if (option.flag->count() > 0 && is_range(option)) return option.value;
   return {};
 }
 
 std::vector<format::Override> SceneOptions::overrides() const {
   std::vector<format::Override> out;
-  for (const Short& option : short_forms_) {
+  for (const ShortForm& option : short_forms_) {
     if (option.flag->count() == 0 || is_range(option)) continue;
     for (const std::string& setting : set_)
       if (format::Override(setting).sets(option.key))
         throw base::Error(base::ErrorKind::kUsage,
                           fmt::format("{} and --set {} set the same key; omit one of them", option.name, setting));
-    const std::string value = option.is_list ? "[" + option.value + "]" : option.value;
-    out.emplace_back(std::string(option.key) + "=" + value, option.name, option.value);
+    const std::string value = option.is_list ? fmt::format("[{}]", option.value) : option.value;
+    out.emplace_back(fmt::format("{}={}", option.key, value), option.name, option.value);
   }
   out.insert(out.end(), set_.begin(), set_.end());
   return out;

@@ -35,19 +35,19 @@ class SceneOptions {
   int frame() const;
 
  private:
-  struct Short {
+  struct ShortForm {
     const char* name;  ///< "--samples"
     const char* key;
     std::string value;
     const Option* flag;
     bool is_list;  ///< comma-separated words
   };
-  bool is_range(const Short& option) const;
+  bool is_range(const ShortForm& option) const;
 
   bool allows_range_ = false;
   std::vector<std::string> set_;
   std::string frame_;
-  std::deque<Short> short_forms_;  ///< a deque: the parser keeps pointers to the values
+  std::deque<ShortForm> short_forms_;  ///< a deque: the parser keeps pointers to the values
 };
 
 }  // namespace orrery::cli

@@ -21,7 +21,7 @@ struct SubmitOptions {
   std::filesystem::path scene_file;
   bool slurm = false, openjd = false, opencue = false;
   const Option* parallel = nullptr;
-  std::vector<const Option*> passed_on;  ///< besides the image and display options
+  std::vector<const Option*> forwarded;  ///< besides the image and display options
   const Command* command = nullptr;
 };
 
@@ -35,11 +35,11 @@ int submit(SubmitOptions& options) {
   if (options.slurm + options.openjd + options.opencue + static_cast<int>(options.parallel->count()) != 1)
     throw base::Error(base::ErrorKind::kUsage, "specify one of --slurm, --openjd, --opencue and --parallel N");
   s.arguments = options.command->arguments(kImageOptions);
-  const auto pass_on = [&](const std::vector<std::string>& words) {
+  const auto forward = [&](const std::vector<std::string>& words) {
     s.arguments.insert(s.arguments.end(), words.begin(), words.end());
   };
-  pass_on(options.command->arguments(kDisplayOptions));
-  for (const Option* option : options.passed_on) pass_on(option->arguments());
+  forward(options.command->arguments(kDisplayOptions));
+  for (const Option* option : options.forwarded) forward(option->arguments());
   s.engine = options.slurm     ? farm::Engine::kSlurm
              : options.openjd  ? farm::Engine::kOpenJd
              : options.opencue ? farm::Engine::kOpenCue
@@ -81,7 +81,7 @@ void add_submit(Command& program, Action& action) {
   Option* const stats =
       command.add_option("--stats", s.batch.job.outputs.statistics, "Write statistics of each frame as JSON")
           ->type_name("FILE");
-  options->passed_on = {noise, time, stats};
+  options->forwarded = {noise, time, stats};
   options->command = &command;
   command.add_option("--program", s.program, "orrery executable on the render nodes; default: orrery")
       ->type_name("FILE");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/usage.h"
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 
 namespace orrery::cli {
@@ -22,24 +24,24 @@ std::vector<std::string> command_names(const CLI::App& command) {
 
 std::string unknown_flag(const std::string& flag, const CLI::App& command) {
   const std::string remedy = base::did_you_mean(flag, flag_names(command));
-  return "unknown option " + flag + (remedy.empty() ? "" : "; " + remedy);
+  return fmt::format("unknown option {}{}", flag, remedy.empty() ? "" : "; " + remedy);
 }
 
 /// The message for a word in place of a command.
 std::string unknown_command(const std::string& word, const CLI::App& command) {
   const std::vector<std::string> commands = command_names(command);
   const std::string remedy = base::did_you_mean(word, commands);
-  if (!remedy.empty()) return "unknown command " + word + "; " + remedy;
+  if (!remedy.empty()) return fmt::format("unknown command {}; {}", word, remedy);
   if (command.get_parent() == nullptr && word.ends_with(".toml"))
-    return "unknown command " + word + "; to render it: orrery render " + word + " -o image.png";
-  return "unknown command " + word + "; use one of " + base::joined(commands);
+    return fmt::format("unknown command {}; to render it: orrery render {} -o image.png", word, word);
+  return fmt::format("unknown command {}; use one of {}", word, base::joined(commands));
 }
 
 std::string unexpected(const std::string& word, const CLI::App& command) {
   if (word.size() > 1 && word[0] == '-') return unknown_flag(word.substr(0, word.find('=')), command);
   if (!command_names(command).empty()) return unknown_command(word, command);
-  return "unexpected argument `" + word + "`" +
-         (base::contains(flag_names(command), "--output") ? "; name output files with -o" : "");
+  return fmt::format("unexpected argument `{}`{}", word,
+                     base::contains(flag_names(command), "--output") ? "; name output files with -o" : "");
 }
 
 /// The first long option that the command does not have. Reported before other errors, since a mistyped option often

@@ -85,7 +85,7 @@ std::array<Vec3d, kBands> solar_rgb() {
 
 /// Adds the amounts along a part of a ray, which starts where the ray is horizontal or climbs. Nodes are densest at
 /// the start.
-void add_amounts(Amounts& sum, double altitude, double sine, double length, int steps) {
+void add_densities(Densities& sum, double altitude, double sine, double length, int steps) {
   const double radius = kGroundRadius + altitude;
   for (int i = 0; i < steps; ++i) {
     const double u = (i + 0.5) / steps, t = length * u * u * u;
@@ -96,17 +96,17 @@ void add_amounts(Amounts& sum, double altitude, double sine, double length, int 
 }
 
 /// Returns the amounts along a ray to space by quadrature.
-Amounts integrate(double altitude, double sine, int steps) {
+Densities integrate(double altitude, double sine, int steps) {
   const double radius = kGroundRadius + altitude, length = distance_to_space(radius, sine);
-  Amounts sum;
+  Densities sum;
   if (sine >= 0) {
-    add_amounts(sum, altitude, sine, length, steps);
+    add_densities(sum, altitude, sine, length, steps);
     return sum;
   }
   // Forwards and backwards from the lowest point.
   const double descent = -radius * sine, lowest = std::sqrt(radius * radius - descent * descent) - kGroundRadius;
-  add_amounts(sum, lowest, 0, descent, steps);
-  add_amounts(sum, lowest, 0, length - descent, steps);
+  add_densities(sum, lowest, 0, descent, steps);
+  add_densities(sum, lowest, 0, length - descent, steps);
   return sum;
 }
 
@@ -116,7 +116,7 @@ double horizon_sine(double radius) {
 
 }  // namespace
 
-Amounts densities(double altitude) {
+Densities densities(double altitude) {
   const double h = std::max(altitude, 0.0);
   const double rising = (h - kOzoneBottom) / (kOzoneMiddle - kOzoneBottom);
   const double falling = (kOzoneTop - h) / (kOzoneTop - kOzoneMiddle);
@@ -153,7 +153,7 @@ Atmosphere::Atmosphere(double turbidity, double density) {
   }
 }
 
-Spectrum Atmosphere::transmittance(Amounts path, const Spectrum& aerosol_extinction) const {
+Spectrum Atmosphere::transmittance(Densities path, const Spectrum& aerosol_extinction) const {
   Spectrum out;
   for (std::size_t b = 0; b < kBands; ++b)
     out[b] = math::exp_nonpositive(
@@ -173,7 +173,7 @@ ColumnTable::ColumnTable(int refinement) : altitudes_(48 * refinement), directio
       // climb are 0.
       const double d = std::max(shortest + (longest - shortest) * j / (directions_ - 1), 1.0);
       const double sine = (shortest * (2 * kGroundRadius + kAtmosphereThickness + altitude) - d * d) / (2 * radius * d);
-      const Amounts a = integrate(altitude, std::clamp(sine, -1.0, 1.0), 64 * refinement);
+      const Densities a = integrate(altitude, std::clamp(sine, -1.0, 1.0), 64 * refinement);
       table_.push_back({math::logarithm((a.molecules + kTrace) / kLargest),
                         math::logarithm((a.aerosol + kTrace) / kLargest), a.ozone});
     }
@@ -185,7 +185,7 @@ double ColumnTable::node(int i) const {
   return kAtmosphereThickness * u * u;
 }
 
-Amounts ColumnTable::to_space(double altitude, double sine) const {
+Densities ColumnTable::to_space(double altitude, double sine) const {
   const double radius = kGroundRadius + altitude, shortest = kAtmosphereThickness - altitude;
   const double lowest = horizon_sine(radius), longest = distance_to_space(radius, lowest);
   const double d = distance_to_space(radius, std::max(sine, lowest));
@@ -194,11 +194,11 @@ Amounts ColumnTable::to_space(double altitude, double sine) const {
   const int i = std::clamp(static_cast<int>(x), 0, altitudes_ - 2);
   const int j = std::clamp(static_cast<int>(y), 0, directions_ - 2);
   const double fx = (altitude - node(i)) / (node(i + 1) - node(i)), fy = y - j;
-  const Amounts* const at =
+  const Densities* const at =
       &table_[static_cast<std::size_t>(i) * static_cast<std::size_t>(directions_) + static_cast<std::size_t>(j)];
-  const Amounts low = at[0] * (1 - fy) + at[1] * fy;
-  const Amounts high = at[directions_] * (1 - fy) + at[directions_ + 1] * fy;
-  const Amounts a = low * (1 - fx) + high * fx;
+  const Densities low = at[0] * (1 - fy) + at[1] * fy;
+  const Densities high = at[directions_] * (1 - fy) + at[directions_ + 1] * fy;
+  const Densities a = low * (1 - fx) + high * fx;
   return {kLargest * math::exp_nonpositive(a.molecules), kLargest * math::exp_nonpositive(a.aerosol), a.ozone};
 }
 

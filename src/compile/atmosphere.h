@@ -22,19 +22,19 @@ inline constexpr double kSunAngularRadius = 0.533 / 2 * 3.14159265358979323846 /
 inline constexpr int kBands = 16;
 using Spectrum = std::array<double, kBands>;
 
-/// Amounts of the constituents: relative density at a point, or its integral along a path in metres. 1 is the density
-/// of molecules and aerosol at sea level, and of ozone in the middle of its layer.
-struct Amounts {
+/// Densities of the constituents: relative at a point, or integrated along a path in metres (column densities). 1 is
+/// the density of molecules and aerosol at sea level, and of ozone in the middle of its layer.
+struct Densities {
   double molecules = 0, aerosol = 0, ozone = 0;
 
-  friend constexpr Amounts operator+(Amounts a, Amounts b) {
+  friend constexpr Densities operator+(Densities a, Densities b) {
     return {a.molecules + b.molecules, a.aerosol + b.aerosol, a.ozone + b.ozone};
   }
-  friend constexpr Amounts operator*(Amounts a, double s) { return {a.molecules * s, a.aerosol * s, a.ozone * s}; }
+  friend constexpr Densities operator*(Densities a, double s) { return {a.molecules * s, a.aerosol * s, a.ozone * s}; }
 };
 
 /// Returns the relative densities at an altitude of 0 .. kAtmosphereThickness, in metres.
-Amounts densities(double altitude);
+Densities densities(double altitude);
 
 /// Returns the distance to the upper edge of the atmosphere in metres, from `radius` metres from the Earth's centre.
 /// `sine` is that of the direction's elevation.
@@ -66,14 +66,14 @@ struct Atmosphere {
   Spectrum scaled_aerosol_scattering;
 
   /// Returns the transmittance of a path, for unscattered light and for light that may also be scattered forward.
-  Spectrum transmittance(Amounts path) const { return transmittance(path, aerosol); }
-  Spectrum scaled_transmittance(Amounts path) const { return transmittance(path, scaled_aerosol); }
+  Spectrum transmittance(Densities path) const { return transmittance(path, aerosol); }
+  Spectrum scaled_transmittance(Densities path) const { return transmittance(path, scaled_aerosol); }
 
  private:
-  Spectrum transmittance(Amounts path, const Spectrum& aerosol_extinction) const;
+  Spectrum transmittance(Densities path, const Spectrum& aerosol_extinction) const;
 };
 
-/// Amounts along rays from points of the atmosphere to space, tabulated.
+/// Column densities along rays from points of the atmosphere to space, tabulated.
 class ColumnTable {
  public:
   explicit ColumnTable(int refinement = 1);
@@ -82,13 +82,13 @@ class ColumnTable {
   /// the horizon.
   ///
   /// Precision  1 %; test CompileDaylight.TabulatedColumnsMatchQuadrature
-  Amounts to_space(double altitude, double sine) const;
+  Densities to_space(double altitude, double sine) const;
 
  private:
   double node(int i) const;  ///< altitude
 
   int altitudes_, directions_;
-  std::vector<Amounts> table_;  ///< by altitude and direction; of molecules and aerosol, the logarithm
+  std::vector<Densities> table_;  ///< by altitude and direction; of molecules and aerosol, the logarithm
 };
 
 /// Returns the part of the sun's disc above the horizon of a point, 0..1. `sine` is that of the elevation of its

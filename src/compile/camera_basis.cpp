@@ -28,10 +28,10 @@ double focus_distance(const scene::Camera& camera) {
 }
 
 double view_scale(const scene::Camera& camera) {
-  constexpr int kHarmless = 40;
+  constexpr int kMaxUnscaledExponent = 40;
   if (camera.defocus_angle > 0 || camera.projection == scene::Projection::kOrthographic) return 1;
   const int exponent = std::ilogb(focus_distance(camera));
-  return std::abs(exponent) <= kHarmless ? 1 : std::ldexp(1.0, -exponent);
+  return std::abs(exponent) <= kMaxUnscaledExponent ? 1 : std::ldexp(1.0, -exponent);
 }
 
 kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& image, double view_scale) {

@@ -107,13 +107,12 @@ void set_background(const scene::Scene& scene, CompiledScene& compiled) {
     settings.light_group = light_group(compiled, from.light_group);
     settings.visible = from.visible;
     compiled.environment = std::make_shared<const EnvironmentMap>(image, settings);
-    set(compiled.background.bottom, {0, 0, 0});
-    set(compiled.background.top, {0, 0, 0});
+    compiled.background = {{0, 0, 0}, {0, 0, 0}};
     return;
   }
   const bool gradient = from.type == scene::BackgroundType::kGradient;
-  set(compiled.background.bottom, gradient ? from.bottom : from.color);
-  set(compiled.background.top, gradient ? from.top : from.color);
+  compiled.background.bottom = gradient ? from.bottom : from.color;
+  compiled.background.top = gradient ? from.top : from.color;
   compiled.features.sky = gradient && !(from.bottom == from.top);
 }
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "base/repeated.h"
+#include "base/duplicates.h"
 #include "kernel/coincidence.h"
 
 namespace orrery::compile {
@@ -14,8 +14,8 @@ std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, ke
   const std::size_t count = std::size_t{ids.back()} + 1;
   const auto place = [&](std::size_t id) { return kernel::coincidence_key<4>(scene, id, precision); };
   const auto path = [&](std::size_t id) { return kernel::coincidence_key<8>(scene, id, precision); };
-  const std::vector<base::Repeated> found =
-      scene.moving_count > 0 ? base::find_repeated<8>(count, path) : base::find_repeated<4>(count, place);
+  const std::vector<base::Duplicate> found =
+      scene.moving_count > 0 ? base::find_duplicates<8>(count, path) : base::find_duplicates<4>(count, place);
   auto next = found.begin();
   std::erase_if(ids, [&](std::uint32_t id) {
     while (next != found.end() && next->index < id) ++next;

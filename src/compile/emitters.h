@@ -15,7 +15,7 @@ namespace orrery::compile {
 /// `ids`      ascending
 /// Result     ascending
 /// Cost       none if there are no ids, or if the scene is known to have no coincident spheres; else see
-///            base::find_repeated, for the spheres up to the last id
+///            base::find_duplicates, for the spheres up to the last id
 std::vector<std::uint32_t> without_coincident(const kernel::SceneView& scene, kernel::Precision precision,
                                               std::vector<std::uint32_t> ids);
 

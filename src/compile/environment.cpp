@@ -16,7 +16,7 @@ using scene::EnvironmentImage;
 
 /// Below this fraction of the map's power there is nothing to gain from sampling what exceeds the mean: it is mostly
 /// the rounding of texels to float.
-constexpr double kLeastExcess = 1e-6;
+constexpr double kMinExcess = 1e-6;
 
 constexpr double kFullSphere = 4 * std::numbers::pi;
 
@@ -163,11 +163,11 @@ void set_sun(const scene::Sun& sun, const EnvironmentSettings& settings, kernel:
   const math::Vec3d axis = math::normalized(rotated(sun.direction, view.turn));
   const math::Vec3d across = std::abs(axis.y) < 0.5 ? math::Vec3d{0, 1, 0} : math::Vec3d{1, 0, 0};
   const math::Vec3d tangent = math::normalized(math::cross(across, axis));
-  set(view.sun, axis);
-  set(view.sun_tangent, tangent);
-  set(view.sun_bitangent, math::cross(axis, tangent));
+  view.sun = axis;
+  view.sun_tangent = tangent;
+  view.sun_bitangent = math::cross(axis, tangent);
   view.sun_one_minus_cos = sun.one_minus_cos;
-  set(view.sun_radiance, sun.radiance * settings.scale);
+  view.sun_radiance = sun.radiance * settings.scale;
 }
 
 }  // namespace
@@ -212,8 +212,7 @@ EnvironmentMap::EnvironmentMap(std::shared_ptr<const EnvironmentImage> image, co
   rows_ = cell_rows(image_->height());
   const Totals totals = totals_of(*image_, rows_);
   const double sun_solid_angle = 2 * std::numbers::pi * view_.sun_one_minus_cos;
-  const double sun_power =
-      sun_solid_angle * (view_.sun_radiance[0] + view_.sun_radiance[1] + view_.sun_radiance[2]) / 3;
+  const double sun_power = sun_solid_angle * (view_.sun_radiance.x + view_.sun_radiance.y + view_.sun_radiance.z) / 3;
   view_.power = totals.integral * settings.scale / 3 + sun_power;
   if (settings.sampling == EnvironmentSampling::kNone) return;
 
@@ -228,7 +227,7 @@ EnvironmentMap::EnvironmentMap(std::shared_ptr<const EnvironmentImage> image, co
     view_.weight_offset = is_compensated ? totals.integral / kFullSphere * view_.weight_scale : 0;
     integral = SumPyramid(*image_, view_).build(sums_);
     const double excess = integral / view_.weight_scale;
-    if (excess > totals.integral * kLeastExcess) map_power = excess * settings.scale / 3;
+    if (excess > totals.integral * kMinExcess) map_power = excess * settings.scale / 3;
   }
   view_.sun_probability = sun_power > 0 ? sun_power / (sun_power + map_power) : 0;
   view_.sun_density = view_.has_sun ? view_.sun_probability / sun_solid_angle : 0;

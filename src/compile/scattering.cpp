@@ -42,7 +42,7 @@ double mean_transmittance(double depth) {
 /// Where the segments of a ray end, for u in 0..1: they grow with the distance from the ground, or are short at both
 /// ends.
 double from_ground(double u) { return u * u; }
-double anywhere(double u) { return u * u * (3 - 2 * u); }
+double smoothstep(double u) { return u * u * (3 - 2 * u); }
 
 /// Returns a ray from an altitude to a distance `length`, in a direction of whose elevation the sine is given.
 Ray march(const Atmosphere& air, double altitude, double sine, double length, int steps, double (*end_of)(double)) {
@@ -50,7 +50,7 @@ Ray march(const Atmosphere& air, double altitude, double sine, double length, in
   ray.length = length;
   ray.segments.reserve(static_cast<std::size_t>(steps));
   const double start_radius = kGroundRadius + altitude;
-  Amounts path;
+  Densities path;
   ray.transmittance = air.scaled_transmittance(path);
   double start = 0;
   for (int i = 0; i < steps; ++i) {
@@ -168,7 +168,7 @@ void Scattering::tabulate(const Spectrum& ground_albedo) {
     Spectrum* const row = &multiple_[static_cast<std::size_t>(i) * suns];
     Spectrum& ground = of_ground[static_cast<std::size_t>(i)];
     const auto add_ray = [&](double ray_sine, double part, double length) {
-      const Ray ray = march(air_, altitude, ray_sine, length, steps, anywhere);
+      const Ray ray = march(air_, altitude, ray_sine, length, steps, smoothstep);
       for (const Ray::Segment& s : ray.segments)
         for (std::size_t b = 0; b < kBands; ++b) returned[b] += part * s.diffuse[b];
       const double ray_cosine = std::sqrt(1 - ray_sine * ray_sine);

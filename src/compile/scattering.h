@@ -12,7 +12,7 @@ struct Ray {
   struct Segment {
     double distance;  ///< m, of its middle from the start of the ray
     double radius;    ///< m, of its middle from the Earth's centre
-    Amounts here;     ///< densities in the middle
+    Densities here;   ///< densities in the middle
     /// Fractions of the light at the segment's middle that are scattered within the segment and reach the start of the
     /// ray, without the phase function: by molecules, by aerosol, and by both without forward scattering.
     Spectrum molecules, aerosol, diffuse;

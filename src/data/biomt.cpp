@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "data/text_cursor.h"
 
 namespace orrery::data {
@@ -56,8 +58,8 @@ void BiomtReader::take(std::string_view text, std::uint64_t line, Faults& faults
     for (std::size_t i = 0; i < 4 && is_good; ++i) is_good = is_finite_number(words[2 + i], values[i]);
     if (!is_good) faults.fail(line, "malformed BIOMT row: expected a serial number and four numbers");
     if (words[0] != "BIOMT" + std::to_string(row + 1) || (row > 0 && words[1] != serial_))
-      faults.fail(line, "BIOMT row out of order: expected row " + std::to_string(row + 1) +
-                            (row > 0 ? " of transform " + serial_ : " of a transform"));
+      faults.fail(line, fmt::format("BIOMT row out of order: expected row {}{}", row + 1,
+                                    row > 0 ? " of transform " + serial_ : " of a transform"));
     serial_ = words[1];
     transform_.rows[row] = {values[0], values[1], values[2]};
     (row == 0 ? transform_.translation.x : row == 1 ? transform_.translation.y : transform_.translation.z) = values[3];
@@ -67,7 +69,7 @@ void BiomtReader::take(std::string_view text, std::uint64_t line, Faults& faults
 }
 
 std::vector<Assembly> BiomtReader::finish(Faults& faults) {
-  if (row_ != 0) faults.fail(0, "truncated: transform " + serial_ + " of REMARK 350 is incomplete");
+  if (row_ != 0) faults.fail(0, fmt::format("truncated: transform {} of REMARK 350 is incomplete", serial_));
   return std::move(assemblies_);
 }
 

@@ -13,6 +13,8 @@
 #include <cstring>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/stop_point.h"
@@ -37,7 +39,8 @@ class PlainFile final : public ByteSource {
     for (std::size_t done = 0; done < count;) {
       const ssize_t got = ::pread(descriptor_, out + done, count - done, static_cast<off_t>(offset + done));
       if (got < 0 && errno == EINTR) continue;
-      if (got < 0) throw base::Error(base::ErrorKind::kIo, "cannot read " + file().string() + ": " + reason());
+      if (got < 0)
+        throw base::Error(base::ErrorKind::kIo, fmt::format("cannot read {}: {}", file().string(), reason()));
       if (got == 0)
         throw base::Error(base::ErrorKind::kIo, file().string() + " has become shorter while it was being read");
       done += static_cast<std::size_t>(got);
@@ -187,7 +190,7 @@ std::shared_ptr<const ByteSource> ByteSource::open(const std::filesystem::path& 
   if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
     const std::string why = reason();
     if (descriptor >= 0) ::close(descriptor);
-    throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + why);
+    throw base::Error(base::ErrorKind::kMissingInput, fmt::format("cannot open {}: {}", file.string(), why));
   }
   auto plain = std::make_shared<const PlainFile>(file, descriptor, static_cast<std::uint64_t>(status.st_size));
   constexpr std::size_t kLongestSignature = 6;

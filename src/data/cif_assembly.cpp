@@ -5,6 +5,8 @@
 #include <charconv>
 #include <unordered_map>
 
+#include <fmt/core.h>
+
 namespace orrery::data {
 namespace {
 
@@ -63,14 +65,13 @@ std::vector<Transform> CifAssemblies::transforms_of(const Part& part, Faults& fa
   const auto add = [&](const std::string& id, std::vector<Transform>& out) {
     const auto it = operators_.find(id);
     if (it == operators_.end())
-      faults.fail(part.line, "assembly " + part.assembly + ": the operator `" + id + "` is not defined");
+      faults.fail(part.line, fmt::format("assembly {}: the operator `{}` is not defined", part.assembly, id));
     if (out.size() == kMaxTransforms)
-      faults.fail(part.line,
-                  "assembly " + part.assembly + ": more than " + std::to_string(kMaxTransforms) + " operators");
+      faults.fail(part.line, fmt::format("assembly {}: more than {} operators", part.assembly, kMaxTransforms));
     out.push_back(it->second);
   };
   const std::vector<std::string> groups = groups_of(part.expression);
-  if (groups.empty()) faults.fail(part.line, "assembly " + part.assembly + ": unbalanced parentheses");
+  if (groups.empty()) faults.fail(part.line, fmt::format("assembly {}: unbalanced parentheses", part.assembly));
   std::vector<Transform> result = {Transform{}};
   for (const std::string& group : groups) {
     std::vector<Transform> factors;
@@ -86,15 +87,14 @@ std::vector<Transform> CifAssemblies::transforms_of(const Part& part, Faults& fa
       }
     }
     if (factors.size() * result.size() > kMaxTransforms)
-      faults.fail(part.line,
-                  "assembly " + part.assembly + ": more than " + std::to_string(kMaxTransforms) + " transforms");
+      faults.fail(part.line, fmt::format("assembly {}: more than {} transforms", part.assembly, kMaxTransforms));
     // The rightmost group is applied first.
     std::vector<Transform> products;
     for (const Transform& second : result)
       for (const Transform& first : factors) products.push_back(composed(second, first));
     result = std::move(products);
   }
-  if (result.empty()) faults.fail(part.line, "assembly " + part.assembly + " has no operators");
+  if (result.empty()) faults.fail(part.line, fmt::format("assembly {} has no operators", part.assembly));
   return result;
 }
 
@@ -106,7 +106,7 @@ std::vector<Assembly> CifAssemblies::finish(Faults& faults) const {
   for (const Part& part : parts_) {
     AssemblyPart out{split(part.chains), transforms_of(part, faults)};
     if ((total += out.transforms.size()) > kMaxTransforms)
-      faults.fail(part.line, "the assemblies have more than " + std::to_string(kMaxTransforms) + " transforms");
+      faults.fail(part.line, fmt::format("the assemblies have more than {} transforms", kMaxTransforms));
     const auto [same, is_new] = index_of.try_emplace(part.assembly, assemblies.size());
     if (is_new) assemblies.push_back({part.assembly, {}});
     assemblies[same->second].parts.push_back(std::move(out));

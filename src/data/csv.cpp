@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/csv_shape.h"
 #include "data/customary.h"
 #include "data/readers.h"
@@ -63,8 +65,8 @@ class CsvFile final : public SingleFrame {
   explicit CsvFile(const Bytes& bytes) : SingleFrame(data::Format::kCsv, bytes), shape_(csv_shape(*bytes)) {
     Faults faults(bytes->file());
     if (shape_.columns.empty()) faults.fail(0, "the file has no rows");
-    if (shape_.columns.size() > kMostColumns)
-      faults.fail(shape_.first_line, "there are more than " + std::to_string(kMostColumns) + " columns");
+    if (shape_.columns.size() > kMaxColumns)
+      faults.fail(shape_.first_line, fmt::format("there are more than {} columns", kMaxColumns));
     TextLayout all = layout({});
     all.surveys = true;
     const TextTable survey = read_text_rows(*bytes, all, faults);
@@ -109,7 +111,7 @@ class CsvFile final : public SingleFrame {
       const std::string& name = shape_.columns[i].name;
       if (!survey.has_numbers || survey.first_word_line == 0) continue;
       if (std::find(coordinates.begin(), coordinates.end(), name) != coordinates.end())
-        faults.add(survey.first_word_line, "column " + name + ": '" + survey.first_word + "' is not a number",
+        faults.add(survey.first_word_line, fmt::format("column {}: '{}' is not a number", name, survey.first_word),
                    "correct it, or leave it empty");
       if (name == roles.radius || std::find(roles.rgb.begin(), roles.rgb.end(), name) != roles.rgb.end())
         shape_.columns[i].type = ColumnType::kFloat64;

@@ -102,7 +102,7 @@ CsvShape csv_shape(const ByteSource& bytes) {
   shape.first_line = first.number + (is_first_row ? 1 : 0);
   shape.begin = is_first_row ? first.end : first.offset;
   UniqueNames unique_names;
-  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), kMostColumns + 1); ++i) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), kMaxColumns + 1); ++i) {
     const std::string name = names[i].text.empty() ? "column" + std::to_string(i + 1) : names[i].text;
     shape.columns.push_back({unique_names.add(name), ColumnType::kFloat64});
   }

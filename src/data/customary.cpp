@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/core.h>
+
 namespace orrery::data {
 namespace {
 
@@ -123,7 +125,7 @@ std::vector<std::string> component_names(const std::string& name, std::size_t co
       !has_column(columns, "z"))
     return {"x", "y", "z"};
   std::vector<std::string> out;
-  for (std::size_t i = 1; i <= components; ++i) out.push_back(name + "[" + std::to_string(i) + "]");
+  for (std::size_t i = 1; i <= components; ++i) out.push_back(fmt::format("{}[{}]", name, i));
   return out;
 }
 
@@ -132,7 +134,7 @@ std::string UniqueNames::add(const std::string& name) {
   if (names_.insert(out).second) return out;
   int& number = numbers_[name];
   number = std::max(number, 1);
-  do out = name + "_" + std::to_string(++number);
+  do out = fmt::format("{}_{}", name, ++number);
   while (!names_.insert(out).second);
   return out;
 }
@@ -142,10 +144,10 @@ bool has_column(const std::vector<ColumnInfo>& columns, std::string_view name) {
 }
 
 std::string listed(const std::vector<ColumnInfo>& columns) {
-  constexpr std::size_t kMostListed = 30;
+  constexpr std::size_t kMaxListed = 30;
   std::string out;
-  for (std::size_t i = 0; i < std::min(columns.size(), kMostListed); ++i) out += (i > 0 ? ", " : "") + columns[i].name;
-  if (columns.size() > kMostListed) out += ", ... (" + std::to_string(columns.size()) + " in all)";
+  for (std::size_t i = 0; i < std::min(columns.size(), kMaxListed); ++i) out += (i > 0 ? ", " : "") + columns[i].name;
+  if (columns.size() > kMaxListed) out += fmt::format(", ... ({} in all)", columns.size());
   return out;
 }
 

@@ -16,7 +16,7 @@
 namespace orrery::data {
 
 /// Maximum number of columns of a file: more is a damaged header.
-inline constexpr std::uint64_t kMostColumns = 4096;
+inline constexpr std::uint64_t kMaxColumns = 4096;
 
 /// Returns the roles of columns by their customary names, regardless of case. For formats that define no names.
 ///

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 
 namespace orrery::data {
@@ -38,8 +40,7 @@ void Faults::raise_if_any() {
 }
 
 void Faults::raise() {
-  if (many_ > kMaxListed)
-    add(0, "and " + std::to_string(many_ - kMaxListed) + " more (" + std::to_string(many_) + " in all)");
+  if (many_ > kMaxListed) add(0, fmt::format("and {} more ({} in all)", many_ - kMaxListed, many_));
   throw base::Error(base::ErrorKind::kBadData, "cannot use " + file_, std::move(diagnostics_));
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include <fmt/core.h>
+
 #include "data/gsd_file.h"
 
 namespace orrery::data {
@@ -34,7 +36,7 @@ class GsdReader final : public DataFile {
  public:
   explicit GsdReader(const Bytes& bytes) : file_(bytes) {
     if (file_.schema() != "hoomd")
-      fail("the schema of this GSD file is `" + file_.schema() + "`", "only the schema `hoomd` is supported");
+      fail(fmt::format("the schema of this GSD file is `{}`", file_.schema()), "only the schema `hoomd` is supported");
     if (file_.frame_count() == 0) fail("the file has no frames");
   }
 
@@ -63,9 +65,7 @@ std::vector<double> GsdReader::setting(std::uint64_t frame, const char* name, st
   if (chunk == nullptr) chunk = file_.find(0, name);
   if (chunk == nullptr) return {};
   const std::uint64_t values = chunk->rows * chunk->components;
-  if (values != size)
-    fail("frame " + std::to_string(frame) + ": `" + name + "` has " + std::to_string(values) + " values instead of " +
-         std::to_string(size));
+  if (values != size) fail(fmt::format("frame {}: `{}` has {} values instead of {}", frame, name, values, size));
   std::vector<double> out;
   for (std::uint32_t i = 0; i < chunk->components; ++i) {
     const Column column{name, file_.component(*chunk, i)};
@@ -79,14 +79,14 @@ std::uint64_t GsdReader::rows_of(std::uint64_t frame) {
   const std::vector<double> count = setting(frame, "particles/N", 1);
   constexpr double kMaxRows = 1e15;
   if (!count.empty() && !(count[0] >= 0 && count[0] < kMaxRows))
-    fail("frame " + std::to_string(frame) + ": the number of particles is out of range");
+    fail(fmt::format("frame {}: the number of particles is out of range", frame));
   const auto rows = count.empty() ? 0 : static_cast<std::uint64_t>(count[0]);
   if (rows > 0) {
     const GsdChunk* position = file_.find(frame, kPosition.chunk);
     if (position == nullptr) position = file_.find(0, kPosition.chunk);
     if (position == nullptr || position->rows != rows)
-      fail("frame " + std::to_string(frame) + " has " + std::to_string(rows) + " particles, but " +
-           std::to_string(position == nullptr ? 0 : position->rows) + " positions");
+      fail(fmt::format("frame {} has {} particles, but {} positions", frame, rows,
+                       position == nullptr ? 0 : position->rows));
   }
   return rows;
 }
@@ -97,9 +97,8 @@ const GsdChunk* GsdReader::chunk_of(std::uint64_t frame, const char* name, std::
   const GsdChunk* chunk = file_.find(frame, name);
   if (chunk == nullptr && rows_of(0) == rows) chunk = file_.find(0, name);
   if (chunk != nullptr && (chunk->rows != rows || chunk->components != components))
-    fail("frame " + std::to_string(frame) + ": `" + name + "` has " + std::to_string(chunk->rows) + " rows of " +
-         std::to_string(chunk->components) + " values instead of " + std::to_string(rows) + " rows of " +
-         std::to_string(components));
+    fail(fmt::format("frame {}: `{}` has {} rows of {} values instead of {} rows of {}", frame, name, chunk->rows,
+                     chunk->components, rows, components));
   return chunk;
 }
 
@@ -120,7 +119,7 @@ std::optional<Box> GsdReader::box_of(std::uint64_t frame) {
   const std::vector<double> b = setting(frame, "configuration/box", 6);
   if (b.empty()) return std::nullopt;
   for (const double value : b)
-    if (!std::isfinite(value)) fail("frame " + std::to_string(frame) + ": the box has values that are not finite");
+    if (!std::isfinite(value)) fail(fmt::format("frame {}: the box has values that are not finite", frame));
   const std::vector<double> dimensions = setting(frame, "configuration/dimensions", 1);
   const bool is_flat = !dimensions.empty() && dimensions[0] == 2;
   // Lengths x, y, z, then tilt factors xy, xz, yz. The box is centred at the origin.
@@ -145,8 +144,8 @@ Words GsdReader::types_of(std::uint64_t frame, std::uint64_t rows) {
   for (std::size_t row = 0; row < ids.size(); ++row) {
     const double id = ids.number(row);
     if (!(id >= 0 && id < static_cast<double>(names.size())))
-      fail("frame " + std::to_string(frame) + ": particle " + std::to_string(row + 1) +
-           " has a type without a name; there are " + std::to_string(names.size()) + " types");
+      fail(fmt::format("frame {}: particle {} has a type without a name; there are {} types", frame, row + 1,
+                       names.size()));
     std::uint32_t& word = word_of[static_cast<std::size_t>(id)];
     if (word == kUnused) {
       const std::string& name = names[static_cast<std::size_t>(id)];

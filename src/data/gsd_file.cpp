@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include <fmt/core.h>
+
 #include "data/records.h"
 
 namespace orrery::data {
@@ -41,7 +43,7 @@ GsdFile::GsdFile(Bytes bytes) : bytes_(std::move(bytes)), faults_(bytes_->file()
   const auto names = number<std::uint64_t>(header, 24), name_blocks = number<std::uint64_t>(header, 32);
   const unsigned major_version = number<std::uint32_t>(header, 44) >> 16;
   if (major_version != 1 && major_version != 2)
-    faults_.fail(0, "GSD version " + std::to_string(major_version) + " is not supported", "versions 1 and 2 are");
+    faults_.fail(0, fmt::format("GSD version {} is not supported", major_version), "versions 1 and 2 are");
   schema_ = header.substr(kSchemaOffset, kNameBytes).c_str();
   const std::uint64_t size = bytes_->size();
   if (names > size || name_blocks > (size - names) / kNameBytes)
@@ -73,17 +75,17 @@ void GsdFile::read_index(std::uint64_t offset, std::uint64_t count) {
     chunk.name = number<std::uint16_t>(text, at + 28);
     const unsigned type = number<std::uint8_t>(text, at + 30);
     if (chunk.offset == 0) break;  // the rest of the index is unused
-    const std::string entry = "entry " + std::to_string(at / kEntryBytes + 1) + " of the index ";
+    const std::string entry = fmt::format("entry {} of the index ", at / kEntryBytes + 1);
     if (type == 0 || type >= kTypes.size())
-      faults_.fail(0, entry + "has the unknown value type " + std::to_string(type));
+      faults_.fail(0, fmt::format("{}has the unknown value type {}", entry, type));
     chunk.type = kTypes[type];
     if (chunk.components == 0) faults_.fail(0, entry + "has no components");
     if (chunk.name >= ids_.size()) faults_.fail(0, entry + "has no name");
     if (!chunks_.empty() && chunk.frame < chunks_.back().frame) faults_.fail(0, entry + "is out of order");
     if (chunk.frame >= static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
-      faults_.fail(0, entry + "has the frame " + std::to_string(chunk.frame) + ", which is out of range");
+      faults_.fail(0, fmt::format("{}has the frame {}, which is out of range", entry, chunk.frame));
     if (chunk.offset > bytes_->size() || chunk.rows > (bytes_->size() - chunk.offset) / chunk.row_bytes())
-      faults_.fail(0, "truncated: " + entry + "refers to data beyond the end of the file");
+      faults_.fail(0, fmt::format("truncated: {}refers to data beyond the end of the file", entry));
     chunks_.push_back(chunk);
   }
 }

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/hdf5_dataset.h"
 #include "data/number_type.h"
@@ -100,13 +102,13 @@ void SnapshotReader::find_parts(const std::filesystem::path& file, std::uint64_t
                            std::all_of(stem.begin() + static_cast<std::ptrdiff_t>(dot) + 1, stem.end(),
                                        [](unsigned char c) { return std::isdigit(c) != 0; });
   if (!is_numbered)
-    fail(file, "the snapshot has " + std::to_string(count) + " files, but this file's name has no number",
-         "name them NAME.0" + extension + ", NAME.1" + extension + " and so on");
+    fail(file, fmt::format("the snapshot has {} files, but this file's name has no number", count),
+         fmt::format("name them NAME.0{}, NAME.1{} and so on", extension, extension));
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::filesystem::path part = file.parent_path() / (stem.substr(0, dot + 1) + std::to_string(i) + extension);
     std::error_code ignored;
     if (!std::filesystem::exists(part, ignored))
-      fail(file, "the snapshot has " + std::to_string(count) + " files, but " + part.string() + " does not exist",
+      fail(file, fmt::format("the snapshot has {} files, but {} does not exist", count, part.string()),
            "put all of them into one folder");
     parts_.push_back({part, {}, {}});
   }
@@ -120,8 +122,8 @@ void SnapshotReader::count_rows(Part& part) const {
     const hdf5::Dataset positions(group, kPositions);
     if (!positions) continue;
     if (positions.components() != 3)
-      fail(part.file, group_name(static_cast<int>(type)) + "/" + kPositions + " has " +
-                          std::to_string(positions.components()) + " components instead of 3");
+      fail(part.file, fmt::format("{}/{} has {} components instead of 3", group_name(static_cast<int>(type)),
+                                  kPositions, positions.components()));
     part.has_type[type] = true;
     part.rows[type] = positions.rows();
   }
@@ -142,7 +144,7 @@ void SnapshotReader::choose_type(std::optional<int> wanted, const hdf5::Handle& 
       continue;
     present.push_back(type);
     if (rows_of(type) > 0) filled.push_back(type);
-    list += (list.empty() ? "" : ", ") + std::to_string(type) + " (" + std::to_string(rows_of(type)) + " particles)";
+    list += fmt::format("{}{} ({} particles)", list.empty() ? "" : ", ", type, rows_of(type));
   }
   if (present.empty())
     fail(file_, "no group /PartTypeN with a dataset `Coordinates`",
@@ -163,8 +165,8 @@ void SnapshotReader::choose_type(std::optional<int> wanted, const hdf5::Handle& 
   const double declared = low[at] + (at < high.size() ? high[at] * 4294967296.0 : 0);
   if (declared != static_cast<double>(info_.rows)) {
     std::string text = std::to_string(declared);
-    fail(file_, "the header declares " + text.substr(0, text.find('.')) + " particles of " + group_name(type_) +
-                    ", but there are " + std::to_string(info_.rows));
+    fail(file_, fmt::format("the header declares {} particles of {}, but there are {}", text.substr(0, text.find('.')),
+                            group_name(type_), info_.rows));
   }
 }
 
@@ -215,8 +217,8 @@ Table SnapshotReader::read(int, const std::vector<std::string>& columns) {
       const hdf5::Dataset dataset(group, source.dataset);
       if (!dataset || dataset.rows() != rows || dataset.components() != source.components ||
           dataset.type() != source.info.type)
-        faults.fail(0,
-                    group_name(type_) + "/" + source.dataset + " is missing or differs from that of the other files");
+        faults.fail(0, fmt::format("{}/{} is missing or differs from that of the other files", group_name(type_),
+                                   source.dataset));
       dataset.require_data(file_size, decompressed_limit_, faults);
       // All components of the dataset at once.
       std::vector<std::pair<std::uint64_t, Values*>> out;

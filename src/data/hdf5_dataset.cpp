@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "base/stop_point.h"
 #include "base/text.h"
 #include "data/records.h"
@@ -108,15 +110,15 @@ void Dataset::require_data(std::uint64_t file_size, std::uint64_t limit, Faults&
   // In floating point: the product may overflow.
   const double bytes =
       static_cast<double>(rows_) * static_cast<double>(components_) * static_cast<double>(value_bytes_);
-  const std::string declared = "`" + name_ + "` declares " + std::to_string(rows_) + " rows, but ";
+  const std::string declared = fmt::format("`{}` declares {} rows, but ", name_, rows_);
   if (H5Pget_external_count(creation.id()) > 0)
-    faults.fail(0, "`" + name_ + "` is stored in another file, which is not supported");
+    faults.fail(0, fmt::format("`{}` is stored in another file, which is not supported", name_));
   const bool is_virtual = H5Pget_layout(creation.id()) == H5D_VIRTUAL;
   if (!is_virtual && rows_ > 0 && stored == 0) faults.fail(0, declared + "has no data");
   if (!is_virtual && stored > file_size)
-    faults.fail(0, declared + "the file has only " + base::bytes_text(file_size) + ": it may be truncated");
+    faults.fail(0, fmt::format("{}the file has only {}: it may be truncated", declared, base::bytes_text(file_size)));
   if (static_cast<double>(stored) < bytes && bytes > static_cast<double>(limit))
-    faults.fail(0, "`" + name_ + "` decompresses to more than " + base::bytes_text(limit));
+    faults.fail(0, fmt::format("`{}` decompresses to more than {}", name_, base::bytes_text(limit)));
 }
 
 std::uint64_t Dataset::block_rows() const {
@@ -132,7 +134,7 @@ std::uint64_t Dataset::block_rows() const {
 template <typename T>
 void Dataset::append_as(const std::vector<std::pair<std::uint64_t, Values*>>& columns, Faults& faults) const {
   const auto check = [&](herr_t status) {
-    if (status < 0) faults.fail(0, "cannot read `" + name_ + "`: " + last_error());
+    if (status < 0) faults.fail(0, fmt::format("cannot read `{}`: {}", name_, last_error()));
   };
   const std::size_t begin = std::get<std::vector<T>>(*columns.front().second).size();
   for (const auto& [component, values] : columns)

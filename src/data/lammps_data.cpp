@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "data/lammps_frame.h"
 #include "data/readers.h"
@@ -77,7 +79,7 @@ class DataHeader {
   double number(std::string_view word) {
     double value = 0;
     if (!parse_number(word, value) || !std::isfinite(value))
-      faults_.fail(line(), "'" + std::string(word) + "' is not a number");
+      faults_.fail(line(), fmt::format("'{}' is not a number", word));
     return value;
   }
 
@@ -86,7 +88,7 @@ class DataHeader {
     if (words.size() == 2 && last == "atoms") {
       std::int64_t count = 0;
       if (!parse_integer(words[0], count) || count < 0)
-        faults_.fail(line(), "'" + std::string(words[0]) + "' is not a number of atoms");
+        faults_.fail(line(), fmt::format("'{}' is not a number of atoms", words[0]));
       rows_ = static_cast<std::uint64_t>(count);
     }
     constexpr std::array<std::string_view, 3> kLow = {"xlo", "ylo", "zlo"};
@@ -119,7 +121,7 @@ class DataHeader {
       faults_.fail(line(), "the section \"Atoms\" does not name its style, which decides what its columns mean",
                    "write for example \"Atoms # full\"; styles: " + known);
     if (style.size() != 1 || !set_columns(style[0]))
-      faults_.fail(line(), "atom style \"" + std::string(style[0]) + "\" is not supported", "supported: " + known);
+      faults_.fail(line(), fmt::format("atom style \"{}\" is not supported", style[0]), "supported: " + known);
     TextCursor::Place place = cursor_.place();
     std::string row;
     while (cursor_.next(row) && words_of(row).empty()) place = cursor_.place();
@@ -212,8 +214,8 @@ class LammpsData final : public DataFile {
       if (words.empty()) continue;
       if (parse_number(words[0], number))
         Faults(bytes_->file())
-            .fail(cursor.line() - 1, "more rows than " + std::to_string(info_.rows) + " atoms",
-                  "correct the line \"" + std::to_string(info_.rows) + " atoms\", or remove the rows");
+            .fail(cursor.line() - 1, fmt::format("more rows than {} atoms", info_.rows),
+                  fmt::format("correct the line \"{} atoms\", or remove the rows", info_.rows));
       return;
     }
   }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/text_rows.h"
 
@@ -23,7 +25,7 @@ class FrameReader {
       const std::string item = next_line();
       if (item.find_first_not_of(" \t") == std::string::npos) continue;
       if (!item.starts_with("ITEM:"))
-        faults_.fail(item_line(), "expected a line \"ITEM: ...\", found '" + item.substr(0, kMaxShown) + "'",
+        faults_.fail(item_line(), fmt::format("expected a line \"ITEM: ...\", found '{}'", item.substr(0, kMaxShown)),
                      "check the number of atoms of the frame before, and the lines of its header");
       const std::string name = item.substr(std::min(item.find_first_not_of(" \t", 5), item.size()));
       if (name.starts_with("ATOMS")) {
@@ -39,7 +41,7 @@ class FrameReader {
       else if (name.starts_with("UNITS") || name.starts_with("TIME"))
         next_line();
       else
-        faults_.fail(item_line(), "'ITEM: " + name.substr(0, kMaxShown) + "' is no item of a dump of atoms",
+        faults_.fail(item_line(), fmt::format("'ITEM: {}' is no item of a dump of atoms", name.substr(0, kMaxShown)),
                      "supported: dumps of style atom and custom");
     }
   }
@@ -64,7 +66,7 @@ class FrameReader {
       numbers.push_back(number);
     }
     if (numbers.size() != count || words_of(line).size() != count)
-      faults_.fail(item_line(), "expected " + what + ", found '" + line.substr(0, kMaxShown) + "'");
+      faults_.fail(item_line(), fmt::format("expected {}, found '{}'", what, line.substr(0, kMaxShown)));
     return numbers;
   }
 
@@ -75,7 +77,7 @@ class FrameReader {
     const auto words = words_of(line);
     std::int64_t count = 0;
     if (words.size() != 1 || !parse_integer(words[0], count) || count < 0)
-      faults_.fail(item_line(), "expected a number of atoms, found '" + line.substr(0, kMaxShown) + "'");
+      faults_.fail(item_line(), fmt::format("expected a number of atoms, found '{}'", line.substr(0, kMaxShown)));
     rows_ = static_cast<std::uint64_t>(count);
     frame_.rows_line = item_line();
   }
@@ -113,8 +115,8 @@ class FrameReader {
 
   void read_columns(const std::string& name) {
     const auto words = words_of(name);
-    if (words.size() > kMostColumns)
-      faults_.fail(item_line(), "there are more than " + std::to_string(kMostColumns) + " columns");
+    if (words.size() > kMaxColumns)
+      faults_.fail(item_line(), fmt::format("there are more than {} columns", kMaxColumns));
     UniqueNames names;
     for (std::size_t i = 1; i < words.size(); ++i) frame_.columns.push_back(names.add(std::string(words[i])));
   }
@@ -122,7 +124,7 @@ class FrameReader {
   LammpsFrame finished() {
     const char* const missing = !step_ ? "TIMESTEP" : !rows_ ? "NUMBER OF ATOMS" : nullptr;
     if (missing != nullptr)
-      faults_.fail(item_line(), std::string("the frame has no item \"") + missing + "\" before its atoms");
+      faults_.fail(item_line(), fmt::format("the frame has no item \"{}\" before its atoms", missing));
     frame_.step = *step_;
     frame_.rows = *rows_;
     return frame_;

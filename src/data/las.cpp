@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/readers.h"
 #include "data/records.h"
 #include "data/single_frame.h"
@@ -47,7 +49,7 @@ std::uint64_t defined_bytes(int point_format) {
 [[noreturn]] void refuse_laz(Faults& faults, const std::filesystem::path& file) {
   const std::string name = file.filename().string(), las = file.stem().string() + ".las";
   faults.fail(0, "the points are compressed (LAZ), which is not supported",
-              "decompress it: `laszip -i " + name + " -o " + las + "`, or `pdal translate " + name + " " + las + "`");
+              fmt::format("decompress it: `laszip -i {} -o {}`, or `pdal translate {} {}`", name, las, name, las));
 }
 
 /// Returns whether a variable-length record describes compression.
@@ -64,15 +66,14 @@ bool has_laszip_record(const ByteSource& bytes, std::uint64_t at, std::uint32_t 
 LasHeader parse_header(const ByteSource& bytes, Faults& faults) {
   const std::string head = bytes.text(0, kHeader14);
   if (head.size() < kShortestHeader)
-    faults.fail(0, "the file ends within the header, after " + std::to_string(head.size()) + " bytes");
+    faults.fail(0, fmt::format("the file ends within the header, after {} bytes", head.size()));
   const auto at = [&]<class T>(T, std::size_t offset) { return load<T>(head.data() + offset, false); };
   const int major = at(std::uint8_t{}, 24), minor = at(std::uint8_t{}, 25);
-  if (major != 1 || minor > 4)
-    faults.fail(0, "version " + std::to_string(major) + "." + std::to_string(minor) + " of LAS; supported: 1.0 to 1.4");
+  if (major != 1 || minor > 4) faults.fail(0, fmt::format("version {}.{} of LAS; supported: 1.0 to 1.4", major, minor));
   const auto header_bytes = at(std::uint16_t{}, 94);
   if (header_bytes < kShortestHeader || header_bytes > bytes.size())
-    faults.fail(0, "the length of the header is " + std::to_string(header_bytes) + " bytes; must be from " +
-                       std::to_string(kShortestHeader) + " to the file size");
+    faults.fail(0, fmt::format("the length of the header is {} bytes; must be from {} to the file size", header_bytes,
+                               kShortestHeader));
   LasHeader header;
   header.points.begin = at(std::uint32_t{}, 96);
   const auto format = at(std::uint8_t{}, 104);
@@ -80,19 +81,18 @@ LasHeader parse_header(const ByteSource& bytes, Faults& faults) {
       has_laszip_record(bytes, header_bytes, at(std::uint32_t{}, 100), header.points.begin))
     refuse_laz(faults, bytes.file());
   header.point_format = format;
-  if (format > 10) faults.fail(0, "point format " + std::to_string(format) + "; supported: 0 to 10");
+  if (format > 10) faults.fail(0, fmt::format("point format {}; supported: 0 to 10", format));
   header.points.stride = at(std::uint16_t{}, 105);
   if (header.points.stride < defined_bytes(format))
-    faults.fail(0, "point records of " + std::to_string(header.points.stride) + " bytes; point format " +
-                       std::to_string(format) + " needs " + std::to_string(defined_bytes(format)));
+    faults.fail(0, fmt::format("point records of {} bytes; point format {} needs {}", header.points.stride, format,
+                               defined_bytes(format)));
   header.points.rows = at(std::uint32_t{}, 107);
   if (minor == 4 && header_bytes >= kHeader14 && head.size() >= kHeader14)
     if (const auto count = at(std::uint64_t{}, 247); count > 0) header.points.rows = count;
   if (header.points.begin < header_bytes || !contains(bytes.size(), header.points))
-    faults.fail(0, "the header declares " + std::to_string(header.points.rows) + " points of " +
-                       std::to_string(header.points.stride) + " bytes from byte " +
-                       std::to_string(header.points.begin) + ", but the file has " + std::to_string(bytes.size()) +
-                       " bytes; the file is truncated, or the header is wrong");
+    faults.fail(0, fmt::format("the header declares {} points of {} bytes from byte {}, but the file has {} bytes; the "
+                               "file is truncated, or the header is wrong",
+                               header.points.rows, header.points.stride, header.points.begin, bytes.size()));
   for (std::size_t i = 0; i < 3; ++i) {
     header.scale[i] = at(double{}, 131 + 8 * i);
     header.offset[i] = at(double{}, 155 + 8 * i);

@@ -6,6 +6,8 @@
 #include <gemmi/numb.hpp>
 #include <unordered_map>
 
+#include <fmt/core.h>
+
 #include "data/atom_table.h"
 #include "data/cif_assembly.h"
 #include "data/cif_rows.h"
@@ -84,7 +86,8 @@ const std::string& preferred(const Row& row, AtomItem author, AtomItem label) {
 /// NaN if there is no value.
 double MmcifReader::number(const std::string& text, std::uint64_t line) {
   const double value = gemmi::cif::as_number(text);
-  if (std::isnan(value) && !text.empty()) faults_.add_of_many(line, "`" + text.substr(0, 40) + "` is not a number");
+  if (std::isnan(value) && !text.empty())
+    faults_.add_of_many(line, fmt::format("`{}` is not a number", text.substr(0, 40)));
   return value;
 }
 
@@ -121,7 +124,7 @@ MmcifReader::MmcifReader(const Bytes& bytes, const OpenOptions& options) : fault
     double v[12];
     for (std::size_t i = 0; i < 12; ++i) {
       v[i] = gemmi::cif::as_number(row[i + 1]);
-      if (!std::isfinite(v[i])) faults_.fail(line, "operator `" + row[0] + "` of the assemblies is malformed");
+      if (!std::isfinite(v[i])) faults_.fail(line, fmt::format("operator `{}` of the assemblies is malformed", row[0]));
     }
     assemblies.add_operator(
         row[0], {{Vec3d{v[0], v[1], v[2]}, Vec3d{v[4], v[5], v[6]}, Vec3d{v[8], v[9], v[10]}}, {v[3], v[7], v[11]}});

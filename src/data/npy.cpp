@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/npy_columns.h"
 #include "data/npy_header.h"
@@ -19,9 +21,9 @@ void check_shape(const NpyHeader& header, Faults& faults) {
                             : header.shape.size() == 2 && (header.shape[1] == 3 || header.shape[1] == 4);
   if (is_table) return;
   faults.fail(0,
-              "the array has the shape " + shape_text(header) +
-                  (header.is_structured ? "; a structured array must have one dimension"
-                                        : "; a plain array must be (N, 3), or (N, 4) with the radius last"),
+              fmt::format("the array has the shape {}{}", shape_text(header),
+                          header.is_structured ? "; a structured array must have one dimension"
+                                               : "; a plain array must be (N, 3), or (N, 4) with the radius last"),
               header.is_structured
                   ? "flatten it, e.g. with `reshape(-1)`"
                   : "transpose it, or save a structured array or an NPZ file, whose columns have names");
@@ -36,10 +38,9 @@ class NpyFile final : public SingleFrame {
       faults.fail(0, fault);
     check_shape(header, faults);
     if (const std::uint64_t declared = npy_data_bytes(header); declared != bytes->size() - header.begin)
-      faults.fail(0, "the header declares an array with shape " + shape_text(header) + " with items of " +
-                         std::to_string(header.item_size) + " bytes, but " +
-                         std::to_string(bytes->size() - header.begin) +
-                         " bytes follow; the file is truncated, or the header is wrong");
+      faults.fail(0, fmt::format("the header declares an array with shape {} with items of {} bytes, but {} bytes "
+                                 "follow; the file is truncated, or the header is wrong",
+                                 shape_text(header), header.item_size, bytes->size() - header.begin));
     columns_ = npy_columns(header, "xyz", info_.columns);
     if (!header.is_structured) {
       constexpr const char* kNames[] = {"x", "y", "z", "radius"};

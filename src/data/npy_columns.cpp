@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/records.h"
 #include "data/word_index.h"
@@ -63,8 +65,7 @@ Values read_texts(const ByteSource& bytes, std::uint64_t rows, const NpyColumn& 
     const std::string block = bytes.text(column.begin + first * stride, static_cast<std::size_t>(count * stride));
     for (std::uint64_t i = 0; i < count; ++i) {
       if (!decode_text(column.field, block.data() + i * stride + column.offset, word))
-        faults.add_of_many(0,
-                           "row " + std::to_string(first + i + 1) + ": `" + column.name + "` has an invalid character");
+        faults.add_of_many(0, fmt::format("row {}: `{}` has an invalid character", first + i + 1, column.name));
       out.add(word);
     }
   }
@@ -114,7 +115,7 @@ std::uint64_t npy_data_bytes(const NpyHeader& header) {
 std::string shape_text(const NpyHeader& header) {
   std::string out;
   for (const std::uint64_t length : header.shape) out += (out.empty() ? "" : ", ") + std::to_string(length);
-  return "(" + out + (header.shape.size() == 1 ? ",)" : ")");
+  return fmt::format("({}{}", out, header.shape.size() == 1 ? ",)" : ")");
 }
 
 std::vector<Column> read_npy_columns(const ByteSource& bytes, std::uint64_t rows, const std::vector<NpyColumn>& columns,

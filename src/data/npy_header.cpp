@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cstddef>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/python_literal.h"
 #include "data/quoted_word.h"
@@ -16,7 +18,7 @@ using namespace std::string_view_literals;
 
 constexpr std::string_view kNpySignature = "\x93NUMPY"sv;
 /// NumPy's own limit.
-constexpr std::size_t kMostDimensions = 64;
+constexpr std::size_t kMaxDimensions = 64;
 
 /// Parses the type of an item, e.g. `<f4`.
 ///
@@ -34,7 +36,7 @@ std::string parse_type(const std::string& code, NpyField& field) {
   if (error != std::errc() || end != last) return unsupported;
   field.is_big_endian = code[0] == '>';
   if (code[1] == 'S' || code[1] == 'a' || code[1] == 'U' || code[1] == 'V') {
-    if (field.size > kLongestNpyText) return type + " is longer than " + std::to_string(kLongestNpyText);
+    if (field.size > kLongestNpyText) return fmt::format("{} is longer than {}", type, kLongestNpyText);
     field.kind = code[1] == 'U' ? NpyField::Kind::kUtf32 : NpyField::Kind::kBytes;
     if (code[1] == 'U') field.size *= 4;
     if (code[1] == 'V') field.components = 0;
@@ -67,18 +69,19 @@ std::string parse_field(const PythonLiteral& source, NpyHeader& header) {
   NpyField field;
   field.name = name.text;
   if (!source.items[1].is(Kind::kText))
-    return "field " + quoted_word(field.name) + " is a record; save its fields separately";
+    return fmt::format("field {} is a record; save its fields separately", quoted_word(field.name));
   if (const std::string fault = parse_type(source.items[1].text, field); !fault.empty())
-    return "field " + quoted_word(field.name) + ": " + fault;
+    return fmt::format("field {}: {}", quoted_word(field.name), fault);
   const bool is_padding = field.components == 0;
   std::uint64_t count = 1;
   if (source.items.size() == 3) {
     if (!source.items[2].is(Kind::kSequence))
-      return "the shape of field " + quoted_word(field.name) + " is not a tuple";
+      return fmt::format("the shape of field {} is not a tuple", quoted_word(field.name));
     for (const PythonLiteral& length : source.items[2].items) {
-      if (!length.is(Kind::kInteger)) return "the shape of field " + quoted_word(field.name) + " is not integers";
-      if (length.integer > kMostColumns || (count *= length.integer) > kMostColumns)
-        return "field " + quoted_word(field.name) + " has more than " + std::to_string(kMostColumns) + " components";
+      if (!length.is(Kind::kInteger))
+        return fmt::format("the shape of field {} is not integers", quoted_word(field.name));
+      if (length.integer > kMaxColumns || (count *= length.integer) > kMaxColumns)
+        return fmt::format("field {} has more than {} components", quoted_word(field.name), kMaxColumns);
     }
   }
   field.offset = header.item_size;
@@ -105,15 +108,14 @@ std::string parse_description(const PythonLiteral& source, NpyHeader& header) {
     const std::size_t fields = header.fields.size();
     if (std::string fault = parse_field(field, header); !fault.empty()) return fault;
     if (header.fields.size() > fields) columns += header.fields.back().components;
-    if (columns > kMostColumns) return "it has more than " + std::to_string(kMostColumns) + " components";
+    if (columns > kMaxColumns) return fmt::format("it has more than {} components", kMaxColumns);
   }
   return {};
 }
 
 std::string parse_shape(const PythonLiteral& source, NpyHeader& header) {
   if (!source.is(Kind::kSequence)) return "`shape` is not a tuple";
-  if (source.items.size() > kMostDimensions)
-    return "it has more than " + std::to_string(kMostDimensions) + " dimensions";
+  if (source.items.size() > kMaxDimensions) return fmt::format("it has more than {} dimensions", kMaxDimensions);
   for (const PythonLiteral& length : source.items) {
     if (!length.is(Kind::kInteger)) return "`shape` is not a tuple of integers";
     header.shape.push_back(length.integer);
@@ -140,9 +142,9 @@ std::string parse_npy_header(std::string_view head, NpyHeader& header) {
   header.begin = npy_header_end(head);
   if (header.begin == 0) return "the file ends within the header";
   const int version = head[kNpySignature.size()];
-  if (version < 1 || version > 3) return "version " + std::to_string(version) + " of the format; supported: 1 to 3";
+  if (version < 1 || version > 3) return fmt::format("version {} of the format; supported: 1 to 3", version);
   if (header.begin > kLongestNpyHeader)
-    return "the header exceeds the limit of " + std::to_string(kLongestNpyHeader) + " bytes";
+    return fmt::format("the header exceeds the limit of {} bytes", kLongestNpyHeader);
   if (header.begin > head.size()) return "the file ends within the header";
   const std::size_t text = 8 + length_bytes(head);
   PythonLiteral source;

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "data/customary.h"
 #include "data/npy_columns.h"
@@ -17,7 +19,7 @@ namespace {
 using namespace std::string_view_literals;
 
 /// More members than that are not a file of columns.
-constexpr std::size_t kMostMembers = 10000;
+constexpr std::size_t kMaxMembers = 10000;
 
 struct Member {
   std::string name;  ///< without ".npy"
@@ -41,9 +43,10 @@ Member described(ZipReader& zip) {
   head.insert(head.end(), rest.begin(), rest.end());
   member.fault = parse_npy_header({head.data(), head.size()}, member.header);
   const NpyHeader& header = member.header;
-  const bool is_table = header.shape.size() == 1 ||
-                        (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMostColumns);
-  if (member.fault.empty() && !is_table) member.fault = "the shape " + shape_text(header) + " is not that of columns";
+  const bool is_table =
+      header.shape.size() == 1 || (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMaxColumns);
+  if (member.fault.empty() && !is_table)
+    member.fault = fmt::format("the shape {} is not that of columns", shape_text(header));
   return member;
 }
 
@@ -64,8 +67,8 @@ class NpzFile final : public SingleFrame {
     Faults faults(bytes->file());
     for (ZipReader zip(*bytes); zip.next();) {
       members_.push_back(described(zip));
-      if (members_.size() > kMostMembers)
-        faults.fail(0, "the archive has more than " + std::to_string(kMostMembers) + " members");
+      if (members_.size() > kMaxMembers)
+        faults.fail(0, fmt::format("the archive has more than {} members", kMaxMembers));
     }
     const auto positions = std::find_if(members_.begin(), members_.end(), has_positions);
     if (positions == members_.end())
@@ -111,15 +114,14 @@ class NpzFile final : public SingleFrame {
     Faults faults(bytes_->file());
     for (const NpyColumn& column : member.columns)
       if (has_column(before, column.name)) faults.fail(0, "duplicate column " + quoted_word(column.name));
-    if (info_.columns.size() > kMostColumns)
-      faults.fail(0, "there are more than " + std::to_string(kMostColumns) + " columns");
+    if (info_.columns.size() > kMaxColumns) faults.fail(0, fmt::format("there are more than {} columns", kMaxColumns));
   }
 
   std::string listed_members() const {
     std::vector<ColumnInfo> names;
     for (const Member& member : members_)
-      names.push_back(
-          {member.name + (member.fault.empty() ? " " + shape_text(member.header) : " (" + member.fault + ")")});
+      names.push_back({member.name +
+                       (member.fault.empty() ? " " + shape_text(member.header) : fmt::format(" ({})", member.fault))});
     return listed(names);
   }
 
@@ -127,18 +129,17 @@ class NpzFile final : public SingleFrame {
   static std::vector<char> array_bytes(ZipReader& zip, const Member& member, std::uint64_t& limit, Faults& faults) {
     const std::uint64_t data = npy_data_bytes(member.header), begin = member.header.begin;
     if (data > limit || begin > limit - data)
-      faults.fail(0, "array " + quoted_word(member.name) + " with shape " + shape_text(member.header) +
-                         " exceeds the limit of " + base::bytes_text(limit) + " of decompressed data");
+      faults.fail(0, fmt::format("array {} with shape {} exceeds the limit of {} of decompressed data",
+                                 quoted_word(member.name), shape_text(member.header), base::bytes_text(limit)));
     limit -= data + begin;
     std::vector<char> bytes = zip.read(data + begin + 1);
     if (bytes.size() != data + begin)
-      faults.fail(0,
-                  "array " + quoted_word(member.name) + " with shape " + shape_text(member.header) + " needs " +
-                      std::to_string(data) + " bytes of data, but " +
-                      (bytes.size() > data + begin
-                           ? "more"
-                           : std::to_string(bytes.size() - std::min(begin, static_cast<std::uint64_t>(bytes.size())))) +
-                      " follow its header");
+      faults.fail(0, fmt::format("array {} with shape {} needs {} bytes of data, but {} follow its header",
+                                 quoted_word(member.name), shape_text(member.header), data,
+                                 bytes.size() > data + begin
+                                     ? "more"
+                                     : std::to_string(bytes.size() -
+                                                      std::min(begin, static_cast<std::uint64_t>(bytes.size())))));
     return bytes;
   }
 

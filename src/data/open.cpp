@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <string_view>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
+#include "base/text.h"
 #include "data/readers.h"
 
 namespace orrery::data {
@@ -12,16 +14,10 @@ namespace {
 
 constexpr std::size_t kHeadBytes = std::size_t{64} << 10;
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 std::string extension_of(const std::filesystem::path& file) {
-  const std::string last = lower(file.extension().string());
+  const std::string last = base::lower(file.extension().string());
   const bool is_compressed = last == ".gz" || last == ".zst" || last == ".bz2" || last == ".xz";
-  return is_compressed ? lower(file.stem().extension().string()) : last;
+  return is_compressed ? base::lower(file.stem().extension().string()) : last;
 }
 
 /// Whether a file begins as an EXR, PNG, JPEG, TIFF or Radiance image.
@@ -58,9 +54,10 @@ void refuse_folder(const std::filesystem::path& file) {
     remedy = "`oiiotool --info -v` shows its layers and attributes";
   } else if (signature.extension == ".pqr") {
     text = "PQR files are not supported";
-    remedy =
-        "convert it to a table: (echo x y z radius; awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' " +
-        bytes.file().filename().string() + ") > atoms.txt";
+    remedy = fmt::format(
+        "convert it to a table: (echo x y z radius; awk '/^(ATOM|HETATM)/ {{print $(NF-4), $(NF-3), $(NF-2), $NF}}' "
+        "{}) > atoms.txt",
+        bytes.file().filename().string());
   } else if (is_adios(signature.extension)) {
     refuse_adios(bytes.file());
   }

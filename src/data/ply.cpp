@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/ply_rows.h"
 #include "data/readers.h"
@@ -32,7 +34,7 @@ class PlyFile final : public SingleFrame {
     std::uint64_t left = bytes->size() - header_.bytes;
     for (const PlyElement& element : header_.elements) {
       check_count(faults, element, header_, left);
-      left -= std::min(left, element.count * fewest_bytes(element, header_.encoding));
+      left -= std::min(left, element.count * min_bytes(element, header_.encoding));
     }
     describe_columns(faults);
   }
@@ -89,8 +91,8 @@ class PlyFile final : public SingleFrame {
     RecordLayout layout;
     layout.begin = header_.bytes;
     for (std::size_t e = 0; e < vertex_; ++e)
-      layout.begin += header_.elements[e].count * fewest_bytes(header_.elements[e], header_.encoding);
-    layout.stride = fewest_bytes(vertex(), header_.encoding);
+      layout.begin += header_.elements[e].count * min_bytes(header_.elements[e], header_.encoding);
+    layout.stride = min_bytes(vertex(), header_.encoding);
     layout.rows = vertex().count;
     check_rest(layout.begin + layout.rows * layout.stride, faults);
     std::vector<std::uint64_t> offsets;
@@ -110,7 +112,7 @@ class PlyFile final : public SingleFrame {
   void check_rest(std::uint64_t at, Faults& faults) const {
     std::size_t e = vertex_ + 1;
     for (; e < header_.elements.size() && !header_.elements[e].has_list(); ++e)
-      at += header_.elements[e].count * fewest_bytes(header_.elements[e], header_.encoding);
+      at += header_.elements[e].count * min_bytes(header_.elements[e], header_.encoding);
     const std::string rest = bytes_->text(at, static_cast<std::size_t>(bytes_->size() - at));
     PlyCursor cursor(rest, header_.encoding, 0);
     for (; e < header_.elements.size(); ++e) {
@@ -129,9 +131,11 @@ class PlyFile final : public SingleFrame {
     for (const std::size_t p : wanted) layout.columns[p].is_wanted = true;
     TextTable text = read_text_rows(*bytes_, layout, faults);
     if (text.rows != vertex().count)
-      faults.fail(static_cast<std::uint64_t>(vertex().line),
-                  "the header declares " + std::to_string(vertex().count) + " rows of `vertex`, but there are " +
-                      std::to_string(text.rows) + "; the file is truncated, or the count is wrong");
+      faults.fail(
+          static_cast<std::uint64_t>(vertex().line),
+          fmt::format(
+              "the header declares {} rows of `vertex`, but there are {}; the file is truncated, or the count is wrong",
+              vertex().count, text.rows));
     std::vector<Values> out;
     for (const std::size_t p : wanted) out.push_back(std::move(text.values[p]));
     return out;
@@ -151,14 +155,14 @@ class PlyFile final : public SingleFrame {
       }
       std::vector<double> row(element.properties.size());
       for (std::uint64_t i = 0; i < element.count; ++i) {
-        const auto name = [&] { return "vertex " + std::to_string(i + 1) + " of " + std::to_string(element.count); };
+        const auto name = [&] { return fmt::format("vertex {} of {}", i + 1, element.count); };
         read_row(faults, element, cursor, name, [&](const PlyProperty& property, std::size_t k) {
           return property.is_list ? cursor.skip(property) : cursor.take(property.type, row[k]);
         });
         for (std::size_t w = 0; w < wanted.size(); ++w)
           if (!append(out[w], row[wanted[w]]))
             faults.fail(static_cast<std::uint64_t>(cursor.line()),
-                        name() + ", `" + element.properties[wanted[w]].name + "`: not an integer of 64 bits");
+                        fmt::format("{}, `{}`: not an integer of 64 bits", name(), element.properties[wanted[w]].name));
       }
     }
     check_end(faults, header_, cursor);

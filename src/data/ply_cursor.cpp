@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include <fmt/core.h>
+
 #include "data/text_rows.h"
 
 namespace orrery::data {
@@ -72,7 +74,7 @@ bool PlyCursor::skip(const PlyProperty& property) {
 
 std::string PlyCursor::fault() const {
   if (is_bad_length_) return "the length of the list is not a non-negative integer";
-  if (ascii_ && at_ < row_end_) return "`" + word() + "` is not a number";
+  if (ascii_ && at_ < row_end_) return fmt::format("`{}` is not a number", word());
   return ascii_ && row_end_ < end_ ? "unexpected end of line; a row must be one line" : "unexpected end of file";
 }
 

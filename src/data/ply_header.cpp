@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/text_cursor.h"
 
@@ -37,7 +39,7 @@ bool is_named(const std::vector<Named>& list, const std::string& name) {
 
 std::string parse_format(const std::vector<std::string_view>& words, PlyHeader& header) {
   if (words.size() != 3) return "a format line must be `format ENCODING 1.0`";
-  if (words[2] != "1.0") return "unsupported format version `" + std::string(words[2]) + "`; supported is 1.0";
+  if (words[2] != "1.0") return fmt::format("unsupported format version `{}`; supported is 1.0", words[2]);
   if (words[1] == "ascii") {
     header.encoding = PlyEncoding::kAscii;
   } else if (words[1] == "binary_little_endian") {
@@ -58,7 +60,7 @@ std::string parse_element(const std::vector<std::string_view>& words, int line, 
   const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
   if (error != std::errc() || end != words[2].data() + words[2].size())
     return "the count of an element must be a non-negative integer";
-  if (is_named(header.elements, element.name)) return "duplicate element `" + element.name + "`";
+  if (is_named(header.elements, element.name)) return fmt::format("duplicate element `{}`", element.name);
   header.elements.push_back(element);
   return {};
 }
@@ -72,9 +74,10 @@ std::string parse_property(const std::vector<std::string_view>& words, PlyHeader
   if (!parse_type(words[words.size() - 2], property.type))
     return "unknown type; allowed are char .. double, int8 .. float64";
   property.name = words.back();
-  if (is_named(header.elements.back().properties, property.name)) return "duplicate property `" + property.name + "`";
-  if (header.elements.back().properties.size() == kMostColumns)
-    return "more than " + std::to_string(kMostColumns) + " properties of an element";
+  if (is_named(header.elements.back().properties, property.name))
+    return fmt::format("duplicate property `{}`", property.name);
+  if (header.elements.back().properties.size() == kMaxColumns)
+    return fmt::format("more than {} properties of an element", kMaxColumns);
   header.elements.back().properties.push_back(property);
   return {};
 }
@@ -91,7 +94,7 @@ std::string parse_ply_header(std::string_view file, PlyHeader& header, int& line
     if (end == std::string_view::npos) {
       if (line == 1) return kNoPly;
       if (file.size() == head.size()) return "the header has no end_header";
-      return "the header exceeds the limit of " + std::to_string(kLongestHeader) + " bytes";
+      return fmt::format("the header exceeds the limit of {} bytes", kLongestHeader);
     }
     const auto words = words_of(head.substr(at, end - at));
     at = end + 1;

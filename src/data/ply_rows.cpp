@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <string>
 
+#include <fmt/core.h>
+
 namespace orrery::data {
 
-std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding) {
+std::uint64_t min_bytes(const PlyElement& element, PlyEncoding encoding) {
   std::uint64_t bytes = 0;
   for (const PlyProperty& p : element.properties)
     bytes += encoding == PlyEncoding::kAscii ? 2 : p.is_list ? size_of(p.count_type) : size_of(p.type);
@@ -14,22 +16,23 @@ std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding) {
 }
 
 void check_count(Faults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left) {
-  const std::uint64_t each = std::max<std::uint64_t>(1, fewest_bytes(element, header.encoding));
+  const std::uint64_t each = std::max<std::uint64_t>(1, min_bytes(element, header.encoding));
   // The last ascii word needs no space after it.
   const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
   if (element.count > bytes / each)
     faults.fail(static_cast<std::uint64_t>(element.line),
-                "the header declares " + std::to_string(element.count) + " rows of `" + element.name + "`, but only " +
-                    std::to_string(bytes_left) + " bytes follow; the file is truncated, or the count is wrong");
+                fmt::format("the header declares {} rows of `{}`, but only {} bytes follow; the file is truncated, or "
+                            "the count is wrong",
+                            element.count, element.name, bytes_left));
 }
 
 void skip_element(Faults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor) {
   if (element.properties.empty()) return;
   if (header.encoding != PlyEncoding::kAscii && !element.has_list())
-    return cursor.skip_bytes(element.count * fewest_bytes(element, header.encoding));
+    return cursor.skip_bytes(element.count * min_bytes(element, header.encoding));
   for (std::uint64_t i = 0; i < element.count; ++i)
     read_row(
-        faults, element, cursor, [&] { return "row " + std::to_string(i + 1) + " of `" + element.name + "`"; },
+        faults, element, cursor, [&] { return fmt::format("row {} of `{}`", i + 1, element.name); },
         [&](const PlyProperty& property, std::size_t) { return cursor.skip(property); });
 }
 

@@ -12,7 +12,7 @@ namespace orrery::data {
 
 /// Returns the minimum size of an element's row, in bytes; exact in a binary file if the element has no lists. Used to
 /// check counts before memory is allocated.
-std::uint64_t fewest_bytes(const PlyElement& element, PlyEncoding encoding);
+std::uint64_t min_bytes(const PlyElement& element, PlyEncoding encoding);
 
 /// Raises an error at the line of an element if fewer bytes follow than its rows need.
 void check_count(Faults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left);

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cstddef>
 
+#include <fmt/core.h>
+
 namespace orrery::data {
 namespace {
 
@@ -60,7 +62,7 @@ class Parser {
         out.items.push_back(std::move(mapped));
       }
       if (!take(',')) {
-        if (!take(closing)) return fail(std::string("`") + closing + "` is missing");
+        if (!take(closing)) return fail(fmt::format("`{}` is missing", closing));
         return true;
       }
     }
@@ -96,7 +98,7 @@ class Parser {
     out.kind = Kind::kInteger;
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), out.integer);
     if (error == std::errc::result_out_of_range) return fail("an integer is too large");
-    if (error != std::errc()) return fail("unexpected `" + std::string(1, rest.front()) + "`");
+    if (error != std::errc()) return fail(fmt::format("unexpected `{}`", std::string(1, rest.front())));
     at_ += static_cast<std::size_t>(end - rest.data());
     if (!at_end() && source_[at_] == 'L') ++at_;  // Python 2
     return true;

@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <variant>
 
+#include <fmt/core.h>
+
 #include "base/stop_point.h"
 
 namespace orrery::data {
@@ -45,9 +47,8 @@ void decode_field(const RecordField& field, const char* records, std::size_t str
 void check_unsigned(const std::string& column, const std::vector<std::int64_t>& values, Faults& faults) {
   for (std::size_t row = 0; row < values.size(); ++row)
     if (values[row] < 0)
-      faults.add_of_many(0, "row " + std::to_string(row + 1) + ": `" + column + "` is " +
-                                std::to_string(static_cast<std::uint64_t>(values[row])) +
-                                ", larger than the largest int64");
+      faults.add_of_many(0, fmt::format("row {}: `{}` is {}, larger than the largest int64", row + 1, column,
+                                        static_cast<std::uint64_t>(values[row])));
 }
 
 bool contains(std::uint64_t size, const RecordLayout& layout) {

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include <fmt/core.h>
+
 namespace orrery::data {
 
 int TextFrames::frame_count() {
@@ -22,7 +24,7 @@ void TextFrames::require_end(TextCursor rows_end, std::uint64_t count_line) cons
   std::string line;
   if (!rows_end.next_filled(line) || begins_frame(line)) return;
   Faults(bytes_->file())
-      .fail(rows_end.line() - 1, "more rows than line " + std::to_string(count_line) + " declares",
+      .fail(rows_end.line() - 1, fmt::format("more rows than line {} declares", count_line),
             "correct the number of atoms, or remove the rows");
 }
 

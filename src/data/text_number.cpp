@@ -91,7 +91,7 @@ const char* scan_any_number(const char* at, double& value) {
   if (letter == 'e' || letter == 'd') {
     const bool is_below = p[1] == '-';
     const char* const first = p + (is_below || p[1] == '+' ? 2 : 1);
-    const EightCharacters characters(first);
+    const CharacterBlock characters(first);
     const unsigned count = first_of(characters.others());
     if (count == 0 || count == 8) return scan_with_library(at, value);
     const auto power = static_cast<std::int64_t>(characters.value(count));

@@ -18,9 +18,9 @@ inline constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1
                                      1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 /// Eight characters in one word. A loop over digits would mispredict its end.
-class EightCharacters {
+class CharacterBlock {
  public:
-  explicit EightCharacters(const char* at) {
+  explicit CharacterBlock(const char* at) {
     static_assert(std::endian::native == std::endian::little);
     std::memcpy(&word_, at, sizeof word_);
     word_ ^= 0x3030303030303030;  // digits become their values
@@ -54,7 +54,7 @@ class EightCharacters {
   std::uint64_t word_ = 0;
 };
 
-/// Index of the first character that EightCharacters::others() marks; 8 if there is none.
+/// Index of the first character that CharacterBlock::others() marks; 8 if there is none.
 inline unsigned first_of(std::uint64_t marks) { return static_cast<unsigned>(std::countr_zero(marks)) / 8; }
 
 /// Appends the leading digits of a text to `value`, which wraps around beyond 64 bits.
@@ -62,7 +62,7 @@ inline unsigned first_of(std::uint64_t marks) { return static_cast<unsigned>(std
 /// Result     the end of the digits
 inline const char* scan_digits(const char* at, std::uint64_t& value) {
   for (;;) {
-    const EightCharacters characters(at);
+    const CharacterBlock characters(at);
     const unsigned count = first_of(characters.others());
     if (count > 0) value = value * kIntegerPowers[count] + characters.value(count);
     at += count;
@@ -79,17 +79,17 @@ const char* scan_any_number(const char* at, double& value);
 inline const char* scan_number(const char* at, double& value) {
   // The end of a number is where the next one is looked for: it should depend on as few operations as possible.
   const unsigned sign = *at == '-' ? 1 : 0;
-  const EightCharacters characters(at);
+  const CharacterBlock characters(at);
   const std::uint64_t others = characters.others() & ~(std::uint64_t{sign} << 7);
   const std::uint64_t behind_point = others & (others - 1);
   const unsigned point = first_of(others);
-  const unsigned far_end = 8 + first_of(EightCharacters(at + 8).others());
+  const unsigned far_end = 8 + first_of(CharacterBlock(at + 8).others());
   const unsigned end = behind_point != 0 ? first_of(behind_point) : far_end;
   const unsigned count = end - sign - 1;
   const char after = static_cast<char>(at[end] | 0x20);
   if (point == 8 || at[point] != '.' || count - 1 >= 8 || after == 'e' || after == 'd')
     return scan_any_number(at, value);
-  EightCharacters digits(at + sign);
+  CharacterBlock digits(at + sign);
   digits.remove(point - sign, at[sign + 8]);
   // Both numbers are exact, hence the quotient is correctly rounded.
   const double magnitude =

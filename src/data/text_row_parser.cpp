@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/core.h>
+
 namespace orrery::data {
 namespace {
 
@@ -73,7 +75,7 @@ const char* RowParser::parse_blank_separated(const char* at) {
     at = skip_blanks(at);
     const char* const begin = at;
     if (*at == '\n') {
-      fail("has " + std::to_string(c) + " values, not " + std::to_string(count));
+      fail(fmt::format("has {} values, not {}", c, count));
       return nullptr;
     }
     void* const column = (*columns_)[c];
@@ -99,7 +101,7 @@ const char* RowParser::parse_blank_separated(const char* at) {
   at = skip_blanks(at);
   if (*at == '\n') return at;
   if (*at == layout_->comment && *at != '\0') return line_end(at);
-  fail("has more than " + std::to_string(count) + " values");
+  fail(fmt::format("has more than {} values", count));
   return nullptr;
 }
 
@@ -113,7 +115,7 @@ const char* RowParser::parse_separated(const char* at) {
   for (std::size_t c = 0; c < count; ++c) {
     if (c > 0) {
       if (*at != separator) {
-        fail("has " + std::to_string(c) + " values, not " + std::to_string(count));
+        fail(fmt::format("has {} values, not {}", c, count));
         return nullptr;
       }
       ++at;
@@ -125,7 +127,7 @@ const char* RowParser::parse_separated(const char* at) {
     if (is_quoted) {
       at = quoted_value(at, value);
       if (at == nullptr) {
-        fail("column " + std::to_string(c + 1) + ": a quoted value does not end in this line");
+        fail(fmt::format("column {}: a quoted value does not end in this line", c + 1));
         return nullptr;
       }
       at = skip(at);
@@ -141,7 +143,7 @@ const char* RowParser::parse_separated(const char* at) {
     }
   }
   if (*at == '\n' || layout_->allows_more) return line_end(at);
-  fail("has more than " + std::to_string(count) + " values");
+  fail(fmt::format("has more than {} values", count));
   return nullptr;
 }
 
@@ -206,10 +208,10 @@ void RowParser::fail_value(std::size_t c, const char* begin, const char* end) {
   const bool is_long = end - begin > kMaxShown;
   const std::string word(begin, is_long ? begin + kMaxShown : end);
   const ColumnType type = layout_->columns[c].type;
-  fail("column " + std::to_string(c + 1) + ": '" + word + (is_long ? "...' is not " : "' is not ") +
-       (type == ColumnType::kInt64  ? "an integer"
-        : type == ColumnType::kText ? "a string"
-                                    : "a number"));
+  fail(fmt::format("column {}: '{}{}{}", c + 1, word, is_long ? "...' is not " : "' is not ",
+                   type == ColumnType::kInt64  ? "an integer"
+                   : type == ColumnType::kText ? "a string"
+                                               : "a number"));
 }
 
 }  // namespace orrery::data

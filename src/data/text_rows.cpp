@@ -15,6 +15,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/stop_point.h"
 #include "data/text_row_parser.h"
 
@@ -86,9 +88,9 @@ void* resized(Values& column, std::uint64_t rows) {
 
 /// Reads one table. Chunks are read, and their lines counted, in parallel; in order, they get their rows of the
 /// columns; in parallel, they are parsed in place; in order, their words and faults are collected.
-class Reading {
+class TableReader {
  public:
-  Reading(const ByteSource& bytes, const TextLayout& layout, Faults& faults)
+  TableReader(const ByteSource& bytes, const TextLayout& layout, Faults& faults)
       : bytes_(bytes),
         layout_(layout),
         faults_(faults),
@@ -118,10 +120,8 @@ class Reading {
               tbb::make_filter<Chunk*, Chunk*>(filter_mode::parallel, [&](Chunk* c) { return parse(c); }) &
               tbb::make_filter<Chunk*, void>(filter_mode::serial_in_order, [&](Chunk* c) { finish(*c); }));
     if (layout_.rows != kRowsToEnd && table_.rows < layout_.rows)
-      faults_.add(
-          next_line_,
-          "the file ends after " + std::to_string(table_.rows) + " of " + std::to_string(layout_.rows) + " rows",
-          "the file is truncated, or its header declares too many");
+      faults_.add(next_line_, fmt::format("the file ends after {} of {} rows", table_.rows, layout_.rows),
+                  "the file is truncated, or its header declares too many");
     faults_.raise_if_any();
     return std::move(table_);
   }
@@ -136,10 +136,10 @@ class Reading {
   /// An upper bound, by which declared numbers of rows are checked before memory is reserved. It has room for some
   /// malformed rows, so that those are reported.
   std::uint64_t possible_rows() const {
-    constexpr std::uint64_t kRoom = 1000;
+    constexpr std::uint64_t kMargin = 1000;
     const std::uint64_t bytes_per_value = layout_.separator == ' ' ? 2 : 1;
     const std::uint64_t bytes_per_row = std::max<std::uint64_t>(1, bytes_per_value * layout_.columns.size());
-    return (bytes_.size() - begin_) / bytes_per_row + kRoom;
+    return (bytes_.size() - begin_) / bytes_per_row + kMargin;
   }
 
   std::uint64_t counted_rows() const {
@@ -214,7 +214,7 @@ class Reading {
       auto at = indices.find(word);
       if (at == indices.end()) {
         if (words.size() == std::numeric_limits<std::uint32_t>::max())
-          faults_.fail(chunk.first_line, "column " + std::to_string(column + 1) + " has too many distinct strings");
+          faults_.fail(chunk.first_line, fmt::format("column {} has too many distinct strings", column + 1));
         at = indices.emplace(word, static_cast<std::uint32_t>(words.size())).first;
         words.emplace_back(word);
       }
@@ -243,7 +243,7 @@ class Reading {
 }  // namespace
 
 TextTable read_text_rows(const ByteSource& bytes, const TextLayout& layout, Faults& faults) {
-  return Reading(bytes, layout, faults).run();
+  return TableReader(bytes, layout, faults).run();
 }
 
 }  // namespace orrery::data

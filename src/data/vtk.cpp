@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/quoted_word.h"
 #include "data/readers.h"
@@ -91,9 +93,9 @@ class VtkFile final : public SingleFrame {
     const std::uint64_t rows = document_.integer(piece, "NumberOfPoints");
     if (rows == 0) return;
     // Compressed or not, a byte holds no more points than that.
-    constexpr std::uint64_t kMostPerByte = 1000;
-    if (rows / kMostPerByte > bytes_->size() || info_.rows / kMostPerByte > bytes_->size())
-      document_.fail("a piece declares " + std::to_string(rows) + " points, more than the file can contain");
+    constexpr std::uint64_t kMaxPerByte = 1000;
+    if (rows / kMaxPerByte > bytes_->size() || info_.rows / kMaxPerByte > bytes_->size())
+      document_.fail(fmt::format("a piece declares {} points, more than the file can contain", rows));
     info_.rows += rows;
     pieces_.push_back(rows);
     add_array(piece.child("Points").child("DataArray"), "Points");
@@ -110,23 +112,22 @@ class VtkFile final : public SingleFrame {
     if (!node) document_.fail("a piece has no <Points>");
     if (type == "String" || components == 0) return;
     if (!vtk_number_type(type))
-      document_.fail("array " + quoted_word(name) + " has the unknown type " + quoted_word(type));
+      document_.fail(fmt::format("array {} has the unknown type {}", quoted_word(name), quoted_word(type)));
     auto array = std::find_if(arrays_.begin(), arrays_.end(), [&](const VtkArray& a) { return a.name == name; });
     if (array == arrays_.end()) {
-      if (arrays_.size() == kMostColumns)
-        document_.fail("there are more than " + std::to_string(kMostColumns) + " arrays");
+      if (arrays_.size() == kMaxColumns) document_.fail(fmt::format("there are more than {} arrays", kMaxColumns));
       arrays_.push_back({name, *vtk_number_type(type), components, {}});
       array = arrays_.end() - 1;
     }
     if (array->type != *vtk_number_type(type) || array->components != components)
-      document_.fail("the pieces have arrays " + quoted_word(name) + " of different types or sizes");
+      document_.fail(fmt::format("the pieces have arrays {} of different types or sizes", quoted_word(name)));
     array->pieces.push_back(node);
   }
 
   void add_columns(std::size_t index) {
     const VtkArray& array = arrays_[index];
-    if (info_.columns.size() + array.components > kMostColumns || array.components > kMostColumns)
-      document_.fail("there are more than " + std::to_string(kMostColumns) + " columns");
+    if (info_.columns.size() + array.components > kMaxColumns || array.components > kMaxColumns)
+      document_.fail(fmt::format("there are more than {} columns", kMaxColumns));
     const auto names = component_names(array.name, static_cast<std::size_t>(array.components), info_.columns);
     for (std::size_t i = 0; i < names.size(); ++i) {
       const std::string name = names_.add(names[i]);
@@ -141,8 +142,8 @@ class VtkFile final : public SingleFrame {
     const VtkBytes found = document_.array(array.pieces[piece], array.name, array.type);
     RecordLayout layout{found.begin, array.components * size_of(array.type), pieces_[piece]};
     if (found.size % layout.stride != 0 || found.size / layout.stride != layout.rows)
-      faults.fail(0, "array " + quoted_word(array.name) + " has " + std::to_string(found.size) + " bytes; " +
-                         std::to_string(layout.rows) + " points need " + std::to_string(layout.stride) + " each");
+      faults.fail(0, fmt::format("array {} has {} bytes; {} points need {} each", quoted_word(array.name), found.size,
+                                 layout.rows, layout.stride));
     std::vector<RecordField> in_order = fields;
     for (RecordField& field : in_order) field.is_big_endian = found.is_big_endian;
     std::vector<Values> values = read_records(*found.source, layout, in_order, faults);

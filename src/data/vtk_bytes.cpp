@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "data/quoted_word.h"
 #include "data/text_rows.h"
@@ -117,7 +119,7 @@ bool take_length(Stream& stream, const VtkStorage& storage, std::uint64_t& out) 
 /// blocks.
 std::string decompress(Stream& stream, const VtkStorage& storage, std::vector<char>& out) {
   /// No zlib stream expands more than that.
-  constexpr std::uint64_t kMostExpansion = 1040;
+  constexpr std::uint64_t kMaxExpansion = 1040;
   constexpr const char* kBadHeader = "the header of the compressed data is wrong";
   std::uint64_t blocks = 0, block_bytes = 0, last_bytes = 0;
   if (!take_length(stream, storage, blocks) || !take_length(stream, storage, block_bytes) ||
@@ -135,9 +137,9 @@ std::string decompress(Stream& stream, const VtkStorage& storage, std::vector<ch
     const std::uint64_t bytes = i + 1 < sizes.size() ? block_bytes : last_bytes;
     compressed.clear();
     if (!stream.take(sizes[i], compressed)) return kTruncated;
-    if (bytes > kMostExpansion * (sizes[i] + 1)) return kBadHeader;
+    if (bytes > kMaxExpansion * (sizes[i] + 1)) return kBadHeader;
     if (bytes > storage.limit - std::min<std::uint64_t>(storage.limit, out.size()))
-      return "the array exceeds the limit of " + base::bytes_text(storage.limit) + " of decompressed data";
+      return fmt::format("the array exceeds the limit of {} of decompressed data", base::bytes_text(storage.limit));
     const std::size_t begin = out.size();
     out.resize(begin + static_cast<std::size_t>(bytes));
     uLongf got = bytes;

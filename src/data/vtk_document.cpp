@@ -5,6 +5,8 @@
 #include <charconv>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/quoted_word.h"
 
 // Reference  vtk-formats
@@ -65,12 +67,12 @@ void VtkDocument::check_root() {
   if (type == "PPolyData" || type == "PUnstructuredGrid")
     fail("the file only names the files of its pieces", "use these, or save one .vtp file with ParaView");
   if (type != "PolyData" && type != "UnstructuredGrid")
-    fail("VTK type " + quoted_word(type) + " is not supported; supported: PolyData and UnstructuredGrid",
+    fail(fmt::format("VTK type {} is not supported; supported: PolyData and UnstructuredGrid", quoted_word(type)),
          "save the points as a .vtp file with ParaView");
   if (order != "LittleEndian" && order != "BigEndian") fail("unknown byte order " + quoted_word(order));
   if (header != "UInt32" && header != "UInt64") fail("unknown header type " + quoted_word(header));
   if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-    fail("the compression " + quoted_word(compressor) + " is not supported",
+    fail(fmt::format("the compression {} is not supported", quoted_word(compressor)),
          "save the file with zlib compression, or without");
   storage_.is_big_endian = order == "BigEndian";
   storage_.has_long_headers = header == "UInt64";
@@ -99,7 +101,7 @@ VtkBytes VtkDocument::array(pugi::xml_node node, const std::string& name, Number
   } else {
     fault = "unknown format " + quoted_word(format);
   }
-  if (!fault.empty()) fail("array " + quoted_word(name) + ": " + fault);
+  if (!fault.empty()) fail(fmt::format("array {}: {}", quoted_word(name), fault));
   return out;
 }
 
@@ -108,7 +110,7 @@ std::uint64_t VtkDocument::integer(pugi::xml_node node, const char* name, const 
   std::uint64_t out = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
   if (error != std::errc() || end != text.data() + text.size())
-    fail(std::string(name) + " is " + quoted_word(text) + ", not a non-negative integer");
+    fail(fmt::format("{} is {}, not a non-negative integer", name, quoted_word(text)));
   return out;
 }
 

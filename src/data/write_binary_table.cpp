@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/npy_header.h"
 #include "data/quoted_word.h"
 #include "data/table_output.h"
@@ -50,8 +52,9 @@ PlyOutput ply_output(const base::OutputFile& out, const Column& column) {
   if (*least >= Int::min() && *most <= Int::max()) return PlyOutput::kInt32;
   if (*least >= 0 && *most <= std::numeric_limits<std::uint32_t>::max()) return PlyOutput::kUint32;
   if (*least >= -kExact && *most <= kExact) return PlyOutput::kFloat64;
-  refuse_to_write(out.path(), "PLY has no integers as large as those of column " + quoted_word(column.name) +
-                                  "; write .npy, or leave the column out");
+  refuse_to_write(out.path(),
+                  fmt::format("PLY has no integers as large as those of column {}; write .npy, or leave the column out",
+                              quoted_word(column.name)));
 }
 
 const char* ply_type(PlyOutput output, ColumnType type) {
@@ -91,8 +94,10 @@ NpyText npy_text(const base::OutputFile& out, const Column& column) {
     text.length = std::max(text.length, word.size());
     text.is_ascii = text.is_ascii && std::all_of(word.begin(), word.end(), [](char c) { return c > 0; });
     if (word.size() > kLongestNpyText || word.ends_with('\0'))
-      refuse_to_write(out.path(), "column " + quoted_word(column.name) +
-                                      " has a string that is too long or ends in a zero byte; leave the column out");
+      refuse_to_write(
+          out.path(),
+          fmt::format("column {} has a string that is too long or ends in a zero byte; leave the column out",
+                      quoted_word(column.name)));
   }
   return text;
 }
@@ -126,8 +131,8 @@ std::string python_text(const std::string& text) {
 std::string npy_header(const base::OutputFile& out, const Table& table) {
   std::string literal = "{'descr': [";
   for (const Column& column : table.columns)
-    literal += "(" + python_text(column.name) + ", '" + npy_type(out, column) + "'), ";
-  literal += "], 'fortran_order': False, 'shape': (" + std::to_string(table.rows) + ",), }";
+    literal += fmt::format("({}, '{}'), ", python_text(column.name), npy_type(out, column));
+  literal += fmt::format("], 'fortran_order': False, 'shape': ({},), }}", table.rows);
   const bool is_ascii = std::all_of(literal.begin(), literal.end(), [](char c) { return c > 0; });
   constexpr std::size_t kAlignment = 64;  // of the data, with signature, version and length in front of the header
   const bool is_short = literal.size() + kAlignment <= std::numeric_limits<std::uint16_t>::max();
@@ -153,15 +158,18 @@ std::vector<std::string> write_ply_table(base::OutputFile& out, const Table& tab
   std::vector<PlyOutput> outputs;
   std::set<std::string> used;
   std::string& bytes = out.buffer();
-  bytes = "ply\nformat binary_little_endian 1.0\ncomment made by " + writer + "\nelement vertex " +
-          std::to_string(table.rows) + "\n";
+  bytes = fmt::format(
+      "ply\n"
+      "format binary_little_endian 1.0\n"
+      "comment made by {}\n"
+      "element vertex {}\n",
+      writer, table.rows);
   for (const Column& column : table.columns) {
     outputs.push_back(ply_output(out, column));
     if (outputs.back() == PlyOutput::kNone) {
       left_out.push_back(column.name);
     } else {
-      bytes +=
-          std::string("property ") + ply_type(outputs.back(), column.type()) + " " + ply_name(column.name, used) + "\n";
+      bytes += fmt::format("property {} {}\n", ply_type(outputs.back(), column.type()), ply_name(column.name, used));
     }
   }
   bytes += "end_header\n";

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/write_table.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "data/table_output.h"
 
 namespace orrery::data {
 void refuse_to_write(const std::filesystem::path& file, const std::string& text) {
-  throw base::Error(base::ErrorKind::kUsage, "cannot write " + file.string() + ": " + text);
+  throw base::Error(base::ErrorKind::kUsage, fmt::format("cannot write {}: {}", file.string(), text));
 }
 
 TableFormat table_format(const std::filesystem::path& file) {
@@ -15,7 +17,7 @@ TableFormat table_format(const std::filesystem::path& file) {
   if (extension == ".xyz") return TableFormat::kXyz;
   if (extension == ".npy") return TableFormat::kNpy;
   if (extension == ".csv") return TableFormat::kCsv;
-  refuse_to_write(file, "unknown extension `" + extension + "`; use .ply, .xyz, .npy or .csv");
+  refuse_to_write(file, fmt::format("unknown extension `{}`; use .ply, .xyz, .npy or .csv", extension));
 }
 
 std::vector<std::string> write_table(const std::filesystem::path& file, const Table& table, const std::string& writer) {

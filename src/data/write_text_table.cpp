@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "data/quoted_word.h"
 #include "data/table_output.h"
 
@@ -62,8 +64,9 @@ void check_csv_texts(const base::OutputFile& out, const Column& column, std::str
   if (words == nullptr) return;
   for (const std::string& word : words->words)
     if (word.find_first_of(line_ends) != std::string::npos)
-      refuse_to_write(out.path(), "CSV cannot store the text " + quoted_word(word) + " of column " +
-                                      quoted_word(column.name) + "; write .npy, or leave the column out");
+      refuse_to_write(out.path(),
+                      fmt::format("CSV cannot store the text {} of column {}; write .npy, or leave the column out",
+                                  quoted_word(word), quoted_word(column.name)));
 }
 
 /// Returns whether XYZ, where blanks separate values, has the values of a column.
@@ -172,7 +175,8 @@ void write_csv_table(base::OutputFile& out, const Table& table) {
   for (const Column& column : table.columns) {
     check_csv_texts(out, column, kLineEnds);
     if (column.name.find_first_of(kLineEnds) != std::string::npos)
-      refuse_to_write(out.path(), "the name of column " + quoted_word(column.name) + " has a line end; rename it");
+      refuse_to_write(out.path(),
+                      fmt::format("the name of column {} has a line end; rename it", quoted_word(column.name)));
     if (!text.empty()) text += ',';
     if (column.name.find_first_of(" \t,;\"") == std::string::npos) {
       text += column.name;
@@ -198,7 +202,7 @@ std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& tab
   text = std::to_string(table.rows) + "\nProperties=";
   for (const XyzOutput& property : properties) {
     if (&property != &properties.front()) text += ':';
-    text += property.name + ":" + property.type + ":" + std::to_string(property.columns.size());
+    text += fmt::format("{}:{}:{}", property.name, property.type, property.columns.size());
   }
   text += '\n';
   for (std::size_t row = 0; row < table.rows; ++row) {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/readers.h"
 #include "data/text_cursor.h"
@@ -110,7 +112,7 @@ class XyzHeaderReader {
         if (p.name == "diameter" && is_number) diameter = name;
         continue;
       }
-      for (std::size_t i = 1; i <= p.count; ++i) add(p.name + "[" + std::to_string(i) + "]", p.type);
+      for (std::size_t i = 1; i <= p.count; ++i) add(fmt::format("{}[{}]", p.name, i), p.type);
     }
     if (roles.radius.empty() && !diameter.empty()) {
       roles.radius = diameter;
@@ -134,7 +136,7 @@ class XyzHeaderReader {
       add("element", ColumnType::kText);
     }
     out_.info.roles.position = add_three(kXyz, ColumnType::kFloat64);
-    for (std::size_t i = 4; i < std::min<std::size_t>(first.size(), kMostColumns); ++i) {
+    for (std::size_t i = 4; i < std::min<std::size_t>(first.size(), kMaxColumns); ++i) {
       double ignored = 0;
       add("column" + std::to_string(i + 1), parse_number(first[i], ignored) ? ColumnType::kFloat64 : ColumnType::kText);
     }
@@ -190,7 +192,7 @@ class Xyz final : public TextFrames {
     std::int64_t count = 0;
     if (!parse_count(line, count))
       Faults(bytes().file())
-          .fail(cursor.line() - 1, "expected a number of atoms, found '" + line.substr(0, kMaxShown) + "'",
+          .fail(cursor.line() - 1, fmt::format("expected a number of atoms, found '{}'", line.substr(0, kMaxShown)),
                 "check the number of atoms of the frame before");
     cursor.skip(1);
     return static_cast<std::uint64_t>(count);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "data/customary.h"
 #include "data/text_cursor.h"
 #include "data/text_rows.h"
@@ -99,12 +101,12 @@ std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t lin
     begin = end + 1;
   }
   std::vector<XyzProperty> out;
-  constexpr auto kMaxColumns = static_cast<std::int64_t>(kMostColumns);
+  constexpr auto kMaxCount = static_cast<std::int64_t>(kMaxColumns);
   std::int64_t columns = 0;
   for (std::size_t i = 0; i < parts.size(); i += 3) {
     XyzProperty property;
     property.name = parts[i];
-    const std::string shown = "property \"" + property.name + "\": ";
+    const std::string shown = fmt::format("property \"{}\": ", property.name);
     if (property.name.empty() || parts.size() - i < 3)
       faults.fail(line, shown + "its name, type or number of columns is missing", std::string(kRemedy));
     if (parts[i + 1] == "R")
@@ -114,12 +116,11 @@ std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t lin
     else if (parts[i + 1] == "S" || parts[i + 1] == "L")
       property.type = ColumnType::kText;
     else
-      faults.fail(line, shown + "unknown type '" + std::string(parts[i + 1]) + "'", std::string(kRemedy));
+      faults.fail(line, fmt::format("{}unknown type '{}'", shown, parts[i + 1]), std::string(kRemedy));
     std::int64_t count = 0;
-    if (!parse_integer(parts[i + 2], count) || count < 1 || count > kMaxColumns || (columns += count) > kMaxColumns)
+    if (!parse_integer(parts[i + 2], count) || count < 1 || count > kMaxCount || (columns += count) > kMaxCount)
       faults.fail(line,
-                  shown + "'" + std::string(parts[i + 2]) + "' is not a number of columns; at most " +
-                      std::to_string(kMaxColumns) + " in all",
+                  fmt::format("{}'{}' is not a number of columns; at most {} in all", shown, parts[i + 2], kMaxCount),
                   std::string(kRemedy));
     property.count = static_cast<std::size_t>(count);
     out.push_back(std::move(property));
@@ -149,7 +150,7 @@ std::optional<Box> xyz_box(const XyzValues& values, std::uint64_t line, Faults& 
     for (std::size_t i = 0; i < 3; ++i) {
       const bool is_true = flags[i] == "1" || flags[i][0] == 'T' || flags[i][0] == 't';
       if (!is_true && flags[i] != "0" && flags[i][0] != 'F' && flags[i][0] != 'f')
-        faults.fail(line, "pbc: '" + flags[i] + "' is neither T nor F");
+        faults.fail(line, fmt::format("pbc: '{}' is neither T nor F", flags[i]));
       box.periodic[i] = is_true;
     }
   }

@@ -66,7 +66,7 @@ void finish_channel(film::Picture& picture, const SourcePlanes& planes, std::siz
   const LightBalance balance(before, beauty, valid, frame, removed);
   tbb::parallel_for(0, frame.height, [&](int y) {
     std::vector<double> cells(channel.cells.size());
-    auto outlier = planes.outliers.first_from(frame.at(0, y));
+    auto outlier = planes.outliers.lower_bound(frame.at(0, y));
     for (int x = 0; x < frame.width; ++x) {
       if (*valid.at(x, y) == 0) continue;
       const std::size_t i = frame.at(x, y);

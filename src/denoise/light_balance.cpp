@@ -16,11 +16,11 @@ constexpr double kLargestLift = 0.05;
 constexpr double kLargestLiftOfOutlier = 0.02;
 
 /// Position of a pixel between two parts: the first of them, and the weight of the second.
-struct Between {
+struct GridPosition {
   int part;
   double weight;
 };
-Between between(int pixel) { return {pixel / kPartSpacing, (pixel % kPartSpacing + 0.5) / kPartSpacing}; }
+GridPosition grid_position(int pixel) { return {pixel / kPartSpacing, (pixel % kPartSpacing + 0.5) / kPartSpacing}; }
 
 /// Light that a pixel gained, at most all that it has.
 double gain(float before, float after) {
@@ -45,18 +45,18 @@ struct Light {
 
 LightBalance::LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame,
                            const std::vector<RemovedLight>& removed)
-    : columns_(between(frame.width - 1).part + 2) {
-  const int rows = between(frame.height - 1).part + 2;
+    : columns_(grid_position(frame.width - 1).part + 2) {
+  const int rows = grid_position(frame.height - 1).part + 2;
   parts_.resize(static_cast<std::size_t>(columns_ * rows));
   std::vector<Light> sums(parts_.size());
   tbb::parallel_for(0, rows, [&](int row) {
     Light* const of_row = sums.data() + row * columns_;
     const int end = std::min((row + 1) * kPartSpacing, frame.height);
     for (int y = std::max((row - 1) * kPartSpacing, 0); y < end; ++y) {
-      const Between vertical = between(y);
+      const GridPosition vertical = grid_position(y);
       const double weight_of_row = vertical.part == row ? 1 - vertical.weight : vertical.weight;
       const auto add = [&](int x, auto add_to) {
-        const Between horizontal = between(x);
+        const GridPosition horizontal = grid_position(x);
         add_to(of_row[horizontal.part], weight_of_row * (1 - horizontal.weight));
         add_to(of_row[horizontal.part + 1], weight_of_row * horizontal.weight);
       };
@@ -95,7 +95,7 @@ LightBalance::LightBalance(const PaddedPlane& before, const Values& after, const
 
 double LightBalance::at(int x, int y, float before, float after) const {
   if (!(after > 0)) return 1;
-  const Between horizontal = between(x), vertical = between(y);
+  const GridPosition horizontal = grid_position(x), vertical = grid_position(y);
   const Part* const above = parts_.data() + vertical.part * columns_ + horizontal.part;
   const auto interpolate = [&](double Part::*member) {
     const auto in_row = [&](const Part* pair) {

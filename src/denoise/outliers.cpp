@@ -29,14 +29,14 @@ constexpr float kOfWindowBeside = 8;
 constexpr float kFading = 8;
 
 /// An outlier keeps at least this fraction of its light, so that it can be computed from what is left.
-constexpr float kLeastFactor = 0x1p-40F;
+constexpr float kMinFactor = 0x1p-40F;
 
 /// Largest standard deviation of the image's mean, as a fraction of it, by light of outliers that is spread over the
 /// image. It would flicker from frame to frame.
 constexpr double kLargestFlicker = 0.02;
 
 /// A colour of a half.
-std::array<float, 3> color(const std::vector<Halves>& halves, const Values* Halves::*half, std::size_t pixel) {
+std::array<float, 3> color(const std::vector<HalfPair>& halves, const Values* HalfPair::*half, std::size_t pixel) {
   std::array<float, 3> out{};
   for (std::size_t c = 0; c < 3; ++c) out[c] = usable((*(halves[c].*half))[pixel]);
   return out;
@@ -88,7 +88,7 @@ Outlier outlier_of(std::size_t pixel, const std::array<float, 3>& a, const std::
   for (std::size_t c = 0; c < 3; ++c) {
     const float low = out.is_in_a ? b[c] : a[c], whole = a[c] + b[c];
     const float left = low + low + out.kept * (whole - low - low);
-    out.factors[c] = whole > 0 ? std::clamp(left / whole, kLeastFactor, 1.0F) : 1.0F;
+    out.factors[c] = whole > 0 ? std::clamp(left / whole, kMinFactor, 1.0F) : 1.0F;
   }
   return out;
 }
@@ -109,9 +109,9 @@ void return_brightest(std::vector<Outlier>& outliers, const std::vector<double>&
 
 }  // namespace
 
-Outliers find_outliers(const std::vector<Halves>& halves, Frame frame) {
-  const auto a = [&](std::size_t i) { return color(halves, &Halves::a, i); };
-  const auto b = [&](std::size_t i) { return color(halves, &Halves::b, i); };
+Outliers find_outliers(const std::vector<HalfPair>& halves, Frame frame) {
+  const auto a = [&](std::size_t i) { return color(halves, &HalfPair::a, i); };
+  const auto b = [&](std::size_t i) { return color(halves, &HalfPair::b, i); };
   const Values noises = frame.each_index([&](std::size_t i) { return noise(a(i), b(i)); });
   const Values darker_halves = frame.each_index([&](std::size_t i) { return darker(a(i), b(i)); });
   Outliers out;

@@ -27,7 +27,7 @@ struct Outliers {
   Values limits;                ///< largest standard deviation of each pixel that its neighbours' variance includes
 
   /// The first outlier from a pixel on.
-  std::vector<Outlier>::const_iterator first_from(std::size_t pixel) const {
+  std::vector<Outlier>::const_iterator lower_bound(std::size_t pixel) const {
     return std::lower_bound(pixels.begin(), pixels.end(), pixel,
                             [](const Outlier& outlier, std::size_t at) { return outlier.pixel < at; });
   }
@@ -38,6 +38,6 @@ struct Outliers {
 /// highlight, is no outlier, nor are bright pixels of which there are many.
 ///
 /// `halves`   R, G, B
-Outliers find_outliers(const std::vector<Halves>& halves, Frame frame);
+Outliers find_outliers(const std::vector<HalfPair>& halves, Frame frame);
 
 }  // namespace orrery::denoise

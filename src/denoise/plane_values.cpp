@@ -30,10 +30,10 @@ Values least_around(const Values& in, Frame frame, int distance_px) {
   });
 }
 
-Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px, const Values* limits) {
+Values variance_of(const std::vector<HalfPair>& planes, Frame frame, int radius_px, const Values* limits) {
   const Values squares = frame.each_index([&](std::size_t i) {
     float sum = 0;
-    for (const Halves& plane : planes) {
+    for (const HalfPair& plane : planes) {
       const float difference = (usable((*plane.a)[i]) - usable((*plane.b)[i])) * plane.scale;
       sum += difference * difference / 4;
     }

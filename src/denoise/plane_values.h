@@ -61,7 +61,7 @@ Values window_means(const Values& in, Frame frame, int radius_px);
 Values least_around(const Values& in, Frame frame, int distance_px);
 
 /// The same plane of two independent halves of the samples.
-struct Halves {
+struct HalfPair {
   const Values* a;
   const Values* b;
   float scale = 1;  ///< of the values
@@ -70,7 +70,7 @@ struct Halves {
 /// Variance of the mean of two halves, averaged over square windows; sum over the planes.
 ///
 /// `limits`   largest standard deviation of each pixel, if any
-Values variance_of(const std::vector<Halves>& planes, Frame frame, int radius_px, const Values* limits = nullptr);
+Values variance_of(const std::vector<HalfPair>& planes, Frame frame, int radius_px, const Values* limits = nullptr);
 
 /// Multiplies the value of a pixel, and its repetitions in the border.
 void scale_pixel(PaddedPlane& plane, Frame frame, std::size_t pixel, float factor);

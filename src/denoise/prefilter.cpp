@@ -19,7 +19,7 @@ constexpr int kNoiseRadius = 3;
 constexpr int kNoiseStep = 2;
 
 /// Fraction of the noisy variance that filtered halves keep at least. They can be equal by chance.
-constexpr float kLeastVariance = 0.06F;
+constexpr float kMinVariance = 0.06F;
 
 /// Filters planes with the same weights.
 std::vector<Values> filtered(const WeightSource& source, const std::vector<const PaddedPlane*>& planes, Frame frame,
@@ -72,7 +72,7 @@ FilteredHalves filtered_halves(const SourcePlanes& planes, const std::vector<Pad
   }
   const std::vector<Values> clean = filtered(source, noisy, frame, tiles);
   FilteredHalves out;
-  std::vector<Halves> halves;
+  std::vector<HalfPair> halves;
   for (std::size_t c = 0; c < 3; ++c) {
     const Values &a = clean[2 * c], &b = clean[2 * c + 1];
     out.a[c] = padded(a, frame);
@@ -82,7 +82,7 @@ FilteredHalves filtered_halves(const SourcePlanes& planes, const std::vector<Pad
   const Values variance =
       least_around(variance_of(halves, frame, kNoiseRadius, &planes.outliers.limits), frame, kNoiseStep);
   out.variance = padded(
-      frame.each([&](int x, int y) { return variance[frame.at(x, y)] + kLeastVariance * *planes.variance.at(x, y); }),
+      frame.each([&](int x, int y) { return variance[frame.at(x, y)] + kMinVariance * *planes.variance.at(x, y); }),
       frame);
   return out;
 }

@@ -42,7 +42,7 @@ inline constexpr std::size_t kDistanceStride = kHaloWidth + kMaxLanes;
 template <bool kHalves>
 HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int dx, int dy, float* out) {
   const D d;
-  constexpr float kLeastNoise = 1e-30F, kFarthest = 1e6F, kLeast = -3;
+  constexpr float kMinNoise = 1e-30F, kMaxDistance = 1e6F, kMinDistance = -3;
   for (int row = 0; row < kHaloHeight; ++row) {
     const int y = y0 + row - kPatchRadius;
     for (int column = 0; column < kHaloWidth; column += static_cast<int>(hn::Lanes(d))) {
@@ -58,8 +58,9 @@ HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int 
         const V a = step(*channel.a);
         difference = add_product(difference, a, kHalves ? step(*channel.b) : a);
       }
-      const V noise = add_product(hn::Set(d, kLeastNoise), hn::Set(d, 2.0F), smaller);
-      const V distance = hn::Min(hn::Set(d, kFarthest), hn::Max(hn::Set(d, kLeast), hn::Div(difference, noise)));
+      const V noise = add_product(hn::Set(d, kMinNoise), hn::Set(d, 2.0F), smaller);
+      const V distance =
+          hn::Min(hn::Set(d, kMaxDistance), hn::Max(hn::Set(d, kMinDistance), hn::Div(difference, noise)));
       hn::StoreU(distance, d, out + static_cast<std::size_t>(row) * kDistanceStride + column);
     }
   }

@@ -104,9 +104,9 @@ class HalfPlanes {
 
   /// `end`      of the names, such as ".albedo.R"
   /// Result     valid as long as this
-  Halves of(const std::string& end, float scale = 1) {
+  HalfPair of(const std::string& end, float scale = 1) {
     const Values &a = planes_.at("half_a" + end), &b = planes_.at("half_b" + end);
-    return counts_.with_one == 0 ? Halves{&a, &b, scale} : Halves{&filled(a, b), &filled(b, a), scale};
+    return counts_.with_one == 0 ? HalfPair{&a, &b, scale} : HalfPair{&filled(a, b), &filled(b, a), scale};
   }
 
  private:
@@ -122,9 +122,9 @@ class HalfPlanes {
 };
 
 void add_guides_of_halves(SourcePlanes& out, HalfPlanes& planes, Frame frame) {
-  std::vector<Halves> halves;
+  std::vector<HalfPair> halves;
   for (const GuideName& name : kGuideNames) {
-    const Halves both = planes.of(std::string(".") + name.of_half + "." + name.channel);
+    const HalfPair both = planes.of(std::string(".") + name.of_half + "." + name.channel);
     const Values &a = *both.a, &b = *both.b;
     const Values mean = frame.each_index([&](std::size_t i) { return (usable(a[i]) + usable(b[i])) / 2; });
     const bool is_depth = name.scale == kDepthScale;
@@ -163,7 +163,7 @@ Values variance_without_halves(const Planes& planes, bool has_variance, Frame fr
 }
 
 /// Reduces an outlier to what its halves have in common.
-void reduce(SourcePlanes& planes, const std::vector<Halves>& halves, Frame frame, const Outlier& outlier) {
+void reduce(SourcePlanes& planes, const std::vector<HalfPair>& halves, Frame frame, const Outlier& outlier) {
   for (std::size_t c = 0; c < 3; ++c) {
     scale_pixel(planes.beauty[c], frame, outlier.pixel, outlier.factors[c]);
     const float a = usable((*halves[c].a)[outlier.pixel]), b = usable((*halves[c].b)[outlier.pixel]);
@@ -190,7 +190,7 @@ SourcePlanes source_planes(const film::Picture& picture) {
   out.has_halves = has_planes && lone <= kMaxLonePixels;
   HalfPlanes half_planes(planes, counts, frame);
   const bool has_variance = planes.has("variance", "RGB");
-  std::vector<Halves> halves;
+  std::vector<HalfPair> halves;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string letter(1, "RGB"[c]);
     out.beauty[c] = padded(planes.at(letter), frame);

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "display/view.h"
 
 namespace orrery::display {
@@ -50,7 +52,7 @@ void add_row(std::string& out, double r, double g, double b) {
 }
 
 std::string title(const View& view, const Settings& settings) {
-  return settings.working_space + " to " + view.choice.display + ", " + view.choice.view;
+  return fmt::format("{} to {}, {}", settings.working_space, view.choice.display, view.choice.view);
 }
 
 /// A view as LUTs: scale, one-dimensional shaper, cube.
@@ -123,10 +125,9 @@ std::string clf_text(const ocio::GroupTransformRcPtr& group, const std::string& 
 std::string bake_cube(const Settings& settings, int size) {
   const View view = find_view(settings);
   const Tables tables = tabulated(view, settings, size);
-  std::string out =
-      "# " + title(view, settings) + "\nLUT_1D_SIZE " + std::to_string(kShaperSize) + "\nLUT_1D_INPUT_RANGE 0.0 ";
+  std::string out = fmt::format("# {}\nLUT_1D_SIZE {}\nLUT_1D_INPUT_RANGE 0.0 ", title(view, settings), kShaperSize);
   add_number(out, 1 / tables.scale);
-  out += "\nLUT_3D_SIZE " + std::to_string(size) + "\n";
+  out += fmt::format("\nLUT_3D_SIZE {}\n", size);
   for (const double v : tables.shaper) add_row(out, v, v, v);
   for (std::size_t i = 0; i < tables.cube.size(); i += 3)
     add_row(out, tables.cube[i], tables.cube[i + 1], tables.cube[i + 2]);

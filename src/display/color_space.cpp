@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "display/find_color_space.h"
 #include "display/names.h"
@@ -61,8 +63,11 @@ std::string find_scene_linear(const Config& config, const std::string& name) {
   const ocio::ConstColorSpaceRcPtr space = config.config->getColorSpace(found.c_str());
   const std::string encoding = space->getEncoding();
   if (space->isData() || (!encoding.empty() && encoding != "scene-linear"))
-    throw base::Error(base::ErrorKind::kUsage, "colour space `" + name + "` of the OCIO config (" + config.source +
-                                                   ") is not scene-linear; rendering needs a scene-linear space");
+    throw base::Error(
+        base::ErrorKind::kUsage,
+        fmt::format(
+            "colour space `{}` of the OCIO config ({}) is not scene-linear; rendering needs a scene-linear space", name,
+            config.source));
   return found;
 }
 
@@ -80,7 +85,7 @@ void convert_colors(const std::string& config_file, const std::string& from, con
     }
   } catch (const ocio::Exception& error) {
     throw base::Error(base::ErrorKind::kBadData,
-                      "the OCIO config " + source.source + " cannot be used: " + error.what());
+                      fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
   }
 }
 
@@ -97,7 +102,7 @@ PixelConversion pixel_conversion(const std::string& config_file, const std::stri
     };
   } catch (const ocio::Exception& error) {
     throw base::Error(base::ErrorKind::kBadData,
-                      "the OCIO config " + source.source + " cannot be used: " + error.what());
+                      fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
   }
 }
 

@@ -5,6 +5,8 @@
 #include <mutex>
 #include <sstream>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/input_file.h"
 #include "display/builtin_config.h"
@@ -51,7 +53,8 @@ ocio::ConstConfigRcPtr load(const std::string& file) {
     config->validate();
     return config;
   } catch (const std::exception& error) {
-    throw base::Error(base::ErrorKind::kBadData, "the OCIO config " + file + " cannot be used: " + error.what());
+    throw base::Error(base::ErrorKind::kBadData,
+                      fmt::format("the OCIO config {} cannot be used: {}", file, error.what()));
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "display/view.h"
 
@@ -17,18 +19,18 @@ namespace ocio = OCIO_NAMESPACE;
 constexpr std::size_t kPixelsAtATime = std::size_t{1} << 14;
 
 /// Limit of the exposure: beyond it every half is black or white. Keeps the gain within the range of float.
-constexpr double kMaxStops = 120;
+constexpr double kMaxGainStops = 120;
 
 const std::vector<float>& plane(const film::Picture& picture, const char* name) {
   const film::Plane* found = picture.find(name);
   if (found == nullptr) throw base::Error(base::ErrorKind::kBadData, std::string("the image has no channel ") + name);
   if (found->values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))
-    throw base::Error(base::ErrorKind::kInternal, std::string("plane ") + name + " does not have the image's size");
+    throw base::Error(base::ErrorKind::kInternal, fmt::format("plane {} does not have the image's size", name));
   return found->values;
 }
 
 float gain_of(const Settings& settings) {
-  return static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMaxStops, kMaxStops)));
+  return static_cast<float>(std::exp2(std::clamp(settings.stops(), -kMaxGainStops, kMaxGainStops)));
 }
 
 /// Applies the gain and clamps to the range of half, since beyond it a view's curves can overflow to NaN.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "display/config.h"
@@ -74,7 +76,8 @@ void choose_display(const Config& config, const Settings& settings, Choice& choi
 
 void choose_view(const Config& config, const Settings& settings, Choice& choice) {
   choice.view = settings.view.empty() ? config.config->getDefaultView(choice.display.c_str()) : settings.view;
-  require(config, "view on display `" + choice.display + "` named", choice.view, views_of(config, choice.display));
+  require(config, fmt::format("view on display `{}` named", choice.display), choice.view,
+          views_of(config, choice.display));
 }
 
 bool has_view(const Config& config, const std::string& display, const std::string& view) {
@@ -111,10 +114,10 @@ View find_view(const Config& source, const Settings& settings) {
     out.choice.is_hdr = is_hdr(*source.config, space);
   } catch (const ocio::ExceptionMissingFile& error) {
     throw base::Error(base::ErrorKind::kMissingInput,
-                      "the OCIO config " + source.source + " refers to a missing file: " + error.what());
+                      fmt::format("the OCIO config {} refers to a missing file: {}", source.source, error.what()));
   } catch (const ocio::Exception& error) {
     throw base::Error(base::ErrorKind::kBadData,
-                      "the OCIO config " + source.source + " cannot be used: " + error.what());
+                      fmt::format("the OCIO config {} cannot be used: {}", source.source, error.what()));
   }
   return out;
 }

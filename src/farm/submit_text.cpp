@@ -103,9 +103,9 @@ std::string slurm_text(const Submission& s, const Commands& c) {
         "merge=$(sbatch --parsable --dependency=afterany:\"$render\" <<'END'\n#!/bin/sh\n";
     out += slurm_array(c, "merge", c.frames.size());
     out += fmt::format("set -- {}\n", frame_list(c, " "));
-    out += "shift \"$SLURM_ARRAY_TASK_ID\"\nframe=$1\n" + shell_line(c.merge, "\"$frame\"", "") + "\nEND\n)\n";
+    out += fmt::format("shift \"$SLURM_ARRAY_TASK_ID\"\nframe=$1\n{}\nEND\n)\n", shell_line(c.merge, "\"$frame\"", ""));
   }
-  return out + "\necho \"render $render" + (c.merge.empty() ? "" : ", merge $merge") + "\"\n";
+  return fmt::format("{}\necho \"render $render{}\"\n", out, c.merge.empty() ? "" : ", merge $merge");
 }
 
 // --------------------------------------------------------------------------------------------- GNU parallel
@@ -147,8 +147,9 @@ std::string openjd_text(const Submission& s, const Commands& c) {
     // Braces of a name would begin a format string, which has no way to escape them.
     for (const std::string& word : words)
       if (word.find("{{") != std::string::npos)
-        throw base::Error(base::ErrorKind::kUsage,
-                          base::printable(word) + ": Open Job Description cannot pass on {{; " + "choose another name");
+        throw base::Error(
+            base::ErrorKind::kUsage,
+            fmt::format("{}: Open Job Description cannot pass on {{{{; choose another name", base::printable(word)));
     Words arguments = with_numbers(words, frame, shard);
     const std::string command = arguments.front();
     arguments.erase(arguments.begin());

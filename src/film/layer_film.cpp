@@ -15,13 +15,13 @@ namespace {
 using kernel::Int128;
 
 /// A relative spread below this is rounding error; the beauty's floats cannot represent it either.
-constexpr double kLeastSpread = 0x1p-48;
+constexpr double kMinSpread = 0x1p-48;
 
 /// The sample variance of the radiance of `n` paths, from the sum and the sum of squares.
 double variance_of_one(Int128 sum, Int128 squares, double n) {
   const double light = kernel::from_fixed_point(sum), of_squares = static_cast<double>(squares) * kSquareUnit;
   const double spread = of_squares - light * light / n;
-  return spread > kLeastSpread * of_squares ? spread / (n - 1) : 0;
+  return spread > kMinSpread * of_squares ? spread / (n - 1) : 0;
 }
 
 /// The squared standard error of the pixel's mean radiance.

@@ -2,14 +2,17 @@
 #include "film/layer_pixel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace orrery::film {
 namespace {
 
 using kernel::PathRecord;
+using math::Vec3d;
 
-bool is_good(const double (&light)[3]) { return kernel::is_good_sample(light[0], light[1], light[2]); }
+bool is_valid(const double (&light)[3]) { return kernel::is_valid_sample(light[0], light[1], light[2]); }
 
 kernel::Int128 square(double v) {
   const double units = std::min(v * v, kLargestSquare) * (1 / kSquareUnit);
@@ -40,51 +43,41 @@ struct Hit {
   double exit_z;    ///< the same of the point where the ray leaves the sphere
 };
 
+Vec3d vector_of(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+Vec3d fma(Vec3d a, double s, Vec3d b) { return {std::fma(a.x, s, b.x), std::fma(a.y, s, b.y), std::fma(a.z, s, b.z)}; }
+
+Vec3d center_of(const kernel::Sphere& s) { return {s.x, s.y, s.z}; }
+
 /// Origin and viewing direction of the camera at a shutter time.
-void camera_at(const kernel::SceneView& scene, double time, double (&origin)[3], double (&forward)[3]) {
-  for (int k = 0; k < 3; ++k) {
-    origin[k] = scene.camera.origin[k];
-    forward[k] = scene.camera.forward[k];
-    if (!scene.features.motion) continue;
-    origin[k] = std::fma(scene.camera_motion.origin[k], time, origin[k]);
-    forward[k] = std::fma(scene.camera_motion.forward[k], time, forward[k]);
+std::pair<Vec3d, Vec3d> camera_at(const kernel::SceneView& scene, double time) {
+  Vec3d origin = vector_of(scene.camera.origin), forward = vector_of(scene.camera.forward);
+  if (scene.features.motion) {
+    origin = fma(vector_of(scene.camera_motion.origin), time, origin);
+    forward = fma(vector_of(scene.camera_motion.forward), time, forward);
   }
+  return {origin, forward};
 }
 
 /// False if a path's first hit is certainly not nearer than this, which is less work than to locate it.
 bool may_be_nearer(const kernel::SceneView& scene, const PathRecord& path, double than) {
   if (scene.camera.is_orthographic || scene.features.motion) return true;
-  const kernel::Sphere s = scene.spheres[path.sphere];
-  const double center[3] = {s.x, s.y, s.z};
-  double squared = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double from_camera = center[k] - scene.camera.origin[k] + path.offset[k];
-    squared += from_camera * from_camera;
-  }
+  const Vec3d from_camera = center_of(scene.spheres[path.sphere]) - vector_of(scene.camera.origin) + path.offset;
   constexpr double kRounding = 1 + 0x1p-50;  // of both squares and the root
-  return !(squared > than * than * kRounding);
+  return !(dot(from_camera, from_camera) > than * than * kRounding);
 }
 
 Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
-  const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
-  const double center[3] = {s.x, s.y, s.z};
-  double origin[3], forward[3];
-  camera_at(scene, path.time, origin, forward);
+  const Vec3d center = center_of(kernel::sphere_at(scene, path.sphere, path.time));
+  const auto [origin, forward] = camera_at(scene, path.time);
+  const Vec3d from_camera = center - origin + path.offset;
+  const double forward_length = length(forward);
   Hit hit{};
-  double far = 0, length = 0, along = 0, through = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double from_camera = center[k] - origin[k] + path.offset[k];
-    far += from_camera * from_camera;
-    length += forward[k] * forward[k];
-    hit.z += from_camera * forward[k];
-    along += path.direction[k] * forward[k];
-    through += path.direction[k] * path.offset[k];
-  }
-  length = std::sqrt(length);
-  hit.z /= length;
-  hit.distance = scene.camera.is_orthographic ? hit.z : std::sqrt(far);
+  hit.z = dot(from_camera, forward) / forward_length;
+  hit.distance = scene.camera.is_orthographic ? hit.z : length(from_camera);
   // The far end of the chord. From inside the sphere the first hit is the exit.
-  hit.exit_z = hit.z + std::max(0.0, -2 * through) * along / length;
+  const double chord = std::max(0.0, -2 * dot(path.direction, path.offset));
+  hit.exit_z = hit.z + chord * dot(path.direction, forward) / forward_length;
   return hit;
 }
 
@@ -93,7 +86,7 @@ Hit locate(const kernel::SceneView& scene, const PathRecord& path) {
 void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene, const PathRecord& path,
                      std::int64_t path_weight) {
   weight += path_weight;
-  if (is_good(path.light)) {
+  if (is_valid(path.light)) {
     lit += path_weight;
     ++paths;
     if (request.variance) {
@@ -112,7 +105,7 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   if (request.deep || (hits && !request.mattes.empty())) {
     SphereCoverage& share = share_of(shares, path.sphere);
     share.weight += path_weight;
-    if (request.deep && is_good(path.light)) add3(share.light, path.light, path_weight);
+    if (request.deep && is_valid(path.light)) add3(share.light, path.light, path_weight);
     share.front = std::min(share.front, hits ? hit.z : double{kNothingHit});
     share.back = std::max(share.back, hits ? hit.exit_z : double{kNothingHit});
   }
@@ -129,25 +122,25 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
   }
   if (request.normal) {
     // Decided per ray, since the lens can straddle the surface.
-    double along = 0;
-    for (int k = 0; k < 3; ++k) along += path.direction[k] * path.offset[k];
+    const double along = dot(path.direction, path.offset);
     const double radius = kernel::sphere_at(scene, path.sphere, path.time).radius;
     const double outward = along > 0 ? -1 / radius : 1 / radius;
-    const double n[3] = {path.offset[0] * outward, path.offset[1] * outward, path.offset[2] * outward};
-    add3(normal, n, path_weight);
+    const Vec3d n = path.offset * outward;
+    add3(normal, std::array{n.x, n.y, n.z}, path_weight);
   }
   if (!is_candidate || !(hit.distance < depth)) return;
   depth = hit.distance;
   z = hit.z;
   sphere = path.sphere;
-  const kernel::Sphere s = kernel::sphere_at(scene, path.sphere, path.time);
-  const double center[3] = {s.x, s.y, s.z};
-  for (int k = 0; k < 3; ++k) position[k] = center[k] + path.offset[k];
+  const Vec3d at = center_of(kernel::sphere_at(scene, path.sphere, path.time)) + path.offset;
+  position[0] = at.x;
+  position[1] = at.y;
+  position[2] = at.z;
 }
 
 void LayerPixel::add(const LayerRequest& request, const PathRecord& path, const kernel::LightEvent& event,
                      std::int64_t path_weight) {
-  if (!is_good(path.light)) return;
+  if (!is_valid(path.light)) return;
   const std::size_t cell = request.light_cell(event);
   if (cell >= light.size()) light.resize(request.light_cells());
   add3(light[cell], event.value, path_weight);

@@ -18,9 +18,6 @@ inline constexpr const char* kLobeNames[kernel::kLobes] = {
     "background",        "diffuse_direct",      "diffuse_indirect",      "specular_direct",
     "specular_indirect", "transmission_direct", "transmission_indirect", "emission"};
 
-/// Maximum number of light groups: a pixel has sums for each, 384 bytes per group.
-inline constexpr std::size_t kMaxLightGroups = 64;
-
 /// A light group of the scene. The members describe its sources, not its light, so that all frames of a sequence have
 /// the same layers even if a light is black in some of them.
 struct LightGroup {

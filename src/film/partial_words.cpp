@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/image_limits.h"
 
 namespace orrery::film {
 namespace {
@@ -251,7 +252,7 @@ void write_light(Writer& out, const std::vector<LayerPixel>& layers) {
 void read_light(Reader& in, std::vector<LayerPixel>& layers) {
   std::uint32_t cells = 0;
   in.number(cells);
-  if (cells > kMaxLightGroups * kernel::kLobes) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
+  if (cells > base::kMaxLightGroups * kernel::kLobes) throw base::Error(base::ErrorKind::kBadData, kInconsistent);
   // Each plane has two words at least: a damaged count fails here, before allocation.
   in.need(cells * std::size_t{3 * 2 * sizeof(Int128) / sizeof(std::uint32_t)});
   for (LayerPixel& p : layers) p.light.resize(cells);

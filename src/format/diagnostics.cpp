@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/diagnostics.h"
 
+#include <fmt/core.h>
+
 namespace orrery::format {
 
 void Diagnostics::raise_errors(const std::string& file) const {
@@ -10,11 +12,11 @@ void Diagnostics::raise_errors(const std::string& file) const {
   if (errors_ > shown_.size()) {
     base::Diagnostic rest;
     rest.file = file;
-    rest.text = "and " + std::to_string(errors_ - shown_.size()) + " more (" + std::to_string(errors_) + " in all)";
+    rest.text = fmt::format("and {} more ({} in all)", errors_ - shown_.size(), errors_);
     diagnostics.push_back(std::move(rest));
   }
   throw base::Error(missing_ == errors_ ? base::ErrorKind::kMissingInput : base::ErrorKind::kBadData,
-                    file + ": " + std::to_string(errors_) + (errors_ == 1 ? " error" : " errors"),
+                    fmt::format("{}: {}{}", file, errors_, errors_ == 1 ? " error" : " errors"),
                     std::move(diagnostics));
 }
 

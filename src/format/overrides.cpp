@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "format/key_depth.h"
 #include "format/toml_tree.h"
 
@@ -62,14 +64,13 @@ toml::table& element_of(toml::table& root, std::string_view list) {
   const char* const end = list.data() + list.size() - 1;  // the "]"
   const auto [stop, fault] = std::from_chars(digits, end, index);
   if (open == std::string_view::npos || fault != std::errc() || stop != end)
-    throw Fault{"`" + std::string(list) + "` is not a list element"};
+    throw Fault{fmt::format("`{}` is not a list element", list)};
   toml::node* node = root.get(name);
   toml::array* array = node == nullptr ? nullptr : node->as_array();
-  if (array == nullptr) throw Fault{"the scene has no list `" + name + "`"};
+  if (array == nullptr) throw Fault{fmt::format("the scene has no list `{}`", name)};
   if (index >= array->size())
-    throw Fault{std::string(list) + " does not exist; the scene has " + std::to_string(array->size()) + " `" + name +
-                    "` tables, counted from 0",
-                ""};
+    throw Fault{
+        fmt::format("{} does not exist; the scene has {} `{}` tables, counted from 0", list, array->size(), name), ""};
   toml::table* element = array->get(index)->as_table();
   if (element == nullptr) throw Fault{std::string(list) + " is not a table"};
   return *element;
@@ -182,7 +183,7 @@ void merge(toml::table& to, toml::table& from) {
         merge(*table, *inner);
         continue;
       }
-      throw Fault{"`" + std::string(key.str()) + "` is not a table",
+      throw Fault{fmt::format("`{}` is not a table", key.str()),
                   there->is_array() ? "name one of its elements, e.g. sphere[0].radius=2" : ""};
     }
     node.visit([&to, &name = key](auto& value) { to.insert_or_assign(name, std::move(value)); });
@@ -192,7 +193,7 @@ void merge(toml::table& to, toml::table& from) {
 /// Applies one override. Its locations are in `line` of kOverrideName; `given` receives the text that was parsed.
 void apply_override(toml::table& root, const std::string& text, int line, Quoted& given) {
   if (text.find_first_of("\r\n") != std::string::npos) throw Fault{"an override must be one line"};
-  if (too_deep_key(text).line > 0) throw Fault{"the key has more than " + std::to_string(kDeepestKey) + " parts"};
+  if (too_deep_key(text).line > 0) throw Fault{fmt::format("the key has more than {} parts", kDeepestKey)};
   const Parts parts = parts_of(text);
   toml::table& target = parts.list.empty() ? root : element_of(root, parts.list);
   Parsed parsed = parse_override(text, parts, line);

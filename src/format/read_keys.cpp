@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 namespace orrery::format {
 namespace {
 
@@ -25,37 +27,37 @@ std::string type_name(const toml::node& node) {
   return "nothing";
 }
 
-void wrong_type(Reading& reading, const toml::node& node, const std::string& name, const std::string& wanted) {
-  reading.error(place_of(node), name + " must be " + wanted + ", not " + type_name(node));
+void wrong_type(ReadState& state, const toml::node& node, const std::string& name, const std::string& wanted) {
+  state.error(place_of(node), fmt::format("{} must be {}, not {}", name, wanted, type_name(node)));
 }
 
-std::optional<double> read_number(Reading& reading, const toml::node& node, const std::string& name,
+std::optional<double> read_number(ReadState& state, const toml::node& node, const std::string& name,
                                   const scene::Range& range) {
   if (!node.is_number()) {
-    wrong_type(reading, node, name, "a number");
+    wrong_type(state, node, name, "a number");
     return {};
   }
   const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!range.contains(x)) {
-    reading.error(place_of(node), name + " is " + scene::number_text(x) + "; " + range.requirement());
+    state.error(place_of(node), fmt::format("{} is {}; {}", name, scene::number_text(x), range.requirement()));
     return {};
   }
   return x;
 }
 
-std::optional<Value> read_vector(Reading& reading, const toml::node& node, const std::string& name,
+std::optional<Value> read_vector(ReadState& state, const toml::node& node, const std::string& name,
                                  const scene::Range& range) {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 3) {
-    reading.error(place_of(node),
-                  name + " must be three numbers like [0, 1, 0], not " +
-                      (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+    state.error(place_of(node),
+                fmt::format("{} must be three numbers like [0, 1, 0], not {}", name,
+                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
   double v[3];
   bool good = true;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto x = read_number(reading, *array->get(i), name + "[" + std::to_string(i) + "]", range);
+    const auto x = read_number(state, *array->get(i), fmt::format("{}[{}]", name, i), range);
     good = good && x.has_value();
     v[i] = x.value_or(0);
   }
@@ -63,99 +65,99 @@ std::optional<Value> read_vector(Reading& reading, const toml::node& node, const
   return math::Vec3d{v[0], v[1], v[2]};
 }
 
-std::optional<Value> read_integer(Reading& reading, const toml::node& node, const std::string& name,
+std::optional<Value> read_integer(ReadState& state, const toml::node& node, const std::string& name,
                                   const scene::Range& range) {
   if (!node.is_integer()) {
-    wrong_type(reading, node, name, "an integer");
+    wrong_type(state, node, name, "an integer");
     return {};
   }
   const std::int64_t x = node.as_integer()->get();
   if (!range.contains(static_cast<double>(x))) {
     const auto whole = [](double end) { return std::to_string(static_cast<std::int64_t>(end)); };
-    reading.error(place_of(node),
-                  name + " is " + std::to_string(x) + "; must be in " + whole(range.from) + ".." + whole(range.to));
+    state.error(place_of(node),
+                fmt::format("{} is {}; must be in {}..{}", name, x, whole(range.from), whole(range.to)));
     return {};
   }
   return x;
 }
 
-std::optional<Value> read_text(Reading& reading, const toml::node& node, const std::string& name,
+std::optional<Value> read_text(ReadState& state, const toml::node& node, const std::string& name,
                                const std::vector<std::string>& choices) {
   if (!node.is_string()) {
-    wrong_type(reading, node, name, choices.empty() ? "a string" : "one of " + base::joined(choices));
+    wrong_type(state, node, name, choices.empty() ? "a string" : "one of " + base::joined(choices));
     return {};
   }
   const std::string& text = node.as_string()->get();
   if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
-    reading.error(place_of(node), name + " is \"" + text + "\"; must be one of " + base::joined(choices),
-                  base::did_you_mean(text, choices));
+    state.error(place_of(node), fmt::format("{} is \"{}\"; must be one of {}", name, text, base::joined(choices)),
+                base::did_you_mean(text, choices));
     return {};
   }
   return text;
 }
 
-std::optional<Value> read_window(Reading& reading, const toml::node& node, const std::string& name,
+std::optional<Value> read_window(ReadState& state, const toml::node& node, const std::string& name,
                                  const scene::Range& range) {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 4) {
-    reading.error(place_of(node),
-                  name + " must be x, y, width and height like [0, 0, 640, 360], not " +
-                      (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+    state.error(place_of(node),
+                fmt::format("{} must be x, y, width and height like [0, 0, 640, 360], not {}", name,
+                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
   std::int64_t v[4];
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto x = read_integer(reading, *array->get(i), name + "[" + std::to_string(i) + "]", range);
+    const auto x = read_integer(state, *array->get(i), fmt::format("{}[{}]", name, i), range);
     if (!x) return {};
     v[i] = std::get<std::int64_t>(*x);
   }
   return scene::Window{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
 }
 
-std::optional<Value> read_interval(Reading& reading, const toml::node& node, const std::string& name,
+std::optional<Value> read_interval(ReadState& state, const toml::node& node, const std::string& name,
                                    const scene::Range& range) {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 2) {
-    reading.error(place_of(node),
-                  name + " must be two numbers like [0, 1], not " +
-                      (array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+    state.error(place_of(node),
+                fmt::format("{} must be two numbers like [0, 1], not {}", name,
+                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
     return {};
   }
-  const auto low = read_number(reading, *array->get(0), name + "[0]", range);
-  const auto high = read_number(reading, *array->get(1), name + "[1]", range);
+  const auto low = read_number(state, *array->get(0), name + "[0]", range);
+  const auto high = read_number(state, *array->get(1), name + "[1]", range);
   if (!low || !high) return {};
   if (!(*low < *high)) {
-    reading.error(place_of(node), name + " is " + scene::interval_text({*low, *high}) +
-                                      "; the first number must be less than the second");
+    state.error(place_of(node), fmt::format("{} is {}; the first number must be less than the second", name,
+                                            scene::interval_text({*low, *high})));
     return {};
   }
   return scene::Interval{*low, *high};
 }
 
-std::optional<Value> read_boolean(Reading& reading, const toml::node& node, const std::string& name) {
+std::optional<Value> read_boolean(ReadState& state, const toml::node& node, const std::string& name) {
   if (const toml::value<bool>* value = node.as_boolean()) return value->get();
-  wrong_type(reading, node, name, "true or false");
+  wrong_type(state, node, name, "true or false");
   return {};
 }
 
 /// Reads a list of enumerators. Reports each invalid element separately.
-std::optional<Value> read_words(Reading& reading, const toml::node& node, const std::string& name,
+std::optional<Value> read_words(ReadState& state, const toml::node& node, const std::string& name,
                                 const std::vector<std::string>& choices) {
   const toml::array* array = node.as_array();
   if (array == nullptr) {
-    wrong_type(reading, node, name, "a list like [\"" + choices.front() + "\"]");
+    wrong_type(state, node, name, fmt::format("a list like [\"{}\"]", choices.front()));
     return {};
   }
   std::vector<std::string> words;
   bool good = true;
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::node& element = *array->get(i);
-    const std::string element_name = name + "[" + std::to_string(i) + "]";
-    const auto word = read_text(reading, element, element_name, choices);
+    const std::string element_name = fmt::format("{}[{}]", name, i);
+    const auto word = read_text(state, element, element_name, choices);
     good = good && word.has_value();
     if (!word) continue;
     if (std::find(words.begin(), words.end(), std::get<std::string>(*word)) != words.end()) {
-      reading.error(place_of(element), element_name + " is a duplicate", "remove it");
+      state.error(place_of(element), element_name + " is a duplicate", "remove it");
       good = false;
     }
     words.push_back(std::get<std::string>(*word));
@@ -165,24 +167,24 @@ std::optional<Value> read_words(Reading& reading, const toml::node& node, const 
 
 }  // namespace
 
-std::optional<Value> read_value(Reading& reading, const toml::node& node, const std::string& name, ValueType type,
+std::optional<Value> read_value(ReadState& state, const toml::node& node, const std::string& name, ValueType type,
                                 const scene::Range& range, const std::vector<std::string>& choices) {
   switch (type) {
-    case ValueType::kInteger: return read_integer(reading, node, name, range);
+    case ValueType::kInteger: return read_integer(state, node, name, range);
     case ValueType::kNumber: {
-      const auto x = read_number(reading, node, name, range);
+      const auto x = read_number(state, node, name, range);
       return x ? std::optional<Value>(*x) : std::nullopt;
     }
-    case ValueType::kVector: return read_vector(reading, node, name, range);
-    case ValueType::kText: return read_text(reading, node, name, {});
-    case ValueType::kChoice: return read_text(reading, node, name, choices);
-    case ValueType::kWindow: return read_window(reading, node, name, range);
-    case ValueType::kBoolean: return read_boolean(reading, node, name);
-    case ValueType::kChoices: return read_words(reading, node, name, choices);
-    case ValueType::kInterval: return read_interval(reading, node, name, range);
+    case ValueType::kVector: return read_vector(state, node, name, range);
+    case ValueType::kText: return read_text(state, node, name, {});
+    case ValueType::kChoice: return read_text(state, node, name, choices);
+    case ValueType::kWindow: return read_window(state, node, name, range);
+    case ValueType::kBoolean: return read_boolean(state, node, name);
+    case ValueType::kChoices: return read_words(state, node, name, choices);
+    case ValueType::kInterval: return read_interval(state, node, name, range);
     case ValueType::kName:
       if (const toml::value<std::int64_t>* number = node.as_integer()) return std::to_string(number->get());
-      return read_text(reading, node, name, {});
+      return read_text(state, node, name, {});
   }
   return {};
 }
@@ -199,7 +201,7 @@ bool has_subkeys(const std::vector<std::string>& known, const std::string& name)
   return std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k.starts_with(name + "."); });
 }
 
-void report_unknown_keys(Reading& reading, const toml::table& table, const std::string& table_name,
+void report_unknown_keys(ReadState& state, const toml::table& table, const std::string& table_name,
                          const std::vector<std::string>& known) {
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
@@ -207,24 +209,24 @@ void report_unknown_keys(Reading& reading, const toml::table& table, const std::
       std::vector<std::string> inner;
       for (const std::string& k : known)
         if (k.starts_with(name + ".")) inner.push_back(k.substr(name.size() + 1));
-      report_unknown_keys(reading, *node.as_table(), table_name + "." + name, inner);
+      report_unknown_keys(state, *node.as_table(), fmt::format("{}.{}", table_name, name), inner);
     } else if (std::find(known.begin(), known.end(), name) == known.end()) {
       std::vector<std::string> direct;
       for (const std::string& k : known)
         if (const std::string first = k.substr(0, k.find('.'));
             std::find(direct.begin(), direct.end(), first) == direct.end())
           direct.push_back(first);
-      report_unknown_key(reading, key, table_name, direct);
+      report_unknown_key(state, key, table_name, direct);
     }
   }
 }
 
-void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
+void report_unknown_key(ReadState& state, const toml::key& key, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint) {
   const std::string name(key.str());
   std::string remedy = hint.empty() ? base::did_you_mean(name, known) : hint;
   if (remedy.empty()) remedy = "known keys are " + base::joined(known);
-  reading.error(place_of(key), "unknown key `" + name + "` in " + table_name, remedy);
+  state.error(place_of(key), fmt::format("unknown key `{}` in {}", name, table_name), remedy);
 }
 
 }  // namespace orrery::format

@@ -15,7 +15,7 @@
 namespace orrery::format {
 
 /// State while a tree is read: its texts and the diagnostics so far.
-struct Reading {
+struct ReadState {
   SourceText source;
   Diagnostics diagnostics;
   std::set<std::string> unread;  ///< full names of keys that kept their defaults because of an error
@@ -34,7 +34,7 @@ struct Reading {
 ///
 /// `name`     full name of the key, for messages
 /// Result     nullopt on failure, which is reported
-std::optional<scene::Value> read_value(Reading& reading, const toml::node& node, const std::string& name,
+std::optional<scene::Value> read_value(ReadState& state, const toml::node& node, const std::string& name,
                                        scene::ValueType type, const scene::Range& range,
                                        const std::vector<std::string>& choices);
 
@@ -42,11 +42,11 @@ std::optional<scene::Value> read_value(Reading& reading, const toml::node& node,
 const toml::node* node_at(const toml::table& table, const std::string& dotted_name);
 
 /// Reports the keys of a table and its subtables that are not known; `known` are dotted names.
-void report_unknown_keys(Reading& reading, const toml::table& table, const std::string& table_name,
+void report_unknown_keys(ReadState& state, const toml::table& table, const std::string& table_name,
                          const std::vector<std::string>& known);
 
 /// Reports an unknown key; `hint` replaces the suggestion.
-void report_unknown_key(Reading& reading, const toml::key& key, const std::string& table_name,
+void report_unknown_key(ReadState& state, const toml::key& key, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint = {});
 
 /// Whether a key can be a table: whether `known` has dotted names that begin with it.
@@ -54,11 +54,11 @@ bool has_subkeys(const std::vector<std::string>& known, const std::string& name)
 
 /// Reads a table into a target according to its keys. Keys in `also` are valid, but read by the caller.
 template <class Target>
-void read_keys(Reading& reading, const toml::table& table, const std::string& table_name,
+void read_keys(ReadState& state, const toml::table& table, const std::string& table_name,
                const std::vector<scene::Key<Target>>& keys, const std::vector<std::string>& also, Target& target) {
   std::vector<std::string> known = also;
   for (const auto& key : keys) known.push_back(key.name);
-  report_unknown_keys(reading, table, table_name, known);
+  report_unknown_keys(state, table, table_name, known);
   for (const auto& key : keys) {
     const toml::node* node = node_at(table, key.name);
     // `radius` may be a number or a table, whose keys are `radius.column` and so on.
@@ -66,12 +66,12 @@ void read_keys(Reading& reading, const toml::table& table, const std::string& ta
     const std::string full_name = table_name + "." + key.name;
     if (node == nullptr) {
       if (!key.required) continue;
-      reading.error(place_of(table), table_name + " needs `" + key.name + "`");
-      reading.unread.insert(full_name);
-    } else if (const auto value = read_value(reading, *node, full_name, key.type, key.range, key.choices)) {
+      state.error(place_of(table), table_name + " needs `" + key.name + "`");
+      state.unread.insert(full_name);
+    } else if (const auto value = read_value(state, *node, full_name, key.type, key.range, key.choices)) {
       key.set(target, *value);
     } else {
-      reading.unread.insert(full_name);
+      state.unread.insert(full_name);
     }
   }
 }

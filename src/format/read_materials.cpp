@@ -6,6 +6,8 @@
 #include <string>
 #include <tuple>
 
+#include <fmt/core.h>
+
 #include "base/frames.h"
 #include "format/overrides.h"
 
@@ -18,30 +20,30 @@ std::string other_type_with(const std::string& key) {
   for (const scene::MaterialType& type : scene::material_types())
     for (const auto& known : type.keys)
       if (known.name == key) owners.push_back(type.name);
-  return owners.empty() ? "" : "`" + key + "` belongs to " + base::joined(owners);
+  return owners.empty() ? "" : fmt::format("`{}` belongs to {}", key, base::joined(owners));
 }
 
 /// Reports the keys that no material type has, for a material of unknown type.
-void report_keys_of_no_type(Reading& reading, const toml::table& table, const std::string& full_name) {
+void report_keys_of_no_type(ReadState& state, const toml::table& table, const std::string& full_name) {
   std::vector<std::string> known = {"type"};
   for (const scene::MaterialType& type : scene::material_types())
     for (const auto& key : type.keys)
       if (std::find(known.begin(), known.end(), key.name) == known.end()) known.push_back(key.name);
   for (const auto& [key, node] : table)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(reading, key, full_name, known);
+      report_unknown_key(state, key, full_name, known);
 }
 
 /// Reads the type of [material.NAME]; null, and an error is reported, if it is missing or unknown.
-const scene::MaterialType* read_type(Reading& reading, const toml::table& table, const std::string& full_name) {
+const scene::MaterialType* read_type(ReadState& state, const toml::table& table, const std::string& full_name) {
   std::vector<std::string> names;
   for (const scene::MaterialType& type : scene::material_types()) names.push_back(type.name);
   const toml::node* node = table.get("type");
   if (node == nullptr) {
-    reading.error(place_of(table), full_name + " needs `type`", "one of " + base::joined(names));
+    state.error(place_of(table), full_name + " needs `type`", "one of " + base::joined(names));
     return nullptr;
   }
-  const auto name = read_value(reading, *node, full_name + ".type", scene::ValueType::kChoice, {}, names);
+  const auto name = read_value(state, *node, full_name + ".type", scene::ValueType::kChoice, {}, names);
   if (!name) return nullptr;
   for (const scene::MaterialType& type : scene::material_types())
     if (type.name == std::get<std::string>(*name)) return &type;
@@ -49,7 +51,7 @@ const scene::MaterialType* read_type(Reading& reading, const toml::table& table,
 }
 
 /// Reads a texture, the value of a material's key; null, and an error is reported, if its type is missing or unknown.
-scene::TextureSlot read_texture(Reading& reading, const toml::table& table, const std::string& full_name, int frame,
+scene::TextureSlot read_texture(ReadState& state, const toml::table& table, const std::string& full_name, int frame,
                                 const std::vector<scene::TextureTypeKeys>& types) {
   std::vector<std::string> names, all_keys = {"texture"};
   for (const scene::TextureTypeKeys& type : types) {
@@ -58,17 +60,17 @@ scene::TextureSlot read_texture(Reading& reading, const toml::table& table, cons
   }
   const toml::node* node = table.get("texture");
   if (node == nullptr) {
-    reading.error(place_of(table), full_name + " needs `texture`", "one of " + base::joined(names));
-    report_unknown_keys(reading, table, full_name, all_keys);
+    state.error(place_of(table), full_name + " needs `texture`", "one of " + base::joined(names));
+    report_unknown_keys(state, table, full_name, all_keys);
     return nullptr;
   }
-  const auto name = read_value(reading, *node, full_name + ".texture", scene::ValueType::kChoice, {}, names);
+  const auto name = read_value(state, *node, full_name + ".texture", scene::ValueType::kChoice, {}, names);
   if (!name) return nullptr;
   for (const scene::TextureTypeKeys& type : types) {
     if (type.name != std::get<std::string>(*name)) continue;
     const auto texture = std::make_shared<scene::Texture>();
     texture->type = type.type;
-    read_keys(reading, table, full_name, type.keys, {"texture"}, *texture);
+    read_keys(state, table, full_name, type.keys, {"texture"}, *texture);
     texture->file = base::with_frame(texture->file.string(), frame);
     return texture;
   }
@@ -76,44 +78,44 @@ scene::TextureSlot read_texture(Reading& reading, const toml::table& table, cons
 }
 
 /// Reads the keys whose values are tables as textures. Their names are added to `also`.
-void read_textures(Reading& reading, const toml::table& table, const std::string& full_name, int frame,
+void read_textures(ReadState& state, const toml::table& table, const std::string& full_name, int frame,
                    const scene::MaterialType& type, std::vector<std::string>& also, scene::MaterialModel& model) {
   for (const scene::TexturedKey& key : type.textured) {
     const toml::node* node = table.get(key.name);
     if (node == nullptr || !node->is_table()) continue;
-    key.at(model) =
-        read_texture(reading, *node->as_table(), full_name + "." + key.name, frame, scene::texture_types(key.use));
-    for (const auto& [word, value] : *node->as_table()) also.push_back(key.name + "." + std::string(word.str()));
+    key.at(model) = read_texture(state, *node->as_table(), fmt::format("{}.{}", full_name, key.name), frame,
+                                 scene::texture_types(key.use));
+    for (const auto& [word, value] : *node->as_table()) also.push_back(fmt::format("{}.{}", key.name, word.str()));
     also.push_back(key.name + ".texture");
   }
 }
 
-void read_material(Reading& reading, const toml::table& table, int frame, scene::Material& material) {
+void read_material(ReadState& state, const toml::table& table, int frame, scene::Material& material) {
   const std::string full_name = "material." + material.name;
-  const scene::MaterialType* type = read_type(reading, table, full_name);
-  if (type == nullptr) return report_keys_of_no_type(reading, table, full_name);
+  const scene::MaterialType* type = read_type(state, table, full_name);
+  if (type == nullptr) return report_keys_of_no_type(state, table, full_name);
   std::vector<std::string> known = {"type"};
   for (const auto& key : type->keys) known.push_back(key.name);
   std::vector<std::string> also = {"type"};  // and keys of other types, which are reported here with the types' names
   for (const auto& [key, node] : table) {
     const std::string word(key.str());
     if (std::find(known.begin(), known.end(), word) != known.end() || other_type_with(word).empty()) continue;
-    report_unknown_key(reading, key, full_name + " of type " + type->name, known, other_type_with(word));
+    report_unknown_key(state, key, fmt::format("{} of type {}", full_name, type->name), known, other_type_with(word));
     also.push_back(word);
   }
   material.model = type->model;
-  read_textures(reading, table, full_name, frame, *type, also, material.model);
-  read_keys(reading, table, full_name, type->keys, also, material.model);
+  read_textures(state, table, full_name, frame, *type, also, material.model);
+  read_keys(state, table, full_name, type->keys, also, material.model);
 }
 
 }  // namespace
 
-void read_materials(Reading& reading, const toml::table& root, int frame, std::vector<scene::Material>& materials) {
+void read_materials(ReadState& state, const toml::table& root, int frame, std::vector<scene::Material>& materials) {
   const toml::node* node = root.get("material");
   if (node == nullptr) return;
   const toml::table* all = node->as_table();
   if (all == nullptr) {
-    reading.error(place_of(*node), "`material` must contain tables", "write [material.NAME]");
+    state.error(place_of(*node), "`material` must contain tables", "write [material.NAME]");
     return;
   }
   // The library sorts keys by name, but points files count materials in the order of the file. Materials added by
@@ -137,9 +139,10 @@ void read_materials(Reading& reading, const toml::table& root, int frame, std::v
     // An invalid material is added, too: spheres may use its name without further errors.
     materials.push_back({name, scene::Lambertian{}});
     if (const toml::table* table = entry.value->as_table()) {
-      read_material(reading, *table, frame, materials.back());
+      read_material(state, *table, frame, materials.back());
     } else {
-      reading.error(place_of(*entry.value), "material." + name + " must be a table", "write [material." + name + "]");
+      state.error(place_of(*entry.value), fmt::format("material.{} must be a table", name),
+                  fmt::format("write [material.{}]", name));
     }
   }
 }

@@ -13,6 +13,6 @@ namespace orrery::format {
 /// it cause no further errors.
 ///
 /// `frame`    replaces frame patterns in names of texture files
-void read_materials(Reading& reading, const toml::table& root, int frame, std::vector<scene::Material>& materials);
+void read_materials(ReadState& state, const toml::table& root, int frame, std::vector<scene::Material>& materials);
 
 }  // namespace orrery::format

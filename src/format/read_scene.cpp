@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/frames.h"
 #include "format/overrides.h"
@@ -25,42 +27,43 @@ namespace {
 using MaterialIndex = std::unordered_map<std::string, std::uint32_t>;
 
 /// Returns an array of tables; null if it is absent, or if it is not an array of tables, which is reported once.
-const toml::array* tables_under(Reading& reading, const toml::table& root, const char* name) {
+const toml::array* tables_under(ReadState& state, const toml::table& root, const char* name) {
   const toml::node* node = root.get(name);
   if (node == nullptr) return nullptr;
   const toml::array* array = node->as_array();
   if (array == nullptr || (!array->empty() && !array->is_array_of_tables())) {
-    reading.error(place_of(*node), std::string("`") + name + "` must be an array of tables",
-                  std::string("write [[") + name + "]]");
+    state.error(place_of(*node), fmt::format("`{}` must be an array of tables", name),
+                fmt::format("write [[{}]]", name));
     return nullptr;
   }
   return array;
 }
 
-void read_single_tables(Reading& reading, const toml::table& root, scene::Scene& scene) {
+void read_single_tables(ReadState& state, const toml::table& root, scene::Scene& scene) {
   for (const scene::Table& table : scene::tables()) {
     const toml::node* node = root.get(table.name);
     if (node == nullptr) continue;
     if (const toml::table* found = node->as_table()) {
-      read_keys(reading, *found, table.name, table.keys, {}, scene);
+      read_keys(state, *found, table.name, table.keys, {}, scene);
     } else {
-      reading.error(place_of(*node), "`" + table.name + "` must be a table", "write [" + table.name + "]");
+      state.error(place_of(*node), fmt::format("`{}` must be a table", table.name),
+                  fmt::format("write [{}]", table.name));
     }
   }
 }
 
 /// Returns the index of the material that a sphere or a points file names; 0, and an error is reported, if it does not
 /// exist.
-std::uint32_t read_material_name(Reading& reading, const toml::table& table, const std::string& table_name,
+std::uint32_t read_material_name(ReadState& state, const toml::table& table, const std::string& table_name,
                                  const scene::Scene& scene, const MaterialIndex& index) {
   const std::string full_name = table_name + ".material";
   const toml::node* node = table.get("material");
   if (node == nullptr) {
-    reading.error(place_of(table), table_name + " needs `material`");
-    reading.unread.insert(full_name);
+    state.error(place_of(table), table_name + " needs `material`");
+    state.unread.insert(full_name);
     return 0;
   }
-  const auto value = read_value(reading, *node, full_name, scene::ValueType::kText, {}, {});
+  const auto value = read_value(state, *node, full_name, scene::ValueType::kText, {}, {});
   if (value) {
     if (const auto found = index.find(std::get<std::string>(*value)); found != index.end()) return found->second;
     const auto& name = std::get<std::string>(*value);
@@ -70,22 +73,22 @@ std::uint32_t read_material_name(Reading& reading, const toml::table& table, con
     std::string remedy = base::did_you_mean(name, names);
     if (remedy.empty() && names.empty()) remedy = "the scene defines no materials";
     if (remedy.empty() && names.size() <= kMaxNamed) remedy = "defined are " + base::joined(names);
-    reading.error(place_of(*node), full_name + " is \"" + name + "\", which is not defined", remedy);
+    state.error(place_of(*node), fmt::format("{} is \"{}\", which is not defined", full_name, name), remedy);
   }
-  reading.unread.insert(full_name);
+  state.unread.insert(full_name);
   return 0;
 }
 
-void read_spheres(Reading& reading, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
-  const toml::array* list = tables_under(reading, root, "sphere");
+void read_spheres(ReadState& state, const toml::table& root, const MaterialIndex& index, scene::Scene& scene) {
+  const toml::array* list = tables_under(state, root, "sphere");
   if (list == nullptr) return;
   scene.spheres.reserve(list->size());
   for (std::size_t i = 0; i < list->size(); ++i) {
     const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = "sphere[" + std::to_string(i) + "]";
+    const std::string full_name = fmt::format("sphere[{}]", i);
     scene::Sphere sphere;
-    read_keys(reading, table, full_name, scene::sphere_keys(), {"material"}, sphere);
-    sphere.material = read_material_name(reading, table, full_name, scene, index);
+    read_keys(state, table, full_name, scene::sphere_keys(), {"material"}, sphere);
+    sphere.material = read_material_name(state, table, full_name, scene, index);
     scene.spheres.push_back(std::move(sphere));
   }
 }
@@ -112,61 +115,61 @@ const toml::node* node_of(const toml::table& root, const std::string& key) {
 }
 
 /// Adds a diagnostic at the location of its key, or of the file if the key is not set.
-void add_problem(Reading& reading, const toml::table& root, const std::string& file,
+void add_problem(ReadState& state, const toml::table& root, const std::string& file,
                  const scene::SceneDiagnostic& diagnostic, const std::string& text) {
   const toml::node* node = node_of(root, diagnostic.key);
-  reading.add(diagnostic.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, diagnostic.kind);
+  state.add(diagnostic.severity, node != nullptr ? place_of(*node) : Place{file, 0, 0, 1}, text, {}, diagnostic.kind);
 }
 
 /// Reads the data file of a points table. Errors in the file are reported at the location in the scene that names it,
 /// and at those in the file.
-void read_points_file(Reading& reading, const toml::table& root, const std::string& scene_file, const Place& place,
+void read_points_file(ReadState& state, const toml::table& root, const std::string& scene_file, const Place& place,
                       const points::LoadRequest& request, scene::Points& points) {
   const std::string& full_name = request.key;
   try {
     for (const scene::SceneDiagnostic& diagnostic : points::load_points(request, points))
-      add_problem(reading, root, scene_file, diagnostic, diagnostic.key + ": " + diagnostic.text);
+      add_problem(state, root, scene_file, diagnostic, fmt::format("{}: {}", diagnostic.key, diagnostic.text));
   } catch (const base::Error& error) {
     if (error.kind() != base::ErrorKind::kBadData && error.kind() != base::ErrorKind::kMissingInput) throw;
-    reading.error(place, full_name + ".file: " + error.what(), {}, error.kind());
+    state.error(place, fmt::format("{}.file: {}", full_name, error.what()), {}, error.kind());
     for (const base::Diagnostic& diagnostic : error.diagnostics())
-      reading.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
-                              [&] { return diagnostic; });
+      state.diagnostics.add(diagnostic.severity, {diagnostic.file, diagnostic.line, 0, 1}, error.kind(),
+                            [&] { return diagnostic; });
   }
 }
 
 /// Reads a table from particle types to numbers or colours: `radius = { type = { 1 = 0.5, 2 = 0.7 } }`.
 template <class T>
-void read_types(Reading& reading, const toml::table& table, const std::string& table_name, const std::string& name,
+void read_types(ReadState& state, const toml::table& table, const std::string& table_name, const std::string& name,
                 scene::ValueType type, scene::Range range, std::vector<std::pair<std::string, T>>& types) {
   const toml::node* const node = node_at(table, name);
   if (node == nullptr) return;
-  const std::string full_name = table_name + "." + name;
+  const std::string full_name = fmt::format("{}.{}", table_name, name);
   const toml::table* const entries = node->as_table();
   if (entries == nullptr) {
-    reading.error(place_of(*node), full_name + " must be a table", "write e.g. type = { 1 = 0.5, 2 = 0.7 }");
+    state.error(place_of(*node), full_name + " must be a table", "write e.g. type = { 1 = 0.5, 2 = 0.7 }");
     return;
   }
   for (const auto& [key, value] : *entries) {
-    const auto read = read_value(reading, value, full_name + "." + std::string(key.str()), type, range, {});
+    const auto read = read_value(state, value, fmt::format("{}.{}", full_name, key.str()), type, range, {});
     if (read) types.emplace_back(std::string(key.str()), std::get<T>(*read));
   }
 }
 
-void read_points(Reading& reading, const toml::table& root, const std::filesystem::path& scene_file,
+void read_points(ReadState& state, const toml::table& root, const std::filesystem::path& scene_file,
                  const ReadOptions& options, const MaterialIndex& index, scene::Scene& scene) {
-  const toml::array* list = tables_under(reading, root, "points");
+  const toml::array* list = tables_under(state, root, "points");
   if (list == nullptr) return;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const toml::table& table = *list->get(i)->as_table();
-    const std::string full_name = "points[" + std::to_string(i) + "]";
+    const std::string full_name = fmt::format("points[{}]", i);
     scene::Points points;
-    read_keys(reading, table, full_name, scene::points_keys(), {"material", "radius.type", "color.type"}, points);
-    read_types(reading, table, full_name, "radius.type", scene::ValueType::kNumber,
+    read_keys(state, table, full_name, scene::points_keys(), {"material", "radius.type", "color.type"}, points);
+    read_types(state, table, full_name, "radius.type", scene::ValueType::kNumber,
                {scene::kSmallestRadius, scene::kLargestLength}, points.radius.types);
-    read_types(reading, table, full_name, "color.type", scene::ValueType::kVector, {0, 1}, points.color.types);
-    points.material = read_material_name(reading, table, full_name, scene, index);
-    if (reading.unread.count(full_name + ".file") == 0) {
+    read_types(state, table, full_name, "color.type", scene::ValueType::kVector, {0, 1}, points.color.types);
+    points.material = read_material_name(state, table, full_name, scene, index);
+    if (state.unread.count(full_name + ".file") == 0) {
       const std::string pattern = points.file.string();
       points.file = base::with_frame(pattern, options.frame);
       points::LoadRequest request;
@@ -178,7 +181,7 @@ void read_points(Reading& reading, const toml::table& root, const std::filesyste
       request.materials = scene.materials.size();
       request.memory_limit = options.memory_limit;
       request.open = options.open_data;
-      read_points_file(reading, root, scene_file.string(), place_of(*table.get("file")), request, points);
+      read_points_file(state, root, scene_file.string(), place_of(*table.get("file")), request, points);
     }
     scene.points.push_back(std::move(points));
   }
@@ -186,16 +189,16 @@ void read_points(Reading& reading, const toml::table& root, const std::filesyste
 
 /// Adds the diagnostics of the whole scene. Those that may follow from the default of a key that could not be read are
 /// dropped, and so are warnings if the scene has errors.
-void add_problems(Reading& reading, const toml::table& root, const std::vector<scene::SceneDiagnostic>& diagnostics,
+void add_problems(ReadState& state, const toml::table& root, const std::vector<scene::SceneDiagnostic>& diagnostics,
                   const std::string& file) {
-  const bool has_errors = reading.diagnostics.has_errors();
+  const bool has_errors = state.diagnostics.has_errors();
   const auto is_of_camera = [](const std::string& key) { return key.rfind("camera.", 0) == 0; };
-  const bool camera_is_read = std::none_of(reading.unread.begin(), reading.unread.end(), is_of_camera);
+  const bool camera_is_read = std::none_of(state.unread.begin(), state.unread.end(), is_of_camera);
   for (const scene::SceneDiagnostic& diagnostic : diagnostics) {
     if (has_errors && diagnostic.severity == base::Severity::kWarning) continue;
-    if (reading.unread.count(diagnostic.key) != 0 || (is_of_camera(diagnostic.key) && !camera_is_read)) continue;
-    add_problem(reading, root, file, diagnostic,
-                diagnostic.key.empty() ? diagnostic.text : diagnostic.key + ": " + diagnostic.text);
+    if (state.unread.count(diagnostic.key) != 0 || (is_of_camera(diagnostic.key) && !camera_is_read)) continue;
+    add_problem(state, root, file, diagnostic,
+                diagnostic.key.empty() ? diagnostic.text : fmt::format("{}: {}", diagnostic.key, diagnostic.text));
   }
 }
 
@@ -215,24 +218,25 @@ std::vector<scene::SceneDiagnostic> errors_at_close(const scene::Scene& opening,
 }
 
 /// Poses the scene at the frame; with motion blur, at shutter open and at shutter close.
-void pose(Reading& reading, const toml::table& root, const std::string& file, int frame, ReadResult& result) {
+void pose(ReadState& state, const toml::table& root, const std::string& file, int frame, ReadResult& result) {
   scene::Scene& scene = result.scene;
   const scene::Camera& shutter = scene.camera;
   const bool is_open = shutter.shutter_close > shutter.shutter_open;
   const double opens = frame + (is_open ? shutter.shutter_open : 0), closes = frame + shutter.shutter_close;
   if (!scene.tracks.empty()) {
-    check_tracks(reading, *root.get("key")->as_array(), scene, opens);
-    if (is_open) check_tracks(reading, *root.get("key")->as_array(), scene, closes);
+    check_tracks(state, *root.get("key")->as_array(), scene, opens);
+    if (is_open) check_tracks(state, *root.get("key")->as_array(), scene, closes);
   }
   if (is_open) result.closing = scene::posed(scene, closes);
   scene = scene::posed(scene, opens);
   if (!is_open) return;
   for (const scene::SceneDiagnostic& diagnostic : errors_at_close(scene, *result.closing))
-    add_problem(reading, root, file, diagnostic, diagnostic.key + " when the shutter closes: " + diagnostic.text);
+    add_problem(state, root, file, diagnostic,
+                fmt::format("{} when the shutter closes: {}", diagnostic.key, diagnostic.text));
   for (std::size_t i = 0; i < scene.spheres.size(); ++i)
     if ((scene.spheres[i].radius < 0) != (result.closing->spheres[i].radius < 0)) {
-      const std::string key = "sphere[" + std::to_string(i) + "].radius";
-      add_problem(reading, root, file, {base::Severity::kError, key, ""},
+      const std::string key = fmt::format("sphere[{}].radius", i);
+      add_problem(state, root, file, {base::Severity::kError, key, ""},
                   key + " changes sign while the shutter is open; keep it positive or negative");
     }
 }
@@ -243,26 +247,26 @@ bool sets_target(const Override& override, const scene::Track& track, const scen
   if (override.text.find("sphere") == std::string::npos) return false;  // names of spheres take time to find
   const std::vector<std::size_t> spheres = scene::spheres_of_target(scene, track.target);
   return spheres.size() == 1 &&
-         override.sets("sphere[" + std::to_string(spheres[0]) + "]" + track.target.substr(track.target.rfind('.')));
+         override.sets(fmt::format("sphere[{}]{}", spheres[0], track.target.substr(track.target.rfind('.'))));
 }
 
 /// A track replaces what an override sets.
-void warn_of_animated_overrides(Reading& reading, const std::vector<Override>& overrides, const scene::Scene& scene) {
+void warn_of_animated_overrides(ReadState& state, const std::vector<Override>& overrides, const scene::Scene& scene) {
   for (std::size_t i = 0; i < overrides.size(); ++i)
     for (std::size_t t = 0; t < scene.tracks.size(); ++t)
       if (sets_target(overrides[i], scene.tracks[t], scene))
-        reading.add(base::Severity::kWarning, Place{kOverrideName, static_cast<int>(i) + 1, 1, 1},
-                    scene.tracks[t].target + " is animated by key[" + std::to_string(t) + "], which takes precedence",
-                    "remove all animation with --set key=[]");
+        state.add(base::Severity::kWarning, Place{kOverrideName, static_cast<int>(i) + 1, 1, 1},
+                  fmt::format("{} is animated by key[{}], which takes precedence", scene.tracks[t].target, t),
+                  "remove all animation with --set key=[]");
 }
 
-void report_unknown_tables(Reading& reading, const toml::table& root) {
+void report_unknown_tables(ReadState& state, const toml::table& root) {
   std::vector<std::string> known;
   for (const scene::Table& table : scene::tables()) known.push_back(table.name);
   known.insert(known.end(), {"material", "sphere", "points", "key"});
   for (const auto& [key, node] : root)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      report_unknown_key(reading, key, "the scene", known);
+      report_unknown_key(state, key, "the scene", known);
 }
 
 std::vector<Setting> settings_of(const SourceText& source, const toml::table& root, const scene::Scene& scene) {
@@ -277,9 +281,9 @@ std::vector<Setting> settings_of(const SourceText& source, const toml::table& ro
         origin = place.text_name == kOverrideName ? source.option_at(place.line)
                                                   : place.text_name + ':' + std::to_string(place.line);
       }
-      const std::string full_name = table.name + "." + key.name;
+      const std::string full_name = fmt::format("{}.{}", table.name, key.name);
       for (std::size_t i = 0; i < scene.tracks.size(); ++i)
-        if (scene.tracks[i].target == full_name) origin = "key[" + std::to_string(i) + "]";
+        if (scene.tracks[i].target == full_name) origin = fmt::format("key[{}]", i);
       settings.push_back({full_name, key.text(scene), origin});
     }
   }
@@ -292,39 +296,37 @@ ReadResult read_scene(const std::filesystem::path& file, const std::vector<Overr
                       const ReadOptions& options) {
   const int frame = options.frame;
   const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile), name = file.string();
-  Reading reading;
-  const toml::table root = parse_tree(name, text, overrides, reading.source, reading.diagnostics);
-  if (root.empty()) reading.diagnostics.raise_errors(name);
-  if (options.is_generated) reading.source.add(name, text, true);
+  ReadState state;
+  const toml::table root = parse_tree(name, text, overrides, state.source, state.diagnostics);
+  if (root.empty()) state.diagnostics.raise_errors(name);
+  if (options.is_generated) state.source.add(name, text, true);
 
   ReadResult result;
-  report_unknown_tables(reading, root);
-  read_single_tables(reading, root, result.scene);
+  report_unknown_tables(state, root);
+  read_single_tables(state, root, result.scene);
   result.scene.background.file = base::with_frame(result.scene.background.file.string(), frame);
-  read_materials(reading, root, frame, result.scene.materials);
+  read_materials(state, root, frame, result.scene.materials);
   MaterialIndex index;
   for (const scene::Material& material : result.scene.materials)
     index.emplace(material.name, static_cast<std::uint32_t>(index.size()));
-  read_spheres(reading, root, index, result.scene);
-  if (const toml::array* keys = tables_under(reading, root, "key")) read_tracks(reading, *keys, result.scene);
-  warn_of_animated_overrides(reading, overrides, result.scene);
-  if (!reading.diagnostics.has_errors()) pose(reading, root, name, frame, result);
-  read_points(reading, root, file, options, index, result.scene);
-  add_problems(reading, root, scene::validate(result.scene), name);
+  read_spheres(state, root, index, result.scene);
+  if (const toml::array* keys = tables_under(state, root, "key")) read_tracks(state, *keys, result.scene);
+  warn_of_animated_overrides(state, overrides, result.scene);
+  if (!state.diagnostics.has_errors()) pose(state, root, name, frame, result);
+  read_points(state, root, file, options, index, result.scene);
+  add_problems(state, root, scene::validate(result.scene), name);
   const auto coincident = scene::warn_of_coincident(result.scene, result.closing ? &*result.closing : nullptr);
   if (coincident.empty()) result.scene.distinct_in = result.scene.render.precision;
-  add_problems(reading, root, coincident, name);
+  add_problems(state, root, coincident, name);
   const auto is_of_color = [](const std::string& key) { return key.rfind("color.", 0) == 0; };
-  if (options.also && std::none_of(reading.unread.begin(), reading.unread.end(), is_of_color))
-    add_problems(reading, root, options.also(result.scene), name);
-  reading.diagnostics.raise_errors(name);
-  result.warnings = reading.diagnostics.take_warnings();
-  result.settings = settings_of(reading.source, root, result.scene);
+  if (options.also && std::none_of(state.unread.begin(), state.unread.end(), is_of_color))
+    add_problems(state, root, options.also(result.scene), name);
+  state.diagnostics.raise_errors(name);
+  result.warnings = state.diagnostics.take_warnings();
+  result.settings = settings_of(state.source, root, result.scene);
   return result;
 }
 
-std::string toml_version() {
-  return std::to_string(TOML_LIB_MAJOR) + "." + std::to_string(TOML_LIB_MINOR) + "." + std::to_string(TOML_LIB_PATCH);
-}
+std::string toml_version() { return fmt::format("{}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH); }
 
 }  // namespace orrery::format

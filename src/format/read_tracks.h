@@ -7,9 +7,9 @@
 namespace orrery::format {
 
 /// Reads the [[key]] tables into the tracks of a scene whose materials and spheres have been read.
-void read_tracks(Reading& reading, const toml::array& list, scene::Scene& scene);
+void read_tracks(ReadState& state, const toml::array& list, scene::Scene& scene);
 
 /// Reports the tracks whose values are out of range at a frame: cubic tracks may overshoot between their keys.
-void check_tracks(Reading& reading, const toml::array& list, const scene::Scene& scene, double frame);
+void check_tracks(ReadState& state, const toml::array& list, const scene::Scene& scene, double frame);
 
 }  // namespace orrery::format

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/input_file.h"
 
@@ -123,13 +125,14 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
 std::string read_file(const std::filesystem::path& file, std::uint64_t largest_bytes) {
   const auto too_large = [&] {
     return base::Error(base::ErrorKind::kBadData,
-                       file.string() + " exceeds the limit of " + std::to_string(largest_bytes >> 20) + " MiB");
+                       fmt::format("{} exceeds the limit of {} MiB", file.string(), largest_bytes >> 20));
   };
   std::error_code error;
   base::require_readable(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in)
-    throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + std::strerror(errno));
+    throw base::Error(base::ErrorKind::kMissingInput,
+                      fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)));
   const auto size = std::filesystem::file_size(file, error);
   if (!error && size > largest_bytes) throw too_large();
   std::string bytes;
@@ -142,7 +145,8 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t largest_b
     bytes.append(more, got);
     if (bytes.size() > largest_bytes) throw too_large();
   }
-  if (std::ferror(in.get()) != 0) throw base::Error(base::ErrorKind::kIo, "reading " + file.string() + " failed");
+  if (std::ferror(in.get()) != 0)
+    throw base::Error(base::ErrorKind::kIo, fmt::format("reading {} failed", file.string()));
   return bytes;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/toml_tree.h"
 
+#include <fmt/core.h>
+
 #include "format/key_depth.h"
 #include "format/overrides.h"
 
@@ -44,7 +46,7 @@ toml::table parse_tree(const std::string& file_name, const std::string& text, co
     place.text_name = file_name;
     diagnostics.add(base::Severity::kError, place, base::ErrorKind::kBadData, [&] {
       return source.diagnostic(base::Severity::kError, place,
-                               "the key has more than " + std::to_string(kDeepestKey) + " parts");
+                               fmt::format("the key has more than {} parts", kDeepestKey));
     });
     return {};
   }

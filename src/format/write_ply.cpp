@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/output_file.h"
 #include "scene/value_text.h"
@@ -29,20 +31,20 @@ void append_bytes(std::string& out, T value) {
 
 void append_float(std::string& out, double value, std::size_t index) {
   if (std::abs(value) > std::numeric_limits<float>::max())
-    throw base::Error(base::ErrorKind::kBadData, "sphere " + std::to_string(index) + " has the value " +
-                                                     scene::number_text(value) +
-                                                     ", which overflows a float; write doubles");
+    throw base::Error(base::ErrorKind::kBadData,
+                      fmt::format("sphere {} has the value {}, which overflows a float; write doubles", index,
+                                  scene::number_text(value)));
   append_bytes(out, static_cast<float>(value));
 }
 
 /// The header up to the comment that names the writer, as in data::write_table.
 std::string header_begin(std::string_view writer) {
-  return "ply\nformat binary_little_endian 1.0\ncomment made by " + std::string(writer) + '\n';
+  return fmt::format("ply\nformat binary_little_endian 1.0\ncomment made by {}\n", writer);
 }
 
 std::string header(const scene::Points& points, PlyReal real) {
   const std::string property = real == PlyReal::kDouble ? "property double " : "property float ";
-  std::string out = header_begin(kPlyWriter) + "element vertex " + std::to_string(points.centers.size()) + '\n';
+  std::string out = fmt::format("{}element vertex {}\n", header_begin(kPlyWriter), points.centers.size());
   for (const char* name : {"x", "y", "z", "radius"}) out += property + name + '\n';
   if (!points.materials.empty()) out += "property uint material\n";
   return out + "end_header\n";

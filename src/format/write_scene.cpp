@@ -5,6 +5,8 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/output_file.h"
 #include "format/write_ply.h"
@@ -29,7 +31,7 @@ void add_comment(std::string& out, const std::string& comment) {
     // TOML comments must not contain control characters, which a file name in the comment may have.
     std::replace_if(
         line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 0x7f; }, '?');
-    out += line.empty() ? "#\n" : "# " + line + "\n";
+    out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
   }
   if (!comment.empty()) out += '\n';
 }
@@ -39,8 +41,8 @@ void add_tables(std::string& out, const scene::Scene& scene) {
   for (const scene::Table& table : scene::tables()) {
     std::string body;
     for (const auto& key : table.keys)
-      if (key.text(scene) != key.text(defaults)) body += key.name + " = " + key.text(scene) + "\n";
-    if (!body.empty()) out += "[" + table.name + "]\n" + body + "\n";
+      if (key.text(scene) != key.text(defaults)) body += fmt::format("{} = {}\n", key.name, key.text(scene));
+    if (!body.empty()) out += fmt::format("[{}]\n{}\n", table.name, body);
   }
 }
 
@@ -50,7 +52,7 @@ std::string texture_text(const scene::Texture& texture, scene::TextureUse use) {
   std::string out = "{ texture = " + string_text(type.name);
   for (const auto& key : type.keys)
     if (key.required || key.text(texture) != key.text(scene::Texture{}))
-      out += ", " + key.name + " = " + key.text(texture);
+      out += fmt::format(", {} = {}", key.name, key.text(texture));
   return out + " }";
 }
 
@@ -73,11 +75,11 @@ void add_materials(std::string& out, const std::vector<scene::Material>& materia
     if (!names.insert(material.name).second)
       throw base::Error(base::ErrorKind::kInternal, "cannot write a scene with two materials named " + material.name);
     const scene::MaterialType& type = scene::material_types()[material.model.index()];
-    out += (is_bare_key(material.name) ? material.name : string_text(material.name)) +
-           " = { type = " + string_text(type.name);
+    out += fmt::format("{} = {{ type = {}", is_bare_key(material.name) ? material.name : string_text(material.name),
+                       string_text(type.name));
     for (const auto& key : type.keys)
       if (const std::string value = value_text(type, key, material.model); !value.empty())
-        out += ", " + key.name + " = " + value;
+        out += fmt::format(", {} = {}", key.name, value);
     out += " }\n";
   }
   out += '\n';
@@ -92,8 +94,8 @@ void add_tracks(std::string& out, const scene::Scene& scene) {
   for (const scene::Track& track : scene.tracks) {
     const auto target = scene::find_animated(scene, track.target);
     const bool is_vector = target && target->type == scene::ValueType::kVector;
-    out += "[[key]]\ntarget = " + string_text(track.target) + "\ninterpolation = " +
-           string_text(scene::interpolation_names()[static_cast<std::size_t>(track.interpolation)]) + "\n";
+    out += fmt::format("[[key]]\ntarget = {}\ninterpolation = {}\n", string_text(track.target),
+                       string_text(scene::interpolation_names()[static_cast<std::size_t>(track.interpolation)]));
     list("frames", track.frames.size(), [&](std::size_t i) { return number_text(track.frames[i]); });
     list("values", track.values.size(),
          [&](std::size_t i) { return is_vector ? vector_text(track.values[i]) : number_text(track.values[i].x); });
@@ -117,18 +119,18 @@ std::string scene_text(const scene::Scene& scene, const std::string& comment) {
   add_materials(out, scene.materials);
   for (const scene::Sphere& sphere : scene.spheres) {
     out += "[[sphere]]\n";
-    if (!sphere.name.empty()) out += "name = " + string_text(sphere.name) + "\n";
-    if (!sphere.group.empty()) out += "group = " + string_text(sphere.group) + "\n";
-    out += "center = " + vector_text(sphere.center) + "\nradius = " + number_text(sphere.radius) +
-           "\nmaterial = " + string_text(material_name(scene, sphere.material)) + "\n\n";
+    if (!sphere.name.empty()) out += fmt::format("name = {}\n", string_text(sphere.name));
+    if (!sphere.group.empty()) out += fmt::format("group = {}\n", string_text(sphere.group));
+    out += fmt::format("center = {}\nradius = {}\nmaterial = {}\n\n", vector_text(sphere.center),
+                       number_text(sphere.radius), string_text(material_name(scene, sphere.material)));
   }
   add_tracks(out, scene);
   for (const scene::Points& points : scene.points) {
-    out += "[[points]]\nfile = " + string_text(points.file.string()) +
-           "\nmaterial = " + string_text(material_name(scene, points.material)) + "\n";
-    if (!points.name.empty()) out += "name = " + string_text(points.name) + "\n";
-    if (!points.group.empty()) out += "group = " + string_text(points.group) + "\n";
-    if (points.radius.value) out += "radius = " + number_text(*points.radius.value) + "\n";
+    out += fmt::format("[[points]]\nfile = {}\nmaterial = {}\n", string_text(points.file.string()),
+                       string_text(material_name(scene, points.material)));
+    if (!points.name.empty()) out += fmt::format("name = {}\n", string_text(points.name));
+    if (!points.group.empty()) out += fmt::format("group = {}\n", string_text(points.group));
+    if (points.radius.value) out += fmt::format("radius = {}\n", number_text(*points.radius.value));
     out += '\n';
   }
   if (!out.empty()) out.pop_back();  // the blank line after the last block

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <tuple>
 
+#include <fmt/core.h>
+
 #include "format/overrides.h"
 #include "format/toml_tree.h"
 #include "scene/value_text.h"
@@ -47,12 +49,12 @@ std::string value_text(const toml::node& node) {
   std::string out;
   if (const toml::table* table = node.as_table()) {
     for (const Entry& e : in_order(*table))
-      out += (out.empty() ? "" : ", ") + key_text(*e.key) + " = " + value_text(*e.value);
-    return out.empty() ? "{}" : "{ " + out + " }";
+      out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", key_text(*e.key), value_text(*e.value));
+    return out.empty() ? "{}" : fmt::format("{{ {} }}", out);
   }
   if (const toml::array* array = node.as_array()) {
     for (const toml::node& element : *array) out += (out.empty() ? "" : ", ") + value_text(element);
-    return "[" + out + "]";
+    return fmt::format("[{}]", out);
   }
   if (const auto text = node.value_exact<std::string>()) return scene::string_text(*text);
   if (const auto number = node.value_exact<double>()) return scene::number_text(*number);
@@ -75,10 +77,10 @@ void write_table(const toml::table& table, const std::string& name, std::string&
   std::string body;
   for (const Entry& e : entries)
     if (!e.value->is_table() && !is_list_of_tables(*e.value))
-      body += key_text(*e.key) + " = " + value_text(*e.value) + "\n";
+      body += fmt::format("{} = {}\n", key_text(*e.key), value_text(*e.value));
   const bool has_tables =
       std::any_of(entries.begin(), entries.end(), [](const Entry& e) { return e.value->is_table(); });
-  if (!name.empty() && (!body.empty() || !has_tables)) out += "[" + name + "]\n";
+  if (!name.empty() && (!body.empty() || !has_tables)) out += fmt::format("[{}]\n", name);
   if (!body.empty() || !name.empty()) out += body + (body.empty() && has_tables ? "" : "\n");
   const std::string prefix = name.empty() ? "" : name + ".";
   for (const Entry& e : entries)
@@ -86,9 +88,9 @@ void write_table(const toml::table& table, const std::string& name, std::string&
   for (const Entry& e : entries) {
     if (!is_list_of_tables(*e.value)) continue;
     for (const toml::node& element : *e.value->as_array()) {
-      out += "[[" + prefix + key_text(*e.key) + "]]\n";
+      out += fmt::format("[[{}{}]]\n", prefix, key_text(*e.key));
       for (const Entry& inner : in_order(*element.as_table()))
-        out += key_text(*inner.key) + " = " + value_text(*inner.value) + "\n";
+        out += fmt::format("{} = {}\n", key_text(*inner.key), value_text(*inner.value));
       out += "\n";
     }
   }

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
@@ -71,12 +73,12 @@ std::uint32_t pick_material(double u) { return u < 0.75 ? 0 : u < 0.87 ? 1 : u <
 void check(const Cloud& options) {
   if (options.count < 1 || options.count > kLargestCloud)
     throw base::Error(base::ErrorKind::kUsage,
-                      "count is " + std::to_string(options.count) + "; must be in 1.." + std::to_string(kLargestCloud));
+                      fmt::format("count is {}; must be in 1..{}", options.count, kLargestCloud));
   // Negated, so that NaN is refused too.
   if (options.radius && !(*options.radius >= scene::kSmallestRadius && *options.radius <= kLargestCloudRadius))
-    throw base::Error(base::ErrorKind::kUsage, "radius is " + scene::number_text(*options.radius) + "; must be in " +
-                                                   scene::number_text(scene::kSmallestRadius) + ".." +
-                                                   scene::number_text(kLargestCloudRadius));
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("radius is {}; must be in {}..{}", scene::number_text(*options.radius),
+                                  scene::number_text(scene::kSmallestRadius), scene::number_text(kLargestCloudRadius)));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "compile/daylight.h"
 #include "generate/generate.h"
@@ -23,16 +25,15 @@ constexpr double kPi = std::numbers::pi;
 
 void check_width(int width) {
   if (width < kSmallestEnvironment || width > kLargestEnvironment || width % 4 != 0)
-    throw base::Error(base::ErrorKind::kUsage, "width is " + std::to_string(width) + "; must be a multiple of 4 in " +
-                                                   std::to_string(kSmallestEnvironment) + ".." +
-                                                   std::to_string(kLargestEnvironment));
+    throw base::Error(base::ErrorKind::kUsage, fmt::format("width is {}; must be a multiple of 4 in {}..{}", width,
+                                                           kSmallestEnvironment, kLargestEnvironment));
 }
 
 void check_range(const char* name, double value, double from, double to) {
   if (!(value >= from && value <= to))
-    throw base::Error(base::ErrorKind::kUsage, std::string(name) + " is " + scene::number_text(value) +
-                                                   "; must be in " + scene::number_text(from) + ".." +
-                                                   scene::number_text(to));
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("{} is {}; must be in {}..{}", name, scene::number_text(value),
+                                  scene::number_text(from), scene::number_text(to)));
 }
 
 film::Picture picture_of(int width) {

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
@@ -107,10 +109,8 @@ void add_motion(std::uint64_t seed, scene::Scene& scene) {
     if (sphere.radius != kSmallRadius) continue;
     if (!std::holds_alternative<scene::Lambertian>(scene.materials[sphere.material].model)) continue;
     const Vec3d end = sphere.center + Vec3d{0, rounded(random.between(0, 0.5)), 0};
-    scene.tracks.push_back({"sphere[" + std::to_string(i) + "].center",
-                            scene::Interpolation::kLinear,
-                            {1, 2},
-                            {sphere.center, rounded(end)}});
+    scene.tracks.push_back(
+        {fmt::format("sphere[{}].center", i), scene::Interpolation::kLinear, {1, 2}, {sphere.center, rounded(end)}});
   }
 }
 
@@ -140,12 +140,12 @@ void set_view(scene::Scene& scene) {
 
 scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::path& points_file) {
   if (options.grid < 0 || options.grid > kLargestFinalGrid)
-    throw base::Error(base::ErrorKind::kUsage, "grid is " + std::to_string(options.grid) + "; must be in 0.." +
-                                                   std::to_string(kLargestFinalGrid));
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("grid is {}; must be in 0..{}", options.grid, kLargestFinalGrid));
   if (options.moving && options.grid > kLargestWrittenGrid)
-    throw base::Error(base::ErrorKind::kUsage, "grid is " + std::to_string(options.grid) +
-                                                   "; moving spheres are written as tables, so it must be " + "in 0.." +
-                                                   std::to_string(kLargestWrittenGrid));
+    throw base::Error(base::ErrorKind::kUsage,
+                      fmt::format("grid is {}; moving spheres are written as tables, so it must be in 0..{}",
+                                  options.grid, kLargestWrittenGrid));
   scene::Scene scene;
   set_view(scene);
   const std::uint32_t ground =

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_noise.h"
@@ -69,9 +71,8 @@ class Planet {
 
 film::Picture make_planet(std::uint64_t seed, int width) {
   if (width < kSmallestEnvironment || width > kLargestEnvironment || width % 4 != 0)
-    throw base::Error(base::ErrorKind::kUsage, "width is " + std::to_string(width) + "; must be a multiple of 4 in " +
-                                                   std::to_string(kSmallestEnvironment) + ".." +
-                                                   std::to_string(kLargestEnvironment));
+    throw base::Error(base::ErrorKind::kUsage, fmt::format("width is {}; must be a multiple of 4 in {}..{}", width,
+                                                           kSmallestEnvironment, kLargestEnvironment));
   const Planet planet(seed);
   film::Picture out;
   out.width = width;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 
@@ -29,9 +31,10 @@ void check_compression(const std::string& name) {
   const std::string word = name.substr(0, colon);
   if ((word == "dwaa" || word == "dwab") && is_level(std::string_view(name).substr(colon + 1))) return;
   const std::string near = base::did_you_mean(word, plain);
-  throw base::Error(base::ErrorKind::kUsage, "unknown EXR compression " + name + "; " +
-                                                 (near.empty() ? "" : near + " ") + "known names are " +
-                                                 base::joined(plain) + "; dwaa and dwab take a level, e.g. dwaa:45");
+  throw base::Error(
+      base::ErrorKind::kUsage,
+      fmt::format("unknown EXR compression {}; {}known names are {}; dwaa and dwab take a level, e.g. dwaa:45", name,
+                  near.empty() ? "" : near + " ", base::joined(plain)));
 }
 
 void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& options) {
@@ -41,8 +44,9 @@ void check_lossless(const std::vector<film::Plane>& planes, const ExrOptions& op
     const char last = plane.name.back();
     if (plane.kind == film::PlaneKind::kData && (last == 'R' || last == 'G' || last == 'B'))
       throw base::Error(base::ErrorKind::kUsage,
-                        "compression " + options.compression + " would damage layer " + plane.layer() +
-                            "; use zip, zips or piz, or --multipart, which stores data layers without loss");
+                        fmt::format("compression {} would damage layer {}; use zip, zips or piz, or --multipart, which "
+                                    "stores data layers without loss",
+                                    options.compression, plane.layer()));
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "image/whole_file.h"
 
@@ -18,7 +20,8 @@ std::vector<float> interleaved(const film::Picture& picture, const std::vector<c
   std::vector<float> out(pixels * planes.size());
   for (std::size_t c = 0; c < planes.size(); ++c) {
     if (planes[c]->values.size() != pixels)
-      throw base::Error(base::ErrorKind::kInternal, "plane " + planes[c]->name + " does not have the image's size");
+      throw base::Error(base::ErrorKind::kInternal,
+                        fmt::format("plane {} does not have the image's size", planes[c]->name));
     const bool may_be_nan = film::is_half(planes[c]->name);
     for (std::size_t i = 0; i < pixels; ++i) {
       float v = planes[c]->values[i];

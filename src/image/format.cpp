@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 
@@ -45,9 +47,10 @@ Format format_of(const std::filesystem::path& file) {
     known.emplace_back(e.name);
   }
   const std::string near = base::did_you_mean(extension, known);
-  throw base::Error(base::ErrorKind::kUsage,
-                    (extension.empty() ? file.string() + " has no extension" : "unknown image format ." + extension) +
-                        "; " + (near.empty() ? "" : near + " ") + "known formats are " + base::joined(known));
+  throw base::Error(base::ErrorKind::kUsage, fmt::format("{}; {}known formats are {}",
+                                                         extension.empty() ? file.string() + " has no extension"
+                                                                           : "unknown image format ." + extension,
+                                                         near.empty() ? "" : near + " ", base::joined(known)));
 }
 
 bool is_display_format(Format format) { return format != Format::kExr && format != Format::kHdr; }
@@ -57,12 +60,13 @@ bool holds_alpha(Format format) { return format == Format::kPng || format == For
 void check_size(const std::filesystem::path& file, int width_px, int height_px) {
   const int largest = largest_side(format_of(file));
   if (width_px <= largest && height_px <= largest) return;
-  throw base::Error(base::ErrorKind::kUsage, file.string() + " cannot hold " + std::to_string(width_px) + " x " +
-                                                 std::to_string(height_px) +
-                                                 " pixels: the maximum side of its format is " +
-                                                 std::to_string(largest) + "; use TIFF or EXR for larger images");
+  throw base::Error(
+      base::ErrorKind::kUsage,
+      fmt::format(
+          "{} cannot hold {} x {} pixels: the maximum side of its format is {}; use TIFF or EXR for larger images",
+          file.string(), width_px, height_px, largest));
 }
 
-int most_bits(Format format) { return format == Format::kPng || format == Format::kTiff ? 16 : 8; }
+int max_bits(Format format) { return format == Format::kPng || format == Format::kTiff ? 16 : 8; }
 
 }  // namespace orrery::image

@@ -34,6 +34,6 @@ bool holds_alpha(Format format);
 void check_size(const std::filesystem::path& file, int width_px, int height_px);
 
 /// The maximum number of bits per channel of a display format.
-int most_bits(Format format);
+int max_bits(Format format);
 
 }  // namespace orrery::image

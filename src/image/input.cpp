@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/input.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
+#include "base/image_limits.h"
 #include "base/input_file.h"
 #include "image/damage.h"
 #include "image/format.h"
@@ -9,9 +12,6 @@
 
 namespace orrery::image {
 namespace {
-
-/// Maximum side of an image, as in scenes, px. A header with a larger one is rejected as damaged.
-constexpr int kLargestSide = 65536;
 
 /// Rows decoded at a time: a multiple of the block height of every EXR compression except dwab.
 constexpr int kRowsAtATime = 64;
@@ -31,19 +31,19 @@ const char* library_name(Format format) {
 }  // namespace
 
 void fail_to_read(const std::filesystem::path& file, const std::string& reason) {
-  throw base::Error(base::ErrorKind::kBadData, "cannot read image " + file.string() + ": " + reason);
+  throw base::Error(base::ErrorKind::kBadData, fmt::format("cannot read image {}: {}", file.string(), reason));
 }
 
 void fail_for_memory(const std::filesystem::path& file) {
   throw base::Error(base::ErrorKind::kNoMemory,
-                    "cannot read image " + file.string() + ": there is not enough memory for its pixels");
+                    fmt::format("cannot read image {}: there is not enough memory for its pixels", file.string()));
 }
 
 void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
-  const auto too_large = [](int side) { return side < 1 || side > kLargestSide; };
+  const auto too_large = [](int side) { return side < 1 || side > base::kLargestSide; };
   if (too_large(spec.width) || too_large(spec.height) || too_large(spec.full_width) || too_large(spec.full_height))
-    fail_to_read(file, "its header says " + std::to_string(spec.full_width) + " x " + std::to_string(spec.full_height) +
-                           " pixels; a side must be 1 to " + std::to_string(kLargestSide));
+    fail_to_read(file, fmt::format("its header says {} x {} pixels; a side must be 1 to {}", spec.full_width,
+                                   spec.full_height, base::kLargestSide));
   if (spec.deep) fail_to_read(file, "its pixels are deep; flatten them first");
 }
 
@@ -54,10 +54,10 @@ bool Input::decode(int begin, int end, int first_channel, int end_channel, OIIO:
   return in->read_tiles(part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1, first_channel, end_channel, type, out);
 }
 
-std::string first_complaint(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string first_message(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-std::string Input::complaint() const {
-  const std::string text = first_complaint(in->geterror());
+std::string Input::error_message() const {
+  const std::string text = first_message(in->geterror());
   return text.empty() ? "its pixels cannot be decoded" : text;
 }
 
@@ -68,10 +68,11 @@ Input open_input(const std::filesystem::path& file, Alpha alpha) {
   if (const std::string damage = damage_of(file, format); !damage.empty()) fail_to_read(file, damage);
   Input out{OIIO::ImageInput::create(library_name(format)), {}, 0};
   if (!out.in)
-    throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read " + file.string() + OIIO::geterror());
+    throw base::Error(base::ErrorKind::kInternal,
+                      fmt::format("this OpenImageIO cannot read {}{}", file.string(), OIIO::geterror()));
   OIIO::ImageSpec settings;
   if (alpha == Alpha::kAsInFile) settings.attribute("oiio:UnassociatedAlpha", 1);
-  if (!out.in->open(file.string(), out.spec, settings)) fail_to_read(file, first_complaint(out.in->geterror()));
+  if (!out.in->open(file.string(), out.spec, settings)) fail_to_read(file, first_message(out.in->geterror()));
   check_spec(file, out.spec);
   return out;
 }

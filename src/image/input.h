@@ -16,7 +16,7 @@ namespace orrery::image {
 [[noreturn]] void fail_for_memory(const std::filesystem::path& file);
 
 /// The first of OpenImageIO's messages about an image, one per line. It names the cause; the others are consequences.
-std::string first_complaint(const std::string& text);
+std::string first_message(const std::string& text);
 
 /// Checks the size in the header of an image or part.
 ///
@@ -36,7 +36,7 @@ struct Input {
   /// Decodes rows begin..end of a channel range; false if that fails.
   bool decode(int begin, int end, int first_channel, int end_channel, OIIO::TypeDesc type, void* out) const;
   /// The reason why decoding failed.
-  std::string complaint() const;
+  std::string error_message() const;
 };
 
 /// How to read colours that a file stores with unassociated alpha, as PNG does.

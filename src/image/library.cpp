@@ -5,6 +5,8 @@
 
 #include <mutex>
 
+#include <fmt/core.h>
+
 namespace orrery::image {
 namespace {
 
@@ -32,7 +34,7 @@ void set_threads(int count) {
 
 std::string oiio_version() {
   const int v = OIIO::openimageio_version();
-  return std::to_string(v / 10000) + "." + std::to_string(v / 100 % 100) + "." + std::to_string(v % 100);
+  return fmt::format("{}.{}.{}", v / 10000, v / 100 % 100, v % 100);
 }
 
 }  // namespace orrery::image

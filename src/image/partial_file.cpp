@@ -11,11 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "film/partial_words.h"
+#include "image/digest.h"
 #include "image/exr_spec.h"
 #include "image/library.h"
-#include "image/seal.h"
 #include "image/whole_file.h"
 
 namespace orrery::image {
@@ -32,12 +34,13 @@ constexpr const char* kSumsName = "orrery.sums";
 constexpr int kMaxWordsInRow = 4096;
 
 [[noreturn]] void damaged(const std::filesystem::path& file, const std::string& why) {
-  throw base::Error(base::ErrorKind::kBadData, file.string() + " is not a usable checkpoint or shard: " + why);
+  throw base::Error(base::ErrorKind::kBadData,
+                    fmt::format("{} is not a usable checkpoint or shard: {}", file.string(), why));
 }
 
 std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
   prepare_library();
-  require_seal(file);
+  require_digest(file);
   auto in = ImageInput::create("openexr");
   if (!in) throw base::Error(base::ErrorKind::kInternal, "this OpenImageIO cannot read EXR" + OIIO::geterror());
   ImageSpec spec;
@@ -110,7 +113,7 @@ PartialFile read_partial(const std::filesystem::path& file, int width_px, int he
     damaged(file, error.what());
   } catch (const std::bad_alloc&) {
     throw base::Error(base::ErrorKind::kNoMemory,
-                      "cannot read " + file.string() + ": there is not enough memory for its samples");
+                      fmt::format("cannot read {}: there is not enough memory for its samples", file.string()));
   } catch (const std::length_error&) {
     damaged(file, "its samples would not fit into any memory");
   }

@@ -17,15 +17,15 @@ inline constexpr const char* kPartialPrefix = "orrery/partial/";
 /// Origin of a checkpoint or shard as name-value pairs, e.g. "sceneHash" = "0123456789abcdef".
 using Provenance = std::map<std::string, std::string>;
 
-/// Writes a checkpoint or shard as a sealed two-part EXR: a preview image that any program opens, and the exact sums.
-/// `provenance` is stored in the header as "orrery/partial/NAME".
+/// Writes a checkpoint or shard as a two-part EXR with a digest: a preview image that any program opens, and the exact
+/// sums. `provenance` is stored in the header as "orrery/partial/NAME".
 ///
 /// Result     the file is complete and synced, or an error is thrown and an existing file is unchanged
 /// Errors     base::Error: kCannotCreate, kIo
 void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
                    const Provenance& provenance, const film::Partial& partial);
 
-/// Reads the provenance of a checkpoint or shard. Checks the seal, but does not read the sums.
+/// Reads the provenance of a checkpoint or shard. Checks the digest, but does not read the sums.
 ///
 /// Errors     those of read_partial
 Provenance read_provenance(const std::filesystem::path& file);

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "image/format.h"
@@ -29,12 +31,12 @@ std::string decode_rows(const Input& input, int begin, int end, std::vector<floa
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   const std::size_t pixels = static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(spec.width);
   out.resize(pixels * channels);
-  if (!input.decode(begin, end, 0, spec.nchannels, TypeDesc::FLOAT, out.data())) return input.complaint();
+  if (!input.decode(begin, end, 0, spec.nchannels, TypeDesc::FLOAT, out.data())) return input.error_message();
   // Conversion to float would scale the maximum integer to 1, which is wrong for counts and ids.
   for (int c = 0; c < spec.nchannels; ++c) {
     if (spec.channelformat(c) != TypeDesc::UINT) continue;
     std::vector<std::uint32_t> whole(pixels);
-    if (!input.decode(begin, end, c, c + 1, TypeDesc::UINT, whole.data())) return input.complaint();
+    if (!input.decode(begin, end, c, c + 1, TypeDesc::UINT, whole.data())) return input.error_message();
     for (std::size_t i = 0; i < pixels; ++i)
       out[i * channels + static_cast<std::size_t>(c)] = static_cast<float>(whole[i]);
   }
@@ -72,10 +74,9 @@ film::Picture decode_all(const std::filesystem::path& file, const Input& input, 
   const ImageSpec& spec = input.spec;
   if (memory_limit > 0 && plane_bytes(spec) > memory_limit)
     throw base::Error(base::ErrorKind::kNoMemory,
-                      "cannot read image " + file.string() + ": " + std::to_string(spec.full_width) + " x " +
-                          std::to_string(spec.full_height) + " pixels of " + std::to_string(spec.nchannels) +
-                          " channels need " + base::bytes_text(plane_bytes(spec)) + ", and " +
-                          base::bytes_text(memory_limit) + " is free");
+                      fmt::format("cannot read image {}: {} x {} pixels of {} channels need {}, and {} is free",
+                                  file.string(), spec.full_width, spec.full_height, spec.nchannels,
+                                  base::bytes_text(plane_bytes(spec)), base::bytes_text(memory_limit)));
   film::Picture picture;
   picture.width = spec.full_width;
   picture.height = spec.full_height;
@@ -113,7 +114,7 @@ void add_other_parts(const std::filesystem::path& file, Input& input, std::uint6
     check_spec(file, spec);
     const std::string name = std::string(spec.get_string_attribute("oiio:subimagename"));
     for (film::Plane& plane : decode_all(file, input, memory_limit).planes) {
-      if (picture.find(plane.name) != nullptr) plane.name = name + "." + plane.name;
+      if (picture.find(plane.name) != nullptr) plane.name = fmt::format("{}.{}", name, plane.name);
       if (picture.find(plane.name) == nullptr) picture.planes.push_back(std::move(plane));
     }
   }

@@ -101,7 +101,7 @@ void read_map(const std::filesystem::path& file, const std::function<void(int ro
     const int end = std::min(begin + input.row_step(), data_end);
     rows.resize(static_cast<std::size_t>(end - begin) * width * stored);
     if (!input.decode(begin, end, *first, *last + 1, TypeDesc::FLOAT, rows.data()))
-      fail_to_read(file, input.complaint());
+      fail_to_read(file, input.error_message());
     for (; y < std::min(end, full_end); ++y) {
       const float* const row = &rows[static_cast<std::size_t>(y - begin) * width * stored];
       std::fill(rgb.begin(), rgb.end(), 0.0F);

@@ -13,6 +13,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "image/exr_spec.h"
 #include "image/format.h"
@@ -64,7 +66,7 @@ NativePart read_part(const std::filesystem::path& file, const Input& input, int 
                                                                       TypeDesc::UNKNOWN, &out.bytes[at])
                                            : input.in->read_tiles(part, 0, spec.x, spec.x + spec.width, y, end, 0, 1, 0,
                                                                   spec.nchannels, TypeDesc::UNKNOWN, &out.bytes[at]);
-    if (!good) fail_to_read(file, input.complaint());
+    if (!good) fail_to_read(file, input.error_message());
   }
   return out;
 }
@@ -143,7 +145,7 @@ std::pair<film::Picture, std::vector<Place>> planes_of_parts(const std::vector<N
       const TypeDesc type = type_of(spec, c);
       if (type != TypeDesc::HALF && type != TypeDesc::FLOAT) continue;
       std::string name = spec.channelnames[static_cast<std::size_t>(c)];
-      if (names.count(name) > 0) name = name_of(parts[p]) + "." + name;
+      if (names.count(name) > 0) name = fmt::format("{}.{}", name_of(parts[p]), name);
       if (!names.insert(name).second) continue;
       picture.planes.push_back({name, values_of(parts[p], c)});
       places.push_back({p, c});

@@ -8,18 +8,20 @@
 #include <memory>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "image/checked_file.h"
+#include "image/digest.h"
 #include "image/encode_jpeg.h"
 #include "image/library.h"
-#include "image/seal.h"
 
 namespace orrery::image {
 namespace {
 
 [[noreturn]] void io_failed(const std::filesystem::path& file, const std::string& reason) {
-  throw base::Error(base::ErrorKind::kIo, "writing " + file.string() + " failed: " + reason);
+  throw base::Error(base::ErrorKind::kIo, fmt::format("writing {} failed: {}", file.string(), reason));
 }
 
 /// Encodes all parts with OpenImageIO.
@@ -27,7 +29,7 @@ namespace {
 /// Result     OpenImageIO's error message, or empty. Errors are always fetched, since OpenImageIO prints pending ones.
 std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDesc type,
                    const std::vector<WholePart>& parts) {
-  const auto complaint = [&](const char* step) {
+  const auto error_message = [&](const char* step) {
     const std::string text = out.geterror();
     return text.empty() ? std::string(step) + " failed" : text;
   };
@@ -35,17 +37,17 @@ std::string encode(OIIO::ImageOutput& out, const std::string& name, OIIO::TypeDe
   for (const WholePart& part : parts) specs.push_back(part.spec);
   const bool opened =
       specs.size() == 1 ? out.open(name, specs[0]) : out.open(name, static_cast<int>(specs.size()), specs.data());
-  if (!opened) return complaint("opening");
-  std::string first_complaint;
-  for (std::size_t i = 0; i < parts.size() && first_complaint.empty(); ++i) {
-    if (i > 0 && !out.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) return complaint("opening a part");
+  if (!opened) return error_message("opening");
+  std::string first_error;
+  for (std::size_t i = 0; i < parts.size() && first_error.empty(); ++i) {
+    if (i > 0 && !out.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) return error_message("opening a part");
     const bool written = parts[i].deep != nullptr ? out.write_deep_image(*parts[i].deep)
                                                   : out.write_image(parts[i].type.value_or(type), parts[i].pixels);
-    if (!written) first_complaint = complaint("encoding");
+    if (!written) first_error = error_message("encoding");
   }
-  if (!out.close() && first_complaint.empty()) return complaint("closing");
+  if (!out.close() && first_error.empty()) return error_message("closing");
   out.geterror();
-  return first_complaint;
+  return first_error;
 }
 
 /// Decodes the last row of a part; false if that fails.
@@ -85,7 +87,7 @@ std::string read_back(const std::string& name, const std::string& format, const 
       wrong = "its last row cannot be read back";
     }
     const std::string reason = in->geterror();
-    if (!wrong.empty()) return reason.empty() ? wrong : wrong + ": " + reason;
+    if (!wrong.empty()) return reason.empty() ? wrong : fmt::format("{}: {}", wrong, reason);
   }
   return {};
 }
@@ -93,28 +95,28 @@ std::string read_back(const std::string& name, const std::string& format, const 
 }  // namespace
 
 void write_whole(const std::filesystem::path& file, const std::string& format, OIIO::TypeDesc type,
-                 const std::vector<WholePart>& parts, bool sealed) {
+                 const std::vector<WholePart>& parts, bool with_digest) {
   prepare_library();
   base::AtomicFile target(file);
   const std::string name = target.temporary().string();
   // Declared before its user: a failed encoder may still write in its destructor.
   CheckedFile bytes(target.temporary());
-  std::string complaint;
+  std::string message;
   std::unique_ptr<OIIO::ImageOutput> out;
   if (format == "jpeg") {
-    complaint = encode_jpeg(parts.front().spec, static_cast<const std::uint8_t*>(parts.front().pixels), bytes);
+    message = encode_jpeg(parts.front().spec, static_cast<const std::uint8_t*>(parts.front().pixels), bytes);
   } else {
     out = OIIO::ImageOutput::create(format);
     if (!out || !out->supports("ioproxy"))
       throw base::Error(base::ErrorKind::kInternal,
-                        "this OpenImageIO cannot write " + format + " files " + OIIO::geterror());
+                        fmt::format("this OpenImageIO cannot write {} files {}", format, OIIO::geterror()));
     out->set_ioproxy(&bytes);
-    complaint = encode(*out, name, type, parts);
+    message = encode(*out, name, type, parts);
   }
   if (const int error = bytes.finish(); error != 0) io_failed(file, std::strerror(error));
-  if (!complaint.empty()) io_failed(file, complaint);
+  if (!message.empty()) io_failed(file, message);
   if (const std::string wrong = read_back(name, format, parts); !wrong.empty()) io_failed(file, wrong);
-  if (sealed) seal(target.temporary(), file);
+  if (with_digest) append_digest(target.temporary(), file);
   target.commit();
 }
 

@@ -2,6 +2,8 @@
 #include <OpenImageIO/imageio.h>
 
 #include "base/error.h"
+
+#include <fmt/core.h>
 #include "image/format.h"
 #include "image/whole_file.h"
 #include "image/write.h"
@@ -37,18 +39,19 @@ const char* add_format(Format format, ImageSpec& spec) {
 void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
                    const std::string& stamp) {
   const Format format = format_of(file);
-  if (picture.bits > most_bits(format))
+  if (picture.bits > max_bits(format))
     throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits per channel; PNG and TIFF hold 16");
   check_size(file, picture.width, picture.height);
   if (picture.channels > 3 && !holds_alpha(format))
     throw base::Error(base::ErrorKind::kInternal, file.string() + " cannot hold alpha");
   if (picture.values.size() != static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
                                    static_cast<std::size_t>(picture.channels))
-    throw base::Error(base::ErrorKind::kInternal, "the values of " + file.string() + " do not have the image's size");
+    throw base::Error(base::ErrorKind::kInternal,
+                      fmt::format("the values of {} do not have the image's size", file.string()));
   ImageSpec spec(picture.width, picture.height, picture.channels,
                  picture.bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
   if (!software.empty()) spec.attribute("Software", software);
-  if (!stamp.empty()) spec.attribute("ImageDescription", std::string(kStampName) + " " + stamp);
+  if (!stamp.empty()) spec.attribute("ImageDescription", fmt::format("{} {}", kStampName, stamp));
   if (picture.channels > 3) spec.attribute("oiio:UnassociatedAlpha", 1);  // else OpenImageIO divides by alpha
   if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
   const char* const name = add_format(format, spec);

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/file_name.h"
 #include "job/provenance.h"
@@ -42,8 +44,9 @@ std::optional<film::Partial> Checkpoint::load(int width_px, int height_px) {
   try {
     const image::Provenance found = image::read_provenance(file_);
     if (const std::string wrong = difference(found, provenance_, keys_of_checkpoints()); !wrong.empty())
-      throw base::Error(base::ErrorKind::kBadData,
-                        file_.string() + " has " + wrong + "; delete it, or render without --resume to start again");
+      throw base::Error(
+          base::ErrorKind::kBadData,
+          fmt::format("{} has {}; delete it, or render without --resume to start again", file_.string(), wrong));
     image::PartialFile file = image::read_partial(file_, width_px, height_px);
     is_ours_ = true;
     return std::move(file.partial);

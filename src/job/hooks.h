@@ -6,25 +6,17 @@
 #include <string>
 
 #include "base/diagnostic.h"
-#include "display/develop.h"
+#include "display/picture_info.h"
 #include "film/partial.h"
 #include "render/progress.h"
 
 namespace orrery::job {
 
-/// The image that a job is about to render.
-struct PictureStart {
-  std::string name;           ///< of the scene file
-  int width = 0, height = 0;  ///< px
-  double pixel_aspect = 1;    ///< pixel width / height
-  display::Settings display;  ///< from the command line and the scene
-};
-
 /// How a job reports to its caller, and how the caller stops it. Every member may be empty.
 struct Hooks {
-  std::function<void(const render::Progress&)> on_progress;  ///< see render::Settings
-  std::function<void(double fraction)> on_build;             ///< see render::Settings
-  std::function<void(const PictureStart&)> on_start;         ///< called before rendering starts
+  std::function<void(const render::Progress&)> on_progress;   ///< see render::Settings
+  std::function<void(double fraction)> on_build;              ///< see render::Settings
+  std::function<void(const display::PictureInfo&)> on_start;  ///< called before rendering starts
   /// See render::Settings. Not called for a merge.
   std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
   std::function<void(const film::Picture&)> on_denoised;  ///< receives the denoised image

@@ -109,10 +109,10 @@ std::string missed_target(const Job& job, const render::Statistics& statistics) 
   if (job.sampling.noise > 0 && statistics.noise && *statistics.noise > job.sampling.noise)
     out = fmt::format("noise {:.3g} instead of {:.3g}: {}", *statistics.noise, job.sampling.noise,
                       ended_by_time ? "the time budget ended" : "the pixels that need more samples reached the limit");
-  if (job.sampling.noise > 0 && statistics.unjudged_pixels > 0)
+  if (job.sampling.noise > 0 && statistics.unreliable_pixels > 0)
     out +=
         fmt::format("{}the noise of {} pixels cannot be estimated: too few paths found light near them; allow more {}",
-                    out.empty() ? "" : "; ", statistics.unjudged_pixels, ended_by_time ? "time" : "samples");
+                    out.empty() ? "" : "; ", statistics.unreliable_pixels, ended_by_time ? "time" : "samples");
   return out;
 }
 
@@ -173,11 +173,12 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
     checkpoint.write(partial);
   } catch (const base::Error& also) {
     throw base::Error(error.kind(),
-                      std::string(error.what()) + "; the checkpoint cannot be written, either: " + also.what());
+                      fmt::format("{}; the checkpoint cannot be written, either: {}", error.what(), also.what()));
   }
   report.checkpoint = checkpoint.file();
-  throw base::Error(error.kind(), std::string(error.what()) + "; " + checkpoint.file().string() +
-                                      " holds the samples; when the cause is removed, continue with --resume");
+  throw base::Error(error.kind(),
+                    fmt::format("{}; {} holds the samples; when the cause is removed, continue with --resume",
+                                error.what(), checkpoint.file().string()));
 }
 
 /// Read, check, compile, render or merge, develop, write.

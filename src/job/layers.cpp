@@ -13,7 +13,7 @@ namespace orrery::job {
 namespace {
 
 /// Matte id of each sphere, run-length encoded over sphere indices.
-class Runs {
+class RunLengthIds {
  public:
   void add(std::size_t spheres, std::uint32_t id) {
     end_ += static_cast<std::uint32_t>(spheres);
@@ -59,7 +59,8 @@ class MatteMaker {
  private:
   MatteNames names_;
   std::set<std::string> known_;
-  std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // shared, since std::function copies its target
+  std::shared_ptr<RunLengthIds> runs_ =
+      std::make_shared<RunLengthIds>();  // shared, since std::function copies its target
 };
 
 void add_object_matte(const scene::Scene& scene, Layers& layers) {
@@ -107,7 +108,6 @@ void add_material_matte(const scene::Scene& scene, const compile::CompiledScene&
 
 /// The light groups of the scene, in the order of the compiled ones.
 std::vector<film::LightGroup> light_groups(const scene::Scene& scene, const compile::CompiledScene& compiled) {
-  static_assert(film::kMaxLightGroups == scene::kMaxLightGroups);
   std::vector<film::LightGroup> groups;
   for (const std::string& name : compiled.light_groups)
     groups.push_back({name.empty() ? scene::kDefaultLightGroup : name, false, false});

@@ -115,7 +115,8 @@ class Loader {
     const std::string text = fmt::format(
         "an image of {} x {} texels needs about {}, and {}", out_.width, out_.height, bytes_text(out_.bytes),
         request_.memory_limit > 0 ? "--memory-limit allows " + bytes_text(allowed) : bytes_text(allowed) + " is free");
-    if (!request_.skips_large) throw base::Error(base::ErrorKind::kNoMemory, request_.file.string() + ": " + text);
+    if (!request_.skips_large)
+      throw base::Error(base::ErrorKind::kNoMemory, fmt::format("{}: {}", request_.file.string(), text));
     warn(request_.file_key, text + "; its pixels were not read");
     return false;
   }

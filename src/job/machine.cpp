@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "kernel/isa.h"
@@ -35,9 +37,9 @@ int default_threads() {
 
 void choose_isa(const std::string& name) {
   if (kernel::limit_isa(name)) return;
-  throw base::Error(base::ErrorKind::kUsage, "instruction set " + name +
-                                                 " is not available; this processor and program have " +
-                                                 base::joined(kernel::available_isas()));
+  throw base::Error(base::ErrorKind::kUsage,
+                    fmt::format("instruction set {} is not available; this processor and program have {}", name,
+                                base::joined(kernel::available_isas())));
 }
 
 }  // namespace orrery::job

@@ -78,8 +78,8 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
   const film::RenderWork work = merged.partial.work;
   const auto [fewest, most] = std::minmax_element(merged.partial.counts.begin(), merged.partial.counts.end());
   render::Statistics statistics;
-  statistics.fewest_samples = *fewest;
-  statistics.most_samples = *most;
+  statistics.min_samples = *fewest;
+  statistics.max_samples = *most;
   statistics.paths = work.paths;
   statistics.rays = work.rays;
   statistics.bad_samples = work.bad_samples;
@@ -130,11 +130,12 @@ render::Result render_job(const Job& job, const compile::CompiledScene& compiled
   report.phases.finish_s = result.statistics.finish_s;
   if (result.completed) return result;
   if (!result.partial || job.keep != nullptr)
-    stop_job(report.was_resumed ? "; " + checkpoint.file().string() + " still holds the samples of the earlier run"
-                                : "");
+    stop_job(report.was_resumed
+                 ? fmt::format("; {} still holds the samples of the earlier run", checkpoint.file().string())
+                 : "");
   checkpoint.write(*result.partial);
   report.checkpoint = checkpoint.file();
-  stop_job("; " + checkpoint.file().string() + " holds the samples so far; continue with --resume");
+  stop_job(fmt::format("; {} holds the samples so far; continue with --resume", checkpoint.file().string()));
 }
 
 }  // namespace orrery::job

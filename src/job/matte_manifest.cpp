@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <fmt/core.h>
+
 #include "base/file_name.h"
 #include "base/output_file.h"
 #include "film/cryptomatte.h"
@@ -17,7 +19,7 @@ std::string manifest(const MatteNames& matte) {
   std::string out = "{";
   for (const auto& [name, id] : matte.things) {
     if (out.size() > 1) out += ',';
-    out += nlohmann::json(name).dump() + ":\"" + film::matte_id_text(id) + '"';
+    out += fmt::format("{}:\"{}\"", nlohmann::json(name).dump(), film::matte_id_text(id));
   }
   return out + '}';
 }
@@ -25,7 +27,7 @@ std::string manifest(const MatteNames& matte) {
 bool is_large(const MatteNames& matte) { return matte.things.size() > kMaxNamesInHeader; }
 
 std::filesystem::path manifest_file(const std::string& layer, const std::filesystem::path& picture) {
-  return picture.parent_path() / base::companion_name(picture.stem().string(), "." + layer + ".json");
+  return picture.parent_path() / base::companion_name(picture.stem().string(), fmt::format(".{}.json", layer));
 }
 
 }  // namespace
@@ -34,7 +36,8 @@ std::vector<image::Attribute> matte_attributes(const std::vector<MatteNames>& ma
                                                const std::filesystem::path& picture) {
   std::vector<image::Attribute> out;
   for (const MatteNames& matte : mattes) {
-    const std::string key = "cryptomatte/" + film::matte_id_text(film::matte_id(matte.layer)).substr(0, 7) + "/";
+    const std::string key =
+        fmt::format("cryptomatte/{}/", film::matte_id_text(film::matte_id(matte.layer)).substr(0, 7));
     out.push_back({key + "name", matte.layer});
     out.push_back({key + "hash", std::string("MurmurHash3_32")});
     out.push_back({key + "conversion", std::string("uint32_to_float32")});

@@ -137,7 +137,7 @@ void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint
   throw base::Error(
       base::ErrorKind::kNoMemory,
       fmt::format("the render needs about {} ({}), and {}", bytes_text(needed.total()), text_of(needed),
-                  limit > 0 ? "--memory-limit allows " + bytes_text(allowed) + "; raise the limit"
+                  limit > 0 ? fmt::format("--memory-limit allows {}; raise the limit", bytes_text(allowed))
                             : bytes_text(allowed) + " is free; free some, or override with --memory-limit"));
 }
 

@@ -124,7 +124,7 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
     const render::PixelShard pixels = pixel_shard(shard.provenance);
     std::string wrong = difference(shard.provenance, shards.front().provenance, keys_of_shards());
     if (!wrong.empty()) {
-      wrong = "has " + wrong + " as " + shards.front().file.string();
+      wrong = fmt::format("has {} as {}", wrong, shards.front().file.string());
     } else if (range.begin >= range.end || pixels.count < 1 || pixels.index < 0 || pixels.index >= pixels.count) {
       wrong = "does not name its samples";
     } else if (!shard.provenance.count("noise") || !shard.provenance.count("time")) {

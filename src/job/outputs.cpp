@@ -15,7 +15,7 @@ std::vector<ImageFile> image_files(const std::vector<std::filesystem::path>& fil
 
 void check_bits(const std::vector<ImageFile>& images, int bits) {
   for (const ImageFile& image : images)
-    if (image::is_display_format(image.format) && bits > image::most_bits(image.format))
+    if (image::is_display_format(image.format) && bits > image::max_bits(image.format))
       throw base::Error(base::ErrorKind::kUsage,
                         image.path.string() + " holds 8 bits per channel; use PNG or TIFF for 16");
 }

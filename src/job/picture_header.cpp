@@ -30,7 +30,8 @@ void set_capture_date(image::Header& header) {
 std::string settings_lines(const std::vector<format::Setting>& settings, bool reproducible) {
   std::string lines;
   for (const format::Setting& setting : settings)
-    if (!reproducible || setting.key != "render.accelerator") lines += setting.key + " = " + setting.value + "\n";
+    if (!reproducible || setting.key != "render.accelerator")
+      lines += fmt::format("{} = {}\n", setting.key, setting.value);
   return lines;
 }
 
@@ -47,8 +48,8 @@ std::array<int, 2> rational(double rate) {
 /// The colour map of a points table as in a scene file, with the range that was used; empty: none.
 std::string color_text(const scene::Points& points) {
   if (points.color.column.empty()) return {};
-  std::string out =
-      "column = " + scene::string_text(points.color.column) + ", map = " + scene::string_text(points.color.map);
+  std::string out = fmt::format("column = {}, map = {}", scene::string_text(points.color.column),
+                                scene::string_text(points.color.map));
   if (points.color_range) out += ", range = " + scene::interval_text(*points.color_range);
   return out;
 }

@@ -26,7 +26,7 @@ std::string layers_text(const Layers& layers) {
     for (const auto& [name, id] : matte.things) out += fmt::format(" {:08x}", id);
   // A hash replaces the rest of a long list, such as that of a matte with ten thousand names.
   constexpr std::size_t kLongest = 200;
-  if (out.size() > kLongest) out = out.substr(0, kLongest) + "... " + text_hash(out);
+  if (out.size() > kLongest) out = fmt::format("{}... {}", out.substr(0, kLongest), text_hash(out));
   return out;
 }
 
@@ -57,7 +57,7 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
                      const display::Choice& choice) {
   std::string all;
-  for (const std::string& key : keys_of_checkpoints()) all += key + " " + provenance.at(key) + "\n";
+  for (const std::string& key : keys_of_checkpoints()) all += fmt::format("{} {}\n", key, provenance.at(key));
   all += fmt::format("{:.17g} s, frame {}, {} bits, float {:d}, multipart {:d}, reproducible {:d}, exposure {:.17g}\n",
                      job.sampling.seconds, job.scene.frame, job.outputs.bits, job.outputs.exr.as_float,
                      job.outputs.exr.multipart, job.outputs.reproducible, display.exposure.value_or(0));
@@ -80,8 +80,8 @@ std::string difference(const image::Provenance& a, const image::Provenance& b, c
       {"noise", "--noise "},          {"time", "time budget: "},    {"limit", "sample limit: "}, {"layers", "layers "}};
   for (const auto& [key, name] : names) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end() || value(a, key) == value(b, key)) continue;
-    return name + (value(a, key).empty() ? "none" : value(a, key)) + ", not " +
-           (value(b, key).empty() ? "none" : value(b, key));
+    return fmt::format("{}{}, not {}", name, value(a, key).empty() ? "none" : value(a, key),
+                       value(b, key).empty() ? "none" : value(b, key));
   }
   return {};
 }

@@ -34,6 +34,10 @@ void add_all(Hash& hash, const double (&values)[N]) {
   for (const double v : values) hash.add(v);
 }
 
+void add_all(Hash& hash, const math::Vec3d& v) {
+  for (const double x : {v.x, v.y, v.z}) hash.add(x);
+}
+
 void add_map(Hash& hash, const kernel::Environment& map) {
   for (const double v : {double(map.width), double(map.height), map.scale, map.turn, map.visible ? 1.0 : 0.0,
                          double(map.light_group), map.sun_one_minus_cos})

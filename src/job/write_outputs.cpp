@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/write_outputs.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "image/format.h"
 #include "job/display_writer.h"
@@ -10,10 +12,10 @@ namespace orrery::job {
 
 void require_bits(const display::Choice& display, const Outputs& outputs) {
   for (const ImageFile& output : outputs.images) {
-    if (display.is_hdr && image::is_display_format(output.format) && image::most_bits(output.format) < 16)
-      throw base::Error(base::ErrorKind::kUsage, output.path.string() +
-                                                     " holds 8 bits per channel, too few for display " +
-                                                     display.display + "; PNG and TIFF hold 16");
+    if (display.is_hdr && image::is_display_format(output.format) && image::max_bits(output.format) < 16)
+      throw base::Error(base::ErrorKind::kUsage,
+                        fmt::format("{} holds 8 bits per channel, too few for display {}; PNG and TIFF hold 16",
+                                    output.path.string(), display.display));
   }
 }
 

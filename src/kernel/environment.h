@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "math/vec3.h"
+
 namespace orrery::kernel {
 
 /// A level of the sums from which cells are sampled: the four children of a node in consecutive floats, upper left,
@@ -39,10 +41,10 @@ struct Environment {
   double scale = 1;               ///< exposure: factor of the texels
   double turn = 0;                ///< rotation about +y, turns, 0..1
 
-  double sun[3] = {0, 1, 0};  ///< unit direction to the centre of the sun
-  double sun_tangent[3] = {1, 0, 0}, sun_bitangent[3] = {0, 0, 1};
-  double sun_one_minus_cos = 0;        ///< of half its angle
-  double sun_radiance[3] = {0, 0, 0};  ///< added to the map's; exposure is applied
+  math::Vec3d sun{0, 1, 0};  ///< unit direction to the centre of the sun
+  math::Vec3d sun_tangent{1, 0, 0}, sun_bitangent{0, 0, 1};
+  double sun_one_minus_cos = 0;  ///< of half its angle
+  math::Vec3d sun_radiance;      ///< added to the map's; exposure is applied
   bool has_sun = false;
 
   bool is_sampled = false;     ///< false: light sampling has nothing to gain, so that sample_environment is not defined

@@ -146,7 +146,7 @@ struct Distances {
 /// A ray that starts on the sphere can hit it again only at the other end of the chord: its own start is divided out of
 /// the quadratic and cannot return as a rounding error. For every other sphere the distance is strictly positive.
 template <class D, Precision kPrecision>
-HWY_INLINE Distances<D> nearest(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self) {
+HWY_INLINE Distances<D> closest_distance(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self) {
   using T = hn::TFromD<D>;
   const auto zero = hn::Zero(d);
   if constexpr (kPrecision == Precision::kBook) {
@@ -202,7 +202,7 @@ HWY_INLINE hn::Vec<D> own_distance(D d, const Rays<D>& ray, hn::Vec<D> distance)
   return hn::NegMulAdd(rest, hn::Set(d, static_cast<T>(2)), distance);
 }
 
-/// The hit point at a distance that `nearest` returned.
+/// The hit point at a distance that `closest_distance` returned.
 ///
 /// Domain     lanes whose rays hit this sphere
 template <class D, Precision kPrecision>

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "kernel/sphere.h"
+#include "math/vec3.h"
 
 namespace orrery::kernel {
 
@@ -24,9 +25,9 @@ inline constexpr int kLobes = 8;
 /// Data of one path for the layers besides the beauty and the denoiser guides. Computed only for tiles that request
 /// records. Of a path without a first hit only the sphere and the light are set.
 struct PathRecord {
-  double light[3] = {0, 0, 0};       ///< total radiance of the path, the sum of its light events
-  double offset[3] = {0, 0, 0};      ///< first hit: from the sphere's centre to the point, scene units
-  double direction[3] = {0, 0, 0};   ///< of the camera ray that hit it, unit
+  double light[3] = {0, 0, 0};       ///< total radiance of the path, the sum of its light events; indexed by channel
+  math::Vec3d offset;                ///< first hit: from the sphere's centre to the point, scene units
+  math::Vec3d direction;             ///< of the camera ray that hit it, unit
   std::uint32_t sphere = kNoSphere;  ///< first hit; kNoSphere: the background
   float albedo[3] = {0, 0, 0};       ///< at the first hit; only in scenes with features.extended
   double time = 0;                   ///< 0..1 within the shutter
@@ -34,7 +35,7 @@ struct PathRecord {
 
 /// One contribution to a path's radiance: emission of the background or a light, times path throughput.
 struct LightEvent {
-  double value[3];          ///< emitted radiance times the path's throughput
+  double value[3];          ///< emitted radiance times the path's throughput; indexed by channel
   std::uint32_t path;       ///< index of the path's record within the tile
   std::uint16_t group = 0;  ///< light group of the source; 0: the default group
   Lobe lobe = Lobe::kBackground;

@@ -30,7 +30,7 @@ struct PixelSum {
 inline constexpr double kLargestSample = 0x1p35;
 
 /// Whether a sample is finite and small enough for the sums.
-inline bool is_good_sample(double r, double g, double b) noexcept {
+inline bool is_valid_sample(double r, double g, double b) noexcept {
   return std::abs(r) <= kLargestSample && std::abs(g) <= kLargestSample && std::abs(b) <= kLargestSample;
 }
 

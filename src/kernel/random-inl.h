@@ -16,15 +16,15 @@ namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The halves of a 64-bit product. In 64-bit lanes each half is in the low 32 bits.
+/// A 64-bit product. In 64-bit lanes each half is in the low 32 bits.
 template <class V>
-struct Halves {
+struct WideProduct {
   V high, low;
 };
 
 /// The full 32 x 32 bit products a * multiplier.
 template <class DU, class V = hn::Vec<DU>>
-HWY_INLINE Halves<V> multiply_wide(DU du, V a, std::uint32_t multiplier) {
+HWY_INLINE WideProduct<V> multiply_wide(DU du, V a, std::uint32_t multiplier) {
   if constexpr (sizeof(hn::TFromD<DU>) == 8) {
     const hn::Repartition<std::uint32_t, DU> d32;
     const V product = hn::BitCast(du, hn::MulEven(hn::BitCast(d32, a), hn::Set(d32, multiplier)));

@@ -58,10 +58,8 @@ class Recorder {
     each(d, hit, [&](PathRecord& r, int i) {
       r.sphere = static_cast<std::uint32_t>(sphere[i]);
       if (times != nullptr) r.time = static_cast<double>(times[i]);
-      for (int k = 0; k < 3; ++k) {
-        r.offset[k] = static_cast<double>(at.v[k][i]);
-        r.direction[k] = static_cast<double>(along.v[k][i]);
-      }
+      r.offset = at.lane(i);
+      r.direction = along.lane(i);
     });
   }
 
@@ -165,6 +163,9 @@ class Recorder {
       hn::Store(from.y, d, v[1]);
       hn::Store(from.z, d, v[2]);
     }
+    HWY_INLINE math::Vec3d lane(int i) const {
+      return {static_cast<double>(v[0][i]), static_cast<double>(v[1][i]), static_cast<double>(v[2][i])};
+    }
   };
   /// Guides in units of kGuideUnit, limited to what 32 bits hold: integers.
   static HWY_INLINE Vec3<V> in_guide_units(D d, const Vec3<V>& v) {
@@ -226,7 +227,7 @@ class Recorder {
   Ids pixels_, samples_;
 };
 
-/// Lanes whose material is delta: a sharp mirror or a dielectric.
+/// Lanes whose material is delta: a perfect mirror or a smooth dielectric.
 template <class D>
 HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
   const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == hn::Zero(d));
@@ -245,21 +246,21 @@ HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Sur
   const auto where = [&](hn::Mask<D> lanes, hn::Vec<IdTag<D>> then) {
     return hn::IfThenElseZero(hn::RebindMask(du, lanes), then);
   };
-  const auto sharp = where(is_delta(d, at), hn::And(history, ids(kOnlyDeltaBit)));
-  if (!has_lobes) return sharp;
+  const auto delta = where(is_delta(d, at), hn::And(history, ids(kOnlyDeltaBit)));
+  if (!has_lobes) return delta;
   const auto glass = is_kind(d, at.kind, MaterialKind::kDielectric);
   const auto passes = hn::AndNot(at.same_side(d, direction), glass);
   if (depth > 0) {
     const auto lobe = hn::And(history, ids(kLobeBits));
     const auto through = hn::And(passes, hn::RebindMask(d, lobe == ids(kTransmission)));
     const auto indirect = hn::Or(hn::And(history, ids(kIndirectBit)), where(hn::Not(through), ids(kIndirectBit)));
-    return hn::Or(hn::Or(lobe, indirect), sharp);
+    return hn::Or(hn::Or(lobe, indirect), delta);
   }
   const auto metal = is_kind(d, at.kind, MaterialKind::kMetal);
   const auto lobe =
       hn::IfThenElse(hn::RebindMask(du, passes), ids(kTransmission),
                      hn::IfThenElse(hn::RebindMask(du, hn::Or(metal, glass)), ids(kSpecular), ids(kDiffuse)));
-  return hn::Or(lobe, sharp);
+  return hn::Or(lobe, delta);
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -93,7 +93,8 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
 
 /// Fills the packet with the next rays of the stream's paths first .. first + count.
 template <class D, Loop kLoop, class Stream, class Carried>
-HWY_INLINE void load_bounced_rays(D d, const SceneView& scene, Stream& stream, int first, int count, Carried& carried) {
+HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream, int first, int count,
+                                    Carried& carried) {
   using T = hn::TFromD<D>;
   const IdTag<D> du;
   auto& packet = stream.packet;
@@ -176,7 +177,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
       // Survivors overwrite paths that have been read: a packet never grows.
       int survivors = 0;
       for (int i = 0; i < alive; i += kPacketSize) {
-        load_bounced_rays<D, kLoop>(d, scene, stream, i, std::min(kPacketSize, alive - i), carried);
+        load_secondary_rays<D, kLoop>(d, scene, stream, i, std::min(kPacketSize, alive - i), carried);
         survivors = trace_and_shade(depth, survivors);
       }
       alive = survivors;

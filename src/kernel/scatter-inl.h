@@ -76,7 +76,7 @@ HWY_INLINE Vec3<hn::Vec<D>> sample_hemisphere(D d, const Surface<D>& at, const V
 
 /// The unit mirror direction of the arriving ray.
 template <class D>
-HWY_INLINE Vec3<hn::Vec<D>> mirrored(D d, const Surface<D>& at) {
+HWY_INLINE Vec3<hn::Vec<D>> reflected(D d, const Surface<D>& at) {
   using T = hn::TFromD<D>;
   const auto w = normalized(d, neg_mul_add(at.normal, dot(at.direction, at.normal) * hn::Set(d, T(2)), at.direction));
   return select(at.same_side(d, w), w, at.normal);
@@ -90,7 +90,7 @@ HWY_INLINE Vec3<hn::Vec<D>> mirrored(D d, const Surface<D>& at) {
 /// Reference  shirley2024, "Fuzzy Reflection"
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE BsdfSample<D> sample_metal(D d, const Surface<D>& at, const Vec3<V>& on_sphere) {
-  const auto mirror = mirrored(d, at);
+  const auto mirror = reflected(d, at);
   const auto w = normalized(d, mul_add(on_sphere, at.fuzz, mirror));
   const auto sharp = at.fuzz == hn::Zero(d);
   return {select(sharp, mirror, w), hn::Or(sharp, at.same_side(d, w))};
@@ -139,7 +139,7 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> sample_dielectric(D d, const Surface<D>& at, V u) {
   const auto glass = refraction(d, at);
   const auto reflects = hn::Or(glass.is_total, u < glass.reflectance);
-  return select(reflects, mirrored(d, at), glass.direction);
+  return select(reflects, reflected(d, at), glass.direction);
 }
 
 /// Samples a rough dielectric: the direction of a smooth one, perturbed as that of a fuzzy metal. Directions on the
@@ -153,7 +153,7 @@ HWY_INLINE BsdfSample<D> sample_rough_dielectric(D d, const Surface<D>& at, V u,
   const auto reflects = u < share;
   // The part of u that has not been used, uniform in 0..1 again.
   const V rest = hn::IfThenElse(reflects, u, u - share) / hn::IfThenElse(reflects, share, one - share);
-  const auto axis = select(reflects, mirrored(d, at), glass.direction);
+  const auto axis = select(reflects, reflected(d, at), glass.direction);
   const auto w = normalized(d, mul_add(sample_unit_sphere(d, hn::Min(rest, one), v), at.fuzz, axis));
   const auto sharp = at.fuzz == hn::Zero(d);
   const auto same_side = at.same_side(d, w), other_side = at.other_side(d, w);
@@ -203,7 +203,7 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
   using T = hn::TFromD<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, T(1));
-  const auto between = w - mirrored(d, at);
+  const auto between = w - reflected(d, at);
   const V versine_twice = dot(between, between);  // 2 - 2c
   const V s2 = versine_twice * hn::NegMulAdd(versine_twice, hn::Set(d, static_cast<T>(0.25)), one);
   const V rest = hn::NegMulAdd(at.fuzz, at.fuzz, s2);  // s^2 - f^2, negative inside the cone

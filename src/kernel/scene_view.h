@@ -14,16 +14,17 @@
 #include "kernel/sampler.h"
 #include "kernel/sphere_array.h"
 #include "kernel/texture.h"
+#include "math/vec3.h"
 
 namespace orrery::kernel {
 
 /// Background radiance: bottom + (top - bottom) (y + 1) / 2 for the unit direction of a ray that leaves the scene.
 struct Background {
-  double bottom[3] = {1, 1, 1};
-  double top[3] = {1, 1, 1};
+  math::Vec3d bottom{1, 1, 1};
+  math::Vec3d top{1, 1, 1};
 };
 
-/// Radiance that a material emits in all directions. Fetched as four doubles.
+/// Radiance that a material emits in all directions. An array, since lanes gather its members as four doubles.
 struct Emission {
   double radiance[3] = {0, 0, 0};  ///< scene-linear
   double group = 0;                ///< light group, an integer; 0: the default group
@@ -104,10 +105,11 @@ inline LightNode light_leaf(const SceneView& scene, std::uint32_t id) noexcept {
   LightNode leaf{{s.x, s.y, s.z}, s.radius, (rgb[0] + rgb[1] + rgb[2]) * (s.radius * s.radius)};
   if (id >= scene.moving_count) return leaf;
   const Sphere& change = scene.motion[id];
-  const double half[3] = {change.x / 2, change.y / 2, change.z / 2};
-  for (int k = 0; k < 3; ++k) leaf.center[k] += half[k];
-  leaf.radius = std::fmax(s.radius, s.radius + change.radius) +
-                std::sqrt((half[0] * half[0] + half[1] * half[1]) + half[2] * half[2]);
+  const math::Vec3d half{change.x / 2, change.y / 2, change.z / 2};
+  leaf.center[0] += half.x;
+  leaf.center[1] += half.y;
+  leaf.center[2] += half.z;
+  leaf.radius = std::fmax(s.radius, s.radius + change.radius) + math::length(half);
   return leaf;
 }
 

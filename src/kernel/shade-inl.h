@@ -56,7 +56,7 @@ HWY_INLINE void deposit(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, h
     const auto r = static_cast<double>(rgb[0][i]), g = static_cast<double>(rgb[1][i]),
                b = static_cast<double>(rgb[2][i]);
     const bool negative = scene.filter.negative_share != 0 && scene.filter.weight(sample[i], sample[i] + 1) < 0;
-    if (!is_good_sample(r, g, b)) {
+    if (!is_valid_sample(r, g, b)) {
       sum.weight -= negative ? -1 : 1;
       ++counts.bad_samples;
     } else if (negative) {
@@ -167,8 +167,8 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       if (depth == 0) record.begin(d, active, missed);
     }
     // Radiance that arrives along the path, from a source of these light groups. Unless the loop is lit, the path ends.
-    const auto arrive = [&](hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, [[maybe_unused]] hn::Vec<IdTag<D>> groups,
-                            [[maybe_unused]] Lobe unscattered) {
+    const auto add_radiance = [&](hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light,
+                                  [[maybe_unused]] hn::Vec<IdTag<D>> groups, [[maybe_unused]] Lobe unscattered) {
       if constexpr (kRecords)
         if (tile.record_light) record.event(d, lanes, light, history, groups, unscattered);
       if constexpr (kLoop.lit) {
@@ -191,7 +191,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
           light = background(d, scene.background, scene.features.sky, ray.direction);
         }
         light = light * throughput;
-        arrive(missed, light, groups, Lobe::kBackground);
+        add_radiance(missed, light, groups, Lobe::kBackground);
         if constexpr (kRecords) {
           const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
           record.guide(d, hn::And(missed, guided),
@@ -216,7 +216,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
           if (depth > 0)
             source.radiance = source.radiance * emitter_weight<D, kMoves>(d, scene, ray, hits, packet.time + v,
                                                                           hn::Load(d, carried.pdf + v));
-          arrive(shines, source.radiance * throughput, source.group, Lobe::kEmission);
+          add_radiance(shines, source.radiance * throughput, source.group, Lobe::kEmission);
         }
       }
     }
@@ -240,18 +240,19 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
     }
     if (scene.shading != Shading::kPath) {
       const auto half = hn::Set(d, static_cast<T>(0.5));
-      arrive(hit, scene.shading == Shading::kFlat ? at.albedo : mul_add(at.surface.normal, half, {half, half, half}),
-             hn::Zero(du), Lobe::kBackground);
+      add_radiance(hit,
+                   scene.shading == Shading::kFlat ? at.albedo : mul_add(at.surface.normal, half, {half, half, half}),
+                   hn::Zero(du), Lobe::kBackground);
       continue;
     }
     const bool plays_roulette = depth + 1 >= scene.roulette_depth;
     const auto random = random_at_vertex(d, scene.sampler, pixels, samples, depth + 1, plays_roulette);
     const auto scattered = sample_bsdf<kLoop.extended>(d, scene.features, at.surface, random);
     throughput = tinted;
-    auto goes_on = hn::And(hit, scattered.alive);
+    auto survives = hn::And(hit, scattered.alive);
     [[maybe_unused]] hn::Mask<D> has_pdf;
     if constexpr (kLoop.lit) {
-      goes_on = hn::AndNot(is_kind(d, at.surface.kind, MaterialKind::kEmitter), goes_on);
+      survives = hn::AndNot(is_kind(d, at.surface.kind, MaterialKind::kEmitter), survives);
       has_pdf = hn::AndNot(is_delta(d, at.surface), hit);
       if (samples_lights(scene)) {
         const auto connects = hn::AndNot(is_kind(d, at.surface.kind, MaterialKind::kEmitter), has_pdf);
@@ -266,8 +267,8 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
         }
       }
     }
-    if (plays_roulette) goes_on = hn::And(goes_on, survives_roulette(d, random.v[2], throughput));
-    const Compactor<D> compactor(d, goes_on);
+    if (plays_roulette) survives = hn::And(survives, survives_roulette(d, random.v[2], throughput));
+    const Compactor<D> compactor(d, survives);
     compactor.store3(d, at.sphere.center, stream.base, alive);
     compactor.store3(d, at.surface.offset, stream.offset, alive);
     compactor.store3(d, scattered.direction, stream.direction, alive);

@@ -47,7 +47,7 @@ HWY_INLINE V reversed_bits(D32 d32, V v) {
 ///
 /// Reference  laine2011 (the idea), vegdahl2021 (these constants)
 template <class D32, class V = hn::Vec<D32>>
-HWY_INLINE V flipped_by_lower_bits(D32 d32, V v, V seed) {
+HWY_INLINE V laine_karras_permutation(D32 d32, V v, V seed) {
   v = hn::Xor(v, v * hn::Set(d32, 0x3d20adeau));
   v = v + seed;
   v = v * hn::Or(hn::ShiftRight<16>(seed), hn::Set(d32, 1u));
@@ -59,7 +59,7 @@ HWY_INLINE V flipped_by_lower_bits(D32 d32, V v, V seed) {
 ///
 /// Reference  appleby2011, the end of MurmurHash3
 template <class D32, class V = hn::Vec<D32>>
-HWY_INLINE V stirred(D32 d32, V v) {
+HWY_INLINE V hashed(D32 d32, V v) {
   v = hn::Xor(v, hn::ShiftRight<16>(v)) * hn::Set(d32, 0x85ebca6bu);
   v = hn::Xor(v, hn::ShiftRight<13>(v)) * hn::Set(d32, 0xc2b2ae35u);
   return hn::Xor(v, hn::ShiftRight<16>(v));
@@ -113,7 +113,7 @@ HWY_INLINE Four<V> sobol(DU du, V index, V name, std::uint32_t order, bool last_
     else
       return hn::Set(d32, low);
   };
-  const V32 seed = stirred(d32, both(name));
+  const V32 seed = hashed(d32, both(name));
   const V32 at = order == 0 ? both(index) : ordered(d32, kSobolOrders[order], both(index));
 
   // Bit-reversed coordinates. The first is the index itself. In the second, bit j of the index stands for the
@@ -131,8 +131,8 @@ HWY_INLINE Four<V> sobol(DU du, V index, V name, std::uint32_t order, bool last_
   constexpr std::uint32_t kSeeds[4] = {0x9e3779b1u, 0x7feb352du, 0xb5297a4du, 0x68e31da5u};
   const auto scrambled = [&](V32 v, int low, int high) {
     // Hashed twice, since one hash leaves correlations that the first points show.
-    const V32 own = stirred(d32, seed + pair(kSeeds[low], kSeeds[high]));
-    return reversed_bits(d32, flipped_by_lower_bits(d32, v, own));
+    const V32 own = hashed(d32, seed + pair(kSeeds[low], kSeeds[high]));
+    return reversed_bits(d32, laine_karras_permutation(d32, v, own));
   };
   Four<V> out;
   [[maybe_unused]] const V low_half = hn::Set(du, hn::TFromD<DU>{0xffffffffu});

@@ -11,6 +11,8 @@
 
 #include <cstddef>
 
+#include "math/vec3.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
 
@@ -86,6 +88,11 @@ template <class D, class T>
 HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const T* v) {
   using F = hn::TFromD<D>;
   return {hn::Set(d, static_cast<F>(v[0])), hn::Set(d, static_cast<F>(v[1])), hn::Set(d, static_cast<F>(v[2]))};
+}
+template <class D>
+HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const Vec3d& v) {
+  using F = hn::TFromD<D>;
+  return {hn::Set(d, static_cast<F>(v.x)), hn::Set(d, static_cast<F>(v.y)), hn::Set(d, static_cast<F>(v.z))};
 }
 
 /// Returns the rounding error of a - b rounded to `difference`: difference + result equals a - b exactly.

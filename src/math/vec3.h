@@ -5,7 +5,7 @@
 
 namespace orrery::math {
 
-/// A point, direction or colour in double precision, for cold paths (scene, compile, tests).
+/// A point, direction or colour in double precision. SIMD code reads it through set3().
 struct Vec3d {
   double x = 0, y = 0, z = 0;
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <memory>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 
 namespace orrery::measure {
@@ -17,7 +19,7 @@ constexpr int kCompared = 64;
 constexpr int kTimed = 16;
 
 /// Maximum number of spheres for which the list is measured.
-constexpr std::size_t kMostListSpheres = 5000;
+constexpr std::size_t kMaxListSpheres = 5000;
 
 class Planner {
  public:
@@ -79,7 +81,7 @@ class Planner {
 
   void precision() {
     const auto add_one = [&](const char* name, compile::Precision precision, bool is_shortcut) {
-      Choice& c = add("precision", name, flag(kCompared) + " --precision " + name, kCompared);
+      Choice& c = add("precision", name, fmt::format("{} --precision {}", flag(kCompared), name), kCompared);
       c.apply = [precision](CompiledScene& w) { w.precision = precision; };
       c.is_shortcut = is_shortcut;
     };
@@ -118,7 +120,7 @@ class Planner {
     }
     for (const int from : {0, 1, 3}) {
       const std::string name = from == 0 ? "off" : "from " + std::to_string(from);
-      add("roulette", name, flag(kCompared) + " --set render.roulette_depth=" + std::to_string(from), kCompared).apply =
+      add("roulette", name, fmt::format("{} --set render.roulette_depth={}", flag(kCompared), from), kCompared).apply =
           [from](CompiledScene& w) {
             w.roulette_depth = from == 0 ? kernel::kNoRoulette : static_cast<std::uint32_t>(from);
           };
@@ -133,7 +135,7 @@ class Planner {
     for (const std::uint32_t depth : {2u, 4u, 8u, 16u}) {
       if (depth >= compiled_.max_depth) continue;
       Choice& c = add("depth", "at most " + std::to_string(depth),
-                      flag(kCompared) + " --max-depth " + std::to_string(depth), kCompared);
+                      fmt::format("{} --max-depth {}", flag(kCompared), depth), kCompared);
       c.apply = [depth](CompiledScene& w) { w.max_depth = depth; };
       c.is_shortcut = true;
     }
@@ -152,7 +154,7 @@ class Planner {
     }
     const auto add_one = [&](const char* name, kernel::FresnelKind kind) {
       std::string flags = flag(kCompared);
-      for (const std::string& material : names) flags += " --set material." + material + ".fresnel=" + name;
+      for (const std::string& material : names) flags += fmt::format(" --set material.{}.fresnel={}", material, name);
       Choice& c = add("fresnel", name, flags, kCompared);
       c.apply = [kind](CompiledScene& w) {
         for (kernel::Material& m : w.materials) m.fresnel = kind;
@@ -176,11 +178,11 @@ class Planner {
       std::shared_ptr<const compile::EnvironmentMap> environment = compiled_.environment;
       if (environment && mode != compiled_.direct_lighting)
         environment = environment->with_sampling(compile::environment_sampling(mode));
-      add("direct lighting", name, flag(kCompared) + " --set render.direct_lighting=" + name, kCompared).apply =
-          [mode, environment](CompiledScene& w) {
-            w.direct_lighting = mode;
-            w.environment = environment;
-          };
+      add("direct lighting", name, fmt::format("{} --set render.direct_lighting={}", flag(kCompared), name), kCompared)
+          .apply = [mode, environment](CompiledScene& w) {
+        w.direct_lighting = mode;
+        w.environment = environment;
+      };
     };
     add_one("mis", kernel::DirectLighting::kMis);
     add_one("bsdf", kernel::DirectLighting::kBsdf);
@@ -195,7 +197,7 @@ class Planner {
         accel::Traversal::kPacket;
     add("accelerator", "embree, single rays", flag(kTimed) + " --traversal single", kTimed).traversal =
         accel::Traversal::kSingle;
-    if (compiled_.spheres.size() > kMostListSpheres) {
+    if (compiled_.spheres.size() > kMaxListSpheres) {
       out_.left_out.push_back("more than 5000 spheres: the list is too slow");
       return;
     }

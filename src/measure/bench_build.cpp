@@ -23,7 +23,7 @@ struct Method {
 
 }  // namespace
 
-OtherKind other_kind(const kernel::SceneView& view) {
+AlternativeAccelerator alternative_accelerator(const kernel::SceneView& view) {
   if (accel::spheres_in_bvh(view) > 0) return {"one by one", accel::kNoBvh};
   return {"BVH", 1};
 }
@@ -33,7 +33,7 @@ std::vector<BenchBuild> bench_builds(const kernel::SceneView& view, int rounds) 
   const auto seconds_since = [](Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
   };
-  const OtherKind other = other_kind(view);
+  const AlternativeAccelerator other = alternative_accelerator(view);
   const auto embree = [&](std::size_t threshold) {
     return [&view, threshold] { return accel::make_embree(view, kernel::Precision::kExact, {}, threshold); };
   };

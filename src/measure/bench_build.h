@@ -12,11 +12,11 @@ namespace orrery::measure {
 
 /// The accelerator that a benchmark compares with the default one: one Embree primitive per sphere if the default has a
 /// BVH of many spheres, otherwise such a BVH.
-struct OtherKind {
+struct AlternativeAccelerator {
   std::string name;
   std::size_t bvh_threshold;  ///< for accel::make_embree
 };
-OtherKind other_kind(const kernel::SceneView& view);
+AlternativeAccelerator alternative_accelerator(const kernel::SceneView& view);
 
 /// Benchmark of building, on all threads: the accelerator that renders the scene in `exact`, the other kind, and
 /// Embree's own sphere points. Rounds alternate between them.

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/stop_point.h"
 #include "base/text.h"
@@ -155,7 +157,7 @@ class Subject {
   template <class Packet>
   static double seconds_a_path(const accel::Accel& with, render::RecordedRays<Packet>& rays) {
     const double seconds =
-        render::trace_again(with.tracer(), rays.camera) + render::trace_again(with.tracer(), rays.bounced);
+        render::trace_again(with.tracer(), rays.camera) + render::trace_again(with.tracer(), rays.secondary);
     return seconds / static_cast<double>(rays.paths);
   }
 
@@ -168,7 +170,7 @@ class Subject {
   render::RecordedRays<kernel::RayPacketFast> fast_rays_;
 };
 
-bool lists_are_bearable(const compile::CompiledScene& compiled) {
+bool lists_are_affordable(const compile::CompiledScene& compiled) {
   return 3.0 * compiled.width * compiled.height * static_cast<double>(compiled.spheres.size()) / kListTests <=
          kLongestListSeconds;
 }
@@ -188,9 +190,9 @@ std::vector<Case> cases_of(const compile::CompiledScene& compiled, Benchmark& ou
     cases.back().name = "exact bsdf";
     cases.back().samples_lights = false;
   }
-  if (!lists_are_bearable(compiled)) {
-    out.left_out.push_back("lists: with this many spheres one sample per pixel would take more than " +
-                           std::to_string(static_cast<int>(kLongestListSeconds)) + " s");
+  if (!lists_are_affordable(compiled)) {
+    out.left_out.push_back(fmt::format("lists: with this many spheres one sample per pixel would take more than {} s",
+                                       static_cast<int>(kLongestListSeconds)));
     return cases;
   }
   for (const auto& [name, accelerator] :
@@ -281,7 +283,7 @@ Benchmark bench_scene(const BenchRequest& request) {
   for (Case& c : feature_cases_of(compiled)) cases.push_back(std::move(c));
   std::optional<TracingBench> tracing;
   if (request.threads == 1 && !compiled.spheres.empty())
-    tracing.emplace(subject.tracing_bench(lists_are_bearable(compiled)));
+    tracing.emplace(subject.tracing_bench(lists_are_affordable(compiled)));
   const int total = static_cast<int>(cases.size()) * (request.rounds + 1);
   int done = 0;
   const auto report_progress = [&] {

@@ -10,9 +10,9 @@ namespace orrery::measure {
 TracingBench::TracingBench(const kernel::SceneView& view, accel::Accel& fast,
                            render::RecordedRays<kernel::RayPacketFast>& rays, bool with_list)
     : points_(accel::make_native_points(view)), rays_(rays) {
-  const OtherKind other = other_kind(view);
+  const AlternativeAccelerator other = alternative_accelerator(view);
   other_ = accel::make_embree(view, kernel::Precision::kFast, {}, other.bvh_threshold);
-  for (const auto* packets : {&rays_.camera, &rays_.bounced})
+  for (const auto* packets : {&rays_.camera, &rays_.secondary})
     for (const kernel::RayPacketFast& packet : *packets) ray_count_ += packet.count;
   methods_ = {{"packets", &fast, accel::Traversal::kPacket, {}},
               {"single rays", &fast, accel::Traversal::kSingle, {}},
@@ -30,7 +30,7 @@ void TracingBench::measure(int round) {
     method.accel->use({method.traversal, method.traversal});
     const kernel::Tracer tracer = method.accel->tracer();
     method.rays_per_s.push_back(
-        ray_count_ / (render::trace_again(tracer, rays_.camera) + render::trace_again(tracer, rays_.bounced)));
+        ray_count_ / (render::trace_again(tracer, rays_.camera) + render::trace_again(tracer, rays_.secondary)));
   }
 }
 

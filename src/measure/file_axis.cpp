@@ -4,6 +4,8 @@
 #include <chrono>
 #include <filesystem>
 
+#include <fmt/core.h>
+
 #include "image/read.h"
 #include "image/write.h"
 #include "measure/temp_dir.h"
@@ -22,7 +24,7 @@ std::vector<FilePoint> measure_file_axis(const film::Picture& picture) {
       options.compression = compression;
       FilePoint point;
       point.name = std::string(as_float ? "float " : "half ") + compression;
-      point.flags = std::string("--type ") + (as_float ? "float" : "half") + " --compression " + compression;
+      point.flags = fmt::format("--type {} --compression {}", as_float ? "float" : "half", compression);
       const auto begin = std::chrono::steady_clock::now();
       image::write_exr(file, picture, {}, options);
       point.write_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -64,8 +64,8 @@ Errors errors_of(const Pair& choice, const Pair& reference) {
   out.noise = std::sqrt(noise / n);
   out.bias_squared = sum / n;
   // Quotients, because squares of large sums overflow.
-  const double evidence = sum > 0 ? sum_of_squares / (sum_of_fourths / sum_of_squares) : 0;
-  if (evidence >= kLeastEvidence) out.bias_chance = std::exp(-sum * sum / sum_of_squares / 2);
+  const double effective_count = sum > 0 ? sum_of_squares / (sum_of_fourths / sum_of_squares) : 0;
+  if (effective_count >= kMinEffectiveCount) out.bias_chance = std::exp(-sum * sum / sum_of_squares / 2);
   out.energy = all_light != 0 ? excess / all_light : 0;
   return out;
 }

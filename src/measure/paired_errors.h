@@ -17,7 +17,7 @@ film::Picture mean_of(const Pair& pair);
 double noise_of_mean(const Pair& pair);
 
 /// Effective number of pixels that must show a bias.
-inline constexpr double kLeastEvidence = 20;
+inline constexpr double kMinEffectiveCount = 20;
 
 /// Error estimates of a pair; the members are those of Point.
 struct Errors {
@@ -35,8 +35,8 @@ struct Errors {
 /// probability of at most exp(-t^2 / 2), however much the noise varies between pixels.
 ///
 /// Light that a handful of paths have found breaks that: it is missing in most pixels of both renders. So bias_chance
-/// is 1 unless the terms that dominate the sum are kLeastEvidence or more: n terms of equal size count as n, rarer and
-/// larger ones as few. A bias confined to fewer pixels is not detected.
+/// is 1 unless the terms that dominate the sum are kMinEffectiveCount or more: n terms of equal size count as n, rarer
+/// and larger ones as few. A bias confined to fewer pixels is not detected.
 ///
 /// Domain     images of one size with planes R, G, B; pixels do not share random numbers
 /// Reference  efron1969

@@ -8,7 +8,7 @@
 
 namespace orrery::measure {
 
-void judge_bias(std::vector<Point>& points) {
+void test_bias(std::vector<Point>& points) {
   std::vector<Point*> by_chance;
   for (Point& p : points) {
     p.bias = 0;
@@ -19,7 +19,7 @@ void judge_bias(std::vector<Point>& points) {
                    [](const Point* a, const Point* b) { return a->bias_chance < b->bias_chance; });
   auto untested = static_cast<double>(points.size());
   for (Point* p : by_chance) {
-    if (p->bias_chance * untested-- > kFalseAlarm) break;
+    if (p->bias_chance * untested-- > kFamilyWiseError) break;
     const double common = std::sqrt(p->bias_squared);
     p->error = std::hypot(p->noise, common);
     if (p->is_shortcut) p->bias = common;

@@ -8,7 +8,7 @@
 namespace orrery::measure {
 
 /// Family-wise error rate: the probability that a study of unbiased choices reports a bias in any of them.
-inline constexpr double kFalseAlarm = 0.01;
+inline constexpr double kFamilyWiseError = 0.01;
 
 /// Tests all points for an error that both renders have in common, and sets bias, error and efficiency of every point.
 ///
@@ -16,7 +16,7 @@ inline constexpr double kFalseAlarm = 0.01;
 /// lack is light that neither has found yet, and counts as error only.
 ///
 /// Reference  holm1979
-void judge_bias(std::vector<Point>& points);
+void test_bias(std::vector<Point>& points);
 
 /// The convergence rate of each sampler with at least two points, by a least-squares fit on logarithmic axes.
 std::vector<Slope> slopes_of(const std::vector<Point>& points);

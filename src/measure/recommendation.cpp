@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "format/read_scene.h"
 
@@ -13,7 +15,7 @@ namespace orrery::measure {
 namespace {
 
 /// Minimum samples per pixel of a render with --noise.
-constexpr double kFewestAdaptiveSamples = 16;
+constexpr double kMinAdaptiveSamples = 16;
 
 class Recommender {
  public:
@@ -58,13 +60,14 @@ class Recommender {
     const bool is_faster = baseline.seconds > r.seconds;
     if (baseline.seconds > 0 && !is_faster) {
       // --noise needs more samples than this. Sobol points have no larger error than as many independent ones.
-      flags = "--samples " + std::to_string(baseline.samples) + sampler_flag;
+      flags = fmt::format("--samples {}{}", baseline.samples, sampler_flag);
       r.noise = request_.noise;
       r.bias = 0;
       r.seconds = baseline.seconds;
       r.samples = baseline.samples;
     }
-    r.command = "orrery render " + base::shell_quoted(study_.scene) + " -o final.exr " + scene_flags() + flags;
+    r.command =
+        fmt::format("orrery render {} -o final.exr {}{}", base::shell_quoted(study_.scene), scene_flags(), flags);
     base::append(r.words, "for %.3g %% noise: %s, %.3g s", request_.noise * 100, flags.c_str(), r.seconds);
     if (is_faster) base::append(r.words, " instead of %.3g s", baseline.seconds);
     if (r.bias > 0) base::append(r.words, ", bias %.2g %%", r.bias * 100);
@@ -97,7 +100,8 @@ class Recommender {
   std::string scene_flags() const {
     std::string flags;
     for (const format::Override& override : request_.scene.overrides)
-      if (!override.sets("render.samples")) flags += override.option + " " + base::shell_quoted(override.typed) + " ";
+      if (!override.sets("render.samples"))
+        flags += fmt::format("{} {} ", override.option, base::shell_quoted(override.typed));
     if (request_.scene.frame != format::kFirstFrame) base::append(flags, "--frames %d ", request_.scene.frame);
     return flags;
   }
@@ -107,7 +111,7 @@ class Recommender {
   Pilots pilot(compile::CompiledScene& compiled) {
     const double full_pixels = static_cast<double>(compiled.width) * compiled.height;
     Pilots out;
-    if (kFewestAdaptiveSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
+    if (kMinAdaptiveSamples * full_pixels / paths_per_s_ > 0.8 * left()) {
       study_.left_out.push_back("test of the recommendation at full resolution: exceeds the budget");
       const Point& p = point_near(request_.noise);
       out.push_back({p.error, p.seconds * full_pixels / pixels(), p.samples});
@@ -127,7 +131,7 @@ class Recommender {
     const Point* nearest = nullptr;
     const auto distance = [noise](const Point& p) { return std::abs(std::log(p.error / noise)); };
     for (const Point& p : study_.points)
-      if ((p.axis == "samples" || p.axis == "noise") && p.samples >= kFewestAdaptiveSamples &&
+      if ((p.axis == "samples" || p.axis == "noise") && p.samples >= kMinAdaptiveSamples &&
           (nearest == nullptr || distance(p) < distance(*nearest)))
         nearest = &p;
     return *nearest;  // never null: the second choice has 16 samples
@@ -149,8 +153,8 @@ class Recommender {
       const double power = std::clamp(std::log(b.*what / a.*what) / std::log(a.error / b.error), 1.0, 2.5);
       return std::log(b.*what) + power * std::log(b.error / error);
     };
-    constexpr double kUsual = 1.75;  // between independent sampling, 2, and quasi-Monte Carlo
-    return line.size() < 2 ? std::pow(reached / noise, kUsual) : std::exp(at(noise) - at(reached));
+    constexpr double kTypicalExponent = 1.75;  // between independent sampling, 2, and quasi-Monte Carlo
+    return line.size() < 2 ? std::pow(reached / noise, kTypicalExponent) : std::exp(at(noise) - at(reached));
   }
 
   Baseline baseline() const {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/base64.h"
 #include "base/text.h"
 #include "display/develop.h"
 #include "image/write.h"
@@ -79,22 +80,8 @@ json study_object(const Study& s) {
             {"baseline_seconds", number(r.baseline_seconds)}}}};
 }
 
-std::string base64(const std::string& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
-}
-
 /// Downsamples an image to at most kShownWidth by averaging square blocks of pixels.
-film::Picture shrunk(const film::Picture& from) {
+film::Picture downsampled(const film::Picture& from) {
   const int step = (from.width + kShownWidth - 1) / kShownWidth;
   if (step <= 1) return from;
   film::Picture out;
@@ -122,7 +109,7 @@ class Encoder {
   std::string shown(const film::Picture& picture) const {
     display::Settings settings;
     settings.exposure = exposure_;
-    return address(display::develop(shrunk(picture), settings, 8));
+    return address(display::develop(downsampled(picture), settings, 8));
   }
   /// For images that are already display-encoded, such as false colours.
   std::string codes(const film::Picture& picture) const { return address(metrics::encoded(picture)); }
@@ -139,7 +126,7 @@ class Encoder {
     const std::filesystem::path file = folder_.path() / "picture.jpg";
     image::write_encoded(file, picture, "");
     std::ifstream in(file, std::ios::binary);
-    return "data:image/jpeg;base64," + base64({std::istreambuf_iterator<char>(in), {}});
+    return "data:image/jpeg;base64," + base::base64(std::string(std::istreambuf_iterator<char>(in), {}));
   }
 
   TempDir folder_;
@@ -195,7 +182,7 @@ std::string study_html(const Study& study) {
     const Point& p = study.points[i];
     data["points"][i]["picture"] = encode.shown(p.picture);
     const metrics::Map map = metrics::display_error_map(metrics::color_of(p.picture), truth);
-    data["points"][i]["heat"] = encode.codes(shrunk(metrics::false_color(map, metrics::kHottest)));
+    data["points"][i]["heat"] = encode.codes(downsampled(metrics::false_color(map, metrics::kFalseColorMax)));
   }
   // The text must not contain the end tag of its script element.
   std::string text = data.dump(-1, ' ', true, json::error_handler_t::replace);

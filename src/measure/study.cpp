@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
@@ -43,14 +45,14 @@ constexpr double kFeatureShare = 0.05;
 
 /// Samples per pixel that the budget should allow for the reference and all points together. The study's image is
 /// reduced until it does.
-constexpr double kSamplesWanted = 6000;
-constexpr double kFewestPixels = 64 * 36;
+constexpr double kTargetSamples = 6000;
+constexpr double kMinPixels = 64 * 36;
 
 /// Limits of the samples per pixel in each of the two reference renders.
 constexpr double kMinReferenceSamples = 64, kMaxReferenceSamples = 1 << 20;
 
 /// Number of choices that are measured regardless of the budget; a comparison needs two points.
-constexpr std::size_t kFewestChoices = 2;
+constexpr std::size_t kMinChoices = 2;
 
 class Runner {
  public:
@@ -68,7 +70,7 @@ class Runner {
     choose_size();
     render_reference();
     measure_axes();
-    judge_bias(out_.points);
+    test_bias(out_.points);
     measure_files();
     measure_features();
     out_.slopes = slopes_of(out_.points);
@@ -128,17 +130,17 @@ class Runner {
   /// The scene at shutter close; null without motion.
   const scene::Scene* closing() const { return read_.closing ? &*read_.closing : nullptr; }
 
-  /// Measures the speed and reduces the image until the study fits into the budget, but not below kFewestPixels. Beyond
+  /// Measures the speed and reduces the image until the study fits into the budget, but not below kMinPixels. Beyond
   /// that, choices are skipped.
   void choose_size() {
     report_progress("measuring speed");
     CompiledScene pilot = full_;
-    resize(pilot, kFewestPixels);  // a single sample of a large image may exceed the budget
+    resize(pilot, kMinPixels);  // a single sample of a large image may exceed the budget
     paths_per_s_ = renderer_.measure_speed(std::move(pilot));
     const double most = static_cast<double>(full_.width) * full_.height;
-    const double least = std::min(kFewestPixels, most);
+    const double least = std::min(kMinPixels, most);
     double samples = 2 * kMinReferenceSamples;
-    for (std::size_t i = 0; i < std::min(kFewestChoices, plan_.choices.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMinChoices, plan_.choices.size()); ++i)
       samples += 2 * plan_.choices[i].samples;
     const double needed = least * samples / paths_per_s_;
     if (needed > left()) {
@@ -147,7 +149,7 @@ class Runner {
                    1.2 * (elapsed() + needed));
       throw base::Error(base::ErrorKind::kUsage, text);
     }
-    resize(reduced_, std::clamp(left() * (1 - kPilotShare) * paths_per_s_ / kSamplesWanted, least, most));
+    resize(reduced_, std::clamp(left() * (1 - kPilotShare) * paths_per_s_ / kTargetSamples, least, most));
     out_.width = reduced_.width;
     out_.height = reduced_.height;
   }
@@ -201,16 +203,16 @@ class Runner {
       const Choice& choice = plan_.choices[i];
       // Choices are ordered by importance. Those that exceed the budget are listed.
       const double reserve = request_.budget_s * (kPilotShare + kFeatureShare);
-      if (i >= kFewestChoices && expected_seconds(choice) > left() - reserve) {
+      if (i >= kMinChoices && expected_seconds(choice) > left() - reserve) {
         std::string& names = too_expensive[choice.axis];
         names += (names.empty() ? "" : "; ") + choice.name;
         continue;
       }
-      report_progress(choice.axis + ": " + choice.name);
+      report_progress(fmt::format("{}: {}", choice.axis, choice.name));
       measure(choice);
     }
     for (const auto& [axis, names] : too_expensive)
-      out_.left_out.push_back(axis + " (" + names + "): exceeds the budget");
+      out_.left_out.push_back(fmt::format("{} ({}): exceeds the budget", axis, names));
   }
 
   CompiledScene scene_for(const Choice& choice) const {

@@ -31,7 +31,7 @@ accel::Accel& StudyRenderer::accel_of(const compile::CompiledScene& scene) {
 
 render::Result StudyRenderer::render(compile::CompiledScene& scene, double noise,
                                      std::optional<accel::Traversal> traversal, bool is_denoised) {
-  const Spheres::Loan loan(spheres_, scene);
+  const Spheres::ScopedAttachment attachment(spheres_, scene);
   compile::update_lights(scene);
   render::Settings settings;
   settings.threads = threads_;

@@ -26,13 +26,13 @@ class Spheres {
     std::swap(materials_, compiled.sphere_materials);
   }
 
-  /// Lends the spheres to a compiled scene until the Loan is destroyed.
-  class Loan {
+  /// Lends the spheres to a compiled scene until the ScopedAttachment is destroyed.
+  class ScopedAttachment {
    public:
-    Loan(Spheres& from, compile::CompiledScene& to) : from_(from), to_(to) { from_.take_from(to_); }
-    ~Loan() { from_.take_from(to_); }
-    Loan(const Loan&) = delete;
-    Loan& operator=(const Loan&) = delete;
+    ScopedAttachment(Spheres& from, compile::CompiledScene& to) : from_(from), to_(to) { from_.take_from(to_); }
+    ~ScopedAttachment() { from_.take_from(to_); }
+    ScopedAttachment(const ScopedAttachment&) = delete;
+    ScopedAttachment& operator=(const ScopedAttachment&) = delete;
 
    private:
     Spheres& from_;

@@ -7,6 +7,8 @@
 #include <string>
 #include <system_error>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 
 namespace orrery::measure {
@@ -16,8 +18,9 @@ TempDir::TempDir() {
   const std::filesystem::path parent = std::filesystem::temp_directory_path(failed);
   std::string name = ((failed ? std::filesystem::path("/tmp") : parent) / "orrery-study-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
-    throw base::Error(base::ErrorKind::kCannotCreate,
-                      name + ": " + std::strerror(errno) + "; set $TMPDIR to another folder for temporary files");
+    throw base::Error(
+        base::ErrorKind::kCannotCreate,
+        fmt::format("{}: {}; set $TMPDIR to another folder for temporary files", name, std::strerror(errno)));
   path_ = name;
 }
 

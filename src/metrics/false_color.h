@@ -21,6 +21,6 @@ film::EncodedPicture encoded(const film::Picture& codes);
 film::Picture grey(const Map& map);
 
 /// Display error at the upper end of a heat map's scale.
-inline constexpr double kHottest = 0.1;
+inline constexpr double kFalseColorMax = 0.1;
 
 }  // namespace orrery::metrics

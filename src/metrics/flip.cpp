@@ -100,7 +100,7 @@ struct EyeFilters {
 };
 
 /// An image after the perceptual filters.
-struct Seen {
+struct FilteredImage {
   Maps lab;      ///< colour after the contrast sensitivity filters
   Map features;  ///< edge strength
   Map points;    ///< point strength
@@ -134,7 +134,7 @@ Taps balanced(int radius, const std::function<double(double)>& shape) {
   return taps;
 }
 
-Seen seen(const Maps& codes, double pixels_per_degree) {
+FilteredImage filtered_image(const Maps& codes, double pixels_per_degree) {
   const EyeFilters eye(pixels_per_degree);
   Maps o = each_pixel(codes, [](const Color& code) {
     return opponent({srgb_decoded(code[0]), srgb_decoded(code[1]), srgb_decoded(code[2])});
@@ -148,7 +148,7 @@ Seen seen(const Maps& codes, double pixels_per_degree) {
   o[2] = convolved(o[2], eye.blue_yellow[1], eye.blue_yellow[1]);
   for (std::size_t i = 0; i < first.values.size(); ++i)
     o[2].values[i] = eye.share[0] * first.values[i] + eye.share[1] * o[2].values[i];
-  Seen out;
+  FilteredImage out;
   out.lab = each_pixel(o, [](const Color& v) {
     Color light = light_of_opponent(v);
     for (float& x : light) x = std::clamp(x, 0.0f, 1.0f);
@@ -165,12 +165,14 @@ Seen seen(const Maps& codes, double pixels_per_degree) {
   return out;
 }
 
-Map flip(const Seen& a, const Seen& b) {
+Map flip(const FilteredImage& a, const FilteredImage& b) {
   const float farthest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kColorExponent);
   const float knee = kColorKnee * farthest;
   Map out = a.features;
   for (std::size_t i = 0; i < out.values.size(); ++i) {
-    const auto lab = [i](const Seen& s) { return Color{s.lab[0].values[i], s.lab[1].values[i], s.lab[2].values[i]}; };
+    const auto lab = [i](const FilteredImage& s) {
+      return Color{s.lab[0].values[i], s.lab[1].values[i], s.lab[2].values[i]};
+    };
     const float distance = std::pow(hyab(lab(a), lab(b)), kColorExponent);
     const float color = distance < knee ? distance * (kErrorAtKnee / knee)
                                         : kErrorAtKnee + (distance - knee) / (farthest - knee) * (1 - kErrorAtKnee);
@@ -192,7 +194,7 @@ float tone(float light) {
 }
 
 /// The inverse of the tone curve: the radiance that it maps to `t`.
-double light_shown_as(double t) {
+double inverse_tone_curve(double t) {
   const double a = kTone[0] - t * kTone[2], b = (kTone[1] - t * kTone[3]) / a, c = -t * kTone[4] / a;
   return -b / 2 + std::sqrt(b * b / 4 - c);
 }
@@ -230,9 +232,9 @@ std::vector<double> exposures_for(const ColorView& reference) {
   std::nth_element(luminance.begin(), middle, luminance.end());
   double median = *middle;
   if (luminance.size() % 2 == 0) median = (median + *std::max_element(luminance.begin(), middle)) / 2;
-  const double start = std::log2(light_shown_as(kShown) / brightest);
+  const double start = std::log2(inverse_tone_curve(kShown) / brightest);
   // Limits the number of exposures of a mostly black image: thirty stops below the maximum counts as black.
-  const double stop = std::log2(light_shown_as(kShown) / std::max(median, brightest * 0x1p-30));
+  const double stop = std::log2(inverse_tone_curve(kShown) / std::max(median, brightest * 0x1p-30));
   const int count = std::max(2, static_cast<int>(std::ceil(stop - start)));
   std::vector<double> out;
   for (int i = 0; i < count; ++i) out.push_back(start + i * (stop - start) / (count - 1));
@@ -242,7 +244,8 @@ std::vector<double> exposures_for(const ColorView& reference) {
 }  // namespace
 
 Map flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree) {
-  return flip(seen(codes_of(picture), pixels_per_degree), seen(codes_of(reference), pixels_per_degree));
+  return flip(filtered_image(codes_of(picture), pixels_per_degree),
+              filtered_image(codes_of(reference), pixels_per_degree));
 }
 
 Map hdr_flip(const ColorView& picture, const ColorView& reference, double pixels_per_degree, const ForEach& for_each) {
@@ -250,8 +253,8 @@ Map hdr_flip(const ColorView& picture, const ColorView& reference, double pixels
   Map out{reference.width, reference.height, std::vector<float>(reference.pixels(), 0.0f)};
   std::mutex merging;
   const auto merge = [&](std::size_t i) {
-    const Map map = flip(seen(codes_at(picture, exposures[i]), pixels_per_degree),
-                         seen(codes_at(reference, exposures[i]), pixels_per_degree));
+    const Map map = flip(filtered_image(codes_at(picture, exposures[i]), pixels_per_degree),
+                         filtered_image(codes_at(reference, exposures[i]), pixels_per_degree));
     const std::lock_guard lock(merging);
     for (std::size_t p = 0; p < out.values.size(); ++p) out.values[p] = std::max(out.values[p], map.values[p]);
   };

@@ -13,12 +13,12 @@ double PixelErrors::psnr_db() const {
   return rmse > 0 ? -20 * std::log10(rmse) : std::numeric_limits<double>::infinity();
 }
 
-PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference, const std::vector<bool>& left_out) {
+PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference, const std::vector<bool>& excluded) {
   PixelErrors out;
   double squares = 0, absolute = 0, relative = 0, signed_sum = 0, light = 0;
   for (int c = 0; c < 3; ++c) {
     for (std::size_t i = 0; i < picture.pixels(); ++i) {
-      if (!left_out.empty() && left_out[i]) continue;
+      if (!excluded.empty() && excluded[i]) continue;
       const double a = static_cast<double>(picture.channel[c][i]), b = static_cast<double>(reference.channel[c][i]);
       if (!std::isfinite(a) || !std::isfinite(b)) {
         ++out.not_finite;
@@ -45,18 +45,18 @@ PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference, c
   out.relative_mse = relative / n;
   out.bias = light != 0 ? signed_sum / light : 0;
   double display = 0;
-  for (const float e : display_error_map(picture, reference, left_out).values)
+  for (const float e : display_error_map(picture, reference, excluded).values)
     display += static_cast<double>(e) * static_cast<double>(e);
   const auto pixels =
-      static_cast<std::ptrdiff_t>(picture.pixels()) - std::count(left_out.begin(), left_out.end(), true);
+      static_cast<std::ptrdiff_t>(picture.pixels()) - std::count(excluded.begin(), excluded.end(), true);
   out.display = std::sqrt(display / static_cast<double>(pixels));
   return out;
 }
 
-Map display_error_map(const ColorView& picture, const ColorView& reference, const std::vector<bool>& left_out) {
+Map display_error_map(const ColorView& picture, const ColorView& reference, const std::vector<bool>& excluded) {
   Map out{picture.width, picture.height, std::vector<float>(picture.pixels())};
   for (std::size_t i = 0; i < out.values.size(); ++i) {
-    if (!left_out.empty() && left_out[i]) continue;
+    if (!excluded.empty() && excluded[i]) continue;
     double squares = 0, light = 0;
     for (int c = 0; c < 3; ++c) {
       const double a = static_cast<double>(picture.channel[c][i]), b = static_cast<double>(reference.channel[c][i]);

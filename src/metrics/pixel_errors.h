@@ -28,11 +28,11 @@ struct PixelErrors {
 
 /// Computes the error metrics of an image.
 ///
-/// Domain     views of the same size, with channels; `left_out` flags the pixels to skip, empty for none
-PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference, const std::vector<bool>& left_out = {});
+/// Domain     views of the same size, with channels; `excluded` flags the pixels to skip, empty for none
+PixelErrors pixel_errors(const ColorView& picture, const ColorView& reference, const std::vector<bool>& excluded = {});
 
 /// The display error of every pixel; 0 if the pixel is skipped or a value is not finite. PixelErrors::display is its
 /// root mean square over the pixels that are not skipped.
-Map display_error_map(const ColorView& picture, const ColorView& reference, const std::vector<bool>& left_out = {});
+Map display_error_map(const ColorView& picture, const ColorView& reference, const std::vector<bool>& excluded = {});
 
 }  // namespace orrery::metrics

@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
@@ -188,8 +190,8 @@ class Converter {
   void check_outputs() const {
     const std::string name = options_.output.string();
     if (data_.numbers().size() > 1 && !base::has_frame_pattern(name))
-      refuse(name + " is one name for " + std::to_string(data_.numbers().size()) +
-             " frames; add a frame pattern, e.g. out.####.ply");
+      refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. out.####.ply", name,
+                         data_.numbers().size()));
     if (data_.numbers().empty() && base::has_frame_pattern(name))
       refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames all");
     base::FileSet files;
@@ -216,13 +218,14 @@ class Converter {
     out.spheres = output.table().rows;
     out.warnings = std::move(loaded.warnings);
     if (!has_radius_)
-      out.notes.push_back("no column radius: the file has no radius; --radius" +
-                          std::string(source.info.roles.element.empty() ? "" : " or --element-radii") + " sets it");
+      out.notes.push_back(fmt::format("no column radius: the file has no radius; --radius{} sets it",
+                                      source.info.roles.element.empty() ? "" : " or --element-radii"));
     if (!output.left_out().empty())
-      out.notes.push_back("left out " + base::joined(output.left_out()) + ": the name is that of a column above");
+      out.notes.push_back(
+          fmt::format("left out {}: the name is that of a column above", base::joined(output.left_out())));
     const std::vector<std::string> unwritten = data::write_table(out.file, output.table());
     if (!unwritten.empty())
-      out.notes.push_back("left out " + base::joined(unwritten) + ": the format cannot store these strings");
+      out.notes.push_back(fmt::format("left out {}: the format cannot store these strings", base::joined(unwritten)));
     for (const data::Column& column : output.table().columns)
       if (std::find(unwritten.begin(), unwritten.end(), column.name) == unwritten.end())
         out.columns.push_back(column.name);

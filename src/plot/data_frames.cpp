@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/frames.h"
 #include "points/color_map.h"
@@ -23,7 +25,7 @@ const data::ColumnInfo* find_column(const data::FrameInfo& info, const std::stri
 }
 
 /// Frames of larger files are not counted for a message: that would read the whole file.
-constexpr std::uintmax_t kMostCountedBytes = std::uintmax_t{2} << 30;
+constexpr std::uintmax_t kMaxCountedBytes = std::uintmax_t{2} << 30;
 
 [[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
 
@@ -45,8 +47,8 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   const int first = all().front();
   file_ = open_(file_of(first), open_options);
   if (options.points.component && file_->format() != data::Format::kHdf5)
-    refuse("--component: " + file_of(first).string() + " is " + data::format_name(file_->format()) +
-           "; only HDF5 files have components");
+    refuse(fmt::format("--component: {} is {}; only HDF5 files have components", file_of(first).string(),
+                       data::format_name(file_->format())));
   const int frame = options.points.frame ? *options.points.frame : is_sequence_ ? 1 : first;
   if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
   info_ = file_->describe(described_ - 1);
@@ -62,7 +64,7 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
 std::optional<int> DataFrames::frame_count() const {
   if (is_sequence_) return 1;
   std::error_code unknown;
-  if (std::filesystem::file_size(file_of(1), unknown) > kMostCountedBytes || unknown) return {};
+  if (std::filesystem::file_size(file_of(1), unknown) > kMaxCountedBytes || unknown) return {};
   try {
     return file_->frame_count();
   } catch (const base::Error&) {
@@ -75,9 +77,8 @@ void DataFrames::require_frames() const {
   if (is_sequence_ || options_.points.frame || numbers_.size() < 2) return;
   const int count = file_->frame_count(), last = *std::max_element(numbers_.begin(), numbers_.end());
   if (count > 1 && last > count)  // a single frame is the same in all frames
-    throw base::Error(base::ErrorKind::kBadData, "--frames: there is no frame " + std::to_string(last) + "; " +
-                                                     options_.file.string() + " has " + std::to_string(count) +
-                                                     " frames");
+    throw base::Error(base::ErrorKind::kBadData, fmt::format("--frames: there is no frame {}; {} has {} frames", last,
+                                                             options_.file.string(), count));
 }
 
 std::filesystem::path DataFrames::file_of(int frame) const { return base::with_frame(options_.file.string(), frame); }
@@ -98,7 +99,7 @@ LoadedFrame DataFrames::load(int frame, const scene::Points& keys, points::Sourc
   for (const scene::SceneDiagnostic& d : points::load_points(request, out.points)) {
     const bool has_key = d.key.size() > request.key.size() && d.key != request.key + ".file";
     const std::string key = has_key ? d.key.substr(request.key.size() + 1) + ": " : "";
-    const std::string number = numbers_.size() > 1 ? "frame " + std::to_string(frame) + ": " : "";
+    const std::string number = numbers_.size() > 1 ? fmt::format("frame {}: ", frame) : "";
     auto& list = d.severity == base::Severity::kError ? errors : out.warnings;
     list.push_back(base::file_diagnostic(d.severity, request.file.string(), number + key + d.text));
   }
@@ -142,7 +143,7 @@ bool set_color(const DataOptions& options, const std::string& color_by, const da
            " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
   const auto map = points::find_color_map(color.map);
   if (has_range && map && map->is_categorical)
-    refuse("--range has no effect: the map " + color.map + " has a colour for each value");
+    refuse(fmt::format("--range has no effect: the map {} has a colour for each value", color.map));
   return is_chosen;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "display/look_up.h"
 #include "plot/data_frames.h"
 #include "plot/scene_text.h"
@@ -36,7 +38,7 @@ class PlotMaker {
 
   PlotScene run() {
     const std::string which = data_.described_frame() > 1 ? " in frame " + std::to_string(data_.described_frame()) : "";
-    chose(data::format_name(data_.format()), std::to_string(info_.rows) + " particles" + which);
+    chose(data::format_name(data_.format()), fmt::format("{} particles{}", info_.rows, which));
     choose_frame();
     // The spacing that a radius may need takes a read; the options of the colour are checked before.
     const std::vector<std::string> color_choices = choose_color();
@@ -50,10 +52,10 @@ class PlotMaker {
     if (options_.slice) slice(*options_.slice, axes, out_.points);
     ViewExtent extent(axes);
     visit_frames(extent, up);
-    if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: " + nothing_text());
+    if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: " + empty_scene_reason());
     const double aspect = static_cast<double>(options_.width) / options_.height;
     const scene::Camera camera = extent.camera(aspect);
-    chose("view " + options_.look_from + ", " + number_text(rounded(*camera.width)) + " wide",
+    chose(fmt::format("view {}, {} wide", options_.look_from, number_text(rounded(*camera.width))),
           out_.frames.size() > 1 ? "fitted to the spheres of all frames" : "fitted to the spheres");
     choose_display_view();
     PlotParts parts{options_, out_.points, camera, out_.view, extent.center(), extent.radius(), {}};
@@ -61,13 +63,13 @@ class PlotMaker {
       parts.ground = ground_below(lowest_, up, extent);
       if (hides_view(*parts.ground, camera, aspect)) {
         parts.ground.reset();
-        chose("no ground", "it would hide the spheres from " + options_.look_from + "; look from further above");
+        chose("no ground",
+              fmt::format("it would hide the spheres from {}; look from further above", options_.look_from));
       }
     }
     if (!options_.has_style) chose("style studio", "white light from all directions");
     if (!options_.has_size)
-      chose("size " + std::to_string(options_.width) + " x " + std::to_string(options_.height),
-            "--width and --height change it");
+      chose(fmt::format("size {} x {}", options_.width, options_.height), "--width and --height change it");
     out_.text = scene_text(parts);
     return std::move(out_);
   }
@@ -80,7 +82,9 @@ class PlotMaker {
     return std::strtod(text, nullptr);
   }
 
-  void chose(const std::string& what, const std::string& why) { out_.choices.push_back(what + ": " + why); }
+  void chose(const std::string& what, const std::string& why) {
+    out_.choices.push_back(fmt::format("{}: {}", what, why));
+  }
 
   /// A still image of a file with several frames: which one it shows.
   void choose_frame() {
@@ -94,13 +98,13 @@ class PlotMaker {
   }
 
   /// What has no spheres, and what to do.
-  std::string nothing_text() const {
-    if (out_.frames.size() > 1) return "none of the " + std::to_string(out_.frames.size()) + " frames has spheres";
+  std::string empty_scene_reason() const {
+    if (out_.frames.size() > 1) return fmt::format("none of the {} frames has spheres", out_.frames.size());
     const std::optional<int> count = data_.frame_count();
     if (count == 1 || data_.is_sequence())
       return std::string(options_.points.select.empty() ? "the file" : "the selection") + " has no spheres";
-    return "frame " + std::to_string(data_.described_frame()) + (count ? " of " + std::to_string(*count) : "") +
-           " has no spheres; --frame N selects another, --frames all renders all";
+    return fmt::format("frame {}{} has no spheres; --frame N selects another, --frames all renders all",
+                       data_.described_frame(), count ? " of " + std::to_string(*count) : "");
   }
 
   scene::Points load(int frame) const { return data_.load(frame, out_.points).points; }
@@ -146,12 +150,13 @@ class PlotMaker {
     if (by.empty()) {
       by = !roles.rgb[0].empty() ? "rgb" : !roles.element.empty() ? "element" : !roles.type.empty() ? "type" : "none";
       why = by == "rgb" ? "the file's own" : by == "none" ? "light grey" : "the file has no colours";
-      out.push_back((by == "none" ? "no colour" : "colour by " + by) + ": " + why);
+      out.push_back(fmt::format("{}: {}", by == "none" ? "no colour" : "colour by " + by, why));
     }
     if (set_color(options_, by, info_, color))
-      out.push_back("map " + color.map + ": " +
-                    (points::find_color_map(color.map)->is_categorical ? "colours for categories"
-                                                                       : "no dark colours, which shading would hide"));
+      out.push_back(fmt::format("map {}: {}", color.map,
+                                points::find_color_map(color.map)->is_categorical
+                                    ? "colours for categories"
+                                    : "no dark colours, which shading would hide"));
     return out;
   }
 
@@ -180,11 +185,13 @@ class PlotMaker {
     }
     out_.legend.range = out_.points.color.range ? out_.points.color.range : range;
     if (out_.legend.has_conflict)
-      out_.warnings.push_back("colour by " + out_.legend.title + ": the frames do not have the same values, and one " +
-                              "value has different colours in different frames; colour by a column of integers");
+      out_.warnings.push_back(
+          fmt::format("colour by {}: the frames do not have the same values, and one value has different colours in "
+                      "different frames; colour by a column of integers",
+                      out_.legend.title));
     if (!needs_range || !range) return;
     if (range->low < range->high) out_.points.color.range = range;
-    chose("range " + number_text(range->low) + ":" + number_text(range->high),
+    chose(fmt::format("range {}:{}", number_text(range->low), number_text(range->high)),
           out_.frames.size() > 1 ? "minimum and maximum over all frames" : "minimum and maximum");
   }
 

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "scene/limits.h"
 
@@ -37,7 +39,7 @@ SceneAxes scene_axes(const std::string& up) {
   if (up == "x") return {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
   if (up == "y") return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   if (up == "z") return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
-  throw base::Error(base::ErrorKind::kUsage, "--up: `" + up + "` is not an axis; write x, y or z");
+  throw base::Error(base::ErrorKind::kUsage, fmt::format("--up: `{}` is not an axis; write x, y or z", up));
 }
 
 /// Rounds away the residue of sines and cosines of right angles.
@@ -70,10 +72,9 @@ ViewAxes view_axes(const std::string& look_from, const std::string& up) {
   else
     angles = parse_angles(look_from);
   if (!angles)
-    throw base::Error(
-        base::ErrorKind::kUsage,
-        "--look-from: `" + look_from +
-            "` is not a view; write iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION in degrees, e.g. 30,20");
+    throw base::Error(base::ErrorKind::kUsage, fmt::format("--look-from: `{}` is not a view; write iso, +x, -x, +y, "
+                                                           "-y, +z, -z, or AZIMUTH,ELEVATION in degrees, e.g. 30,20",
+                                                           look_from));
   const double azimuth = angles->first / 180 * std::numbers::pi, elevation = angles->second / 180 * std::numbers::pi;
   const Vec3d level = scene.front * std::cos(azimuth) + scene.right * std::sin(azimuth);
   ViewAxes out;

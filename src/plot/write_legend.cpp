@@ -7,6 +7,8 @@
 #include <system_error>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/output_file.h"
 #include "film/picture.h"
@@ -58,7 +60,7 @@ void write_image(const std::filesystem::path& file, const points::Legend& legend
   if (legend.patches.size() > points::kMaxImagePatches)
     throw base::Error(
         base::ErrorKind::kUsage,
-        "--legend: an image shows up to " + std::to_string(points::kMaxImagePatches) + " values; name an .svg file");
+        fmt::format("--legend: an image shows up to {} values; name an .svg file", points::kMaxImagePatches));
   const points::LegendImage image = points::legend_image(legend);
   film::EncodedPicture picture;
   picture.width = image.width;

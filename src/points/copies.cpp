@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "math/single.h"
 
@@ -33,8 +35,8 @@ const data::Assembly* find_assembly(const data::FrameInfo& info, const std::stri
     if (a.name == name) return &a;
     names.push_back(a.name);
   }
-  faults.error(".assembly", "the file has no assembly " + name + "; it has " +
-                                (names.empty() ? std::string("none") : base::joined(names)));
+  faults.error(".assembly", fmt::format("the file has no assembly {}; it has {}", name,
+                                        names.empty() ? std::string("none") : base::joined(names)));
   return nullptr;
 }
 

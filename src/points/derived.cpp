@@ -2,24 +2,19 @@
 #include "points/derived.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
+#include "base/text.h"
 #include "points/rows.h"
 
 namespace orrery::points {
 namespace {
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 /// The file's names of the three components of the velocity; empty if it has none.
 std::vector<std::string> velocity_of(const data::FrameInfo& info) {
   const auto find = [&](const std::string& name) -> std::string {
     for (const data::ColumnInfo& c : info.columns)
-      if (c.type != data::ColumnType::kText && lower(c.name) == name) return c.name;
+      if (c.type != data::ColumnType::kText && base::lower(c.name) == name) return c.name;
     return {};
   };
   const std::vector<std::vector<std::string>> candidates = {{"vx", "vy", "vz"},

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdio>
 
+#include <fmt/core.h>
+
 #include "base/file_name.h"
 #include "base/text.h"
 #include "points/ticks.h"
@@ -99,14 +101,14 @@ class Drawing {
     const double count = static_cast<double>(legend.bar.size());
     for (std::size_t i = 0; i < legend.bar.size(); ++i) {
       const double offset = count > 1 ? static_cast<double>(i) / (count - 1) : 0;
-      body_ += "<stop offset=\"" + px(100 * offset) + "%\" stop-color=\"" + hex(legend.bar[i]) + "\"/>\n";
+      body_ += fmt::format("<stop offset=\"{}%\" stop-color=\"{}\"/>\n", px(100 * offset), hex(legend.bar[i]));
     }
     body_ += "</linearGradient></defs>\n";
     y_ += kFont / 2;  // half of the label of a tick at the end
     add_rectangle(kMargin, y_, kBarWidth, kBarHeight, "url(#bar)");
     for (const Tick& tick : nice_ticks(legend.first, legend.last)) {
       const double y = y_ + kBarHeight * (1 - share_of(tick.value, legend)), x = kMargin + kBarWidth;
-      body_ += "<path d=\"M" + px(x) + ' ' + px(y) + "h" + px(kTickLength) + "\" stroke=\"#000000\"/>\n";
+      body_ += fmt::format("<path d=\"M{} {}h{}\" stroke=\"#000000\"/>\n", px(x), px(y), px(kTickLength));
       add_text(x + kTickLength + kGap, y + 0.35 * kFont, tick.label);
     }
     y_ += kBarHeight + kFont / 2 + kMargin;
@@ -120,21 +122,25 @@ class Drawing {
 
   std::string svg() const {
     const std::string width = px(std::ceil(width_ + kMargin)), height = px(std::ceil(y_));
-    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
-           "\" viewBox=\"0 0 " + width + ' ' + height + "\" font-family=\"sans-serif\" font-size=\"" + px(kFont) +
-           "\">\n" + "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n" + body_ + "</svg>\n";
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
+        "font-family=\"sans-serif\" font-size=\"{}\">\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
+        "{}</svg>\n",
+        width, height, width, height, px(kFont), body_);
   }
 
  private:
   void add_text(double x, double y, const std::string& text, const std::string& style = {}) {
     const Label label = label_of(text);
-    body_ += "<text x=\"" + px(x) + "\" y=\"" + px(y) + '"' + style + '>' + label.xml + "</text>\n";
+    body_ += fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(x), px(y), style, label.xml);
     width_ = std::max(width_, x + label.width);
   }
 
   void add_rectangle(double x, double y, double width, double height, const std::string& fill) {
-    body_ += "<rect x=\"" + px(x) + "\" y=\"" + px(y) + "\" width=\"" + px(width) + "\" height=\"" + px(height) +
-             "\" fill=\"" + fill + "\" stroke=\"#000000\" stroke-width=\"0.5\"/>\n";
+    body_ += fmt::format(
+        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" stroke=\"#000000\" stroke-width=\"0.5\"/>\n",
+        px(x), px(y), px(width), px(height), fill);
     width_ = std::max(width_, x + width);
   }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "data/data_file.h"
 #include "points/copies.h"
@@ -68,9 +70,9 @@ class Loader {
     const int count = file_->frame_count();
     if (frame >= 1 && frame <= count) return frame - 1;
     if (!points_.frame && count == 1) return 0;
-    faults_.error(points_.frame ? ".frame" : ".file", "there is no frame " + std::to_string(frame) + "; " +
-                                                          points_.file.string() + " has " + std::to_string(count) +
-                                                          (count == 1 ? " frame" : " frames"));
+    faults_.error(points_.frame ? ".frame" : ".file",
+                  fmt::format("there is no frame {}; {} has {}{}", frame, points_.file.string(), count,
+                              count == 1 ? " frame" : " frames"));
     return {};
   }
 
@@ -107,7 +109,7 @@ class Loader {
       if (!column.is_derived && std::find(columns_.begin(), columns_.end(), column.name) == columns_.end())
         points_.unused.push_back(column.name);
     if (info_.rows > kMaxRows)
-      faults_.error(".file", "has " + std::to_string(info_.rows) + " rows; the maximum is " + std::to_string(kMaxRows));
+      faults_.error(".file", fmt::format("has {} rows; the maximum is {}", info_.rows, kMaxRows));
   }
 
   void plan_selection() {
@@ -116,8 +118,8 @@ class Loader {
       selection_.check(info_.columns);
     } catch (const base::Error& error) {
       for (const base::Diagnostic& d : error.diagnostics())
-        faults_.error(".select", "at character " + std::to_string(d.column) + ": " + d.text +
-                                     (d.remedy.empty() ? "" : "; " + d.remedy));
+        faults_.error(".select",
+                      fmt::format("at character {}: {}{}", d.column, d.text, d.remedy.empty() ? "" : "; " + d.remedy));
       return;
     }
     for (const std::string& column : selection_.columns()) need(column);
@@ -145,10 +147,10 @@ class Loader {
     need.images = n.x * n.y * n.z;
     need.spheres = static_cast<double>(count) * need.images;
     need.copies = copies_.size();
-    if (need.spheres > static_cast<double>(scene::kMostSpheres))
-      throw base::Error(base::ErrorKind::kBadData, request_.file.string() + " and its copies are " +
-                                                       scene::number_text(need.spheres) + " spheres; the maximum is " +
-                                                       std::to_string(scene::kMostSpheres));
+    if (need.spheres > static_cast<double>(scene::kMaxSpheres))
+      throw base::Error(base::ErrorKind::kBadData,
+                        fmt::format("{} and its copies are {} spheres; the maximum is {}", request_.file.string(),
+                                    scene::number_text(need.spheres), scene::kMaxSpheres));
     points::require_memory(need, request_.memory_limit, request_.file);
   }
 
@@ -159,17 +161,17 @@ class Loader {
     if (!speed_sources_.empty()) compute_speed(speed_sources_, table);
     Rows rows = chosen_rows(table);
     if (rows.size() == 0)
-      faults_.warning(table.rows == 0 ? ".file" : ".select",
-                      table.rows == 0 ? "the frame has no particles"
-                                      : "selects none of the " + std::to_string(table.rows) + " particles");
+      faults_.warning(
+          table.rows == 0 ? ".file" : ".select",
+          table.rows == 0 ? "the frame has no particles" : fmt::format("selects none of the {} particles", table.rows));
     const bool is_all = rows.is_all();
     scene::NumberArray radii = radii_of(table, rows, radius_, points_.radius, faults_);
     scene::PointArray centers = centers_of(table, rows);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
-    if (!all_good(centers, radii)) {
+    if (!all_valid(centers, radii)) {
       check_domain(rows, centers, radii);
-      const std::vector<std::uint32_t> good = good_rows(rows, centers, radii);
+      const std::vector<std::uint32_t> good = valid_rows(rows, centers, radii);
       if (faults_.has_errors()) return;
       rows = kept(rows, good, centers, radii);
     }
@@ -214,9 +216,10 @@ class Loader {
     std::size_t repeated = 0;
     Rows rows = rows_by_id(*ids, std::move(list), repeated);
     if (repeated > 0)
-      faults_.warning(".file", std::to_string(repeated) + (repeated == 1 ? " particle has" : " particles have") +
-                                   " the id of another one in column `" + info_.roles.id +
-                                   "`; in other frames, particles may change places");
+      faults_.warning(
+          ".file",
+          fmt::format("{}{} the id of another one in column `{}`; in other frames, particles may change places",
+                      repeated, repeated == 1 ? " particle has" : " particles have", info_.roles.id));
     return rows;
   }
 
@@ -233,10 +236,10 @@ class Loader {
   bool may_be_negative() const {
     return radius_.kind == RadiusSource::Kind::kValue || file_->format() == data::Format::kPly;
   }
-  bool is_good(Vec3d center, double radius) const {
+  bool is_valid(Vec3d center, double radius) const {
     return math::is_finite(center) && std::isfinite(radius) && (radius > 0 || (radius < 0 && may_be_negative()));
   }
-  bool all_good(const scene::PointArray& centers, const scene::NumberArray& radii) const {
+  bool all_valid(const scene::PointArray& centers, const scene::NumberArray& radii) const {
     const auto is_inside = [](double x) { return std::abs(x) <= scene::kLargestLength; };
     for (std::size_t i = 0; i < centers.size(); ++i) {
       const Vec3d center = centers[i];
@@ -253,51 +256,48 @@ class Loader {
     const data::Transform placement = transform_of(points_.transform);
     std::size_t bad = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!is_good(centers[i], radii[i])) continue;  // reported by good_rows()
+      if (!is_valid(centers[i], radii[i])) continue;  // reported by valid_rows()
       for (const std::string& fault : scene::sphere_faults(
                applied(placement, centers[i]), radii[i] * points_.transform.scale, scene::Precision::kExact))
-        if (++bad <= scene::kMaxReported) faults_.error(".file", row_name(rows[i]) + ": " + fault);
+        if (++bad <= scene::kMaxReported) faults_.error(".file", fmt::format("{}: {}", row_name(rows[i]), fault));
     }
     report_rest(bad);
   }
   /// Reports the number of similar faults of which only the first are reported.
   void report_rest(std::size_t faults) {
     if (faults > scene::kMaxReported)
-      faults_.error(".file", "and " + std::to_string(faults - scene::kMaxReported) + " more (" +
-                                 std::to_string(faults) + " in all)");
+      faults_.error(".file", fmt::format("and {} more ({} in all)", faults - scene::kMaxReported, faults));
   }
 
   /// Returns the indices of rows with finite coordinates and radii. Reports the others, as errors unless they are to be
   /// skipped.
-  std::vector<std::uint32_t> good_rows(const Rows& rows, const scene::PointArray& centers,
-                                       const scene::NumberArray& radii) {
+  std::vector<std::uint32_t> valid_rows(const Rows& rows, const scene::PointArray& centers,
+                                        const scene::NumberArray& radii) {
     std::vector<std::uint32_t> good;
     std::size_t bad = 0;
     for (std::uint32_t i = 0; i < rows.size(); ++i) {
-      if (is_good(centers[i], radii[i])) {
+      if (is_valid(centers[i], radii[i])) {
         good.push_back(i);
       } else if (!points_.skip_bad && ++bad <= scene::kMaxReported) {
-        faults_.error(".file", row_name(rows[i]) + " has center " + scene::vector_text(centers[i]) + " and radius " +
-                                   scene::number_text(radii[i]));
+        faults_.error(".file", fmt::format("{} has center {} and radius {}", row_name(rows[i]),
+                                           scene::vector_text(centers[i]), scene::number_text(radii[i])));
       }
     }
     const std::size_t count = rows.size() - good.size();
     if (bad > 0)
-      faults_.error(".file",
-                    std::to_string(count) + " of " + std::to_string(rows.size()) +
-                        " rows have coordinates that are not finite, or a radius that is not above 0; `skip_bad = "
-                        "true`, or --skip-bad, leaves them out");
+      faults_.error(".file", fmt::format("{} of {} rows have coordinates that are not finite, or a radius that is not "
+                                         "above 0; `skip_bad = true`, or --skip-bad, leaves them out",
+                                         count, rows.size()));
     else if (count > 0)
-      faults_.warning(".skip_bad",
-                      std::to_string(count) + " of " + std::to_string(rows.size()) +
-                          " rows were left out: their coordinates are not finite, or their radius is not above 0");
+      faults_.warning(
+          ".skip_bad",
+          fmt::format("{} of {} rows were left out: their coordinates are not finite, or their radius is not above 0",
+                      count, rows.size()));
     return good;
   }
 
   /// "row 3 of melt.dump"
-  std::string row_name(std::size_t row) const {
-    return "row " + std::to_string(row + 1) + " of " + points_.file.string();
-  }
+  std::string row_name(std::size_t row) const { return fmt::format("row {} of {}", row + 1, points_.file.string()); }
 
   /// Keeps the listed rows with their centres and radii.
   static Rows kept(const Rows& rows, const std::vector<std::uint32_t>& good, scene::PointArray& centers,
@@ -321,8 +321,8 @@ class Loader {
       const bool exists = v >= 0 && v < static_cast<double>(request_.materials) && v == std::floor(v);
       points_.materials[i] = exists ? static_cast<std::uint32_t>(v) : 0;
       if (!exists && ++bad <= scene::kMaxReported)
-        faults_.error(".file", row_name(rows[i]) + " has material " + scene::number_text(v) + "; the scene has " +
-                                   std::to_string(request_.materials) + ", counted from 0");
+        faults_.error(".file", fmt::format("{} has material {}; the scene has {}, counted from 0", row_name(rows[i]),
+                                           scene::number_text(v), request_.materials));
     });
     report_rest(bad);
   }

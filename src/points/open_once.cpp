@@ -10,7 +10,7 @@ namespace orrery::points {
 namespace {
 
 /// A scene rarely has more data files with several frames.
-constexpr std::size_t kMostOpen = 4;
+constexpr std::size_t kMaxOpen = 4;
 
 struct OpenFile {
   std::filesystem::path path;
@@ -53,7 +53,7 @@ OpenData open_once() {
     } else {
       // Closed first: decompressed data take memory.
       std::erase_if(*open, [&](const OpenFile& o) { return o.path == path; });
-      if (open->size() == kMostOpen) open->erase(open->begin());
+      if (open->size() == kMaxOpen) open->erase(open->begin());
       wanted.file = data::open(path, options);
     }
     open->push_back(std::move(wanted));

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "points/elements.h"
 #include "scene/value_text.h"
@@ -29,10 +31,10 @@ std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows
                                       const char* part, KeyFaults& faults) {
   Labels labels = labels_of(*table.find(column), rows, kMaxLabels);
   if (labels.of_rows.size() == rows.size()) return labels;
-  faults.error(part, "column `" + column + "` has more than " + std::to_string(kMaxLabels) + " distinct values" +
-                         (table.find(column)->type() == data::ColumnType::kText
-                              ? "; colour by another column"
-                              : "; use a continuous map, e.g. viridis, or another column"));
+  faults.error(part, fmt::format("column `{}` has more than {} distinct values{}", column, kMaxLabels,
+                                 table.find(column)->type() == data::ColumnType::kText
+                                     ? "; colour by another column"
+                                     : "; use a continuous map, e.g. viridis, or another column"));
   return {};
 }
 
@@ -150,13 +152,13 @@ PointColors colors_by_type(const data::Table& table, const Rows& rows, const Col
   for (const std::string& name : labels->names) {
     const auto found =
         std::find_if(color.types.begin(), color.types.end(), [&](const auto& t) { return t.first == name; });
-    if (found == color.types.end()) missing.push_back("`" + name + "`");
+    if (found == color.types.end()) missing.push_back(fmt::format("`{}`", name));
     out.palette.push_back(found == color.types.end() ? Vec3d{} : found->second);
   }
   constexpr std::size_t kMaxNamed = 10;
   if (!missing.empty()) {
     missing.resize(std::min(missing.size(), kMaxNamed));
-    faults.error(".color.type", "type " + base::joined(missing) + " has no colour; add it");
+    faults.error(".color.type", fmt::format("type {} has no colour; add it", base::joined(missing)));
   }
   out.indices = indices_of(*labels);
   out.names = labels->names;
@@ -198,8 +200,8 @@ std::vector<std::uint32_t> bytes_of(const data::Table& table, const Rows& rows, 
   }
   if (nan > 0) faults.warning(".color.rgb", std::to_string(nan) + " values are NaN and are replaced by 0");
   if (out_of_range > 0)
-    faults.warning(".color.rgb", std::to_string(out_of_range) + " values are outside 0.." + scene::number_text(full) +
-                                     " and were clamped");
+    faults.warning(".color.rgb",
+                   fmt::format("{} values are outside 0..{} and were clamped", out_of_range, scene::number_text(full)));
   return out;
 }
 
@@ -243,9 +245,9 @@ void set_map(const scene::PointsColor& color, const std::filesystem::path& folde
     out.map = read_color_map(folder / color.map);
   } else {
     const std::string suggestion = base::did_you_mean(color.map, color_map_names());
-    faults.error(".color.map", "there is no colour map \"" + color.map + "\"; " +
-                                   (suggestion.empty() ? "" : suggestion + " ") + "maps are " +
-                                   base::joined(color_map_names()) + ", and files with an extension, e.g. map.txt");
+    faults.error(".color.map",
+                 fmt::format("there is no colour map \"{}\"; {}maps are {}, and files with an extension, e.g. map.txt",
+                             color.map, suggestion.empty() ? "" : suggestion + " ", base::joined(color_map_names())));
   }
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "points/elements.h"
 #include "scene/value_text.h"
@@ -31,7 +33,7 @@ std::vector<double> radii_of_labels(const Labels& labels, const RadiusSource& so
       for (const auto& [type, value] : radius.types)
         if (type == name) r = value;
     }
-    if (!(r > 0)) missing.push_back("`" + name + "`");
+    if (!(r > 0)) missing.push_back(fmt::format("`{}`", name));
     out.push_back(r);
   }
   if (missing.empty()) return out;
@@ -40,11 +42,14 @@ std::vector<double> radii_of_labels(const Labels& labels, const RadiusSource& so
   missing.resize(std::min(count, kMaxNamed));
   const std::string names = base::joined(missing) + (count > kMaxNamed ? " ..." : "");
   if (source.kind == RadiusSource::Kind::kElement)
-    faults.error(".radius.element", "no radius is known for " + names + " in column `" + source.column +
-                                        "`; leave these rows out with `select`, or set another radius");
+    faults.error(
+        ".radius.element",
+        fmt::format(
+            "no radius is known for {} in column `{}`; leave these rows out with `select`, or set another radius",
+            names, source.column));
   else
-    faults.error(".radius.type",
-                 "type " + names + " has no radius; add it, e.g. `type = { " + labels.names.back() + " = 0.5 }`");
+    faults.error(".radius.type", fmt::format("type {} has no radius; add it, e.g. `type = {{ {} = 0.5 }}`", names,
+                                             labels.names.back()));
   return out;
 }
 
@@ -64,8 +69,8 @@ RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadiu
     out.column = radius.column;
     require_column(info, radius.column, true, ".radius.column", faults);
     if (radius.column == info.roles.radius && info.roles.radius_scale != 1 && radius.scale == 1)
-      faults.warning(".radius.column", "column `" + radius.column + "` holds diameters; set the scale to " +
-                                           scene::number_text(info.roles.radius_scale));
+      faults.warning(".radius.column", fmt::format("column `{}` holds diameters; set the scale to {}", radius.column,
+                                                   scene::number_text(info.roles.radius_scale)));
   } else if (!radius.element.empty()) {
     out.kind = RadiusSource::Kind::kElement;
     out.column = info.roles.element;
@@ -103,8 +108,7 @@ scene::NumberArray radii_of(const data::Table& table, const Rows& rows, const Ra
   }
   const Labels labels = labels_of(column, rows, kMaxTypes);
   if (labels.of_rows.size() != rows.size()) {
-    faults.error(".radius",
-                 "column `" + source.column + "` has more than " + std::to_string(kMaxTypes) + " distinct values");
+    faults.error(".radius", fmt::format("column `{}` has more than {} distinct values", source.column, kMaxTypes));
     return out;
   }
   const std::vector<double> of_labels = radii_of_labels(labels, source, radius, faults);

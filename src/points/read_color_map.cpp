@@ -5,6 +5,8 @@
 #include <fstream>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/text.h"
@@ -77,7 +79,7 @@ class Reader {
     } else if (words.size() == 4) {
       add_row(line, 4, numbers[0], {numbers[1], numbers[2], numbers[3]});
     } else {
-      faults_.add_of_many(line, std::to_string(words.size()) + " numbers; " + kForms);
+      faults_.add_of_many(line, fmt::format("{} numbers; {}", words.size(), kForms));
     }
   }
 
@@ -107,7 +109,7 @@ class Reader {
   static constexpr std::size_t kHex = 1;  ///< as words per row
 
   void add_row(std::uint64_t line, std::size_t form, double t, Vec3d color) {
-    if (rows_.size() == kMaxColors) faults_.fail(line, "more than " + std::to_string(kMaxColors) + " colours");
+    if (rows_.size() == kMaxColors) faults_.fail(line, fmt::format("more than {} colours", kMaxColors));
     if (form_ == 0) form_ = form;
     const bool is_out_of_range =
         std::min({color.x, color.y, color.z}) < 0 || std::max({color.x, color.y, color.z}) > 255;

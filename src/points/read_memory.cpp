@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "points/copies.h"
@@ -47,10 +49,11 @@ void require_memory(const ReadMemory& need, std::uint64_t limit, const std::file
   if (limit == 0 || bytes <= static_cast<double>(limit)) return;
   const auto whole = [](double x) { return static_cast<std::uint64_t>(std::min(x, 1e18)); };
   throw base::Error(base::ErrorKind::kNoMemory,
-                    file.string() + ": " + std::to_string(need.rows) + " rows" +
-                        (need.spheres > 0 ? " and " + std::to_string(whole(need.spheres)) + " spheres" : "") +
-                        " need " + base::bytes_text(whole(bytes)) + " while they are read; " + base::bytes_text(limit) +
-                        " are available; select fewer rows, or render on a machine with more memory");
+                    fmt::format("{}: {} rows{} need {} while they are read; {} are available; select fewer rows, or "
+                                "render on a machine with more memory",
+                                file.string(), need.rows,
+                                need.spheres > 0 ? " and " + std::to_string(whole(need.spheres)) + " spheres" : "",
+                                base::bytes_text(whole(bytes)), base::bytes_text(limit)));
 }
 
 }  // namespace orrery::points

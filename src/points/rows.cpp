@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "scene/value_text.h"
 
@@ -83,7 +85,7 @@ std::string column_names(const data::FrameInfo& info) {
   for (const data::ColumnInfo& c : info.columns)
     if (names.size() < kMaxNamed) names.push_back(c.name);
   std::string out = base::joined(names);
-  if (info.columns.size() > kMaxNamed) out += " (" + std::to_string(info.columns.size() - kMaxNamed) + " more)";
+  if (info.columns.size() > kMaxNamed) out += fmt::format(" ({} more)", info.columns.size() - kMaxNamed);
   return out;
 }
 
@@ -94,12 +96,12 @@ bool require_column(const data::FrameInfo& info, const std::string& name, bool i
     names.push_back(c.name);
     if (c.name != name) continue;
     if (!is_number || c.type != data::ColumnType::kText) return true;
-    faults.error(part, "column `" + name + "` is text; it must be a number");
+    faults.error(part, fmt::format("column `{}` is text; it must be a number", name));
     return false;
   }
   const std::string suggestion = base::did_you_mean(name, names);
-  faults.error(part, "the file has no column `" + name + "`; " + (suggestion.empty() ? "" : suggestion + " ") +
-                         "its columns are " + column_names(info));
+  faults.error(part, fmt::format("the file has no column `{}`; {}its columns are {}", name,
+                                 suggestion.empty() ? "" : suggestion + " ", column_names(info)));
   return false;
 }
 

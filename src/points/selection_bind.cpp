@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "points/selection_program.h"
 
@@ -67,14 +69,14 @@ class Binder {
       const std::size_t more = names.size() > kMaxListed ? names.size() - kMaxListed : 0;
       names.resize(names.size() - more);
       remedy = names.empty() ? "the data has no columns" : "columns are " + base::joined(names);
-      if (more > 0) remedy += " and " + std::to_string(more) + " more";
+      if (more > 0) remedy += fmt::format(" and {} more", more);
     }
     std::size_t at = 0;
     while (code_.steps[at].op != SelectionOp::kColumn || code_.columns[code_.steps[at].index] != name) ++at;
     // element == C
     const bool is_compared = at + 1 < code_.steps.size() && (code_.steps[at + 1].op == SelectionOp::kEqual ||
                                                              code_.steps[at + 1].op == SelectionOp::kUnequal);
-    if (is_compared) remedy += "; strings are quoted: \"" + name + "\"";
+    if (is_compared) remedy += fmt::format("; strings are quoted: \"{}\"", name);
     fail_selection(code_.text, code_.steps[at].span, "unknown column " + name, remedy);
   }
 
@@ -182,7 +184,8 @@ class Binder {
     if (remedy.empty()) remedy = "strings can be compared with ==, != and in";
     if (type == Type::kTextColumn && operand.type == Type::kText) remedy = "write a column without quotes";
     fail_selection(code_.text, operand.span,
-                   verbatim(step.span) + " expects " + expected + ", not " + type_text(operand.type), remedy);
+                   fmt::format("{} expects {}, not {}", verbatim(step.span), expected, type_text(operand.type)),
+                   remedy);
   }
 
   void emit(BlockStep step, Type result, Span span) {

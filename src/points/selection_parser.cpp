@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/text.h"
@@ -145,7 +147,7 @@ class Parser {
 
   void parse_operand() {
     if (++depth_ > kMaxDepth)
-      fail_at_token("more than " + std::to_string(kMaxDepth) + " nested parentheses or prefixes", "simplify it");
+      fail_at_token(fmt::format("more than {} nested parentheses or prefixes", kMaxDepth), "simplify it");
     const Token token = token_;
     if (take("(")) {
       parse_or();
@@ -208,7 +210,7 @@ class Parser {
     } while (take(","));
     close(name.text, open);
     if (function->takes_many ? count < 2 : count != 1)
-      fail_selection(code_.text, name.span, std::string(name.text) + " with " + std::to_string(count) + " operands",
+      fail_selection(code_.text, name.span, fmt::format("{} with {} operands", name.text, count),
                      function->takes_many ? "two or more are needed" : "exactly one is allowed");
     if (!function->takes_many) emit(function->op, name.span);
   }

@@ -10,11 +10,11 @@ namespace orrery::points {
 namespace {
 
 /// Ticks are at least this share of the range apart.
-constexpr double kLeastShare = 0.1;
+constexpr double kMinShare = 0.1;
 /// Numbers from this size on, and ranges below the second, have an exponent.
 constexpr double kLargestFixed = 1e6, kSmallestFixed = 1e-3;
 /// Smaller ranges have one tick: the spacing of doubles would be visible.
-constexpr double kLeastRange = 1e-290, kLeastRelativeRange = 1e-12;
+constexpr double kMinRange = 1e-290, kMinRelativeRange = 1e-12;
 
 int exponent_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
 
@@ -40,11 +40,11 @@ std::vector<Tick> nice_ticks(double first, double last) {
   const double size = std::max(std::abs(low), std::abs(high)), range = high - low;
   if (!std::isfinite(range)) return {{low, shortest_text(low)}, {high, shortest_text(high)}};
   const bool is_fixed = size == 0 || (size >= kSmallestFixed && size < kLargestFixed);
-  if (!(range > std::max(kLeastRange, kLeastRelativeRange * size))) return {{low, shortest_text(low)}};
-  int exponent = exponent_of(range * kLeastShare);
+  if (!(range > std::max(kMinRange, kMinRelativeRange * size))) return {{low, shortest_text(low)}};
+  int exponent = exponent_of(range * kMinShare);
   double digit = 1;
   for (const double larger : {2.0, 5.0, 10.0}) {
-    if (digit * std::pow(10, exponent) >= range * kLeastShare * (1 - 1e-9)) break;
+    if (digit * std::pow(10, exponent) >= range * kMinShare * (1 - 1e-9)) break;
     digit = larger;
   }
   if (digit == 10) {

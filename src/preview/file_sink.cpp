@@ -5,7 +5,7 @@
 
 namespace orrery::preview {
 
-void FileSink::begin(const PictureInfo& picture, const Canvas& canvas) {
+void FileSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   canvas_ = &canvas;
   develop_ = std::make_unique<display::PixelDeveloper>(picture.display);
   bitmap_.width = canvas.width();

@@ -15,7 +15,7 @@ class FileSink : public Sink {
   explicit FileSink(std::filesystem::path file) : file_(std::move(file)) {}
 
   double interval_s() const override { return 1; }
-  void begin(const PictureInfo& picture, const Canvas& canvas) override;
+  void begin(const display::PictureInfo& picture, const Canvas& canvas) override;
 
   /// Develops the changed cells and rewrites the file.
   ///

@@ -7,19 +7,19 @@
 
 namespace orrery::preview {
 
-Fit fit(int width_px, int height_px, double pixel_aspect, const Screen::Room& room) {
+Fit fit(int width_px, int height_px, double pixel_aspect, const Screen::CellGrid& grid) {
   const double width = width_px * pixel_aspect, height = height_px;
-  const double room_width = static_cast<double>(room.columns) * room.cell_width;
-  const double room_height = static_cast<double>(room.rows) * room.cell_height;
-  if (room.rows < 1 || room.columns < 1) return {};
+  const double room_width = static_cast<double>(grid.columns) * grid.cell_width;
+  const double room_height = static_cast<double>(grid.rows) * grid.cell_height;
+  if (grid.rows < 1 || grid.columns < 1) return {};
   const double scale =
       std::min({1.0, room_width / width, room_height / height, std::sqrt(kLargestBitmap / (width * height))});
   Fit out;
-  out.columns = std::clamp(static_cast<int>(scale * width / room.cell_width), 1, room.columns);
-  out.width = out.columns * room.cell_width;
+  out.columns = std::clamp(static_cast<int>(scale * width / grid.cell_width), 1, grid.columns);
+  out.width = out.columns * grid.cell_width;
   out.height = std::max(1, static_cast<int>(std::lround(out.width * height / width)));
-  out.rows = (out.height + room.cell_height - 1) / room.cell_height;
-  return out.rows <= room.rows ? out : Fit{};
+  out.rows = (out.height + grid.cell_height - 1) / grid.cell_height;
+  return out.rows <= grid.rows ? out : Fit{};
 }
 
 std::vector<float> scaled(const Canvas& canvas, int width_px, int height_px) {

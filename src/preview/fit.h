@@ -18,7 +18,7 @@ struct Fit {
 
 /// The largest size, not larger than the image's own, that keeps its aspect ratio, is a whole number of columns wide,
 /// and fits into the terminal. At most kLargestBitmap pixels.
-Fit fit(int width_px, int height_px, double pixel_aspect, const Screen::Room& room);
+Fit fit(int width_px, int height_px, double pixel_aspect, const Screen::CellGrid& grid);
 
 /// More pixels would slow down the terminal.
 inline constexpr double kLargestBitmap = 300'000;

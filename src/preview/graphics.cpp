@@ -10,6 +10,8 @@
 
 #include <fmt/core.h>
 
+#include "base/base64.h"
+
 namespace orrery::preview {
 namespace {
 
@@ -21,24 +23,6 @@ int kitty_image() { return 0x6f000000 + static_cast<int>(getpid() & 0xffffff); }
 constexpr std::size_t kKittyChunk = 4096;
 
 constexpr const char* kEscape = "\033";
-
-std::string base64(const std::uint8_t* bytes, std::size_t size) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out((size + 2) / 3 * 4, '=');
-  char* to = out.data();
-  const auto add = [&](std::uint32_t word, int digits) {
-    for (int k = 0; k < digits; ++k) *to++ = kDigits[word >> (18 - 6 * k) & 63];
-  };
-  const auto word_of = [&](std::size_t i, std::size_t count) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < count; ++k) word |= std::uint32_t{bytes[i + k]} << (16 - 8 * k);
-    return word;
-  };
-  const std::size_t whole = size - size % 3;
-  for (std::size_t i = 0; i < whole; i += 3) add(word_of(i, 3), 4);
-  if (whole < size) add(word_of(whole, size - whole), static_cast<int>(size - whole) + 1);
-  return out;
-}
 
 /// The number of the nearest colour in the 256-colour palette: a cube of six levels per channel, and 24 greys.
 int palette_color(const std::uint8_t* rgb) {
@@ -66,7 +50,7 @@ std::string sgr(int ground, const std::uint8_t* rgb, bool true_color) {
 }  // namespace
 
 std::string kitty(const Bitmap& bitmap, int columns) {
-  const std::string payload = base64(bitmap.codes.data(), bitmap.codes.size());
+  const std::string payload = base::base64({reinterpret_cast<const char*>(bitmap.codes.data()), bitmap.codes.size()});
   std::string out;
   for (std::size_t at = 0; at < payload.size(); at += kKittyChunk) {
     out += kEscape;
@@ -85,7 +69,7 @@ std::string kitty(const Bitmap& bitmap, int columns) {
 std::string iterm(const Bitmap& bitmap, int columns, int rows) {
   const std::string png = encode_png(bitmap);
   return fmt::format("\033]1337;File=inline=1;size={};width={};height={};preserveAspectRatio=1:{}\a", png.size(),
-                     columns, rows, base64(reinterpret_cast<const std::uint8_t*>(png.data()), png.size()));
+                     columns, rows, base::base64(png));
 }
 
 std::string half_blocks(const Bitmap& bitmap, bool true_color) {
@@ -100,11 +84,11 @@ std::string half_blocks(const Bitmap& bitmap, bool true_color) {
       const std::uint8_t* const below = y + 1 < bitmap.height ? bitmap.row(y + 1) + 3 * x : black;
       const std::string fore = sgr(3, above, true_color), back = sgr(4, below, true_color);
       if (fore != upper && back != lower) {
-        out += "\033[" + fore + ";" + back + "m";
+        out += fmt::format("\033[{};{}m", fore, back);
       } else if (fore != upper) {
-        out += "\033[" + fore + "m";
+        out += fmt::format("\033[{}m", fore);
       } else if (back != lower) {
-        out += "\033[" + back + "m";
+        out += fmt::format("\033[{}m", back);
       }
       upper = fore;
       lower = back;

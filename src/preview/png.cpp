@@ -32,7 +32,7 @@ std::string stored(std::string_view bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::string out(size, '\0');
   compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-            static_cast<uLong>(bytes.size()), Z_NO_COMPRESSION);  // cannot fail with this much room
+            static_cast<uLong>(bytes.size()), Z_NO_COMPRESSION);  // cannot fail with this much space
   out.resize(size);
   return out;
 }

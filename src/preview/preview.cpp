@@ -9,6 +9,9 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
+#include "base/diagnostic.h"
 #include "preview/pacing.h"
 
 namespace orrery::preview {
@@ -35,7 +38,7 @@ Preview::~Preview() {
   thread_.join();
 }
 
-void Preview::begin(const PictureInfo& picture) {
+void Preview::begin(const display::PictureInfo& picture) {
   end();
   picture_ = picture;
   canvas_ = std::make_unique<Canvas>(picture.width, picture.height);
@@ -103,7 +106,7 @@ void Preview::serve(Request request) {
     if (request == Request::kEnd && !failed_) sink_->finish();
   } catch (const std::exception& error) {
     failed_ = true;
-    on_note_(std::string("warning: the preview ended: ") + error.what() + "\n");
+    on_note_(base::warning_line(fmt::format("the preview ended: {}", error.what())));
   }
 }
 
@@ -114,7 +117,7 @@ void Preview::refresh() {
     if (!cells.empty()) sink_->update(cells);
   } catch (const std::exception& error) {
     failed_ = true;
-    on_note_(std::string("warning: the preview ended: ") + error.what() + "\n");
+    on_note_(base::warning_line(fmt::format("the preview ended: {}", error.what())));
   }
 }
 

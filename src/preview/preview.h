@@ -28,7 +28,7 @@ class Preview {
   Preview& operator=(const Preview&) = delete;
 
   /// Begins an image. The previous one has ended.
-  void begin(const PictureInfo& picture);
+  void begin(const display::PictureInfo& picture);
 
   /// Takes rendered pixels. Called on the rendering threads, between begin() and end(); see Canvas::write.
   void write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept {
@@ -52,7 +52,7 @@ class Preview {
 
   std::unique_ptr<Sink> sink_;
   OnNote on_note_;
-  PictureInfo picture_;
+  display::PictureInfo picture_;
   std::unique_ptr<Canvas> canvas_;
   bool failed_ = false;  ///< the sink has thrown
   std::mutex mutex_;     // guards request_

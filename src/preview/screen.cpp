@@ -39,7 +39,7 @@ int checked_descriptor(int descriptor, const Environment& environment) {
   const std::string fault = missing_colors(environment);
   if (!fault.empty())
     throw base::Error(base::ErrorKind::kUsage,
-                      "--preview terminal: " + fault + "; use --preview FILE.png or --preview tev");
+                      fmt::format("--preview terminal: {}; use --preview FILE.png or --preview tev", fault));
   return descriptor;
 }
 
@@ -47,8 +47,8 @@ int checked_descriptor(int descriptor, const Environment& environment) {
 
 Screen::Screen(int descriptor, const Environment& environment) : tty_(checked_descriptor(descriptor, environment)) {
   const std::string text = queries(environment);
-  answers_ = parse_answers(tty_.ask(text, [](const std::string& bytes) { return parse_answers(bytes).is_complete; }));
-  graphics_ = best_graphics(environment, answers_);
+  reply_ = parse_reply(tty_.ask(text, [](const std::string& bytes) { return parse_reply(bytes).is_complete; }));
+  graphics_ = best_graphics(environment, reply_);
   // Removes what a terminal may have printed instead of answering.
   if (!text.empty() && !tty_.is_in_background()) output_ = "\r\033[K";
   send();
@@ -70,19 +70,19 @@ void Screen::note(const std::string& text) {
   notes_ += text;
 }
 
-Screen::Room Screen::room() const {
+Screen::CellGrid Screen::cell_grid() const {
   const TerminalSize size = tty_.size();
-  Room room;
-  room.columns = size.columns;
-  room.rows = size.rows - kOtherRows;
-  if (is_text(graphics_)) return room;
-  room.cell_width = answers_.cell_width;
-  room.cell_height = answers_.cell_height;
-  if (room.cell_width == 0) {
-    room.cell_width = size.width >= size.columns ? size.width / size.columns : kCellWidth;
-    room.cell_height = size.height >= size.rows ? size.height / size.rows : kCellHeight;
+  CellGrid grid;
+  grid.columns = size.columns;
+  grid.rows = size.rows - kOtherRows;
+  if (is_text(graphics_)) return grid;
+  grid.cell_width = reply_.cell_width;
+  grid.cell_height = reply_.cell_height;
+  if (grid.cell_width == 0) {
+    grid.cell_width = size.width >= size.columns ? size.width / size.columns : kCellWidth;
+    grid.cell_height = size.height >= size.rows ? size.height / size.rows : kCellHeight;
   }
-  return room;
+  return grid;
 }
 
 void Screen::show(std::string drawing, int rows) {
@@ -105,14 +105,14 @@ void Screen::compose() {
   const TerminalSize size = tty_.size();
   if (!(size == shown_size_) && shown_rows_ > 0) {
     // The terminal may have wrapped or cut the image; a new one begins below.
-    output_ += "\r" + removed(graphics_) + "\033[J";
+    output_ += fmt::format("\r{}\033[J", removed(graphics_));
     shown_rows_ = 0;
     is_drawn_ = drawing_.empty();
   }
   shown_size_ = size;
   if (!notes_.empty()) {
-    output_ += "\r" + up(shown_rows_) + (shown_rows_ > 0 ? removed(graphics_) : std::string()) + "\033[J" +
-               with_returns(notes_);
+    output_ += fmt::format("\r{}{}\033[J{}", up(shown_rows_), shown_rows_ > 0 ? removed(graphics_) : std::string(),
+                           with_returns(notes_));
     notes_.clear();
     shown_rows_ = 0;
     is_drawn_ = drawing_.empty();
@@ -120,15 +120,15 @@ void Screen::compose() {
   }
   if (!is_drawn_ && rows_ <= size.rows - kOtherRows) {
     if (rows_ != shown_rows_) {
-      output_ += "\r" + up(shown_rows_) + (shown_rows_ > 0 ? removed(graphics_) : std::string()) + "\033[J";
+      output_ += fmt::format("\r{}{}\033[J", up(shown_rows_), shown_rows_ > 0 ? removed(graphics_) : std::string());
       for (int i = 0; i < rows_; ++i) output_ += "\r\n";
       shown_rows_ = rows_;
     }
-    output_ += "\r" + up(rows_) + "\0337" + drawing_ + "\0338" + down(rows_) + "\r";
+    output_ += fmt::format("\r{}\0337{}\0338{}\r", up(rows_), drawing_, down(rows_));
     is_drawn_ = true;
     bar_changed_ = true;
   }
-  if (bar_changed_) output_ += "\r" + bar_ + "\033[K";
+  if (bar_changed_) output_ += fmt::format("\r{}\033[K", bar_);
   bar_changed_ = false;
 }
 

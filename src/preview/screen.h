@@ -28,13 +28,13 @@ class Screen {
   void note(const std::string& text);
 
   /// The size of the terminal and of a cell, px.
-  struct Room {
+  struct CellGrid {
     int columns = 0, rows = 0;
     int cell_width = 1, cell_height = 2;  ///< as text, the pixels that a cell shows
 
-    bool operator==(const Room&) const = default;
+    bool operator==(const CellGrid&) const = default;
   };
-  Room room() const;
+  CellGrid cell_grid() const;
 
   /// Sets the image: the bytes that draw it, and the number of rows that it covers.
   void show(std::string drawing, int rows);
@@ -53,7 +53,7 @@ class Screen {
   void send();
 
   Tty tty_;
-  Answers answers_;
+  TerminalReply reply_;
   Graphics graphics_;
   std::string drawing_;
   int rows_ = 0;             ///< of the image

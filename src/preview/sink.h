@@ -6,18 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "display/develop.h"
+#include "display/picture_info.h"
 #include "preview/canvas.h"
 
 namespace orrery::preview {
-
-/// Properties of an image that is about to be rendered.
-struct PictureInfo {
-  std::string name;           ///< of the scene
-  int width = 0, height = 0;  ///< px
-  double pixel_aspect = 1;    ///< pixel width / height
-  display::Settings display;  ///< resolved display transform
-};
 
 /// Receives whole lines for the user. Called on the preview's thread.
 using OnNote = std::function<void(const std::string& text)>;
@@ -39,7 +31,7 @@ class Sink {
   /// Begins an image.
   ///
   /// Domain     `canvas` lives until finish() returns
-  virtual void begin(const PictureInfo& picture, const Canvas& canvas) = 0;
+  virtual void begin(const display::PictureInfo& picture, const Canvas& canvas) = 0;
 
   /// Shows cells that have changed.
   virtual void update(const std::vector<std::size_t>& cells) = 0;

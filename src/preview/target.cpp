@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/frames.h"
 
@@ -12,7 +14,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& text) {
   throw base::Error(base::ErrorKind::kUsage,
-                    "--preview: " + text + "; write tev, tev:HOST:PORT, terminal, or the name of a .png file");
+                    fmt::format("--preview: {}; write tev, tev:HOST:PORT, terminal, or the name of a .png file", text));
 }
 
 bool is_port(const std::string& text) {
@@ -27,18 +29,18 @@ Target tev_at(const std::string& address) {
   std::size_t colon = address.rfind(':');
   if (address.starts_with('[')) {
     const std::size_t end = address.find(']');
-    if (end == std::string::npos) refuse("`" + address + "` lacks a closing bracket");
-    if (end + 1 < address.size() && address[end + 1] != ':') refuse("`" + address + "` is not an address");
+    if (end == std::string::npos) refuse(fmt::format("`{}` lacks a closing bracket", address));
+    if (end + 1 < address.size() && address[end + 1] != ':') refuse(fmt::format("`{}` is not an address", address));
     target.host = address.substr(1, end - 1);
     colon = end + 1 < address.size() ? end + 1 : std::string::npos;
   } else if (std::count(address.begin(), address.end(), ':') > 1) {
-    refuse("`" + address + "` is not an address; put an IPv6 address into brackets");
+    refuse(fmt::format("`{}` is not an address; put an IPv6 address into brackets", address));
   } else {
     target.host = address.substr(0, colon);
   }
   if (colon != std::string::npos) target.port = address.substr(colon + 1);
-  if (target.host.empty()) refuse("`" + address + "` has no host");
-  if (!is_port(target.port)) refuse("`" + target.port + "` is not a port from 1 to 65535");
+  if (target.host.empty()) refuse(fmt::format("`{}` has no host", address));
+  if (!is_port(target.port)) refuse(fmt::format("`{}` is not a port from 1 to 65535", target.port));
   return target;
 }
 
@@ -55,11 +57,12 @@ Target parse_target(const std::string& text) {
   if (text == "tev") return {TargetKind::kTev, kTevHost, kTevPort, {}};
   if (text == "terminal") return {TargetKind::kTerminal, {}, {}, {}};
   if (base::has_frame_pattern(text))
-    throw base::Error(base::ErrorKind::kUsage,
-                      "--preview: " + text + " has a frame pattern; all frames share one preview, so write one name");
+    throw base::Error(
+        base::ErrorKind::kUsage,
+        fmt::format("--preview: {} has a frame pattern; all frames share one preview, so write one name", text));
   if (is_png(text)) return {TargetKind::kFile, {}, {}, text};
   if (text.starts_with("tev:")) return tev_at(text.substr(4));
-  refuse("`" + text + "` is not a preview");
+  refuse(fmt::format("`{}` is not a preview", text));
 }
 
 }  // namespace orrery::preview

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <vector>
 
+#include <fmt/core.h>
+
 namespace orrery::preview {
 namespace {
 
@@ -45,7 +47,7 @@ std::string missing_colors(const Environment& environment) {
   if (term.empty()) return "TERM is not set";
   const bool is_dec = term.size() > 2 && term.starts_with("vt") && term[2] >= '0' && term[2] <= '9';
   if (term == "dumb" || term == "unknown" || is_dec || term.ends_with("-m") || term.ends_with("-mono"))
-    return "the terminal `" + term + "` has no colours";
+    return fmt::format("the terminal `{}` has no colours", term);
   return {};
 }
 
@@ -55,9 +57,9 @@ std::string queries(const Environment& environment) {
   return kitty + "\033[16t\033[c";
 }
 
-Answers parse_answers(std::string_view bytes) {
-  Answers answers;
-  answers.kitty = bytes.find("\033_Gi=31;OK\033\\") != std::string_view::npos;
+TerminalReply parse_reply(std::string_view bytes) {
+  TerminalReply reply;
+  reply.kitty = bytes.find("\033_Gi=31;OK\033\\") != std::string_view::npos;
   for (std::size_t at = bytes.find("\033["); at != std::string_view::npos; at = bytes.find("\033[", at + 2)) {
     const std::size_t end = bytes.find_first_not_of("?0123456789;", at + 2);
     if (end == std::string_view::npos) break;
@@ -66,25 +68,25 @@ Answers parse_answers(std::string_view bytes) {
       parameters.remove_prefix(1);
       // The first number is the terminal's class, not an attribute.
       const std::vector<int> attributes = numbers_of(parameters);
-      for (std::size_t i = 1; i < attributes.size(); ++i) answers.sixel |= attributes[i] == kSixelAttribute;
-      answers.is_complete = true;
+      for (std::size_t i = 1; i < attributes.size(); ++i) reply.sixel |= attributes[i] == kSixelAttribute;
+      reply.is_complete = true;
     } else if (bytes[end] == 't') {
       const std::vector<int> report = numbers_of(parameters);
       const auto is_size = [](int v) { return v > 0 && v <= kLargestCell; };
       if (report.size() == 3 && report[0] == kCellSizeReport && is_size(report[1]) && is_size(report[2])) {
-        answers.cell_height = report[1];
-        answers.cell_width = report[2];
+        reply.cell_height = report[1];
+        reply.cell_width = report[2];
       }
     }
   }
-  return answers;
+  return reply;
 }
 
-Graphics best_graphics(const Environment& environment, const Answers& answers) {
-  if (answers.kitty) return Graphics::kKitty;
+Graphics best_graphics(const Environment& environment, const TerminalReply& reply) {
+  if (reply.kitty) return Graphics::kKitty;
   const bool is_iterm = environment("TERM_PROGRAM") == "iTerm.app" || environment("LC_TERMINAL") == "iTerm2";
   if (is_iterm && !is_multiplexer(environment)) return Graphics::kIterm;
-  if (answers.sixel) return Graphics::kSixel;
+  if (reply.sixel) return Graphics::kSixel;
   const std::string color = environment("COLORTERM");
   return color == "truecolor" || color == "24bit" || environment("TERM").ends_with("-direct") ? Graphics::kTrueColor
                                                                                               : Graphics::k256Colors;

@@ -19,22 +19,22 @@ std::string environment(const char* name);
 std::string missing_colors(const Environment& environment);
 
 /// Returns queries for the graphics capabilities of a terminal: kitty's graphics, the size of a cell, and the device
-/// attributes, which every terminal answers and which therefore come last. Empty for a terminal that would print them.
+/// attributes, which every terminal reply and which therefore come last. Empty for a terminal that would print them.
 std::string queries(const Environment& environment);
 
-/// Answers of a terminal to queries().
-struct Answers {
+/// Reply of a terminal to queries().
+struct TerminalReply {
   bool kitty = false, sixel = false;
   int cell_width = 0, cell_height = 0;  ///< px; 0: unknown
   bool is_complete = false;             ///< the device attributes have arrived
 };
 
-/// Parses answers, which may still be incomplete.
+/// Parses reply, which may still be incomplete.
 ///
 /// Reference  kitty graphics; xterm control sequences
-Answers parse_answers(std::string_view bytes);
+TerminalReply parse_reply(std::string_view bytes);
 
 /// The best way to draw.
-Graphics best_graphics(const Environment& environment, const Answers& answers);
+Graphics best_graphics(const Environment& environment, const TerminalReply& reply);
 
 }  // namespace orrery::preview

@@ -7,11 +7,11 @@
 
 namespace orrery::preview {
 
-void TerminalSink::begin(const PictureInfo& picture, const Canvas& canvas) {
+void TerminalSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   picture_ = picture;
   canvas_ = &canvas;
   has_content_ = is_pending_ = false;
-  room_ = screen_.room();
+  grid_ = screen_.cell_grid();
   develop_ = std::make_unique<display::PixelDeveloper>(picture.display);
 }
 
@@ -21,9 +21,9 @@ void TerminalSink::update(const std::vector<std::size_t>&) {
 }
 
 void TerminalSink::poll() {
-  const Screen::Room room = screen_.room();
-  if (!(room == room_) && has_content_ && screen_.is_idle()) {
-    room_ = room;
+  const Screen::CellGrid grid = screen_.cell_grid();
+  if (!(grid == grid_) && has_content_ && screen_.is_idle()) {
+    grid_ = grid;
     draw();
   }
   screen_.poll();
@@ -39,7 +39,7 @@ void TerminalSink::finish() {
 
 void TerminalSink::draw() {
   is_pending_ = false;
-  const Fit size = fit(picture_.width, picture_.height, picture_.pixel_aspect, room_);
+  const Fit size = fit(picture_.width, picture_.height, picture_.pixel_aspect, grid_);
   if (size.width == 0) return;
   std::vector<float> rgb = scaled(*canvas_, size.width, size.height);
   Bitmap bitmap{size.width, size.height, std::vector<std::uint8_t>(rgb.size())};

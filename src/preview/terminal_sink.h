@@ -17,7 +17,7 @@ class TerminalSink : public Sink {
   explicit TerminalSink(Screen& screen) : screen_(screen) {}
 
   double interval_s() const override { return 0.5; }
-  void begin(const PictureInfo& picture, const Canvas& canvas) override;
+  void begin(const display::PictureInfo& picture, const Canvas& canvas) override;
   void update(const std::vector<std::size_t>& cells) override;
   void poll() override;
   void finish() override;
@@ -26,8 +26,8 @@ class TerminalSink : public Sink {
   void draw();
 
   Screen& screen_;
-  Screen::Room room_;
-  PictureInfo picture_;
+  Screen::CellGrid grid_;
+  display::PictureInfo picture_;
   const Canvas* canvas_ = nullptr;
   std::unique_ptr<display::PixelDeveloper> develop_;
   bool has_content_ = false;  ///< there is something to draw

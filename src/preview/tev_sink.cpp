@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/core.h>
+
+#include "base/diagnostic.h"
 #include "preview/tev_packets.h"
 
 namespace orrery::preview {
@@ -18,7 +21,7 @@ constexpr std::size_t kCellsPerPacket = 32;
 constexpr auto kRetry = 2s;
 
 /// A viewer that has read nothing for this time hangs.
-constexpr auto kHangingViewer = 1s;
+constexpr auto kViewerTimeout = 1s;
 
 /// Maximum time to send the last pixels of an image.
 constexpr auto kLongestFinish = 10s;
@@ -26,9 +29,9 @@ constexpr auto kLongestFinish = 10s;
 }  // namespace
 
 TevSink::TevSink(const std::string& host, const std::string& port, OnNote on_note)
-    : connection_(host, port), on_note_(std::move(on_note)), address_(host + ":" + port) {}
+    : connection_(host, port), on_note_(std::move(on_note)), address_(fmt::format("{}:{}", host, port)) {}
 
-void TevSink::begin(const PictureInfo& picture, const Canvas& canvas) {
+void TevSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   canvas_ = &canvas;
   name_ = picture.name;
   seen_.assign(canvas.cell_count(), false);
@@ -51,20 +54,20 @@ void TevSink::poll() {
 void TevSink::finish() {
   const auto end = Clock::now() + kLongestFinish;
   if (connection_.state() == Connection::State::kOpen && packet_.empty()) last_sent_ = Clock::now();
-  const auto connects_until = Clock::now() + kHangingViewer;
+  const auto connects_until = Clock::now() + kViewerTimeout;
   for (;;) {
     poll();
     const auto now = Clock::now();
     if (connection_.state() == Connection::State::kClosed || now > end) break;
     if (connection_.state() == Connection::State::kConnecting ? now > connects_until
-                                                              : now - last_sent_ > kHangingViewer)
+                                                              : now - last_sent_ > kViewerTimeout)
       break;
     if (connection_.state() == Connection::State::kOpen && is_done()) break;
     connection_.wait(50);
   }
   const bool incomplete = connection_.state() != Connection::State::kOpen || !is_done();
   if (was_open_ && incomplete && !std::exchange(reported_, true))
-    on_note_("warning: tev at " + address_ + " does not respond; its image is incomplete\n");
+    on_note_(base::warning_line(fmt::format("tev at {} does not respond; its image is incomplete", address_)));
   // The rest of a packet must be sent before anything else.
   pending_.clear();
   pending_count_ = 0;
@@ -87,8 +90,9 @@ void TevSink::check_connection() {
       connection_.check();
       retry_ = Clock::now() + kRetry;
       if (connection_.state() == Connection::State::kClosed && !std::exchange(reported_, true))
-        on_note_("warning: tev cannot be reached at " + address_ + ": " + connection_.reason() +
-                 "; the render continues, and the preview begins when tev is started\n");
+        on_note_(base::warning_line(fmt::format(
+            "tev cannot be reached at {}: {}; the render continues, and the preview begins when tev is started",
+            address_, connection_.reason())));
     }
   }
   if (connection_.state() == Connection::State::kOpen && !was_open_) {

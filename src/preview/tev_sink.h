@@ -23,7 +23,7 @@ class TevSink : public Sink {
   TevSink(const std::string& host, const std::string& port, OnNote on_note);
 
   double interval_s() const override { return 0.1; }
-  void begin(const PictureInfo& picture, const Canvas& canvas) override;
+  void begin(const display::PictureInfo& picture, const Canvas& canvas) override;
   void update(const std::vector<std::size_t>& cells) override;
   void poll() override;
   void finish() override;

@@ -20,7 +20,7 @@ namespace {
 constexpr std::chrono::milliseconds kAnswerTime{500};
 
 /// Largest answer that is read, bytes.
-constexpr std::size_t kLongestAnswer = 4096;
+constexpr std::size_t kMaxReplyBytes = 4096;
 
 // For a signal handler: the terminal in use, and the mode to restore.
 std::atomic<int> in_use{-1};
@@ -66,8 +66,8 @@ bool Tty::is_in_background() const {
 
 std::string Tty::ask(const std::string& queries, bool (*is_complete)(const std::string&)) const {
   using Clock = std::chrono::steady_clock;
-  std::string answers;
-  if (queries.empty() || is_in_background() || tcgetattr(terminal_, &mode_before) != 0) return answers;
+  std::string reply;
+  if (queries.empty() || is_in_background() || tcgetattr(terminal_, &mode_before) != 0) return reply;
   termios quiet = mode_before;
   quiet.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   quiet.c_cc[VMIN] = 0;
@@ -76,21 +76,21 @@ std::string Tty::ask(const std::string& queries, bool (*is_complete)(const std::
   tcsetattr(terminal_, TCSANOW, &quiet);
   if (write(queries.data(), queries.size()) == queries.size()) {
     const auto end = Clock::now() + kAnswerTime;
-    while (!is_complete(answers) && answers.size() < kLongestAnswer) {
+    while (!is_complete(reply) && reply.size() < kMaxReplyBytes) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
       pollfd readable{terminal_, POLLIN, 0};
       if (left <= 0 || (::poll(&readable, 1, static_cast<int>(left)) <= 0 && errno != EINTR)) break;
       char bytes[256];
       const ssize_t count = ::read(terminal_, bytes, sizeof(bytes));
-      if (count > 0) answers.append(bytes, static_cast<std::size_t>(count));
+      if (count > 0) reply.append(bytes, static_cast<std::size_t>(count));
       if (count == 0) break;  // the terminal is gone
       if (count < 0 && errno != EAGAIN && errno != EINTR) break;
     }
-    if (!is_complete(answers)) tcflush(terminal_, TCIFLUSH);
+    if (!is_complete(reply)) tcflush(terminal_, TCIFLUSH);
   }
   tcsetattr(terminal_, TCSANOW, &mode_before);
   is_asking = false;
-  return answers;
+  return reply;
 }
 
 std::size_t Tty::write(const char* bytes, std::size_t count) const {

@@ -31,9 +31,9 @@ class Tty {
   /// True if a shell runs this process in the background, so that the terminal belongs to another one.
   bool is_in_background() const;
 
-  /// Sends queries and returns the answers that arrive until `is_complete` returns true, for at most half a second.
+  /// Sends queries and returns the reply that arrive until `is_complete` returns true, for at most half a second.
   /// Echo is off meanwhile; afterwards the terminal's mode is restored.
-  std::string ask(const std::string& queries, bool (*is_complete)(const std::string& answers)) const;
+  std::string ask(const std::string& queries, bool (*is_complete)(const std::string& reply)) const;
 
   /// Writes as much as the terminal accepts.
   ///

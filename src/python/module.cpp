@@ -137,8 +137,8 @@ py::dict statistics(const Picture& picture) {
   out["spheres"] = report.spheres;
   out["paths"] = report.render.paths;
   out["rays"] = report.render.rays;
-  out["fewest_samples"] = report.render.fewest_samples;
-  out["most_samples"] = report.render.most_samples;
+  out["fewest_samples"] = report.render.min_samples;
+  out["most_samples"] = report.render.max_samples;
   out["threads"] = report.render.threads;
   out["noise"] = report.render.noise ? py::object(py::float_(*report.render.noise)) : py::none();
   out["read_seconds"] = report.phases.read_s;

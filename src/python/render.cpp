@@ -63,22 +63,22 @@ class Messages {
 };
 
 /// The renders of this process.
-struct Renders {
+struct ActiveRenders {
   std::mutex mutex;
   std::condition_variable changed;
   std::set<std::atomic<bool>*> cancels;
   std::thread::id exiting;  // the thread that ends the interpreter; its own renders are not stopped
 };
-Renders& renders() {
-  static auto* const all = new Renders;  // outlives all threads
+ActiveRenders& active_renders() {
+  static auto* const all = new ActiveRenders;  // outlives all threads
   return *all;
 }
 
 class RenderEntry {
  public:
   explicit RenderEntry(std::atomic<bool>& cancel) : cancel_(&cancel) {
-    const std::scoped_lock lock(renders().mutex);
-    renders().cancels.insert(cancel_);
+    const std::scoped_lock lock(active_renders().mutex);
+    active_renders().cancels.insert(cancel_);
     *cancel_ = is_exiting();
   }
   ~RenderEntry() { remove(); }
@@ -87,18 +87,18 @@ class RenderEntry {
 
   /// Whether stop_renders() has been called and stops this render.
   bool stopped_at_exit() const {
-    const std::scoped_lock lock(renders().mutex);
+    const std::scoped_lock lock(active_renders().mutex);
     return is_exiting();
   }
   void remove() {
-    const std::scoped_lock lock(renders().mutex);
-    renders().cancels.erase(cancel_);
-    renders().changed.notify_all();
+    const std::scoped_lock lock(active_renders().mutex);
+    active_renders().cancels.erase(cancel_);
+    active_renders().changed.notify_all();
   }
 
  private:
   static bool is_exiting() {
-    return renders().exiting != std::thread::id() && renders().exiting != std::this_thread::get_id();
+    return active_renders().exiting != std::thread::id() && active_renders().exiting != std::this_thread::get_id();
   }
   std::atomic<bool>* cancel_;
 };
@@ -170,10 +170,10 @@ Picture render(job::Job job, const py::object& on_progress, const py::object& on
 
 void stop_renders() {
   const py::gil_scoped_release released;
-  std::unique_lock lock(renders().mutex);
-  renders().exiting = std::this_thread::get_id();
-  for (std::atomic<bool>* const cancel : renders().cancels) *cancel = true;
-  renders().changed.wait(lock, [] { return renders().cancels.empty(); });
+  std::unique_lock lock(active_renders().mutex);
+  active_renders().exiting = std::this_thread::get_id();
+  for (std::atomic<bool>* const cancel : active_renders().cancels) *cancel = true;
+  active_renders().changed.wait(lock, [] { return active_renders().cancels.empty(); });
 }
 
 }  // namespace orrery::python

@@ -27,7 +27,7 @@ constexpr std::uint32_t kMaxSamples = kernel::Sampler::kSecondHalf - 1;
 /// The fraction of the remaining time that an iteration may take, since the speed is known only from earlier ones.
 constexpr double kShareOfTime = 0.5;
 /// With less than this fraction of the time budget left, no further iteration starts.
-constexpr double kTimeToSpare = 0.01;
+constexpr double kReservedTime = 0.01;
 
 std::string noise_text(double reached, double wanted) {
   char text[64];
@@ -47,56 +47,58 @@ class AdaptiveSampling {
         max_samples_(settings.sampling.unlimited ? kMaxSamples
                                                  : std::max(1u, static_cast<std::uint32_t>(compiled.samples) / 2)),
         pixels_(compiled.width, compiled.height),
-        round_begin_(progress.seconds()),
-        round_begin_samples_(progress.done()) {
+        iteration_begin_(progress.seconds()),
+        iteration_begin_samples_(progress.done()) {
     if (settings.layers.coverage) pixels_.known_black.resize(pixels_.samples.size());
     for (int y = 0; y < compiled.height; ++y)
       for (int x = 0; x < compiled.width; ++x) update(x, y);
   }
 
   bool run() {
-    if (!state_.goals.empty() && !run_round()) return false;  // the iteration in which an earlier run was interrupted
+    if (!state_.goals.empty() && !run_iteration())
+      return false;  // the iteration in which an earlier run was interrupted
     // With a time budget the first iteration is as small as possible: it measures the speed.
     std::uint32_t n = *std::min_element(state_.counts.begin(), state_.counts.end());
-    for (n = n > 0                            ? next_of_all(n)
+    for (n = n > 0                            ? next_uniform_count(n)
              : settings_.sampling.seconds > 0 ? 1
                                               : std::min(kFirstSamples, max_samples_);
-         n > 0; n = next_of_all(n)) {
+         n > 0; n = next_uniform_count(n)) {
       state_.goals.assign(state_.pixel_count(), n);
-      if (!run_round()) return false;
+      if (!run_iteration()) return false;
     }
     const double wanted = settings_.sampling.noise * settings_.sampling.noise;
     for (;;) {
       noise_ = estimate_noise(pixels_, pool_);
       const double upper = noise_.upper();
-      const MissingEvidence evidence = find_missing_evidence(pixels_, pool_);
-      unjudged_ = evidence.count;
-      if (settings_.sampling.noise > 0 && upper <= wanted && unjudged_ == 0) return ended("noise");
-      RoundGoal goal;
+      const UnreliablePixels unreliable = find_unreliable_pixels(pixels_, pool_);
+      unreliable_count_ = unreliable.count;
+      if (settings_.sampling.noise > 0 && upper <= wanted && unreliable_count_ == 0) return ended("noise");
+      IterationGoal goal;
       goal.error_ratio = settings_.sampling.noise > 0 ? (upper > wanted ? wanted / upper : 1) : 0.5;
-      goal.most_per_pixel = max_samples_;
+      goal.max_per_pixel = max_samples_;
       goal.affordable = affordable(kShareOfTime);
       const std::vector<float> errors = errors_of_one_sample(pixels_, noise_, pool_);
-      Round round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
-      if (!round.any && settings_.sampling.seconds > 0) {
+      PixelSelection selection = choose_pixels(pixels_.samples, errors, unreliable.of_pixel, goal);
+      if (!selection.any && settings_.sampling.seconds > 0) {
         goal.affordable = affordable(1);
-        round = choose_pixels(pixels_.samples, errors, evidence.of_pixel, goal);
-        if (!round.any)
-          return ended(round.limited_by_pixels && goal.affordable > pixels_.samples.size() ? "samples" : "time");
+        selection = choose_pixels(pixels_.samples, errors, unreliable.of_pixel, goal);
+        if (!selection.any)
+          return ended(selection.limited_by_pixels && goal.affordable > pixels_.samples.size() ? "samples" : "time");
       }
-      if (!round.any) return ended(round.limited_by_pixels || unjudged_ > 0 ? "samples" : "noise");
-      if (settings_.sampling.noise > 0) expect(round, std::sqrt(upper));
+      if (!selection.any) return ended(selection.limited_by_pixels || unreliable_count_ > 0 ? "samples" : "noise");
+      if (settings_.sampling.noise > 0) expect(selection, std::sqrt(upper));
       state_.goals = state_.counts;
       for (std::size_t i = 0; i < state_.goals.size(); ++i)
-        if (round.chosen[i]) state_.goals[i] = state_.goals[i] < max_samples_ / 2 ? 2 * state_.goals[i] : max_samples_;
-      if (!run_round()) return false;
+        if (selection.chosen[i])
+          state_.goals[i] = state_.goals[i] < max_samples_ / 2 ? 2 * state_.goals[i] : max_samples_;
+      if (!run_iteration()) return false;
     }
   }
 
   void report(Statistics& statistics) const {
     statistics.expected_noise = std::sqrt(noise_.mean_square);
     statistics.noise = std::sqrt(noise_.upper());
-    statistics.unjudged_pixels = unjudged_;
+    statistics.unreliable_pixels = unreliable_count_;
     statistics.ended_by = ended_by_;
   }
 
@@ -107,7 +109,7 @@ class AdaptiveSampling {
   }
 
   /// The next uniform sample count of a half; 0: the initial, uniform iterations are over.
-  std::uint32_t next_of_all(std::uint32_t n) const {
+  std::uint32_t next_uniform_count(std::uint32_t n) const {
     const std::uint32_t next = std::min({2 * n, kFirstSamples, max_samples_});
     return next > n && affordable(kShareOfTime) >= std::uint64_t{next - n} * pixels_.samples.size() ? next : 0;
   }
@@ -116,13 +118,13 @@ class AdaptiveSampling {
   std::uint64_t affordable(double share) const {
     if (settings_.sampling.seconds <= 0) return std::numeric_limits<std::uint64_t>::max();
     const double left = settings_.sampling.seconds - progress_.seconds();
-    if (left < settings_.sampling.seconds * kTimeToSpare) return 0;
+    if (left < settings_.sampling.seconds * kReservedTime) return 0;
     return static_cast<std::uint64_t>(left * share * samples_per_second_ / 2);
   }
 
-  void expect(const Round& round, double noise) {
+  void expect(const PixelSelection& selection, double noise) {
     const double limit = 2.0 * static_cast<double>(pixels_.samples.size()) * max_samples_;
-    const double total = static_cast<double>(progress_.done()) + 2 * round.samples_to_goal;
+    const double total = static_cast<double>(progress_.done()) + 2 * selection.samples_to_goal;
     if (total < limit) {
       progress_.expect(static_cast<std::uint64_t>(total), noise_text(noise, settings_.sampling.noise));
     } else {
@@ -131,18 +133,18 @@ class AdaptiveSampling {
   }
 
   /// Renders all pixels up to their goals.
-  bool run_round() {
+  bool run_iteration() {
     if (!passes_.run(kSide, [this](int x, int y) { update(x, y); })) return false;
     state_.goals.clear();
     // The last iteration counts most, since the pixels that continue are unlike the others. Its time includes choosing
     // them.
-    const double seconds = progress_.seconds() - round_begin_;
+    const double seconds = progress_.seconds() - iteration_begin_;
     if (seconds > 0) {
-      const double speed = static_cast<double>(progress_.done() - round_begin_samples_) / seconds;
+      const double speed = static_cast<double>(progress_.done() - iteration_begin_samples_) / seconds;
       samples_per_second_ = samples_per_second_ > 0 ? (samples_per_second_ + 3 * speed) / 4 : speed;
     }
-    round_begin_ = progress_.seconds();
-    round_begin_samples_ = progress_.done();
+    iteration_begin_ = progress_.seconds();
+    iteration_begin_samples_ = progress_.done();
     return true;
   }
 
@@ -164,10 +166,10 @@ class AdaptiveSampling {
   std::uint32_t max_samples_;  ///< samples of a half
   PixelStatistics pixels_;
   NoiseEstimate noise_;
-  std::uint64_t unjudged_ = 0;  ///< pixels
+  std::uint64_t unreliable_count_ = 0;  ///< pixels
   double samples_per_second_ = 0;
-  double round_begin_;  ///< seconds
-  std::uint64_t round_begin_samples_;
+  double iteration_begin_;  ///< seconds
+  std::uint64_t iteration_begin_samples_;
   const char* ended_by_ = "samples";
 };
 

@@ -11,7 +11,7 @@ namespace orrery::render {
 namespace {
 
 /// An iteration adds at least this fraction of the existing samples, since choosing the pixels takes time, too.
-constexpr double kLeastRound = 1.0 / 64;
+constexpr double kMinIteration = 1.0 / 64;
 
 /// A histogram of pixels by gain: how much their next sample reduces the image's squared error. Sixteen linear steps
 /// per octave from the number's exponent and fraction, since libraries' logarithms differ in their last bit, and the
@@ -21,18 +21,18 @@ class Ranking {
   static constexpr int kStepsPerOctave = 16;
   static constexpr int kBins = 160 * kStepsPerOctave;
 
-  static constexpr double kLeast = 0x1p-130;
+  static constexpr double kMinGain = 0x1p-130;
 
-  /// The bin of a gain, ascending; -1 for gains of kLeast and below.
+  /// The bin of a gain, ascending; -1 for gains of kMinGain and below.
   static int bin_of(double gain) {
-    if (!(gain > kLeast)) return -1;
+    if (!(gain > kMinGain)) return -1;
     int octave = 0;
-    const double fraction = std::frexp(gain / kLeast, &octave);  // 0.5 .. 1
+    const double fraction = std::frexp(gain / kMinGain, &octave);  // 0.5 .. 1
     return std::min((octave - 1) * kStepsPerOctave + static_cast<int>((2 * fraction - 1) * kStepsPerOctave), kBins - 1);
   }
   static double gain_of(int bin) {
     const double step = static_cast<double>(bin % kStepsPerOctave) / kStepsPerOctave;
-    return std::ldexp((1 + step) * kLeast, bin / kStepsPerOctave);
+    return std::ldexp((1 + step) * kMinGain, bin / kStepsPerOctave);
   }
 
   struct Bin {
@@ -45,31 +45,31 @@ class Ranking {
 };
 
 /// Adds the pixels without a reliable error estimate if all of them are affordable.
-void add_due(const std::vector<std::uint32_t>& samples, const std::vector<std::uint8_t>& lacks_evidence,
-             const RoundGoal& goal, Round& round) {
+void add_unreliable_pixels(const std::vector<std::uint32_t>& samples, const std::vector<std::uint8_t>& is_unreliable,
+                           const IterationGoal& goal, PixelSelection& selection) {
   const auto price_of = [&](std::size_t i) {
-    return std::uint64_t{std::min(samples[i], goal.most_per_pixel - samples[i])};
+    return std::uint64_t{std::min(samples[i], goal.max_per_pixel - samples[i])};
   };
   std::uint64_t chosen = 0, due = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (round.chosen[i]) {
+    if (selection.chosen[i]) {
       chosen += price_of(i);
-    } else if (lacks_evidence[i] != 0) {
+    } else if (is_unreliable[i] != 0) {
       due += price_of(i);
     }
   }
   if (due == 0 || due > goal.affordable - std::min(chosen, goal.affordable)) return;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (lacks_evidence[i] != 0 && price_of(i) > 0) round.chosen[i] = true;
-  round.any = true;
-  round.samples_to_goal = std::max(round.samples_to_goal, static_cast<double>(chosen + due));
+    if (is_unreliable[i] != 0 && price_of(i) > 0) selection.chosen[i] = true;
+  selection.any = true;
+  selection.samples_to_goal = std::max(selection.samples_to_goal, static_cast<double>(chosen + due));
 }
 
 }  // namespace
 
-Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector<float>& error_of_one_sample,
-                    const std::vector<std::uint8_t>& lacks_evidence, const RoundGoal& goal) {
-  Round round;
+PixelSelection choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector<float>& error_of_one_sample,
+                             const std::vector<std::uint8_t>& is_unreliable, const IterationGoal& goal) {
+  PixelSelection selection;
   auto ranking = std::make_unique<Ranking>();
   std::vector<std::int16_t> bin_of(samples.size(), -1);
   double error = 0;  // sum of the squared errors of all pixels
@@ -81,8 +81,8 @@ Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector
     all += n;
     const int bin = Ranking::bin_of(s / (n * n));
     if (bin < 0) continue;
-    if (samples[i] >= goal.most_per_pixel) {
-      round.limited_by_pixels = true;
+    if (samples[i] >= goal.max_per_pixel) {
+      selection.limited_by_pixels = true;
       continue;
     }
     bin_of[i] = static_cast<std::int16_t>(bin);
@@ -90,7 +90,7 @@ Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector
     b.error += s / n;
     b.root += std::sqrt(s);
     b.samples += n;
-    b.price += std::min(samples[i], goal.most_per_pixel - samples[i]);
+    b.price += std::min(samples[i], goal.max_per_pixel - samples[i]);
   }
   const double wanted = error * goal.error_ratio;
 
@@ -102,7 +102,7 @@ Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector
   bool level_found = false;
   for (int k = Ranking::kBins - 1; k >= 0; --k) {
     const Ranking::Bin& b = ranking->bins[static_cast<std::size_t>(k)];
-    if (after_doubling > wanted || (doubling < Ranking::kBins && static_cast<double>(price) < all * kLeastRound)) {
+    if (after_doubling > wanted || (doubling < Ranking::kBins && static_cast<double>(price) < all * kMinIteration)) {
       doubling = k;
       after_doubling -= b.error / 2;
     }
@@ -115,21 +115,21 @@ Round choose_pixels(const std::vector<std::uint32_t>& samples, const std::vector
     if (!level_found && (left + roots * root_of_level <= wanted || k == 0)) {
       level = k;
       level_found = true;
-      round.samples_to_goal = std::max(0.0, roots / root_of_level - had);
+      selection.samples_to_goal = std::max(0.0, roots / root_of_level - had);
     }
-    if (level_found && after_doubling <= wanted && static_cast<double>(price) >= all * kLeastRound) break;
+    if (level_found && after_doubling <= wanted && static_cast<double>(price) >= all * kMinIteration) break;
   }
   // Pixels that need less than 1.4 times their samples wait unless there are no others.
   const int worth_doubling = std::min(level + Ranking::kStepsPerOctave, Ranking::kBins - 1);
   const auto choose_from = [&](int lowest) {
-    round.chosen.assign(bin_of.size(), false);
+    selection.chosen.assign(bin_of.size(), false);
     for (std::size_t i = 0; i < bin_of.size(); ++i)
-      if (bin_of[i] >= lowest) round.chosen[i] = round.any = true;
+      if (bin_of[i] >= lowest) selection.chosen[i] = selection.any = true;
   };
   choose_from(std::max({worth_doubling, doubling, affordable}));
-  if (!round.any) choose_from(std::max(doubling, affordable));
-  add_due(samples, lacks_evidence, goal, round);
-  return round;
+  if (!selection.any) choose_from(std::max(doubling, affordable));
+  add_unreliable_pixels(samples, is_unreliable, goal, selection);
+  return selection;
 }
 
 }  // namespace orrery::render

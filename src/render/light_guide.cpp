@@ -96,9 +96,9 @@ std::vector<PixelBlock> blocks_of(int width_px, int height_px) {
   return out;
 }
 
-int count_within(int at, int reach, int size) { return std::min(at + reach, size - 1) - std::max(at - reach, 0) + 1; }
+int window_size(int at, int reach, int size) { return std::min(at + reach, size - 1) - std::max(at - reach, 0) + 1; }
 
-int count_within(int at, int reach, int size, int remainder) {
+int window_size(int at, int reach, int size, int remainder) {
   if (remainder < 0) return 0;
   const auto below = [&](int end) { return (end - remainder + 2) / 3; };  // of 0 .. end - 1; 0 for end = 0
   return below(std::min(at + reach, size - 1) + 1) - below(std::max(at - reach, 0));
@@ -144,8 +144,8 @@ std::vector<float> LightGuide::of(const PixelBlock& b) const {
   std::vector<float> light_sums, variance_sums, square_sums;
   const auto count_across = [&](int radius) {
     for (int x = 0; x < b.width; ++x) {
-      across[static_cast<std::size_t>(x)] = static_cast<float>(count_within(b.x + x, radius, s.width));
-      own_across[static_cast<std::size_t>(x)] = static_cast<float>(count_within(b.x + x, radius, s.width, excluded_x));
+      across[static_cast<std::size_t>(x)] = static_cast<float>(window_size(b.x + x, radius, s.width));
+      own_across[static_cast<std::size_t>(x)] = static_cast<float>(window_size(b.x + x, radius, s.width, excluded_x));
     }
   };
   for (int k = kRadii; k-- > 0;) {
@@ -155,8 +155,8 @@ std::vector<float> LightGuide::of(const PixelBlock& b) const {
     variance_sums = sums_down_columns(variance_rows[plane], b.width, light.height, k);
     count_across(radius);
     for (int y = 0; y < b.height; ++y) {
-      const auto down = static_cast<float>(count_within(b.y + y, radius, s.height));
-      const auto own_down = static_cast<float>(count_within(b.y + y, radius, s.height, excluded_y));
+      const auto down = static_cast<float>(window_size(b.y + y, radius, s.height));
+      const auto own_down = static_cast<float>(window_size(b.y + y, radius, s.height, excluded_y));
       const std::size_t row = static_cast<std::size_t>(y) * width;
       for (std::size_t x = 0; x < width; ++x) {
         const float share = 1 / (across[x] * down - own_across[x] * own_down);
@@ -170,8 +170,8 @@ std::vector<float> LightGuide::of(const PixelBlock& b) const {
 
   square_sums = sums_down_columns(sums_along_rows(squares, 1)[0], b.width, squares.height, 0);
   for (int y = 0; y < b.height; ++y) {  // light_sums, variance_sums and counts are those of the smallest window
-    const auto down = static_cast<float>(count_within(b.y + y, 2, s.height));
-    const auto own_down = static_cast<float>(count_within(b.y + y, 2, s.height, excluded_y));
+    const auto down = static_cast<float>(window_size(b.y + y, 2, s.height));
+    const auto own_down = static_cast<float>(window_size(b.y + y, 2, s.height, excluded_y));
     const std::size_t row = static_cast<std::size_t>(y) * width;
     const float* const own = light.row(y + kGuideReach) + kGuideReach;
     const float* const own_noise = variance.row(y + kGuideReach) + kGuideReach;

@@ -41,8 +41,8 @@ std::vector<PixelBlock> blocks_of(int width_px, int height_px);
 
 /// The number of pixels within `reach` of `at` along an axis of the image. The second overload counts only pixels whose
 /// coordinate modulo three is `remainder`; a negative `remainder` counts none.
-int count_within(int at, int reach, int size);
-int count_within(int at, int reach, int size, int remainder);
+int window_size(int at, int reach, int size);
+int window_size(int at, int reach, int size, int remainder);
 
 /// An estimate of every pixel's radiance that borrows from its neighbours to the extent that its own samples are
 /// uncertain.

@@ -11,10 +11,10 @@
 namespace orrery::render {
 namespace {
 
-/// Half-widths of windows, px: for averaging errors; the same if effectively fewer than kFewest pixels make up the mean
-/// of the first; and for deciding whether an estimate is reliable.
-constexpr int kReach = 2, kWideReach = 4, kEvidenceReach = 3;
-constexpr double kFewest = 3;
+/// Half-widths of windows, px: for averaging errors; the same if effectively fewer than kMinEffectiveCount pixels make
+/// up the mean of the first; and for deciding whether an estimate is reliable.
+constexpr int kReach = 2, kWideReach = 4, kReliabilityReach = 3;
+constexpr double kMinEffectiveCount = 3;
 
 /// Errors are sparse if effectively less than one pixel in kSparse makes up the mean.
 constexpr double kSparse = 64;
@@ -24,7 +24,7 @@ constexpr int kCell = 16;
 
 /// Lower bound of a pixel's error as a fraction of the image's, so that a pixel unlike its neighbours is never
 /// abandoned.
-constexpr float kLeastError = 1.0f / 64;
+constexpr float kMinError = 1.0f / 64;
 
 /// Paths in a window that must have found light before its error is trusted.
 constexpr double kHits = 4;
@@ -53,18 +53,18 @@ bool is_noiseless(const PixelStatistics& s, const PixelBlock& b) {
 }
 
 /// Errors of single samples of all pixels except one class's, and their sums.
-class ErrorsOfOthers {
+class CrossValidatedErrors {
  public:
   struct Sums {
     double sum = 0, squares = 0;
     int count = 0;
 
-    bool is_enough() const { return sum > 0 && sum * sum >= kFewest * squares; }
+    bool is_enough() const { return sum > 0 && sum * sum >= kMinEffectiveCount * squares; }
     bool is_sparse() const { return sum * sum * kSparse < squares * count; }
     float mean() const { return count > 0 ? static_cast<float>(sum / count) : 0.0f; }
   };
 
-  explicit ErrorsOfOthers(const PixelStatistics& s)
+  explicit CrossValidatedErrors(const PixelStatistics& s)
       : s_(s),
         across_((s.width + kCell - 1) / kCell),
         down_((s.height + kCell - 1) / kCell),
@@ -130,8 +130,8 @@ class ErrorsOfOthers {
         squares += row[u] * row[u];
       }
     }
-    const int count = count_within(x, reach, s_.width) * count_within(y, reach, s_.height) -
-                      count_within(x, reach, s_.width, x % 3) * count_within(y, reach, s_.height, y % 3);
+    const int count = window_size(x, reach, s_.width) * window_size(y, reach, s_.height) -
+                      window_size(x, reach, s_.width, x % 3) * window_size(y, reach, s_.height, y % 3);
     return {static_cast<double>(sum), static_cast<double>(squares), count};
   }
 
@@ -156,13 +156,13 @@ class ErrorsOfOthers {
 };
 
 /// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
-bool has_evidence(const PixelStatistics& s, int x, int y) {
+bool has_reliable_estimate(const PixelStatistics& s, int x, int y) {
   const double n = s.samples[s.at(x, y)];
-  if (n >= kSamplesForEvidence) return true;
+  if (n >= kSamplesForReliability) return true;
   double light = 0, variance = 0, samples = 0;
   int count = 0, dark = 0;
-  for (int v = std::max(y - kEvidenceReach, 0); v <= std::min(y + kEvidenceReach, s.height - 1); ++v) {
-    for (int u = std::max(x - kEvidenceReach, 0); u <= std::min(x + kEvidenceReach, s.width - 1); ++u) {
+  for (int v = std::max(y - kReliabilityReach, 0); v <= std::min(y + kReliabilityReach, s.height - 1); ++v) {
+    for (int u = std::max(x - kReliabilityReach, 0); u <= std::min(x + kReliabilityReach, s.width - 1); ++u) {
       if ((u - x) % 3 == 0 && (v - y) % 3 == 0) continue;  // the pixel's own class
       const std::size_t at = s.at(u, v);
       light += static_cast<double>(s.light[at]);
@@ -177,14 +177,14 @@ bool has_evidence(const PixelStatistics& s, int x, int y) {
   return light * light >= kHits * variance;                // the number of hits if all are equally bright
 }
 
-/// Whether all pixels that has_evidence() reads for a block have the same radiance in every sample. Their evidence is
-/// then complete.
+/// Whether all pixels that has_reliable_estimate() reads for a block have the same radiance in every sample. Their
+/// evidence is then complete.
 bool is_lit_without_noise(const PixelStatistics& s, const PixelBlock& b) {
   PixelBlock wide;
-  wide.x = std::max(b.x - kEvidenceReach, 0);
-  wide.y = std::max(b.y - kEvidenceReach, 0);
-  wide.width = std::min(b.x + b.width + kEvidenceReach, s.width) - wide.x;
-  wide.height = std::min(b.y + b.height + kEvidenceReach, s.height) - wide.y;
+  wide.x = std::max(b.x - kReliabilityReach, 0);
+  wide.y = std::max(b.y - kReliabilityReach, 0);
+  wide.width = std::min(b.x + b.width + kReliabilityReach, s.width) - wide.x;
+  wide.height = std::min(b.y + b.height + kReliabilityReach, s.height) - wide.y;
   if (!is_noiseless(s, wide)) return false;
   for (int y = wide.y; y < wide.y + wide.height; ++y) {
     const float* const row = s.light.data() + s.at(wide.x, y);
@@ -231,15 +231,15 @@ NoiseEstimate estimate_noise(const PixelStatistics& s, TilePool& pool) {
   return out;
 }
 
-MissingEvidence find_missing_evidence(const PixelStatistics& s, TilePool& pool) {
-  MissingEvidence out;
+UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool) {
+  UnreliablePixels out;
   out.of_pixel.resize(s.samples.size());
   const std::vector<PixelBlock> blocks = blocks_of(s.width, s.height);
   run(pool, blocks.size(), [&](std::size_t i) {
     const PixelBlock& b = blocks[i];
     if (is_lit_without_noise(s, b)) return;
     for (int y = b.y; y < b.y + b.height; ++y)
-      for (int x = b.x; x < b.x + b.width; ++x) out.of_pixel[s.at(x, y)] = has_evidence(s, x, y) ? 0 : 1;
+      for (int x = b.x; x < b.x + b.width; ++x) out.of_pixel[s.at(x, y)] = has_reliable_estimate(s, x, y) ? 0 : 1;
   });
   for (const std::uint8_t is_missing : out.of_pixel) out.count += is_missing;
   return out;
@@ -248,11 +248,11 @@ MissingEvidence find_missing_evidence(const PixelStatistics& s, TilePool& pool) 
 std::vector<float> errors_of_one_sample(const PixelStatistics& s, const NoiseEstimate& noise, TilePool& pool) {
   double sum = 0;
   for (std::size_t i = 0; i < s.samples.size(); ++i) sum += static_cast<double>(noise.of_pixel[i]) * s.samples[i];
-  const float least = kLeastError * static_cast<float>(sum / static_cast<double>(s.samples.size()));
+  const float least = kMinError * static_cast<float>(sum / static_cast<double>(s.samples.size()));
 
   std::vector<float> out(s.samples.size());
   const std::vector<PixelBlock> blocks = blocks_of(s.width, s.height);
-  ErrorsOfOthers errors(s);
+  CrossValidatedErrors errors(s);
   std::vector<std::uint8_t> noiseless(blocks.size());
   run(pool, blocks.size(), [&](std::size_t i) { noiseless[i] = is_noiseless(s, blocks[i]) ? 1 : 0; });
   for (int own = 0; own < kClasses; ++own) {

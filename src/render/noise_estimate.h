@@ -23,7 +23,7 @@ struct NoiseEstimate {
 NoiseEstimate estimate_noise(const PixelStatistics& statistics, TilePool& pool);
 
 /// Pixels without a reliable error estimate: too few paths around them have found light.
-struct MissingEvidence {
+struct UnreliablePixels {
   std::vector<std::uint8_t> of_pixel;  ///< 1: needs more samples whatever its estimated error
   std::uint64_t count = 0;
 };
@@ -31,12 +31,12 @@ struct MissingEvidence {
 /// Finds the pixels around which too few paths have found light, excluding each pixel's own samples.
 ///
 /// A window without light may be black, or its light may be rare. It is assumed to be black after
-/// 2 * kSamplesForEvidence samples per pixel. From then on the errors of windows in which few paths found light are
+/// 2 * kSamplesForReliability samples per pixel. From then on the errors of windows in which few paths found light are
 /// trusted, too.
-MissingEvidence find_missing_evidence(const PixelStatistics& statistics, TilePool& pool);
+UnreliablePixels find_unreliable_pixels(const PixelStatistics& statistics, TilePool& pool);
 
 /// Samples per pixel in each half from which every error estimate counts as reliable.
-inline constexpr std::uint32_t kSamplesForEvidence = 512;
+inline constexpr std::uint32_t kSamplesForReliability = 512;
 
 /// The squared relative error of a single sample of each pixel, as in --noise, estimated from the pixels around it. The
 /// pixel's own samples have no influence, so choosing pixels by the result cannot favour samples that happen to be

@@ -16,7 +16,7 @@ struct Recorder {
 
   void keep(const Packet& packet) {
     const bool from_camera = packet.self[0] == kernel::kNoSphere;
-    (from_camera ? rays.camera : rays.bounced).push_back(packet);
+    (from_camera ? rays.camera : rays.secondary).push_back(packet);
   }
 };
 

@@ -16,7 +16,7 @@ namespace orrery::render {
 template <class Packet>
 struct RecordedRays {
   std::vector<Packet> camera;
-  std::vector<Packet> bounced;  ///< from the first bounce to the last
+  std::vector<Packet> secondary;  ///< from the first bounce to the last
   std::uint64_t paths = 0;
 };
 

@@ -38,13 +38,13 @@ void count_samples(const compile::CompiledScene& compiled, const Settings& setti
                    Statistics& statistics) {
   const std::vector<bool> owned = pixels_of(settings.sampling.shard, compiled.width, compiled.height);
   const std::uint64_t halves = state.is_adaptive() ? 2 : 1;
-  statistics.fewest_samples = std::numeric_limits<std::uint64_t>::max();
+  statistics.min_samples = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t i = 0; i < owned.size(); ++i) {
     if (!owned[i]) continue;
-    statistics.fewest_samples = std::min(statistics.fewest_samples, halves * state.counts[i]);
-    statistics.most_samples = std::max(statistics.most_samples, halves * state.counts[i]);
+    statistics.min_samples = std::min(statistics.min_samples, halves * state.counts[i]);
+    statistics.max_samples = std::max(statistics.max_samples, halves * state.counts[i]);
   }
-  statistics.fewest_samples = std::min(statistics.fewest_samples, statistics.most_samples);
+  statistics.min_samples = std::min(statistics.min_samples, statistics.max_samples);
 }
 
 /// Reports the pixels of an earlier run.

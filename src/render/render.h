@@ -22,7 +22,7 @@ namespace orrery::render {
 /// Settings of a render that are not part of the scene.
 struct Settings {
   int threads = 0;  ///< 0: as many as available_threads()
-  /// Traversal of all rays. Empty: the faster one in this scene, measured separately for camera and bounced rays.
+  /// Traversal of all rays. Empty: the faster one in this scene, measured separately for camera and secondary rays.
   std::optional<accel::Traversal> traversal;
   film::LayerRequest layers;  ///< besides the beauty
   SamplingLimits sampling;

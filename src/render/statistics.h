@@ -17,14 +17,14 @@ struct Statistics {
   double finish_s = 0;      ///< from sums to the finished image and its layers
   std::string isa;          ///< the kernel's instruction set, e.g. "avx2"
   std::string accelerator;  ///< e.g. "embree 3.13.5" or "list"
-  std::string traversal;    ///< e.g. "packet, bounced single": of camera rays, and of bounced rays if different
+  std::string traversal;    ///< e.g. "packet, secondary single": of camera rays, and of secondary rays if different
   int threads = 0;
-  std::uint64_t fewest_samples = 0, most_samples = 0;  ///< per pixel
+  std::uint64_t min_samples = 0, max_samples = 0;  ///< per pixel
   /// Adaptive sampling only: the expected noise of the image, and its upper confidence bound, which is compared with
   /// the target.
   std::optional<double> expected_noise, noise;
-  std::uint64_t unjudged_pixels = 0;  ///< pixels around which too few paths found light for these estimates
-  std::string ended_by;               ///< "samples", "noise" or "time"
+  std::uint64_t unreliable_pixels = 0;  ///< pixels around which too few paths found light for these estimates
+  std::string ended_by;                 ///< "samples", "noise" or "time"
 };
 
 }  // namespace orrery::render

@@ -17,7 +17,7 @@ constexpr double kMaxTrialPaths = 32 * 1024;
 /// Fewer tiles than this would sample only a corner of the image.
 constexpr int kMinTrialTiles = 4;
 
-/// Without a trial: in larger scenes bounced rays diverge too soon for packets.
+/// Without a trial: in larger scenes secondary rays diverge too soon for packets.
 constexpr std::size_t kManySpheres = 1000;
 
 /// A deterministic set of tiles, spread over the image. Each fills a whole path stream; otherwise packets of secondary
@@ -45,7 +45,7 @@ std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
 
 /// The faster traversal for these packets, each by the better of two alternating runs.
 template <class Packet>
-accel::Traversal quicker(accel::Accel& accel, std::vector<Packet>& packets) {
+accel::Traversal faster_traversal(accel::Accel& accel, std::vector<Packet>& packets) {
   double best[2] = {1e300, 1e300};
   for (int i = 0; i < 4; ++i) {
     const auto traversal = static_cast<accel::Traversal>(i % 2);
@@ -56,8 +56,8 @@ accel::Traversal quicker(accel::Accel& accel, std::vector<Packet>& packets) {
 }
 
 template <class Packet>
-accel::Traversals quicker(accel::Accel& accel, RecordedRays<Packet> rays) {
-  return {quicker(accel, rays.camera), quicker(accel, rays.bounced)};
+accel::Traversals faster_traversal(accel::Accel& accel, RecordedRays<Packet> rays) {
+  return {faster_traversal(accel, rays.camera), faster_traversal(accel, rays.secondary)};
 }
 
 accel::Traversals unmeasured(const compile::CompiledScene& compiled) {
@@ -77,8 +77,8 @@ accel::Traversals choose_traversals(const compile::CompiledScene& compiled, acce
   if (tiles.empty()) return unmeasured(compiled);
   accel.use(unmeasured(compiled));
   return compiled.precision == compile::Precision::kFast
-             ? quicker(accel, record_rays_fast(compiled.view(), accel, tiles))
-             : quicker(accel, record_rays(compiled.view(), accel, compiled.precision, tiles));
+             ? faster_traversal(accel, record_rays_fast(compiled.view(), accel, tiles))
+             : faster_traversal(accel, record_rays(compiled.view(), accel, compiled.precision, tiles));
 }
 
 std::string planned_traversal(const compile::CompiledScene& compiled) {
@@ -89,7 +89,7 @@ std::string planned_traversal(const compile::CompiledScene& compiled) {
 
 std::string name_of(accel::Traversals traversals) {
   const std::string camera = name_of(traversals.camera);
-  return traversals.camera == traversals.bounced ? camera : camera + ", bounced " + name_of(traversals.bounced);
+  return traversals.camera == traversals.secondary ? camera : camera + ", secondary " + name_of(traversals.secondary);
 }
 
 }  // namespace orrery::render

@@ -21,7 +21,7 @@ accel::Traversals choose_traversals(const compile::CompiledScene& compiled, acce
 /// Description of the traversal before anything is built: "packet", "single", "list", or that a trial will choose.
 std::string planned_traversal(const compile::CompiledScene& compiled);
 
-/// Name of the traversals, e.g. "packet" or "packet, bounced single".
+/// Name of the traversals, e.g. "packet" or "packet, secondary single".
 std::string name_of(accel::Traversals traversals);
 
 }  // namespace orrery::render

@@ -8,13 +8,15 @@
 #include <numbers>
 #include <utility>
 
+#include <fmt/core.h>
+
 namespace orrery::scene {
 namespace {
 
 bool is_number(ValueType type) { return type == ValueType::kNumber || type == ValueType::kVector; }
 
 /// True for the tables whose numbers can be animated; those of the other tables hold for the whole animation.
-bool is_of_a_moment(const std::string& table) { return table == "camera" || table == "background"; }
+bool is_singleton_table(const std::string& table) { return table == "camera" || table == "background"; }
 
 template <class Target>
 const Key<Target>* find_key(const std::vector<Key<Target>>& keys, const std::string& name) {
@@ -88,7 +90,7 @@ Vec3d slope(const Track& t, std::size_t i) {
 ///
 /// Precision  sine and cosine are rounded from long double, so that they do not depend on the math library
 /// Reference  rodrigues1840
-Vec3d turned(Vec3d v, Vec3d axis, double turns) {
+Vec3d rotated(Vec3d v, Vec3d axis, double turns) {
   const long double angle = 2 * std::numbers::pi_v<long double> * static_cast<long double>(turns - std::floor(turns));
   const auto c = static_cast<double>(std::cos(angle)), s = static_cast<double>(std::sin(angle));
   return v * c + math::cross(axis, v) * s + axis * (math::dot(axis, v) * (1 - c));
@@ -101,7 +103,7 @@ std::optional<Animated> find_animated(const Scene& scene, const std::string& tar
   if (!parts) return {};
   if (parts->table == "sphere") return animated_sphere(scene, parts->name, parts->is_index, parts->key);
   if (parts->table == "material" && !parts->is_index) return animated_material(scene, parts->name, parts->key);
-  if (!parts->name.empty() || !is_of_a_moment(parts->table)) return {};
+  if (!parts->name.empty() || !is_singleton_table(parts->table)) return {};
   for (const Table& t : tables())
     if (t.name == parts->table)
       if (const auto* found = find_key(t.keys, parts->key)) return Animated{found->type, found->range, found->set};
@@ -125,10 +127,10 @@ std::vector<std::string> animated_names(const Scene& scene) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& owner, const auto& keys) {
     for (const auto& key : keys)
-      if (is_number(key.type)) names.push_back(owner + "." + key.name);
+      if (is_number(key.type)) names.push_back(fmt::format("{}.{}", owner, key.name));
   };
   for (const Table& table : tables())
-    if (is_of_a_moment(table.name)) add(table.name, table.keys);
+    if (is_singleton_table(table.name)) add(table.name, table.keys);
   for (const Sphere& sphere : scene.spheres)
     if (!sphere.name.empty()) add("sphere." + sphere.name, sphere_keys());
   for (const Material& material : scene.materials) add("material." + material.name, type_of(material).keys);
@@ -165,8 +167,8 @@ Scene posed(const Scene& scene, double frame) {
   if (out.animation.turntable != 0) {
     Camera& camera = out.camera;
     const double length = math::length(camera.up);
-    camera.look_from = camera.look_at + turned(camera.look_from - camera.look_at, camera.up * (1 / length),
-                                               (frame - 1) / out.animation.turntable);
+    camera.look_from = camera.look_at + rotated(camera.look_from - camera.look_at, camera.up * (1 / length),
+                                                (frame - 1) / out.animation.turntable);
   }
   return out;
 }

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "base/repeated.h"
+#include <fmt/core.h>
+
+#include "base/duplicates.h"
 #include "math/single.h"
 #include "scene/validate.h"
 
@@ -43,8 +45,7 @@ class SphereIndex {
 };
 
 std::string key_of(const Place& place) {
-  return place.is_table ? "sphere[" + std::to_string(place.index) + "]"
-                        : "points[" + std::to_string(place.points) + "].file";
+  return place.is_table ? fmt::format("sphere[{}]", place.index) : fmt::format("points[{}].file", place.points);
 }
 
 std::string name_of(const Scene& scene, const Place& place) {
@@ -79,8 +80,8 @@ Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, con
     path[7] = std::abs(to.radius) - std::abs(from.radius);
     return rounded(path);
   };
-  const std::vector<base::Repeated> found = closing != nullptr ? base::find_repeated<8>(spheres.count(), path_of)
-                                                               : base::find_repeated<4>(spheres.count(), place_of);
+  const std::vector<base::Duplicate> found = closing != nullptr ? base::find_duplicates<8>(spheres.count(), path_of)
+                                                                : base::find_duplicates<4>(spheres.count(), place_of);
   Coincidents out;
   out.count = found.size();
   for (std::size_t i = 0; i < found.size() && i < max_reported; ++i) {

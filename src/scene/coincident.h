@@ -25,7 +25,7 @@ struct Coincidents {
 /// With `precision = "fast"`, spheres coincide if they are equal in single precision.
 ///
 /// `closing`  the scene at shutter close: spheres that coincide only at shutter open are not counted; null: no motion
-/// Cost       see base::find_repeated
+/// Cost       see base::find_duplicates
 Coincidents coincident_spheres(const Scene& scene, std::size_t max_reported, const Scene* closing = nullptr);
 
 }  // namespace orrery::scene

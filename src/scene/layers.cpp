@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "scene/limits.h"
 #include "scene/schema.h"
@@ -66,7 +68,7 @@ std::string light_group_fault(const std::string& name) {
   if (!std::all_of(name.begin(), name.end(), is_word) || (name[0] >= '0' && name[0] <= '9'))
     return "must consist of letters, digits and underscores and not begin with a digit: it becomes the name of layers";
   if (name.size() > kLongestLightGroup)
-    return "has " + std::to_string(name.size()) + " characters; the maximum is " + std::to_string(kLongestLightGroup);
+    return fmt::format("has {} characters; the maximum is {}", name.size(), kLongestLightGroup);
   // The beauty's part of a multi-part file, and its channels.
   static const std::vector<std::string> reserved = {"rgba", "R", "G", "B", "A", "half_a", "half_b"};
   bool is_layer = base::contains(reserved, name) || name.starts_with("Crypto");
@@ -75,7 +77,7 @@ std::string light_group_fault(const std::string& name) {
   if (is_layer) return "is the name of another layer; choose a different one";
   for (const char* lobe : kLobes)
     if (name.ends_with(std::string("_") + lobe))
-      return std::string("ends in \"_") + lobe + "\", like a layer of another group; choose a different one";
+      return fmt::format("ends in \"_{}\", like a layer of another group; choose a different one", lobe);
   return {};
 }
 
@@ -85,8 +87,8 @@ std::string layer_fault(const Scene& scene, const std::string& layer) {
   if (base::contains(light, layer) && scene.render.shading != Shading::kPath)
     return layer + " requires render.shading = \"path\"";
   if (layer == "object_id" && scene.sphere_count() >= kMaxFloatId)
-    return "a float cannot represent the ids of " + std::to_string(scene.sphere_count()) +
-           " spheres exactly; use CryptoObject";
+    return fmt::format("a float cannot represent the ids of {} spheres exactly; use CryptoObject",
+                       scene.sphere_count());
   return {};
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "base/image_limits.h"
+
 namespace orrery::scene {
 
 /// Maximum absolute shutter time relative to the frame, frames.
@@ -26,13 +28,12 @@ inline constexpr double kSmallestRadius = 1e-30;
 inline constexpr double kSmallestFastRadius = 1e-18;
 
 /// Maximum number of spheres of a scene: ids have 32 bits, and the last one means none.
-inline constexpr std::size_t kMostSpheres = 0xFFFFFFFF;
+inline constexpr std::size_t kMaxSpheres = 0xFFFFFFFF;
 
 /// Minimum sine of the angle between the view direction and `up`: below it, the camera roll would be rounding error.
 inline constexpr double kSmallestUpSine = 1e-9;
 
-/// Maximum image width and height, px: a pixel id is y << 16 | x.
-inline constexpr int kLargestSide = 65536;
+using base::kLargestSide;
 
 /// Maximum background radiance: the sum of a pixel's samples then fits into 128 bits.
 inline constexpr double kBrightestBackground = 1e6;
@@ -62,9 +63,10 @@ inline constexpr double kSmallestScale = 1e-18, kLargestScale = 1e18;
 /// Maximum path depth, rays: with more, a render would not end in practice.
 inline constexpr int kDeepestPath = 10000;
 
-/// Maximum number of light groups: in the layer `light_groups` each takes 384 bytes of memory per pixel (8 lobes, 3
-/// channels, sums of 16 bytes) and 27 channels of the file.
-inline constexpr std::size_t kMaxLightGroups = 64;
+using base::kMaxLightGroups;
+
+/// Maximum number of copies of a points file along an axis.
+inline constexpr int kMaxCopies = 1000;
 
 /// Maximum length of a light group's name, bytes: EXR channel names have up to 255, and "_transmission_indirect.R"
 /// has 24.

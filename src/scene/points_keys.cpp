@@ -12,7 +12,6 @@ using P = Points;
 
 constexpr Range kAnyValue{-kLargestValue, kLargestValue};
 constexpr int kMaxFrameOfFile = std::numeric_limits<int>::max();
-constexpr int kMaxCopies = 1000;
 
 std::vector<Key<P>> make_keys() {
   std::vector<Key<P>> keys = {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "scene/schema.h"
 
@@ -35,8 +37,7 @@ template <class Target>
 std::string range_text(const Key<Target>& key) {
   switch (key.type) {
     case ValueType::kInteger:
-      return std::to_string(static_cast<std::int64_t>(key.range.from)) + ".." +
-             std::to_string(static_cast<std::int64_t>(key.range.to));
+      return fmt::format("{}..{}", static_cast<std::int64_t>(key.range.from), static_cast<std::int64_t>(key.range.to));
     case ValueType::kNumber: return key.range.text();
     case ValueType::kWindow: return "inside the image";
     case ValueType::kVector: return "each " + key.range.text();
@@ -45,7 +46,7 @@ std::string range_text(const Key<Target>& key) {
     case ValueType::kInterval: return "low below high";
     case ValueType::kBoolean: return "`true`, `false`";
     case ValueType::kChoice:
-    case ValueType::kChoices: return "`" + base::joined(key.choices) + "`";
+    case ValueType::kChoices: return fmt::format("`{}`", base::joined(key.choices));
   }
   return "";
 }
@@ -59,8 +60,8 @@ std::string row(const Key<Target>& key, const Target& defaults) {
   const auto or_dash = [](const std::string& text) { return text.empty() ? std::string("-") : text; };
   std::string standard = key.required ? "**required**" : key.text(defaults);
   if (standard == "\"\"") standard = "none";
-  std::string out = "| `" + key.name + "` | " + type_name(key) + " | " + range_text(key) + " | " + or_dash(key.unit);
-  return out + " | " + standard + " | " + key.doc + " | " + or_dash(key.cost) + " |\n";
+  std::string out = fmt::format("| `{}` | {} | {} | {}", key.name, type_name(key), range_text(key), or_dash(key.unit));
+  return fmt::format("{} | {} | {} | {} |\n", out, standard, key.doc, or_dash(key.cost));
 }
 
 std::string material_row() {
@@ -69,9 +70,9 @@ std::string material_row() {
 
 std::string material_section() {
   std::string out = "### [material.NAME]\n\n| `type` | description |\n|---|---|\n";
-  for (const MaterialType& type : material_types()) out += "| `\"" + type.name + "\"` | " + type.doc + " |\n";
+  for (const MaterialType& type : material_types()) out += fmt::format("| `\"{}\"` | {} |\n", type.name, type.doc);
   for (const MaterialType& type : material_types()) {
-    out += "\nOther keys of `type = \"" + type.name + "\"`:\n\n" + header();
+    out += fmt::format("\nOther keys of `type = \"{}\"`:\n\n{}", type.name, header());
     for (const auto& key : type.keys) out += row(key, type.model);
   }
   return out;
@@ -85,12 +86,12 @@ const char* const kNumberNote =
 std::string texture_section() {
   std::string out = "### Textures\n\n| `texture` | description |\n|---|---|\n";
   for (const TextureTypeKeys& type : texture_types(TextureUse::kReflectance))
-    out += "| `\"" + type.name + "\"` | " + type.doc + " |\n";
+    out += fmt::format("| `\"{}\"` | {} |\n", type.name, type.doc);
   for (const TextureTypeKeys& type : texture_types(TextureUse::kReflectance)) {
-    out += "\nOther keys of `texture = \"" + type.name + "\"`:\n\n" + header();
+    out += fmt::format("\nOther keys of `texture = \"{}\"`:\n\n{}", type.name, header());
     for (const auto& key : type.keys) out += row(key, Texture{});
   }
-  return out + "\n" + kNumberNote;
+  return fmt::format("{}\n{}", out, kNumberNote);
 }
 
 }  // namespace
@@ -99,13 +100,13 @@ std::string reference_markdown() {
   std::string out;
   const Scene defaults;
   for (const Table& table : tables()) {
-    out += "### [" + table.name + "]\n\n" + header();
+    out += fmt::format("### [{}]\n\n{}", table.name, header());
     for (const auto& key : table.keys) out += row(key, defaults);
     out += '\n';
   }
-  out += material_section() + "\n" + texture_section() + "\n### [[sphere]]\n\n" + header();
+  out += fmt::format("{}\n{}\n### [[sphere]]\n\n{}", material_section(), texture_section(), header());
   for (const auto& key : sphere_keys()) out += row(key, Sphere{});
-  out += material_row() + "\n### [[points]]\n\n" + header();
+  out += fmt::format("{}\n### [[points]]\n\n{}", material_row(), header());
   for (const auto& key : points_keys()) out += row(key, Points{});
   return out + material_row();
 }

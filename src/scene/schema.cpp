@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include <fmt/core.h>
+
 #include "scene/key_builders.h"
 #include "scene/layers.h"
 #include "scene/limits.h"
@@ -240,17 +242,14 @@ Table output_table() {
 
 }  // namespace
 
-std::string window_text(const Window& w) {
-  return "[" + std::to_string(w.x) + ", " + std::to_string(w.y) + ", " + std::to_string(w.width) + ", " +
-         std::to_string(w.height) + "]";
-}
+std::string window_text(const Window& w) { return fmt::format("[{}, {}, {}, {}]", w.x, w.y, w.width, w.height); }
 
 std::string interval_text(const Interval& interval) {
-  return "[" + number_text(interval.low) + ", " + number_text(interval.high) + "]";
+  return fmt::format("[{}, {}]", number_text(interval.low), number_text(interval.high));
 }
 
 std::string Range::text() const {
-  if (!from_open && !to_open) return number_text(from) + ".." + number_text(to);
+  if (!from_open && !to_open) return fmt::format("{}..{}", number_text(from), number_text(to));
   return std::string(from_open ? "above " : "at least ") + number_text(from) +
          (to_open ? " and below " : " and at most ") + number_text(to);
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <memory>
 
+#include <fmt/core.h>
+
 namespace orrery::scene {
 
 std::vector<NamedTexture> textures(const Scene& scene) {
@@ -11,7 +13,7 @@ std::vector<NamedTexture> textures(const Scene& scene) {
   for (const Material& material : scene.materials)
     for (const TexturedKey& key : material_types()[material.model.index()].textured)
       if (const TextureSlot texture = key.get(material.model))
-        out.push_back({"material." + material.name + "." + key.name, key.use, texture.get()});
+        out.push_back({fmt::format("material.{}.{}", material.name, key.name), key.use, texture.get()});
   return out;
 }
 

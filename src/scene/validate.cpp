@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "base/stop_point.h"
 #include "scene/coincident.h"
 #include "scene/layers.h"
@@ -17,7 +19,7 @@
 namespace orrery::scene {
 namespace {
 
-class Problems {
+class DiagnosticList {
  public:
   void error(std::string key, std::string text) {
     list_.push_back({base::Severity::kError, std::move(key), std::move(text), base::ErrorKind::kBadData});
@@ -31,7 +33,7 @@ class Problems {
   std::vector<SceneDiagnostic> list_;
 };
 
-std::string length_range() { return number_text(kSmallestRadius) + ".." + number_text(kLargestLength); }
+std::string length_range() { return fmt::format("{}..{}", number_text(kSmallestRadius), number_text(kLargestLength)); }
 
 bool in_domain(Vec3d c) {
   // Written so that a NaN is outside.
@@ -40,50 +42,51 @@ bool in_domain(Vec3d c) {
 double max(Vec3d v) { return std::max({v.x, v.y, v.z}); }
 bool has_direction(Vec3d v) { return math::length(v) >= kSmallestRadius; }
 
-void check_image(const Image& image, Problems& diagnostics) {
+void check_image(const Image& image, DiagnosticList& diagnostics) {
   if (image.crop) {
     const Window& w = *image.crop;
     if (w.width < 1 || w.height < 1 || w.x < 0 || w.y < 0 || w.width > image.width - w.x ||
         w.height > image.height - w.y)
-      diagnostics.error("image.crop", "must be a non-empty [x, y, width, height] inside the " +
-                                          std::to_string(image.width) + " x " + std::to_string(image.height) +
-                                          " frame");
+      diagnostics.error("image.crop", fmt::format("must be a non-empty [x, y, width, height] inside the {} x {} frame",
+                                                  image.width, image.height));
     if (image.overscan > 0) diagnostics.error("image.overscan", "cannot be combined with crop; remove one of them");
   }
   const Window all = image.data_window();
   if (all.width > kLargestSide || all.height > kLargestSide)
     diagnostics.error("image.overscan",
-                      "frame plus overscan exceeds the limit of " + std::to_string(kLargestSide) + " pixels per side");
+                      fmt::format("frame plus overscan exceeds the limit of {} pixels per side", kLargestSide));
 }
 
-void check_camera(const Camera& camera, Problems& diagnostics) {
+void check_camera(const Camera& camera, DiagnosticList& diagnostics) {
   bool usable = true;
   for (const auto& [name, v] :
        {std::pair{"look_from", camera.look_from}, {"look_at", camera.look_at}, {"up", camera.up}}) {
     if (in_domain(v)) continue;
     diagnostics.error(std::string("camera.") + name,
-                      vector_text(v) + " is not finite or exceeds " + number_text(kLargestLength));
+                      fmt::format("{} is not finite or exceeds {}", vector_text(v), number_text(kLargestLength)));
     usable = false;
   }
   if (!usable) return;  // the checks below would report the same mistake again
   const Vec3d view = camera.look_at - camera.look_from;
   if (!has_direction(view)) {
-    diagnostics.error("camera.look_at", view == Vec3d{}
-                                            ? "look_at is the same point as look_from, so the camera has no direction"
-                                            : "look_at is closer to look_from than " + number_text(kSmallestRadius) +
-                                                  ", so the camera has no direction");
+    diagnostics.error("camera.look_at",
+                      view == Vec3d{}
+                          ? "look_at is the same point as look_from, so the camera has no direction"
+                          : fmt::format("look_at is closer to look_from than {}, so the camera has no direction",
+                                        number_text(kSmallestRadius)));
   } else if (!has_direction(camera.up)) {
-    diagnostics.error("camera.up", camera.up == Vec3d{}
-                                       ? "up is zero; use any direction that is not parallel to the view"
-                                       : "up is shorter than " + number_text(kSmallestRadius) +
-                                             "; use any direction that is not parallel to the view");
+    diagnostics.error("camera.up",
+                      camera.up == Vec3d{}
+                          ? "up is zero; use any direction that is not parallel to the view"
+                          : fmt::format("up is shorter than {}; use any direction that is not parallel to the view",
+                                        number_text(kSmallestRadius)));
   } else if (math::length(math::cross(math::normalized(view), math::normalized(camera.up))) < kSmallestUpSine) {
     diagnostics.error("camera.up", "up is parallel to the view; choose another direction");
   }
 }
 
 /// Checks that the keys of the camera belong to its projection.
-void check_projection(const Camera& camera, Problems& diagnostics) {
+void check_projection(const Camera& camera, DiagnosticList& diagnostics) {
   const bool is_orthographic = camera.projection == Projection::kOrthographic;
   if (is_orthographic && !camera.width)
     diagnostics.error("camera.projection", "orthographic needs `width`, the width of the image in scene units");
@@ -93,16 +96,17 @@ void check_projection(const Camera& camera, Problems& diagnostics) {
     diagnostics.warning("camera.width", "has no effect; set camera.projection to \"orthographic\"");
 }
 
-void check_shutter(const Camera& camera, Problems& diagnostics) {
+void check_shutter(const Camera& camera, DiagnosticList& diagnostics) {
   if (camera.shutter_close < camera.shutter_open)
-    diagnostics.error("camera.shutter_close", "the shutter closes at " + number_text(camera.shutter_close) +
-                                                  ", before it opens at " + number_text(camera.shutter_open));
+    diagnostics.error("camera.shutter_close",
+                      fmt::format("the shutter closes at {}, before it opens at {}", number_text(camera.shutter_close),
+                                  number_text(camera.shutter_open)));
 }
 
 /// Checks that the keys of the background belong to its type. The colours of other types are ignored silently, so that
 /// switching the type with --set is convenient; a setting of an image or a sky that is not used is probably
 /// a mistake.
-void check_background(const Background& background, Problems& diagnostics) {
+void check_background(const Background& background, DiagnosticList& diagnostics) {
   const bool is_image = background.type == BackgroundType::kImage;
   const bool is_sky = background.type == BackgroundType::kSky, has_map = is_image || is_sky;
   const Background unset;
@@ -128,7 +132,7 @@ void check_background(const Background& background, Problems& diagnostics) {
 }
 
 /// Checks the exposure of emitters, except where the radiance is an image.
-void check_emitters(const Scene& scene, Problems& diagnostics) {
+void check_emitters(const Scene& scene, DiagnosticList& diagnostics) {
   for (const Material& material : scene.materials) {
     const auto* const emitter = std::get_if<Emitter>(&material.model);
     if (emitter == nullptr) continue;
@@ -137,41 +141,42 @@ void check_emitters(const Scene& scene, Problems& diagnostics) {
     const double radiance =
         texture != nullptr ? std::max(max(texture->low), max(texture->high)) : max(emitter->radiance);
     if (const std::string fault = exposure_fault(radiance, emitter->exposure); !fault.empty())
-      diagnostics.error("material." + material.name + ".exposure", fault);
+      diagnostics.error(fmt::format("material.{}.exposure", material.name), fault);
   }
 }
 
 /// Ray origins on the lens must be inside the domain of coordinates.
-void check_lens(const Camera& camera, Problems& diagnostics) {
+void check_lens(const Camera& camera, DiagnosticList& diagnostics) {
   if (!(camera.defocus_angle > 0)) return;
   const double focus = camera.focus_distance.value_or(math::length(camera.look_at - camera.look_from));
   const double radius = std::tan(camera.defocus_angle / 360 * std::numbers::pi) * focus;
   if (radius <= kLargestLength) return;
-  diagnostics.error("camera.defocus_angle", "the lens radius would be " + number_text(radius) + "; the maximum is " +
-                                                number_text(kLargestLength) + "; reduce the angle or focus_distance");
+  diagnostics.error("camera.defocus_angle",
+                    fmt::format("the lens radius would be {}; the maximum is {}; reduce the angle or focus_distance",
+                                number_text(radius), number_text(kLargestLength)));
 }
 
 /// Returns what is wrong with a radius; empty if it is valid.
 std::string radius_fault(double radius, Precision precision) {
   if (!std::isfinite(radius)) return "radius is not finite; must be in " + length_range();
-  if (radius == 0) return "radius is 0; must be in " + length_range() + ", or negative for an inward normal";
+  if (radius == 0) return fmt::format("radius is 0; must be in {}, or negative for an inward normal", length_range());
   if (std::abs(radius) < kSmallestRadius || std::abs(radius) > kLargestLength)
-    return "radius is " + number_text(radius) + "; its magnitude must be in " + length_range();
+    return fmt::format("radius is {}; its magnitude must be in {}", number_text(radius), length_range());
   if (precision == Precision::kFast && std::abs(radius) < kSmallestFastRadius)
-    return "radius is " + number_text(radius) + ", too small for precision `fast`, which needs " +
-           number_text(kSmallestFastRadius) + " at least; use `exact`";
+    return fmt::format("radius is {}, too small for precision `fast`, which needs {} at least; use `exact`",
+                       number_text(radius), number_text(kSmallestFastRadius));
   return {};
 }
 
 std::string material_fault(std::uint32_t material, const Scene& scene) {
   if (material < scene.materials.size()) return {};
-  return "there is no material with index " + std::to_string(material) + "; the scene has " +
-         std::to_string(scene.materials.size()) + ", counted from 0";
+  return fmt::format("there is no material with index {}; the scene has {}, counted from 0", material,
+                     scene.materials.size());
 }
 
 std::string center_fault(Vec3d center) {
   if (in_domain(center)) return {};
-  return "center " + vector_text(center) + " is not finite or exceeds " + number_text(kLargestLength);
+  return fmt::format("center {} is not finite or exceeds {}", vector_text(center), number_text(kLargestLength));
 }
 
 /// Calls `report(key suffix, text)` for each fault of a sphere.
@@ -182,24 +187,23 @@ void check_sphere(Vec3d center, double radius, std::uint32_t material, const Sce
   if (const std::string fault = material_fault(material, scene); !fault.empty()) report(".material", fault);
 }
 
-void check_spheres(const Scene& scene, Problems& diagnostics) {
+void check_spheres(const Scene& scene, DiagnosticList& diagnostics) {
   for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
     check_sphere(s.center, s.radius, s.material, scene, [&](const char* part, std::string text) {
-      diagnostics.error("sphere[" + std::to_string(i) + "]" + part, std::move(text));
+      diagnostics.error(fmt::format("sphere[{}]{}", i, part), std::move(text));
     });
   }
 }
 
-void check_points(std::size_t number, const Scene& scene, Problems& diagnostics) {
+void check_points(std::size_t number, const Scene& scene, DiagnosticList& diagnostics) {
   const Points& points = scene.points[number];
-  const std::string key = "points[" + std::to_string(number) + "]";
+  const std::string key = fmt::format("points[{}]", number);
   if (points.radii.size() != points.centers.size() ||
       (!points.materials.empty() && points.materials.size() != points.centers.size()) ||
       (!points.colors.empty() && points.colors.size() != points.centers.size())) {
-    diagnostics.error(key, "has " + std::to_string(points.centers.size()) + " centres, " +
-                               std::to_string(points.radii.size()) + " radii and " +
-                               std::to_string(points.materials.size()) + " materials");
+    diagnostics.error(key, fmt::format("has {} centres, {} radii and {} materials", points.centers.size(),
+                                       points.radii.size(), points.materials.size()));
     return;
   }
   if (points.materials.empty())
@@ -212,33 +216,33 @@ void check_points(std::size_t number, const Scene& scene, Problems& diagnostics)
     const std::uint32_t material = points.materials.empty() ? 0 : points.materials[i];
     check_sphere(points.centers[i], points.radii[i], material, scene, [&](const std::string& part, std::string text) {
       if (points.materials.empty() && part == ".material") return;  // reported once, above
-      if (++faults <= kMaxReported) diagnostics.error(key + ".file", sphere_name(scene, number, i) + ": " + text);
+      if (++faults <= kMaxReported)
+        diagnostics.error(key + ".file", fmt::format("{}: {}", sphere_name(scene, number, i), text));
     });
   }
   if (faults > kMaxReported)
-    diagnostics.error(key + ".file",
-                      "and " + std::to_string(faults - kMaxReported) + " more (" + std::to_string(faults) + " in all)");
+    diagnostics.error(key + ".file", fmt::format("and {} more ({} in all)", faults - kMaxReported, faults));
 }
 
-void check_layers(const Scene& scene, Problems& diagnostics) {
+void check_layers(const Scene& scene, DiagnosticList& diagnostics) {
   for (std::size_t i = 0; i < scene.output.layers.size(); ++i)
     if (const std::string fault = layer_fault(scene, scene.output.layers[i]); !fault.empty())
-      diagnostics.error("output.layers[" + std::to_string(i) + "]", fault);
+      diagnostics.error(fmt::format("output.layers[{}]", i), fault);
 }
 
-void check_light_groups(const Scene& scene, Problems& diagnostics) {
+void check_light_groups(const Scene& scene, DiagnosticList& diagnostics) {
   std::set<std::string> names = {kDefaultLightGroup};  // the background's light, or that of an emitter without a group
   const auto check = [&](const std::string& key, const std::string& name) {
     if (const std::string fault = light_group_fault(name); !fault.empty())
-      diagnostics.error(key, string_text(name) + " " + fault);
+      diagnostics.error(key, fmt::format("{} {}", string_text(name), fault));
     const bool is_new = !name.empty() && names.insert(name).second;
     if (is_new && names.size() == kMaxLightGroups + 1)
       diagnostics.error(
-          key, "the scene has more than " + std::to_string(kMaxLightGroups) + " light groups, with the default group");
+          key, fmt::format("the scene has more than {} light groups, with the default group", kMaxLightGroups));
   };
   for (const Material& material : scene.materials)
     if (const auto* emitter = std::get_if<Emitter>(&material.model))
-      check("material." + material.name + ".light_group", emitter->light_group);
+      check(fmt::format("material.{}.light_group", material.name), emitter->light_group);
   if (background_light_group(scene.background) != kDefaultLightGroup)
     check("background.light_group", scene.background.light_group);
 }
@@ -248,8 +252,8 @@ void check_light_groups(const Scene& scene, Problems& diagnostics) {
 std::string exposure_fault(double radiance, double exposure) {
   const double product = radiance * std::exp2(exposure);
   if (product <= kBrightestLight) return {};
-  return "the radiance with exposure would be " + number_text(product) + "; the maximum is " +
-         number_text(kBrightestLight) + "; reduce the exposure";
+  return fmt::format("the radiance with exposure would be {}; the maximum is {}; reduce the exposure",
+                     number_text(product), number_text(kBrightestLight));
 }
 
 std::vector<std::string> sphere_faults(Vec3d center, double radius, Precision precision) {
@@ -261,12 +265,12 @@ std::vector<std::string> sphere_faults(Vec3d center, double radius, Precision pr
 
 std::string sphere_name(const Scene& scene, std::size_t points, std::size_t index) {
   const Points& file = scene.points[points];
-  return (file.spheres_are_rows ? "row " : "sphere ") + std::to_string(index + 1) + " of " +
-         (file.file.empty() ? "points[" + std::to_string(points) + "]" : file.file.string());
+  return fmt::format("{}{} of {}", file.spheres_are_rows ? "row " : "sphere ", index + 1,
+                     file.file.empty() ? "points[" + std::to_string(points) + "]" : file.file.string());
 }
 
 std::vector<SceneDiagnostic> validate(const Scene& scene) {
-  Problems diagnostics;
+  DiagnosticList diagnostics;
   check_image(scene.image, diagnostics);
   check_camera(scene.camera, diagnostics);
   check_background(scene.background, diagnostics);
@@ -276,9 +280,8 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
   check_shutter(scene.camera, diagnostics);
   check_spheres(scene, diagnostics);
   for (std::size_t p = 0; p < scene.points.size(); ++p) check_points(p, scene, diagnostics);
-  if (scene.sphere_count() > kMostSpheres)
-    diagnostics.error(
-        "", "has " + std::to_string(scene.sphere_count()) + " spheres; the maximum is " + std::to_string(kMostSpheres));
+  if (scene.sphere_count() > kMaxSpheres)
+    diagnostics.error("", fmt::format("has {} spheres; the maximum is {}", scene.sphere_count(), kMaxSpheres));
   check_light_groups(scene, diagnostics);
   check_layers(scene, diagnostics);
   return diagnostics.take();
@@ -287,14 +290,14 @@ std::vector<SceneDiagnostic> validate(const Scene& scene) {
 std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene* closing) {
   for (const Points& p : scene.points)
     if (p.radii.size() != p.centers.size()) return {};  // an error of validate(); the arrays must not be indexed
-  Problems diagnostics;
+  DiagnosticList diagnostics;
   const Coincidents found = coincident_spheres(scene, kMaxReported, closing);
   for (const Coincident& c : found.reported)
-    diagnostics.warning(c.key, (c.name.empty() ? "" : c.name + " ") + "has exactly the same centre and radius as " +
-                                   c.first + "; only the first is rendered");
+    diagnostics.warning(c.key, fmt::format("{}has exactly the same centre and radius as {}; only the first is rendered",
+                                           c.name.empty() ? "" : c.name + " ", c.first));
   if (found.count > kMaxReported)
-    diagnostics.warning("", "and " + std::to_string(found.count - kMaxReported) + " more coincident spheres (" +
-                                std::to_string(found.count) + " in all)");
+    diagnostics.warning(
+        "", fmt::format("and {} more coincident spheres ({} in all)", found.count - kMaxReported, found.count));
   return diagnostics.take();
 }
 

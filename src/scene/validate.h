@@ -54,7 +54,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene);
 /// `closing`  the scene at shutter close; null: no motion
 /// Result     the first kMaxReported, with the number of the rest; empty if there are none
 /// Errors     base::Error(kStopped) in a base::StopScope
-/// Cost       see base::find_repeated
+/// Cost       see base::find_duplicates
 std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene* closing);
 
 }  // namespace orrery::scene

@@ -137,7 +137,7 @@ TEST_F(CliPreview, ViewersThatHangLeaveOrAreMissingAreNoError) {
 }
 
 TEST_F(CliPreview, RejectsBadRequestsBeforeAnyFileIsTouched) {
-  ::setenv("TERM", "xterm", 1);  // services have none, which would be the first complaint
+  ::setenv("TERM", "xterm", 1);  // services have none, which would be the first error reported
   const std::string before = text_of(folder_ / "good.toml");
   write("cloud.csv", "x,y,z\n0,0,0\n");
   for (const auto& [arguments, status, text] : std::vector<std::tuple<std::string, int, std::string>>{

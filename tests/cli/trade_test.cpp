@@ -57,7 +57,7 @@ TEST_F(CliTrade, PixelsWithoutNoiseEstimateAreReported) {
             std::string::npos)
       << r.err;
   const auto s = stats();
-  EXPECT_GT(s["unjudged_pixels"], 200);
+  EXPECT_GT(s["unreliable_pixels"], 200);
   EXPECT_EQ(s["ended_by"], "samples");
   EXPECT_LE(s["noise_expected"], s["noise"]);
   EXPECT_EQ(run("render dark.toml -o b.exr --noise 0.3 --samples 64 --strict -q").status, 75);

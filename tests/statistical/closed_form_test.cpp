@@ -2,7 +2,9 @@
 // Compares renders with closed-form images.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "compile/compile.h"
@@ -53,7 +55,8 @@ double expected(const compile::CompiledScene& compiled, int px, int py, int chan
     const double t = (-od - std::sqrt(od * od - dd * (oo - 1))) / dd;
     const double normal_y = o[1] + t * d[1];
     const double a = (2.0 / 3.0 * normal_y + 1) / 2;
-    sum += kAlbedo[channel] * (compiled.background.bottom[channel] * (1 - a) + compiled.background.top[channel] * a);
+    const math::Vec3d sky = compiled.background.bottom * (1 - a) + compiled.background.top * a;
+    sum += kAlbedo[channel] * std::array{sky.x, sky.y, sky.z}[static_cast<std::size_t>(channel)];
   }
   return sum / (kGrid * kGrid);
 }

@@ -210,7 +210,7 @@ TEST(Adaptive, RareLightIsNotBiased) {
   for (int seed = 0; seed < kSeeds; ++seed) {
     s.render.seed = static_cast<std::uint32_t>(seed);
     const Result r = render(compile::compile(s), settings);
-    EXPECT_LT(r.statistics.fewest_samples, r.statistics.most_samples);
+    EXPECT_LT(r.statistics.min_samples, r.statistics.max_samples);
     const double off = light_of(r.picture) / truth - 1;
     sum += off;
     squares += off * off;

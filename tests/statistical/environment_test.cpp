@@ -293,8 +293,8 @@ TEST(StatisticalEnvironment, TheSunIsSampledByItsShareOfThePower) {
   Rows judged = batch;
   ORRERY_BEST(judge_double)(env, judged);
   std::uint64_t inside = 0;
-  const auto dot = [&](const double(&a)[3], std::size_t i) {
-    return a[0] * batch.x[i] + a[1] * batch.y[i] + a[2] * batch.z[i];
+  const auto dot = [&](const math::Vec3d& a, std::size_t i) {
+    return a.x * batch.x[i] + a.y * batch.y[i] + a.z * batch.z[i];
   };
   for (std::size_t i = 0; i < batch.u.size(); ++i) {
     ASSERT_NEAR(judged.pdf[i] * batch.inverse[i], 1, 1e-12);

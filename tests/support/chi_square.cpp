@@ -13,7 +13,7 @@ ChiSquare chi_square_of_equal_bins(const std::vector<std::uint64_t>& counts) {
 }
 
 ChiSquare chi_square(const std::vector<std::uint64_t>& counts, const std::vector<double>& expected) {
-  constexpr double kFewest = 5;
+  constexpr double kMinExpectedCount = 5;
   ChiSquare out;
   double bins = 0, pooled = 0, pooled_expected = 0;
   const auto add = [&](double count, double expectation) {
@@ -21,7 +21,7 @@ ChiSquare chi_square(const std::vector<std::uint64_t>& counts, const std::vector
     ++bins;
   };
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (expected[i] >= kFewest) {
+    if (expected[i] >= kMinExpectedCount) {
       add(static_cast<double>(counts[i]), expected[i]);
     } else {
       pooled += static_cast<double>(counts[i]);
@@ -29,7 +29,7 @@ ChiSquare chi_square(const std::vector<std::uint64_t>& counts, const std::vector
     }
   }
   // Counts where none can be must not vanish in a division by zero.
-  if (pooled > 0 || pooled_expected >= kFewest) add(pooled, std::max(pooled_expected, 1e-3));
+  if (pooled > 0 || pooled_expected >= kMinExpectedCount) add(pooled, std::max(pooled_expected, 1e-3));
   const double degrees = bins - 1;
   const double spread = 2 / (9 * degrees);
   out.z = (std::cbrt(out.statistic / degrees) - (1 - spread)) / std::sqrt(spread);

@@ -67,14 +67,14 @@ std::vector<Tree> trees() {
   return out;
 }
 
-TEST(AccelSphereBvh, EverySphereIsInOneLeafAndBelowItsHome) {
+TEST(AccelSphereBvh, EverySphereIsInOneLeafAndBelowItsStartNode) {
   for (const Tree& tree : trees()) {
     std::vector<int> seen(tree.spheres.size(), 0);
     tree.each_below(tree.bvh.root(), [&](std::uint32_t id) { ++seen[id]; });
     EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<long>(seen.size()));
     for (std::uint32_t id = 0; id < seen.size(); ++id) {
       bool found = false;
-      tree.each_below(tree.bvh.home_of(id), [&](std::uint32_t other) { found = found || other == id; });
+      tree.each_below(tree.bvh.start_node(id), [&](std::uint32_t other) { found = found || other == id; });
       EXPECT_TRUE(found) << id;
     }
   }

@@ -67,5 +67,7 @@ TEST(BaseDiagnostic, ReplacesControlCharacters) {
   EXPECT_EQ(shown, "scene.toml:1:1: error: name \"?[2J\" ??31m\n    ?[31mred?\n    ^\n");
 }
 
+TEST(BaseDiagnostic, AWarningWithoutLocationIsOneLine) { EXPECT_EQ(warning_line("two words"), "warning: two words\n"); }
+
 }  // namespace
 }  // namespace orrery::base

@@ -135,7 +135,7 @@ TEST(CompileCompile, AConstantBackgroundIgnoresTheDirection) {
   s.background.color = {0.25, 0.5, 0.75};
   const CompiledScene compiled = compile(s);
   EXPECT_FALSE(compiled.features.sky);
-  EXPECT_EQ(compiled.background.bottom[2], 0.75);
+  EXPECT_EQ(compiled.background.bottom.z, 0.75);
 }
 
 TEST(CompileCameraBasis, SpansTheImageOnTheFocusPlane) {
@@ -193,9 +193,9 @@ TEST(CompileCompile, SkiesAreBakedWithTheirSun) {
   EXPECT_TRUE(view.has_sun);
   EXPECT_TRUE(compiled.features.lit);
   EXPECT_EQ(view.scale, 2);
-  EXPECT_NEAR(view.sun[0], std::sqrt(0.5), 1e-12);  // from +z, turned to +x
-  EXPECT_NEAR(view.sun[1], std::sqrt(0.5), 1e-12);
-  EXPECT_NEAR(view.sun_radiance[1], 2 * bake_sky(s.background, {16}).sun.radiance.y, 1e-6 * view.sun_radiance[1]);
+  EXPECT_NEAR(view.sun.x, std::sqrt(0.5), 1e-12);  // from +z, turned to +x
+  EXPECT_NEAR(view.sun.y, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(view.sun_radiance.y, 2 * bake_sky(s.background, {16}).sun.radiance.y, 1e-6 * view.sun_radiance.y);
   s.background.sun = false;
   EXPECT_FALSE(compile(s).environment->view().has_sun);
 }

@@ -124,7 +124,7 @@ Vec3d thin_radiance(const Atmosphere& air, double sun_elevation, double azimuth)
   const double toward_sun = ray_sine * sun_sine + ray_cosine * sun_cosine * std::cos(azimuth * kPi / 180);
   const double length = distance_to_space(kGroundRadius, ray_sine);
   constexpr int kSteps = 4000;
-  Amounts sum;
+  Densities sum;
   for (int i = 0; i < kSteps; ++i) {
     const double t = length * (i + 0.5) / kSteps;
     const double radius = std::sqrt(kGroundRadius * kGroundRadius + t * t + 2 * kGroundRadius * t * ray_sine);
@@ -160,13 +160,13 @@ TEST(CompileDaylight, TabulatedColumnsMatchQuadrature) {
     for (const double part : {0.0, 0.01, 0.1, 0.5, 1.0}) {
       const double sine = horizon + (1 - horizon) * part, length = distance_to_space(radius, sine);
       constexpr int kSteps = 100000;
-      Amounts expected;
+      Densities expected;
       for (int i = 0; i < kSteps; ++i) {
         const double t = length * (i + 0.5) / kSteps;
         const double h = std::sqrt(radius * radius + t * t + 2 * radius * t * sine) - kGroundRadius;
         expected = expected + densities(h) * (length / kSteps);
       }
-      const Amounts found = columns.to_space(altitude, sine);
+      const Densities found = columns.to_space(altitude, sine);
       EXPECT_NEAR(found.molecules / expected.molecules, 1, 0.01) << altitude << " " << part;
       if (altitude < 30e3) {
         EXPECT_NEAR(found.aerosol / expected.aerosol, 1, 0.01) << altitude << " " << part;

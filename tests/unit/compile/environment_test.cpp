@@ -119,8 +119,8 @@ TEST(CompileEnvironment, RotationTurnsTheSun) {
   EnvironmentSettings settings;
   settings.rotation = 90;
   const EnvironmentMap map(image, settings);
-  EXPECT_NEAR(map.view().sun[0], 1, 1e-15);
-  EXPECT_NEAR(map.view().sun[2], 0, 1e-15);
+  EXPECT_NEAR(map.view().sun.x, 1, 1e-15);
+  EXPECT_NEAR(map.view().sun.z, 0, 1e-15);
 }
 
 }  // namespace

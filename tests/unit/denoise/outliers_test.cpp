@@ -37,8 +37,8 @@ TEST(DenoiseOutliers, AreBrightInOneHalfOnly) {
       EXPECT_NEAR(light, 0.4F, 0.2F) << i;
     }
   }
-  EXPECT_EQ(outliers.first_from(1)->pixel, pixels[1]);
-  EXPECT_EQ(outliers.first_from(kImageFrame.pixels()), outliers.pixels.end());
+  EXPECT_EQ(outliers.lower_bound(1)->pixel, pixels[1]);
+  EXPECT_EQ(outliers.lower_bound(kImageFrame.pixels()), outliers.pixels.end());
 }
 
 TEST(DenoiseOutliers, AreNotHighlightsOfBothHalves) {

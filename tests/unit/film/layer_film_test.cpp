@@ -9,6 +9,8 @@
 #include <limits>
 #include <random>
 
+#include "base/image_limits.h"
+
 namespace orrery::film {
 namespace {
 
@@ -27,8 +29,8 @@ class FilmLayerFilm : public testing::Test {
   static kernel::PathRecord path_to(std::uint32_t sphere, double light = 0) {
     kernel::PathRecord path;
     path.sphere = sphere;
-    path.offset[2] = 1;
-    path.direction[2] = -1;
+    path.offset.z = 1;
+    path.direction.z = -1;
     std::fill_n(path.light, 3, light);
     return path;
   }
@@ -43,7 +45,7 @@ class FilmLayerFilm : public testing::Test {
     pixel_.add(request_, view_, path, weight);
     if (request_.lights())
       for (const kernel::LightEvent& event : events) pixel_.add(request_, path, event, weight);
-    if (!kernel::is_good_sample(path.light[0], path.light[1], path.light[2])) return;
+    if (!kernel::is_valid_sample(path.light[0], path.light[1], path.light[2])) return;
     for (int c = 0; c < 3; ++c) beauty_.rgb[c] += kernel::to_fixed_point(path.light[c]) * weight;
     beauty_.weight += weight;
   }
@@ -122,7 +124,7 @@ TEST_F(FilmLayerFilm, NormalsAndAlbedoAreMeansAndFaceTheCamera) {
   view_.camera.origin[2] = -5;  // inside the first sphere
   pixel_ = {};
   kernel::PathRecord back = path_to(0);
-  back.offset[2] = -1;
+  back.offset.z = -1;
   add(back);
   EXPECT_EQ(value(picture(), "N.Z"), 1);
 }
@@ -151,7 +153,7 @@ TEST_F(FilmLayerFilm, LightAddsUpToTheBeautyInAnyOrder) {
   for (int trial = 0; trial < 3000; ++trial) {
     clear();
     request_.light_groups = trial % 4 != 0;
-    request_.groups.assign(1 + random() % (trial % 50 == 1 ? kMaxLightGroups : 4), {"", true, true});
+    request_.groups.assign(1 + random() % (trial % 50 == 1 ? base::kMaxLightGroups : 4), {"", true, true});
     for (std::size_t g = 0; g < request_.groups.size(); ++g) request_.groups[g].name = "g" + std::to_string(g);
     const auto [low, high] = exponents[trial / 4 % 4];
     std::uniform_real_distribution<double> exponent(low, high);
@@ -376,7 +378,7 @@ TEST_F(FilmLayerFilm, ConstantRadianceHasNoVariance) {
 TEST_F(FilmLayerFilm, NormalsPointAgainstTheRay) {
   request_.normal = true;
   kernel::PathRecord path = path_to(0);
-  path.direction[0] = 0.6, path.direction[2] = 0.8;  // leaves through the side that faces the camera
+  path.direction.x = 0.6, path.direction.z = 0.8;  // leaves through the side that faces the camera
   add(path);
   EXPECT_FLOAT_EQ(value(picture(), "N.Z"), -1);
   add(path_to(0));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/format.h"
 
+#include "base/image_limits.h"
 #include "unit/image/test_pictures.h"
 
 namespace orrery::image {
@@ -31,14 +32,14 @@ TEST(ImageFormat, OnlyExrAndHdrAreSceneLinear) {
 }
 
 TEST(ImageFormat, OnlyPngAndTiffHoldSixteenBits) {
-  EXPECT_EQ(most_bits(Format::kPng), 16);
-  EXPECT_EQ(most_bits(Format::kTiff), 16);
-  EXPECT_EQ(most_bits(Format::kJpeg), 8);
-  EXPECT_EQ(most_bits(Format::kPpm), 8);
+  EXPECT_EQ(max_bits(Format::kPng), 16);
+  EXPECT_EQ(max_bits(Format::kTiff), 16);
+  EXPECT_EQ(max_bits(Format::kJpeg), 8);
+  EXPECT_EQ(max_bits(Format::kPpm), 8);
 }
 
 TEST(ImageFormat, ASideIsLimitedByTheEncoder) {
-  constexpr int kLargest = 65536;  // scene::kLargestSide
+  constexpr int kLargest = base::kLargestSide;
   for (const char* file : {"a.exr", "a.tif", "a.tiff"}) EXPECT_NO_THROW(check_size(file, kLargest, kLargest)) << file;
   for (const char* file : {"a.hdr", "a.png", "a.ppm"}) {
     EXPECT_NO_THROW(check_size(file, kLargest - 1, kLargest - 1)) << file;

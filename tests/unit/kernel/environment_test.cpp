@@ -131,7 +131,7 @@ TEST(KernelEnvironment, TheSunIsAddedInsideItsCone) {
   std::fill(map.texels.begin(), map.texels.end(), 0.5F);
   map.view.has_sun = true;
   map.view.sun_one_minus_cos = 1e-5;
-  map.view.sun_radiance[0] = 100;
+  map.view.sun_radiance.x = 100;
   const double inside = std::sqrt(2e-5) * 0.999, outside = std::sqrt(2e-5) * 1.001;
   EXPECT_EQ(seen(map, std::sin(inside), std::cos(inside), 0).rgb[0], 100.5);
   EXPECT_EQ(seen(map, std::sin(outside), std::cos(outside), 0).rgb[0], 0.5);

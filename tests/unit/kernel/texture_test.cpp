@@ -61,7 +61,7 @@ void look_all(D d, const Texture& texture, std::vector<TextureLook>& looks) {
     ray.self = hn::Set(IdTag<D>(), hn::TFromD<IdTag<D>>{kNoSphere});
     const auto sphere = broadcast(d, look.sphere);
     const auto no = hn::FirstN(d, 0);
-    const auto hit = nearest<D, kPrecision>(d, ray, sphere, no);
+    const auto hit = closest_distance<D, kPrecision>(d, ray, sphere, no);
     if (hn::AllFalse(d, hit.mask)) continue;
     const auto at = hit_point<D, kPrecision>(d, ray, sphere, no, hit.value);
     const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, hit.value);

@@ -55,7 +55,7 @@ Point point_of(const Pair& choice, const Pair& reference) {
 }
 
 int biased_points(std::vector<Point> points) {
-  judge_bias(points);
+  test_bias(points);
   int biased = 0;
   for (const Point& p : points) biased += p.bias > 0;
   return biased;
@@ -80,7 +80,7 @@ TEST(MeasureBias, ABiasIsDetectedAndMeasured) {
   const Pair reference = noise.pair(1 << 16);
   std::vector<Point> points = {point_of(noise.pair(256, 0.1), reference), point_of(noise.pair(256), reference),
                                point_of(noise.pair(256, 0.5, 40), reference)};
-  judge_bias(points);
+  test_bias(points);
   EXPECT_NEAR(points[0].bias, 0.05, 0.005);
   EXPECT_EQ(points[1].bias, 0);
   EXPECT_EQ(points[1].error, points[1].noise);
@@ -110,7 +110,7 @@ TEST(MeasureBias, LightThatFewPathsHaveFoundIsNoBias) {
   constexpr int kStudies = 3000;
   for (int i = 0; i < kStudies; ++i)
     alarms += biased_points({point_of({sun_found_by_chance(engine, 4), sun_found_by_chance(engine, 4)}, reference)});
-  EXPECT_LE(alarms, kStudies * kFalseAlarm);
+  EXPECT_LE(alarms, kStudies * kFamilyWiseError);
 }
 
 /// Where no path has found it, it cannot be distinguished from a bias; but only shortcuts can have one.
@@ -119,11 +119,11 @@ TEST(MeasureBias, LightThatNoPathHasFoundIsAnError) {
   Noise noise(7);
   Point missing = point_of({sun_found_by_chance(engine, 0.01), sun_found_by_chance(engine, 0.01)}, noise.pair(1 << 20));
   std::vector<Point> points = {missing};
-  judge_bias(points);
+  test_bias(points);
   EXPECT_NEAR(points[0].bias, 0.1, 0.001);
   missing.is_shortcut = false;
   points = {missing};
-  judge_bias(points);
+  test_bias(points);
   EXPECT_EQ(points[0].bias, 0);
   EXPECT_NEAR(points[0].error, 0.1, 0.001);
 }
@@ -198,7 +198,7 @@ TEST(MeasureBias, AnUnbiasedSceneGivesNoFalsePositives) {
   }
   std::printf("%d of %d studies of %zu unbiased choices reported a bias, in %d choices\n", alarms, studies,
               choices.size(), biased);
-  EXPECT_LE(alarms, studies * kFalseAlarm + 3 * std::sqrt(studies * kFalseAlarm));
+  EXPECT_LE(alarms, studies * kFamilyWiseError + 3 * std::sqrt(studies * kFamilyWiseError));
 }
 
 }  // namespace

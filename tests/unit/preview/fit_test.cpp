@@ -8,7 +8,7 @@
 namespace orrery::preview {
 namespace {
 
-constexpr Screen::Room kText{80, 22, 1, 2}, kCells{80, 22, 10, 20};
+constexpr Screen::CellGrid kText{80, 22, 1, 2}, kCells{80, 22, 10, 20};
 
 TEST(PreviewFit, KeepsTheAspectRatioInsideTheTerminal) {
   EXPECT_EQ(fit(1600, 900, 1, kText), (Fit{78, 44, 78, 22}));

@@ -29,7 +29,7 @@ std::vector<std::uint8_t> developed(const film::Partial& state) {
   return {codes.begin(), codes.end()};
 }
 
-PictureInfo info(int width, int height) { return {"scene.toml", width, height, 1, settings()}; }
+display::PictureInfo info(int width, int height) { return {"scene.toml", width, height, 1, settings()}; }
 
 OnNote into(std::string& notes) {
   return [&notes](const std::string& text) { notes += text; };

@@ -24,7 +24,7 @@ TEST(PreviewScreen, AsksWithoutEchoAndRestoresTheMode) {
     const TerminalReader reader(terminal);
     const Screen screen(terminal.slave(), color_terminal);
     EXPECT_EQ(screen.graphics(), Graphics::kKitty);
-    EXPECT_EQ(screen.room(), (Screen::Room{80, 22, 9, 18}));
+    EXPECT_EQ(screen.cell_grid(), (Screen::CellGrid{80, 22, 9, 18}));
   }
   const termios after = terminal.mode();
   EXPECT_EQ(before.c_lflag, after.c_lflag);
@@ -38,7 +38,7 @@ TEST(PreviewScreen, ATerminalThatDoesNotAnswerGetsHalfBlocks) {
   const termios before = terminal.mode();
   const Screen screen(terminal.slave(), color_terminal);
   EXPECT_EQ(screen.graphics(), Graphics::k256Colors);
-  EXPECT_EQ(screen.room(), (Screen::Room{80, 22, 1, 2}));
+  EXPECT_EQ(screen.cell_grid(), (Screen::CellGrid{80, 22, 1, 2}));
   EXPECT_EQ(terminal.mode().c_lflag, before.c_lflag);
 }
 
@@ -77,7 +77,7 @@ TEST(PreviewScreen, AResizedTerminalGetsANewImageBelow) {
     screen.show("IMAGE1", 20);
     screen.poll();
     terminal.resize(40, 10);
-    EXPECT_EQ(screen.room(), (Screen::Room{40, 8, 1, 2}));
+    EXPECT_EQ(screen.cell_grid(), (Screen::CellGrid{40, 8, 1, 2}));
     screen.poll();  // the image does not fit any more
     screen.show("IMAGE2", 8);
     screen.poll();

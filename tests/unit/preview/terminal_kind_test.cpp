@@ -23,24 +23,24 @@ TEST(PreviewTerminalKind, NamesWhyThereAreNoColours) {
 
 TEST(PreviewTerminalKind, ReadsAnswersInPieces) {
   const std::string all = "x\033_Gi=31;OK\033\\\033[6;20;10t\033[?62;4;22c";
-  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_FALSE(parse_answers(all.substr(0, i)).is_complete) << i;
-  const Answers answers = parse_answers(all);
-  EXPECT_TRUE(answers.is_complete && answers.kitty && answers.sixel);
-  EXPECT_EQ(answers.cell_width, 10);
-  EXPECT_EQ(answers.cell_height, 20);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_FALSE(parse_reply(all.substr(0, i)).is_complete) << i;
+  const TerminalReply reply = parse_reply(all);
+  EXPECT_TRUE(reply.is_complete && reply.kitty && reply.sixel);
+  EXPECT_EQ(reply.cell_width, 10);
+  EXPECT_EQ(reply.cell_height, 20);
 }
 
 TEST(PreviewTerminalKind, IgnoresWrongAnswers) {
   // 4 as the class of a terminal, and 14, are not the sixel attribute.
-  EXPECT_FALSE(parse_answers("\033[?4;14c").sixel);
-  EXPECT_FALSE(parse_answers("\033_Gi=31;ENOTSUP\033\\\033[?62c").kitty);
+  EXPECT_FALSE(parse_reply("\033[?4;14c").sixel);
+  EXPECT_FALSE(parse_reply("\033_Gi=31;ENOTSUP\033\\\033[?62c").kitty);
   for (const char* text : {"\033[6;0;0t", "\033[6;99999;99999t", "\033[6;20t", "\033[4;20;10t", "\033[6;-3;10t",
                            "\033[6;99999999999999999999;3t", "\033[;;;;;;t", "\033[t", "\033["})
-    EXPECT_EQ(parse_answers(text).cell_height, 0) << text;
+    EXPECT_EQ(parse_reply(text).cell_height, 0) << text;
 }
 
 TEST(PreviewTerminalKind, ChoosesTheBestGraphics) {
-  Answers all, none;
+  TerminalReply all, none;
   all.kitty = all.sixel = true;
   EXPECT_EQ(best_graphics(with({{"TERM_PROGRAM", "iTerm.app"}}), all), Graphics::kKitty);
   all.kitty = false;

@@ -24,7 +24,7 @@ class PreviewTevSink : public testing::Test {
   std::unique_ptr<Preview> preview(const std::string& port) {
     return std::make_unique<Preview>(std::make_unique<TevSink>("127.0.0.1", port, note()), note());
   }
-  static PictureInfo info(int width, int height, const std::string& name = "scene.toml") {
+  static display::PictureInfo info(int width, int height, const std::string& name = "scene.toml") {
     return {name, width, height, 1, {}};
   }
   std::string notes_;

@@ -41,7 +41,7 @@ TEST(RenderAdaptiveSampling, ThreadsAndTraversalsGiveTheSameBits) {
   settings.threads = 1;
   const Result one = render(world_of(), settings);
   EXPECT_EQ(one.statistics.ended_by, "noise");
-  EXPECT_LT(one.statistics.fewest_samples, one.statistics.most_samples);
+  EXPECT_LT(one.statistics.min_samples, one.statistics.max_samples);
   settings.threads = 5;
   settings.traversal = accel::Traversal::kSingle;
   const Result five = render(world_of(), settings);
@@ -63,7 +63,7 @@ TEST(RenderAdaptiveSampling, RequestedSampleCountIsALimit) {
   const Result r = render(world_of(40), settings);
   EXPECT_TRUE(r.completed);
   EXPECT_EQ(r.statistics.ended_by, "samples");
-  EXPECT_EQ(r.statistics.most_samples, 40u);
+  EXPECT_EQ(r.statistics.max_samples, 40u);
   EXPECT_GT(*r.statistics.noise, 0.001);
 }
 
@@ -79,8 +79,8 @@ TEST(RenderAdaptiveSampling, SampleLayerMatchesThePathCount) {
     most = std::max(most, n);
   }
   EXPECT_EQ(sum, static_cast<double>(r.statistics.paths));
-  EXPECT_EQ(static_cast<std::uint64_t>(fewest), r.statistics.fewest_samples);
-  EXPECT_EQ(static_cast<std::uint64_t>(most), r.statistics.most_samples);
+  EXPECT_EQ(static_cast<std::uint64_t>(fewest), r.statistics.min_samples);
+  EXPECT_EQ(static_cast<std::uint64_t>(most), r.statistics.max_samples);
   // Layers do not change the beauty.
   const Result bare = render(world_of(), noise(0.012));
   for (const char* name : {"R", "G", "B"}) EXPECT_EQ(r.picture.find(name)->values, bare.picture.find(name)->values);
@@ -115,7 +115,7 @@ TEST(RenderAdaptiveSampling, EmptyViewFinishesAtOnce) {
   s.background.type = scene::BackgroundType::kConstant;
   const Result r = render(compile::compile(s), noise(0.001));
   EXPECT_EQ(r.statistics.ended_by, "noise");
-  EXPECT_EQ(r.statistics.most_samples, 16u);
+  EXPECT_EQ(r.statistics.max_samples, 16u);
   EXPECT_EQ(r.picture.planes[0].values[0], 1.0f);
 }
 
@@ -160,9 +160,9 @@ TEST(RenderAdaptiveSampling, RareLightIsNotMistakenForBlack) {
 TEST(RenderAdaptiveSampling, BlackIsAcceptedAfter1024Samples) {
   const Result r = render(compile::compile(test::room(3.95, 5, 12, 8)), noise(0.3));
   EXPECT_EQ(r.statistics.ended_by, "noise");
-  EXPECT_EQ(r.statistics.fewest_samples, 1024u);
-  EXPECT_EQ(r.statistics.most_samples, 1024u);
-  EXPECT_EQ(r.statistics.unjudged_pixels, 0u);
+  EXPECT_EQ(r.statistics.min_samples, 1024u);
+  EXPECT_EQ(r.statistics.max_samples, 1024u);
+  EXPECT_EQ(r.statistics.unreliable_pixels, 0u);
 }
 
 TEST(RenderAdaptiveSampling, PixelsWithTooFewSamplesAreCounted) {
@@ -173,8 +173,8 @@ TEST(RenderAdaptiveSampling, PixelsWithTooFewSamplesAreCounted) {
   const Result r = render(compile::compile(s), settings);
   EXPECT_TRUE(r.completed);
   EXPECT_EQ(r.statistics.ended_by, "samples");
-  EXPECT_EQ(r.statistics.most_samples, 64u);
-  EXPECT_EQ(r.statistics.unjudged_pixels, 96u);
+  EXPECT_EQ(r.statistics.max_samples, 64u);
+  EXPECT_EQ(r.statistics.unreliable_pixels, 96u);
 }
 
 TEST(RenderAdaptiveSampling, TransparentBackgroundIsKnownToBeBlack) {
@@ -187,7 +187,7 @@ TEST(RenderAdaptiveSampling, TransparentBackgroundIsKnownToBeBlack) {
   settings.layers.coverage = true;
   const Result r = render(compile::compile(s), settings);
   EXPECT_EQ(r.statistics.ended_by, "noise");
-  EXPECT_EQ(r.statistics.fewest_samples, 16u);
+  EXPECT_EQ(r.statistics.min_samples, 16u);
   EXPECT_LT(r.statistics.paths, 30u * 600u);  // a thousand per pixel if black needed evidence
 }
 
@@ -198,7 +198,7 @@ TEST(RenderAdaptiveSampling, ImagesOfFewPixelsFinish) {
     const Result r = render(compile::compile(s), noise(0.1));
     EXPECT_EQ(r.statistics.ended_by, "noise");
     EXPECT_LE(*r.statistics.noise, 0.1);
-    most = std::max(most, r.statistics.most_samples);
+    most = std::max(most, r.statistics.max_samples);
   }
   EXPECT_GT(most, 16u);
 }
@@ -218,8 +218,8 @@ TEST(RenderAdaptiveSampling, IsolatedNoisyPixelGetsSamples) {
   for (s.render.seed = 1; s.render.seed <= 4; ++s.render.seed) {
     const Result r = render(compile::compile(s), noise(0.001));
     EXPECT_EQ(r.statistics.ended_by, "noise");
-    EXPECT_LT(r.statistics.most_samples, 1u << 20);
-    gone_on += r.statistics.most_samples > 16 ? 1 : 0;
+    EXPECT_LT(r.statistics.max_samples, 1u << 20);
+    gone_on += r.statistics.max_samples > 16 ? 1 : 0;
   }
   EXPECT_GE(gone_on, 2);
 }

@@ -126,9 +126,9 @@ TEST(RenderLightGuide, RemainderCountsMatchALoop) {
       for (const int reach : {0, 2, 16}) {
         int all = 0, of[3] = {0, 0, 0};
         for (int i = std::max(at - reach, 0); i <= std::min(at + reach, size - 1); ++i) ++all, ++of[i % 3];
-        EXPECT_EQ(count_within(at, reach, size), all);
-        for (int r = 0; r < 3; ++r) EXPECT_EQ(count_within(at, reach, size, r), of[r]);
-        EXPECT_EQ(count_within(at, reach, size, -1), 0);
+        EXPECT_EQ(window_size(at, reach, size), all);
+        for (int r = 0; r < 3; ++r) EXPECT_EQ(window_size(at, reach, size, r), of[r]);
+        EXPECT_EQ(window_size(at, reach, size, -1), 0);
       }
     }
   }

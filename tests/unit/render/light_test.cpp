@@ -135,7 +135,7 @@ TEST(RenderLight, SceneFarFromTheOriginLooksTheSame) {
 }
 
 /// Spheres of a billionth of a unit at a distance of a million, on coordinates exact in double. Rounding the origins of
-/// bounced rays would lose an eighth of a radius.
+/// secondary rays would lose an eighth of a radius.
 TEST(RenderLight, SmallSceneFarFromTheOriginLooksTheSame) {
   scene::Scene s = grey_sphere();
   s.camera.look_from = {0.5, 0.25, 3};

@@ -63,7 +63,7 @@ TEST(RenderNoiseEstimate, ChoiceOfAPixelIgnoresItsOwnValues) {
   PixelStatistics s = test::statistics_of(90, 70, 8, 3, random);
   const NoiseEstimate noise = estimate_noise(s, pool);
   const std::vector<float> before = errors_of_one_sample(s, noise, pool);
-  const std::vector<std::uint8_t> evidence = find_missing_evidence(s, pool).of_pixel;
+  const std::vector<std::uint8_t> unreliable = find_unreliable_pixels(s, pool).of_pixel;
   for (const auto& [x, y] : {std::pair{0, 0}, {44, 31}, {89, 69}, {17, 2}}) {
     PixelStatistics changed = s;
     for (int v = 0; v < s.height; ++v) {
@@ -74,7 +74,7 @@ TEST(RenderNoiseEstimate, ChoiceOfAPixelIgnoresItsOwnValues) {
       }
     }
     EXPECT_EQ(errors_of_one_sample(changed, noise, pool)[s.at(x, y)], before[s.at(x, y)]);
-    EXPECT_EQ(find_missing_evidence(changed, pool).of_pixel[s.at(x, y)], evidence[s.at(x, y)]);
+    EXPECT_EQ(find_unreliable_pixels(changed, pool).of_pixel[s.at(x, y)], unreliable[s.at(x, y)]);
   }
 }
 
@@ -124,13 +124,13 @@ TEST(RenderNoiseEstimate, BlackIsAcceptedAfter1024Samples) {
   PixelStatistics s(30, 20);
   for (const std::uint32_t half : {8u, 256u, 511u}) {
     std::fill(s.samples.begin(), s.samples.end(), half);
-    EXPECT_EQ(find_missing_evidence(s, pool).count, 600u);
+    EXPECT_EQ(find_unreliable_pixels(s, pool).count, 600u);
   }
   std::fill(s.samples.begin(), s.samples.end(), 512u);
-  EXPECT_EQ(find_missing_evidence(s, pool).count, 0u);
+  EXPECT_EQ(find_unreliable_pixels(s, pool).count, 0u);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
   s.known_black.assign(600, 1);
-  EXPECT_EQ(find_missing_evidence(s, pool).count, 0u);
+  EXPECT_EQ(find_unreliable_pixels(s, pool).count, 0u);
 }
 
 TEST(RenderNoiseEstimate, TooFewHitsAreNoEvidence) {
@@ -142,10 +142,10 @@ TEST(RenderNoiseEstimate, TooFewHitsAreNoEvidence) {
   hit(1, 1);
   hit(4, 4);
   hit(5, 2);
-  EXPECT_EQ(find_missing_evidence(s, pool).of_pixel[s.at(3, 3)], 1);
+  EXPECT_EQ(find_unreliable_pixels(s, pool).of_pixel[s.at(3, 3)], 1);
   hit(2, 4);
   hit(1, 5);
-  EXPECT_EQ(find_missing_evidence(s, pool).of_pixel[s.at(3, 3)], 0);
+  EXPECT_EQ(find_unreliable_pixels(s, pool).of_pixel[s.at(3, 3)], 0);
 }
 
 TEST(RenderNoiseEstimate, LightBesideADarkAreaIsNoEvidenceForIt) {
@@ -154,7 +154,7 @@ TEST(RenderNoiseEstimate, LightBesideADarkAreaIsNoEvidenceForIt) {
   std::fill(s.samples.begin(), s.samples.end(), 8u);
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 15; ++x) s.light[s.at(x, y)] = 1;
-  const std::vector<std::uint8_t> missing = find_missing_evidence(s, pool).of_pixel;
+  const std::vector<std::uint8_t> missing = find_unreliable_pixels(s, pool).of_pixel;
   EXPECT_EQ(missing[s.at(16, 10)], 1);
   EXPECT_EQ(missing[s.at(13, 10)], 0);
 }
@@ -173,7 +173,7 @@ TEST(RenderNoiseEstimate, ThreadsGiveTheSameBits) {
     TilePool pool(threads);
     const NoiseEstimate noise = estimate_noise(s, pool);
     return Found{noise.mean_square, noise.standard_error, noise.of_pixel, errors_of_one_sample(s, noise, pool),
-                 find_missing_evidence(s, pool).of_pixel};
+                 find_unreliable_pixels(s, pool).of_pixel};
   };
   EXPECT_TRUE(with(1) == with(5));
 }

@@ -80,8 +80,8 @@ void expect_same(const Result& a, const Result& b) {
   EXPECT_EQ(test::plane_values(a.picture), test::plane_values(b.picture));
   EXPECT_EQ(a.statistics.paths, b.statistics.paths);
   EXPECT_EQ(a.statistics.rays, b.statistics.rays);
-  EXPECT_EQ(a.statistics.fewest_samples, b.statistics.fewest_samples);
-  EXPECT_EQ(a.statistics.most_samples, b.statistics.most_samples);
+  EXPECT_EQ(a.statistics.min_samples, b.statistics.min_samples);
+  EXPECT_EQ(a.statistics.max_samples, b.statistics.max_samples);
   ASSERT_EQ(a.deep.pixels.size(), b.deep.pixels.size());
   for (std::size_t i = 0; i < a.deep.pixels.size(); ++i) {
     ASSERT_EQ(a.deep.pixels[i].size(), b.deep.pixels[i].size()) << i;
@@ -223,7 +223,7 @@ TEST(RenderPixelShard, ShardsAddUpToTheImageAndItsLayers) {
         settings.sampling.sample_begin = begin;
         settings.sampling.sample_end = begin == 0 ? 6 : 19;
         const Result part = render(compiled, settings);
-        EXPECT_EQ(part.statistics.fewest_samples, settings.sampling.sample_end - begin);
+        EXPECT_EQ(part.statistics.min_samples, settings.sampling.sample_end - begin);
         sum.add(*part.partial);
       }
     }

@@ -43,7 +43,7 @@ TEST(RenderTraversals, NamesDescribeBothKindsOfRays) {
   using enum accel::Traversal;
   EXPECT_EQ(name_of({kPacket, kPacket}), "packet");
   EXPECT_EQ(name_of({kSingle, kSingle}), "single");
-  EXPECT_EQ(name_of({kPacket, kSingle}), "packet, bounced single");
+  EXPECT_EQ(name_of({kPacket, kSingle}), "packet, secondary single");
 }
 
 /// Small spheres on a grid; the scene has too few paths for a trial.
@@ -58,7 +58,7 @@ scene::Scene balls(int count) {
 }
 
 TEST(RenderTraversals, WithoutATrialTheSphereCountDecides) {
-  for (const auto& [count, name] : {std::pair{900, "packet"}, std::pair{4000, "packet, bounced single"}}) {
+  for (const auto& [count, name] : {std::pair{900, "packet"}, std::pair{4000, "packet, secondary single"}}) {
     const compile::CompiledScene compiled = compile::compile(balls(count));
     const std::unique_ptr<accel::Accel> accel = build(compiled, 1);
     EXPECT_EQ(name_of(choose_traversals(compiled, *accel, std::nullopt)), name);
@@ -72,8 +72,8 @@ TEST(RenderTraversals, TrialChoosesATraversal) {
   const compile::CompiledScene compiled = compile::compile(scene);
   const std::unique_ptr<accel::Accel> accel = build(compiled, 1);
   const std::string name = name_of(choose_traversals(compiled, *accel, std::nullopt));
-  EXPECT_TRUE(name == "packet" || name == "single" || name == "packet, bounced single" ||
-              name == "single, bounced packet")
+  EXPECT_TRUE(name == "packet" || name == "single" || name == "packet, secondary single" ||
+              name == "single, secondary packet")
       << name;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/seal.h"
+#include "image/digest.h"
 
 #include <OpenImageIO/hash.h>
 
@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/input_file.h"
 
@@ -18,14 +20,14 @@ namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-constexpr char kMark[] = "\norrery seal sha1 ";
-constexpr std::size_t kMarkSize = sizeof(kMark) - 1;
-constexpr std::size_t kSealSize = kMarkSize + 40 + 1;  // digits, newline
+constexpr char kPrefix[] = "\norrery seal sha1 ";
+constexpr std::size_t kPrefixSize = sizeof(kPrefix) - 1;
+constexpr std::size_t kLineSize = kPrefixSize + 40 + 1;  // digits, newline
 
-/// Computes the seal of the first `size` bytes of an open file.
+/// Computes the line with the digest of the first `size` bytes of an open file.
 ///
 /// Result     empty if they cannot be read
-std::string seal_of(std::FILE* in, std::uint64_t size) {
+std::string digest_line(std::FILE* in, std::uint64_t size) {
   OIIO::SHA1 digest;
   std::vector<char> bytes(std::size_t{1} << 20);
   while (size > 0) {
@@ -34,24 +36,24 @@ std::string seal_of(std::FILE* in, std::uint64_t size) {
     digest.append(bytes.data(), wanted);
     size -= wanted;
   }
-  std::string text = kMark + digest.digest() + "\n";
-  for (std::size_t i = kMarkSize; i < text.size(); ++i)
+  std::string text = fmt::format("{}{}\n", kPrefix, digest.digest());
+  for (std::size_t i = kPrefixSize; i < text.size(); ++i)
     if (text[i] >= 'A' && text[i] <= 'F') text[i] = static_cast<char>(text[i] - 'A' + 'a');
   return text;
 }
 
 }  // namespace
 
-void seal(const std::filesystem::path& file, const std::filesystem::path& name) {
+void append_digest(const std::filesystem::path& file, const std::filesystem::path& name) {
   const auto fail = [&](int error) {
-    throw base::Error(base::ErrorKind::kIo, "writing " + name.string() + " failed: " + std::strerror(error));
+    throw base::Error(base::ErrorKind::kIo, fmt::format("writing {} failed: {}", name.string(), std::strerror(error)));
   };
   File in(std::fopen(file.c_str(), "rb"), &std::fclose);
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);
   if (!in || failed) fail(errno);
-  const std::string text = seal_of(in.get(), size);
-  if (text.size() != kSealSize) fail(EIO);
+  const std::string text = digest_line(in.get(), size);
+  if (text.size() != kLineSize) fail(EIO);
   in.reset();
   std::FILE* const out = std::fopen(file.c_str(), "ab");
   if (out == nullptr) fail(errno);
@@ -61,22 +63,23 @@ void seal(const std::filesystem::path& file, const std::filesystem::path& name) 
   if (!written) fail(error);
 }
 
-void require_seal(const std::filesystem::path& file) {
+void require_digest(const std::filesystem::path& file) {
   base::require_readable(file);
   const File in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in)
-    throw base::Error(base::ErrorKind::kMissingInput, "cannot open " + file.string() + ": " + std::strerror(errno));
+    throw base::Error(base::ErrorKind::kMissingInput,
+                      fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)));
   const auto damaged = [&](const char* why) { throw base::Error(base::ErrorKind::kBadData, file.string() + why); };
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(file, failed);
   constexpr const char* kNoPartial =
       " is not a checkpoint or shard, or it is truncated; --resume, --samples A:B and --shard write such files";
-  if (failed || size < kSealSize) damaged(kNoPartial);
-  const std::string expected = seal_of(in.get(), size - kSealSize);
-  char found[kSealSize];
-  if (std::fread(found, 1, kSealSize, in.get()) != kSealSize || std::memcmp(found, kMark, kMarkSize) != 0)
+  if (failed || size < kLineSize) damaged(kNoPartial);
+  const std::string expected = digest_line(in.get(), size - kLineSize);
+  char found[kLineSize];
+  if (std::fread(found, 1, kLineSize, in.get()) != kLineSize || std::memcmp(found, kPrefix, kPrefixSize) != 0)
     damaged(kNoPartial);
-  if (std::memcmp(found, expected.data(), kSealSize) != 0)
+  if (std::memcmp(found, expected.data(), kLineSize) != 0)
     damaged(" is damaged: its checksum does not match; delete it and render it again");
 }
 

@@ -10,11 +10,11 @@ namespace orrery::image {
 ///
 /// Errors     base::Error(kIo); the message uses `name` for the file
 /// Reference  SHA-1, FIPS 180-4
-void seal(const std::filesystem::path& file, const std::filesystem::path& name);
+void append_digest(const std::filesystem::path& file, const std::filesystem::path& name);
 
-/// Checks the seal of a file.
+/// Checks the digest of a file.
 ///
-/// Errors     base::Error: kMissingInput if the file cannot be opened, kBadData if it has no seal or a wrong one
-void require_seal(const std::filesystem::path& file);
+/// Errors     base::Error: kMissingInput if the file cannot be opened, kBadData if it has no digest or a wrong one
+void require_digest(const std::filesystem::path& file);
 
 }  // namespace orrery::image

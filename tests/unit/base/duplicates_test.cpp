@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/repeated.h"
+#include "base/duplicates.h"
 
 #include <gtest/gtest.h>
 
@@ -14,23 +14,23 @@ using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 Pairs repeated(const std::vector<std::array<double, 2>>& keys) {
   Pairs out;
-  for (const Repeated& r : find_repeated<2>(keys.size(), [&](std::size_t i) { return keys[i]; }))
+  for (const Duplicate& r : find_duplicates<2>(keys.size(), [&](std::size_t i) { return keys[i]; }))
     out.emplace_back(r.index, r.first);
   return out;
 }
 
-TEST(BaseRepeated, ReportsTheFirstItemWithTheSameKey) {
+TEST(BaseDuplicates, ReportsTheFirstItemWithTheSameKey) {
   EXPECT_EQ(repeated({}), Pairs());
   EXPECT_EQ(repeated({{1, 2}, {2, 1}, {1, 2}, {3, 3}, {2, 1}, {1, 2}}), (Pairs{{2, 0}, {4, 1}, {5, 0}}));
 }
 
-TEST(BaseRepeated, IgnoresTheSignOfZeroAndNaNEqualsNothing) {
+TEST(BaseDuplicates, IgnoresTheSignOfZeroAndNaNEqualsNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(repeated({{0, 1}, {-0.0, 1}, {nan, 1}, {nan, 1}}), (Pairs{{1, 0}}));
 }
 
 /// Enough keys for false positives in the filters.
-TEST(BaseRepeated, FindsExactlyTheRepeatedItemsAmongMany) {
+TEST(BaseDuplicates, FindsExactlyTheRepeatedItemsAmongMany) {
   std::mt19937_64 engine{5};
   std::vector<std::array<double, 2>> keys;
   for (int i = 0; i < 200'000; ++i) keys.push_back({static_cast<double>(engine() >> 11), 0});

@@ -45,13 +45,13 @@ class HashFilter {
 
 /// Inserts hashes into a filter and collects those that it already contains. Hashes are buffered and inserted in the
 /// order of their upper bits, so that a filter of hundreds of megabytes is not accessed at random.
-class RepeatedHashes {
+class DuplicateHashes {
  public:
-  explicit RepeatedHashes(std::size_t count) : filter_(count) {}
+  explicit DuplicateHashes(std::size_t count) : filter_(count) {}
 
   void add(std::uint64_t hash) {
-    waiting_.push_back(hash);
-    if (waiting_.size() == kChunk) flush();
+    pending_.push_back(hash);
+    if (pending_.size() == kChunk) flush();
   }
   std::vector<std::uint64_t> take() {
     flush();
@@ -63,17 +63,17 @@ class RepeatedHashes {
 
   void flush() {
     std::array<std::size_t, kParts + 1> begin{};
-    for (const std::uint64_t hash : waiting_) ++begin[(hash >> 56) + 1];
+    for (const std::uint64_t hash : pending_) ++begin[(hash >> 56) + 1];
     for (std::size_t part = 0; part < kParts; ++part) begin[part + 1] += begin[part];
-    sorted_.resize(waiting_.size());
-    for (const std::uint64_t hash : waiting_) sorted_[begin[hash >> 56]++] = hash;
+    sorted_.resize(pending_.size());
+    for (const std::uint64_t hash : pending_) sorted_[begin[hash >> 56]++] = hash;
     for (const std::uint64_t hash : sorted_)
       if (filter_.insert(hash)) found_.push_back(hash);
-    waiting_.clear();
+    pending_.clear();
   }
 
   HashFilter filter_;
-  std::vector<std::uint64_t> waiting_, sorted_, found_;
+  std::vector<std::uint64_t> pending_, sorted_, found_;
 };
 
 template <std::size_t N>
@@ -87,7 +87,7 @@ std::uint64_t hash_of(const std::array<double, N>& key) {
 }
 
 /// Index of an item whose key equals that of an earlier item, and index of the first item with this key.
-struct Repeated {
+struct Duplicate {
   std::size_t index, first;
 };
 
@@ -98,7 +98,7 @@ struct Repeated {
 /// Cost       on two busy cores 0.4 s for ten million items, 4 s for a hundred million; memory 1 to 3 bytes per item,
 ///            and 40 bytes per repeated item
 template <std::size_t N, class KeyOf>
-std::vector<Repeated> find_repeated(std::size_t count, KeyOf key_of) {
+std::vector<Duplicate> find_duplicates(std::size_t count, KeyOf key_of) {
   // Sorting the hashes of a hundred million keys would take a quarter of the memory of their spheres. The filters drop
   // nearly all unique keys, and only the rest is sorted.
   const StopPoint stop;
@@ -112,11 +112,11 @@ std::vector<Repeated> find_repeated(std::size_t count, KeyOf key_of) {
   };
   std::vector<std::uint64_t> suspects;
   {
-    RepeatedHashes hashes(count);
+    DuplicateHashes hashes(count);
     each([&](std::size_t, std::uint64_t hash) { hashes.add(hash); });
     suspects = hashes.take();
   }
-  std::vector<Repeated> out;
+  std::vector<Duplicate> out;
   if (suspects.empty()) return out;
   HashFilter suspected(suspects.size());
   for (const std::uint64_t hash : suspects) suspected.insert(hash);
@@ -144,7 +144,7 @@ std::vector<Repeated> find_repeated(std::size_t count, KeyOf key_of) {
       out.push_back({i, *first});
     }
   }
-  std::sort(out.begin(), out.end(), [](const Repeated& a, const Repeated& b) { return a.index < b.index; });
+  std::sort(out.begin(), out.end(), [](const Duplicate& a, const Duplicate& b) { return a.index < b.index; });
   return out;
 }
 
