@@ -19,7 +19,7 @@
 namespace orrery::test {
 namespace {
 
-using compile::Amounts;
+using compile::Densities;
 using compile::kBands;
 using compile::kGroundRadius;
 using math::Vec3d;
@@ -80,7 +80,7 @@ class SkyPaths {
 
   double unit() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
-  double extinction(Amounts a) const {
+  double extinction(Densities a) const {
     return a.molecules * air_.molecules[band_] + a.aerosol * air_.aerosol[band_] + a.ozone * air_.ozone[band_];
   }
 
@@ -99,11 +99,11 @@ class SkyPaths {
     for (double start = 0; start < length; start += kStep) {
       const double end = std::min(start + kStep, length);
       const double lowest = altitude(std::clamp(-radius * sine, start, end));
-      Amounts most = compile::densities(lowest);
+      Densities most = compile::densities(lowest);
       most.ozone = 1;
       const double bound = extinction(most);
       for (double t = start - std::log(1 - unit()) / bound; t < end; t -= std::log(1 - unit()) / bound) {
-        const Amounts here = compile::densities(altitude(t));
+        const Densities here = compile::densities(altitude(t));
         const double molecules = here.molecules * air_.molecules[band_], choice = unit() * bound;
         if (choice >= extinction(here)) continue;
         const Vec3d position = origin + direction * t;
@@ -120,7 +120,7 @@ class SkyPaths {
     const double radius = std::max(math::length(origin), kGroundRadius), sine = math::dot(origin, sun_) / radius;
     if (sine < 0 && radius * radius * (1 - sine * sine) < kGroundRadius * kGroundRadius) return 0;
     const double lowest = std::max(-radius * sine, 0.0), length = compile::distance_to_space(radius, sine);
-    Amounts sum;
+    Densities sum;
     const auto add = [&](double to) {
       constexpr int kSteps = 60;
       for (int i = 0; i < kSteps; ++i) {
