@@ -142,6 +142,7 @@ kernel::SceneView CompiledScene::view() const noexcept {
   if (!textures.textures().empty()) {
     v.textures = textures.textures().data();
     v.material_textures = textures.materials().data();
+    if (textures.has_levels()) v.cone_width = kConeWidth;
   }
   v.lights = light_tree.view();
   v.direct_lighting = direct_lighting;

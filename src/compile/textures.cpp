@@ -79,9 +79,12 @@ std::uint32_t TextureStore::add(const scene::Texture& texture, Vec3d factor) {
     if (!texture.image) return kernel::MaterialTextures::kNone;
     const auto image = std::make_shared<Image>();
     image->texels = texture.image;
-    image->view.texels = texture.image->row(0);
-    image->view.width = static_cast<std::uint32_t>(texture.image->width());
-    image->view.height = static_cast<std::uint32_t>(texture.image->height());
+    const auto add_level = [&](const scene::EnvironmentImage& level) {
+      image->view.levels[image->view.level_count++] = {level.row(0), static_cast<std::uint32_t>(level.width()),
+                                                       static_cast<std::uint32_t>(level.height())};
+    };
+    add_level(*texture.image);
+    for (const scene::EnvironmentImage& level : texture.image->reduced) add_level(level);
     // An environment's left edge is at -z; seen from outside, that of a texture is at -x.
     const double turn = -0.25 - texture.rotation / 360;
     image->view.turn = turn - std::floor(turn);
@@ -105,13 +108,17 @@ std::uint32_t TextureStore::add_scaled(std::uint32_t index, Vec3d factor) {
   return static_cast<std::uint32_t>(textures_.size() - 1);
 }
 
+bool TextureStore::has_levels() const noexcept {
+  return std::any_of(images_.begin(), images_.end(), [](const auto& image) { return image->view.level_count > 1; });
+}
+
 std::uint64_t TextureStore::bytes() const noexcept {
   std::uint64_t bytes = 0;
   std::set<const scene::EnvironmentImage*> counted;
   for (const auto& image : images_)
     if (counted.insert(image->texels.get()).second)
-      bytes += 3 * sizeof(float) * static_cast<std::uint64_t>(image->texels->width()) *
-               static_cast<std::uint64_t>(image->texels->height());
+      for (std::uint32_t k = 0; k < image->view.level_count; ++k)
+        bytes += 3 * sizeof(float) * std::uint64_t{image->view.levels[k].width} * image->view.levels[k].height;
   return bytes;
 }
 

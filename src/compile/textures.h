@@ -13,6 +13,15 @@
 
 namespace orrery::compile {
 
+/// Width of the ray cones by which image textures are filtered, as a fraction of the ranges from which rays are
+/// sampled: pixel, lens and lobe.
+///
+/// The samples of a pixel average the texture over these ranges; cones of their width would blur the image. Cones of a
+/// sixteenth change a pixel beside a hard edge by 1 % of the contrast at most.
+///
+/// Reference  docs/decisions/0031
+inline constexpr double kConeWidth = 0.0625;
+
 /// The textures of a compiled scene, and the images that they share. Copies share the images.
 class TextureStore {
  public:
@@ -31,14 +40,17 @@ class TextureStore {
   /// One entry per material.
   const std::vector<kernel::MaterialTextures>& materials() const noexcept { return materials_; }
 
-  /// The memory of the images.
+  /// Whether an image has more than one level, so that paths need ray cones.
+  bool has_levels() const noexcept;
+
+  /// The memory of the images and their levels.
   std::uint64_t bytes() const noexcept;
 
  private:
   /// A loaded image and its view for the kernel, including the rotation.
   struct Image {
     std::shared_ptr<const scene::EnvironmentImage> texels;
-    kernel::Environment view;
+    kernel::TextureImage view;
   };
 
   std::vector<kernel::Texture> textures_;

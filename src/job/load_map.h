@@ -27,6 +27,7 @@ struct MapRequest {
   float largest = static_cast<float>(scene::kBrightestLight);  ///< values above are clamped
   std::string ocio_config;                                     ///< in the form of display::Settings
   compile::EnvironmentSampling sampling = compile::EnvironmentSampling::kNone;
+  bool is_texture = false;         ///< adds a mip map
   std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
   bool skips_large = false;        ///< an image that does not fit into memory is a warning and is not read
 };
@@ -35,7 +36,7 @@ struct MapRequest {
 struct LoadedMap {
   int width = 0, height = 0;  ///< texels
   std::string color_space;    ///< of the file; empty for data
-  std::uint64_t bytes = 0;    ///< estimated memory of the texels and of the tables to sample them
+  std::uint64_t bytes = 0;    ///< estimated memory of the texels, and of their mip map or the tables to sample them
   std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
   float brightest = 0;                                   ///< largest value of `image`, a sun included
   std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene

@@ -28,6 +28,7 @@ MapRequest request_of(const scene::NamedTexture& named, const fs::path& folder, 
   out.is_color = named.use != scene::TextureUse::kNumber;
   if (named.use != scene::TextureUse::kRadiance) out.largest = 1;
   out.ocio_config = ocio_config;
+  out.is_texture = true;
   return out;
 }
 

@@ -38,19 +38,24 @@ void add_all(Hash& hash, const math::Vec3d& v) {
   for (const double x : {v.x, v.y, v.z}) hash.add(x);
 }
 
+/// `texels`   as of kernel::Environment
+void add_texels(Hash& hash, const float* texels, std::uint32_t width, std::uint32_t height) {
+  // Two values per word.
+  const std::size_t count = 3 * std::size_t{width} * height;
+  for (std::size_t i = 0; i < count; i += 2) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, texels + i, std::min<std::size_t>(2, count - i) * sizeof(float));
+    hash.add_bits(bits);
+  }
+}
+
 void add_map(Hash& hash, const kernel::Environment& map) {
   for (const double v : {double(map.width), double(map.height), map.scale, map.turn, map.visible ? 1.0 : 0.0,
                          double(map.light_group), map.sun_one_minus_cos})
     hash.add(v);
   add_all(hash, map.sun);
   add_all(hash, map.sun_radiance);
-  // Two texels' values per word.
-  const std::size_t count = 3 * std::size_t{map.width} * map.height;
-  for (std::size_t i = 0; i < count; i += 2) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, map.texels + i, std::min<std::size_t>(2, count - i) * sizeof(float));
-    hash.add_bits(bits);
-  }
+  add_texels(hash, map.texels, map.width, map.height);
 }
 
 /// Adds everything about lights. Scenes without lights keep the hash that they had before there were lights.
@@ -76,7 +81,11 @@ void add_textures(Hash& hash, const compile::TextureStore& store) {
     hash.add(t.scale);
     add_all(hash, t.low);
     add_all(hash, t.high);
-    if (t.image != nullptr) add_map(hash, *t.image);
+    if (t.image == nullptr) continue;
+    const kernel::TextureLevel& image = t.image->levels[0];
+    for (const double v : {double(image.width), double(image.height), t.image->turn}) hash.add(v);
+    if (t.image->level_count > 1) hash.add(compile::kConeWidth);
+    add_texels(hash, image.texels, image.width, image.height);
   }
 }
 

@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "kernel/compaction-inl.h"
+#include "kernel/cone-inl.h"
 #include "kernel/environment-inl.h"
 #include "kernel/light-inl.h"
 #include "kernel/path_stream.h"
@@ -154,10 +156,16 @@ struct LightSample {
   hn::Vec<IdTag<D>> group;   ///< light group
 };
 
+/// Cones of light samples in loops without textures, which need none.
+struct NoCone {};
+template <class D, bool kExtended>
+using LightCone = std::conditional_t<kExtended, RayCone<hn::Vec<D>>, NoCone>;
+
 /// Chooses an emitter for each vertex and samples a point that is visible from it.
 template <class D, bool kMoves, bool kExtended, class V = hn::Vec<D>>
-HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vertex<D>& at, V u, V v, V choice, V fresh,
-                                         const hn::TFromD<D>* times) {
+HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vertex<D>& at,
+                                         [[maybe_unused]] LightCone<D, kExtended> cone_of_lobe, V u, V v, V choice,
+                                         V fresh, const hn::TFromD<D>* times) {
   const V one = hn::Set(d, hn::TFromD<D>(1));
   const auto chosen = choose_light(d, scene, at, choice, fresh);
   const auto light = load_spheres<D, kMoves>(d, scene, chosen.spheres, times);
@@ -166,9 +174,13 @@ HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vert
   const auto point = sample_visible_sphere(d, to, cone, u, v);
   auto source = emitted(d, scene, chosen.spheres, hn::FirstN(d, hn::Lanes(d)));
   if constexpr (kExtended)
-    if (scene.textures != nullptr)
-      source.radiance = textured_radiance(d, scene, chosen.spheres,
-                                          {light.center, point.normal * light.radius, point.normal}, source.radiance);
+    if (scene.textures != nullptr) {
+      const V width2 = cone_of_lobe.width2_at(cone.distance);
+      source.radiance = textured_radiance(
+          d, scene, chosen.spheres,
+          {light.center, point.normal * light.radius, point.normal, width2 / (light.radius * light.radius)},
+          source.radiance);
+    }
   return {point.direction,
           mul_add(point.normal, light.radius, to),
           one,
@@ -198,22 +210,24 @@ HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment,
 
 /// Samples the environment or an emitter at each vertex.
 ///
+/// `cone`     of the rays to the light
+///
 /// Not inlined, like the other large functions of lit loops: all loops of a lane type share one copy.
 template <class D, bool kMoves, bool kExtended, class V = hn::Vec<D>>
-HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, const Four<V>& random,
-                                         const hn::TFromD<D>* times) {
+HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, LightCone<D, kExtended> cone,
+                                         const Four<V>& random, const hn::TFromD<D>* times) {
   using T = hn::TFromD<D>;
   const double share = environment_share(scene);
   if (share == 1) return sample_background(d, *scene.environment, random.v[0], random.v[1]);
   if (share == 0)
-    return sample_emitter<D, kMoves, kExtended>(d, scene, at, random.v[0], random.v[1], random.v[2], random.v[3],
+    return sample_emitter<D, kMoves, kExtended>(d, scene, at, cone, random.v[0], random.v[1], random.v[2], random.v[3],
                                                 times);
   const V to_background = hn::Set(d, static_cast<T>(share)), to_emitter = hn::Set(d, static_cast<T>(1 - share));
   const auto is_background = random.v[2] < to_background;
   const V rest = hn::IfThenElseZero(hn::Not(is_background), (random.v[2] - to_background) / to_emitter);
   const auto sky = sample_background(d, *scene.environment, random.v[0], random.v[1]);
   const auto lamp =
-      sample_emitter<D, kMoves, kExtended>(d, scene, at, random.v[0], random.v[1], rest, random.v[3], times);
+      sample_emitter<D, kMoves, kExtended>(d, scene, at, cone, random.v[0], random.v[1], rest, random.v[3], times);
   const auto ids = hn::RebindMask(IdTag<D>(), is_background);
   return {select(is_background, sky.direction, lamp.direction),
           select(is_background, sky.reach, lamp.reach),
@@ -229,18 +243,20 @@ HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vert
 ///
 /// `center`   of the spheres that the vertices lie on
 /// `tinted`   throughput times albedo
+/// `cone`     of the rays to the light
 /// `lanes`    vertices whose material is neither delta nor an emitter
 /// Domain     samples_lights(scene)
 template <class D, Loop kLoop, class Lit, class V = hn::Vec<D>>
 HWY_INLINE void connect(D d, const SceneView& scene, const Surface<D>& surface, const Vec3<V>& center,
-                        const Vec3<V>& tinted, hn::Mask<D> lanes, hn::Vec<IdTag<D>> self, hn::Vec<IdTag<D>> paths,
-                        hn::Vec<IdTag<D>> history, const Four<V>& random, const hn::TFromD<D>* times, Lit& lit) {
+                        const Vec3<V>& tinted, LightCone<D, kLoop.extended> cone, hn::Mask<D> lanes,
+                        hn::Vec<IdTag<D>> self, hn::Vec<IdTag<D>> paths, hn::Vec<IdTag<D>> history,
+                        const Four<V>& random, const hn::TFromD<D>* times, Lit& lit) {
   const V zero = hn::Zero(d);
   const auto origin = center + surface.offset;
   const auto unit = normalized(d, surface.offset);
   const Vertex<D> at{origin, sum_error(center, surface.offset, origin),
                      select(surface.from_outside, unit, negated(unit))};
-  const auto sample = sample_light<D, kLoop.moves, kLoop.extended>(d, scene, at, random, times);
+  const auto sample = sample_light<D, kLoop.moves, kLoop.extended>(d, scene, at, cone, random, times);
   const V pdf = pdf_bsdf(d, scene.features, surface, sample.direction);
   const V factor = light_sample_factor(d, scene.direct_lighting, pdf * sample.inverse_pdf / sample.probability);
   lanes = hn::And(lanes, hn::And(sample.probability > zero, factor > zero));

@@ -62,6 +62,7 @@ struct alignas(64) PathStreamOf {
   Id history[kCapacity];      ///< only in loops that record paths; see record-inl.h
   RayPacketOf<T, Id> packet;  ///< the rays being traced
   LitPathsOf<T, Id> lit;      ///< only in lit loops
+  T cone[3][kCapacity];       ///< only in extended loops, if the scene has ray cones; see cone-inl.h
 };
 
 using PathStream = PathStreamOf<double, std::uint64_t>;

@@ -88,6 +88,11 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
     hn::Store(one / dot(ray.direction, ray.direction), d, packet.inverse_square + v);
     hn::Store(hn::Set(du, static_cast<Id>(kNoSphere)), du, packet.self + v);
     if constexpr (kLoop.records) hn::Store(hn::Set(du, static_cast<Id>(kOnlyDeltaBit)), du, carried.history + v);
+    if constexpr (kLoop.extended)
+      if (scene.cone_width > 0) {
+        const auto cone = camera_cone(d, scene, camera, ray.direction, scene.cone_width);
+        store(Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, carried.cone);
+      }
   }
 }
 
@@ -126,6 +131,8 @@ HWY_INLINE void load_secondary_rays(D d, const SceneView& scene, Stream& stream,
       hn::Store(hn::LoadU(du, stream.lit.path + i), du, carried.path + v);
       hn::Store(hn::LoadU(d, stream.lit.pdf + i), d, carried.pdf + v);
     }
+    if constexpr (kLoop.extended)
+      if (scene.cone_width > 0) store(at(stream.cone), carried.cone);
   }
 }
 

@@ -63,6 +63,8 @@ struct SceneView {
   /// Textures, and one entry per material; null if there are none. The constants that textures replace are their means.
   const Texture* textures = nullptr;
   const MaterialTextures* material_textures = nullptr;
+  /// Width of ray cones as a fraction of pixel, lens and lobe; 0: no texture has levels, so that paths have no cones.
+  double cone_width = 0;
   Lights lights;  ///< the emitters that light sampling chooses from
   DirectLighting direct_lighting = DirectLighting::kMis;
   /// Change in centre and radius of each of the first `moving_count` spheres, from shutter open to shutter close; null:

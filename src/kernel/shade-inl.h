@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "kernel/compaction-inl.h"
+#include "kernel/cone-inl.h"
 #include "kernel/direct_light-inl.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
@@ -33,6 +34,7 @@ struct alignas(64) PathPayload {
   Id history[kPacketSize];  ///< in loops that record paths; see record-inl.h
   Id path[kPacketSize];     ///< in lit loops: index within the batch
   T pdf[kPacketSize];       ///< in lit loops: see LitPathsOf
+  T cone[3][kPacketSize];   ///< in extended loops: see PathStreamOf
 };
 
 /// Adds finished paths to their pixels. Bad samples are counted and excluded from the sums.
@@ -200,6 +202,13 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       }
     }
     if (hn::AllFalse(d, hit)) continue;
+    // At the hits.
+    [[maybe_unused]] std::conditional_t<kLoop.extended, RayCone<hn::Vec<D>>, NoCone> cone{};
+    if constexpr (kLoop.extended)
+      if (scene.cone_width > 0) {
+        const auto moments = load3(d, carried.cone[0] + v, carried.cone[1] + v, carried.cone[2] + v);
+        cone = RayCone<hn::Vec<D>>{moments.x, moments.y, moments.z}.advanced(hn::Load(d, packet.distance + v));
+      }
 
     if constexpr (kLoop.lit) {
       if (scene.emission != nullptr && scene.shading == Shading::kPath) {
@@ -211,8 +220,9 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
         if (!hn::AllFalse(d, shines)) {
           if constexpr (kLoop.extended)
             if (scene.textures != nullptr)
-              source.radiance = textured_radiance<D, kPrecision, kMoves>(
-                  d, scene, ray, hits, shines, hn::Load(d, packet.distance + v), packet.time + v, source.radiance);
+              source.radiance = textured_radiance<D, kPrecision, kMoves>(d, scene, ray, hits, shines,
+                                                                         hn::Load(d, packet.distance + v), cone.width2,
+                                                                         packet.time + v, source.radiance);
           if (depth > 0)
             source.radiance = source.radiance * emitter_weight<D, kMoves>(d, scene, ray, hits, packet.time + v,
                                                                           hn::Load(d, carried.pdf + v));
@@ -226,7 +236,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
         reach_surface<D, kPrecision, kMoves>(d, scene, ray, hits, hn::Load(d, packet.distance + v), packet.time + v);
     if constexpr (kLoop.extended)
       if (scene.textures != nullptr)
-        apply_textures<D, kPrecision>(d, scene, ray, hits, hit, hn::Load(d, packet.distance + v), at);
+        apply_textures<D, kPrecision>(d, scene, ray, hits, hit, hn::Load(d, packet.distance + v), cone.width2, at);
     const Vec3<hn::Vec<D>> tinted = throughput * at.albedo;
     if constexpr (kRecords) {
       if (depth == 0) {
@@ -262,7 +272,10 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
           hn::Vec<IdTag<D>> reflected{};
           if constexpr (kRecords)
             reflected = continued(d, history, at.surface, at.surface.normal, depth, tile.events != nullptr);
-          connect<D, kLoop>(d, scene, at.surface, at.sphere.center, tinted, connects, hits, paths, reflected,
+          auto to_light = cone;
+          if constexpr (kLoop.extended)
+            to_light = {cone.width2, hn::Zero(d), lobe_slope2(d, at.surface, scene.cone_width)};
+          connect<D, kLoop>(d, scene, at.surface, at.sphere.center, tinted, to_light, connects, hits, paths, reflected,
                             random_light, packet.time + v, stream.lit);
         }
       }
@@ -282,6 +295,11 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       compactor.store(d, hn::IfThenElse(has_pdf, pdf, delta), stream.lit.pdf + alive);
       compactor.store_ids(d, paths, stream.lit.path + alive);
     }
+    if constexpr (kLoop.extended)
+      if (scene.cone_width > 0) {
+        cone = scattered_cone(d, cone, at.surface, at.sphere.radius, scattered.direction, scene.cone_width);
+        compactor.store3(d, Vec3<hn::Vec<D>>{cone.width2, cone.mixed, cone.slope2}, stream.cone, alive);
+      }
     if constexpr (kRecords)
       compactor.store_ids(d, continued(d, history, at.surface, scattered.direction, depth, tile.events != nullptr),
                           stream.history + alive);

@@ -50,14 +50,16 @@ struct TextureIndices {
 /// Replaces albedo and fuzz at hits by the values of their textures.
 ///
 /// `hit`      lanes with a hit
+/// `width2`   squared width of the ray cones there
 template <class D, Precision kPrecision, class V = hn::Vec<D>>
 HWY_NOINLINE void apply_textures(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
-                                 hn::Mask<D> hit, V distance, Lookup<D>& at) {
+                                 hn::Mask<D> hit, V distance, V width2, Lookup<D>& at) {
   const TextureIndices<D> index(d, scene, hits, hit);
   if (!index.has_albedo && !index.has_fuzz) return;
   Surface<D>& surface = at.surface;
   const auto outward = select(surface.from_outside, surface.normal, negated(surface.normal));
-  const auto point = texture_point<D, kPrecision>(d, ray, at.sphere, surface.offset, outward, distance);
+  const auto point = texture_point<D, kPrecision>(d, ray, at.sphere, surface.offset, outward, distance,
+                                                  width2 / (at.sphere.radius * at.sphere.radius));
   if (index.has_albedo) at.albedo = replaced_by_textures(d, scene.textures, index.albedo, point, at.albedo);
   if (index.has_fuzz)
     surface.fuzz =
@@ -76,16 +78,18 @@ HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, hn::Vec<IdTa
 /// Emitted radiance at hits of emitters: the value of the texture, or `radiance` without one.
 ///
 /// `lanes`    hits of emitters
+/// `width2`   squared width of the ray cones there
 /// `times`    of the rays; read only where kMoves
 template <class D, Precision kPrecision, bool kMoves, class V = hn::Vec<D>>
 HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
-                                       hn::Mask<D> lanes, V distance, const hn::TFromD<D>* times,
+                                       hn::Mask<D> lanes, V distance, V width2, const hn::TFromD<D>* times,
                                        const Vec3<V>& radiance) {
   const TextureIndices<D> index(d, scene, hits, lanes);
   if (!index.has_radiance) return radiance;
   const auto sphere = load_spheres<D, kMoves>(d, scene, hits, times);
   const auto at = hit_point<D, kPrecision>(d, ray, sphere, hn::RebindMask(d, hits == ray.self), distance);
-  const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, distance);
+  const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, distance,
+                                                  width2 / (sphere.radius * sphere.radius));
   return replaced_by_textures(d, scene.textures, index.radiance, point, radiance);
 }
 

@@ -55,6 +55,64 @@ HWY_INLINE V marble(D d, const Texture& texture, const TexturePoint<D>& at) {
   return hn::MulAdd(sin_cos_turn(d, turns - hn::Floor(turns)).sin, half, half);
 }
 
+/// The level at which the texels of an image are as wide as footprints: 0 is the image, and levels in between are
+/// interpolated. The smaller of the two axes of a texel decides, so that no level is coarser than the footprint along
+/// either; near the poles, texels are narrow.
+///
+/// Precision  the logarithm is linear between powers of two, which is at most 0.05 levels too low
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V image_level(D d, const TextureImage& image, V footprint2, V radius2) {
+  using T = hn::TFromD<D>;
+  using U = hwy::MakeUnsigned<T>;
+  const IdTag<D> du;
+  constexpr int kMantissaBits = sizeof(T) == 8 ? 52 : 23;
+  constexpr U kOne = sizeof(T) == 8 ? static_cast<U>(0x3ff0000000000000u) : static_cast<U>(0x3f800000u);
+  constexpr double kPi = 3.14159265358979323846;
+  const V one = hn::Set(d, T(1));
+  const auto square = [&](double x) { return hn::Set(d, static_cast<T>(x * x)); };
+  const V rows2 = square(image.levels[0].height / kPi), columns2 = square(image.levels[0].width / (2 * kPi));
+  const V texels2 = footprint2 * hn::Min(rows2, columns2 / radius2);
+  const auto bits = hn::BitCast(du, texels2);
+  const V exponent = to_real(d, hn::ShiftRight<kMantissaBits>(bits)) - to_real(d, hn::Set(du, kOne >> kMantissaBits));
+  const V mantissa = hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(du, (U{1} << kMantissaBits) - 1)), hn::Set(du, kOne)));
+  const V level = (exponent + (mantissa - one)) * hn::Set(d, static_cast<T>(0.5));
+  // False for NaN: a footprint that is not known selects the image.
+  return hn::IfThenElseZero(texels2 > one, hn::Min(level, hn::Set(d, static_cast<T>(image.level_count - 1))));
+}
+
+/// The interpolated texels of an image at levels that are integers.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> color_at_level(D d, const TextureImage& image, V level, const MapPosition<V>& at) {
+  using T = hn::TFromD<D>;
+  constexpr std::size_t kMax = hn::MaxLanes(D());
+  HWY_ALIGN T index[kMax], width[kMax], height[kMax];
+  const TextureLevel* levels[kMax];
+  hn::Store(level, d, index);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    levels[i] = &image.levels[static_cast<std::size_t>(index[i])];
+    width[i] = static_cast<T>(levels[i]->width);
+    height[i] = static_cast<T>(levels[i]->height);
+  }
+  return interpolated(d, load_texels(d, at, hn::Load(d, width), hn::Load(d, height),
+                                     [&](std::size_t i, std::size_t row, std::size_t column) {
+                                       return levels[i]->texels + 3 * (row * levels[i]->width + column);
+                                     }));
+}
+
+/// The colour of an image at points: trilinear, with the bits of bilinear interpolation where the image is magnified.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vec3<V> image_color(D d, const TextureImage& image, const TexturePoint<D>& point) {
+  using T = hn::TFromD<D>;
+  // A sphere shows its map to the outside, an environment to the inside.
+  const auto at = map_position(d, image.turn, {hn::Neg(point.outward.x), point.outward.y, point.outward.z});
+  const V zero = hn::Zero(d), level = image_level(d, image, point.footprint2, at.radius2);
+  const V finer = hn::Floor(level);
+  const Vec3<V> color = color_at_level(d, image, finer, at);
+  if (hn::AllTrue(d, level == zero)) return color;
+  const V coarser = hn::Min(finer + hn::Set(d, T(1)), hn::Set(d, static_cast<T>(image.level_count - 1)));
+  return mul_add(color_at_level(d, image, coarser, at) - color, level - finer, color);
+}
+
 /// The colour of one texture at points.
 template <class D, class V = hn::Vec<D>>
 HWY_NOINLINE Vec3<V> texture_color(D d, const Texture& texture, const TexturePoint<D>& at) {
@@ -64,11 +122,7 @@ HWY_NOINLINE Vec3<V> texture_color(D d, const Texture& texture, const TexturePoi
   V t = hn::Zero(d);
   switch (texture.kind) {
     case TextureKind::kChecker: return select(is_odd_cell(d, at, scale), high, low);
-    case TextureKind::kImage: {
-      // A sphere shows its map to the outside, an environment to the inside.
-      const Vec3<V> mirrored_direction = {hn::Neg(at.outward.x), at.outward.y, at.outward.z};
-      return environment_radiance(d, *texture.image, mirrored_direction) * high;
-    }
+    case TextureKind::kImage: return image_color(d, *texture.image, at) * high;
     case TextureKind::kNoise:
       t = hn::MulAdd(gradient_noise(d, texture, lattice_point(d, at.base, at.rest, scale)), half, half);
       break;

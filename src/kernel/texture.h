@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-
-#include "kernel/environment.h"
 
 namespace orrery::kernel {
 
@@ -15,6 +14,22 @@ inline constexpr std::uint32_t kGradients = 256;
 /// Octaves of turbulence, as in the book.
 inline constexpr int kOctaves = 7;
 
+/// Texels of a latitude-longitude image at one resolution, in the layout of Environment.
+struct TextureLevel {
+  const float* texels = nullptr;  ///< R, G, B; rows from the top; one more float at the end can be read
+  std::uint32_t width = 0;        ///< texels
+  std::uint32_t height = 0;       ///< texels
+};
+
+/// An image texture as the inner loops see it. Owns nothing.
+struct TextureImage {
+  static constexpr std::size_t kMaxLevels = 13;
+
+  TextureLevel levels[kMaxLevels];  ///< the image, then each about half as wide and high as the one before
+  std::uint32_t level_count = 0;
+  double turn = 0;  ///< rotation about +y, turns, 0..1
+};
+
 /// A compiled texture. Owns nothing.
 ///
 /// Solid textures (all but images) are functions of the point in world space with values t in 0..1, and their colour is
@@ -24,12 +39,12 @@ inline constexpr int kOctaves = 7;
 /// Reference  shirley2024b
 struct Texture {
   TextureKind kind = TextureKind::kChecker;
-  std::uint32_t seed = 0;              ///< of the noise
-  double scale = 1;                    ///< checker: edge of a cell, scene units; noise: lattice cells per scene unit
-  double low[3] = {0, 0, 0};           ///< checker: colour of even cells
-  double high[3] = {1, 1, 1};          ///< checker: colour of odd cells
-  const double* gradients = nullptr;   ///< noise: kGradients unit vectors of four doubles, the last one unused
-  const Environment* image = nullptr;  ///< its texels, seen from the centre mirrored; without sun or distribution
+  std::uint32_t seed = 0;               ///< of the noise
+  double scale = 1;                     ///< checker: edge of a cell, scene units; noise: lattice cells per scene unit
+  double low[3] = {0, 0, 0};            ///< checker: colour of even cells
+  double high[3] = {1, 1, 1};           ///< checker: colour of odd cells
+  const double* gradients = nullptr;    ///< noise: kGradients unit vectors of four doubles, the last one unused
+  const TextureImage* image = nullptr;  ///< seen from the centre mirrored
 };
 
 /// The textures that replace constants of a material: indices into SceneView::textures.

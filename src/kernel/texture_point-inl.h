@@ -21,6 +21,7 @@ template <class D>
 struct TexturePoint {
   Vec3<hn::Vec<D>> base, rest;  ///< their sum is the point in world space
   Vec3<hn::Vec<D>> outward;     ///< unit, from the sphere's centre
+  hn::Vec<D> footprint2;        ///< squared width of the ray cone, seen from the sphere's centre, radians^2
 };
 
 /// The distance to the nearer of the two points where a ray's line intersects a sphere whose surface is close to the
@@ -65,17 +66,18 @@ HWY_INLINE V refined_distance(D d, const Rays<D>& ray, const Spheres<D>& sphere,
 /// ground touches a face of a checker's cells.
 ///
 /// `offset`, `outward`  as of HitPoint
+/// `footprint2`         as of TexturePoint
 /// Precision  docs/numerics.md, test KernelTexture.CellsOfCheckersAtAllRadii
 template <class D, Precision kPrecision, class V = hn::Vec<D>>
 HWY_INLINE TexturePoint<D> texture_point(D d, const Rays<D>& ray, const Spheres<D>& sphere, const Vec3<V>& offset,
-                                         const Vec3<V>& outward, V distance) {
-  if constexpr (kPrecision == Precision::kBook) return {ray.origin, ray.direction * distance, outward};
+                                         const Vec3<V>& outward, V distance, V footprint2) {
+  if constexpr (kPrecision == Precision::kBook) return {ray.origin, ray.direction * distance, outward, footprint2};
   const auto reach = [&](const Vec3<V>& a) { return max<V>({hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}); };
   const auto by_ray = distance + reach(ray.origin) < sphere.radius + reach(sphere.center);
-  if (hn::AllFalse(d, by_ray)) return {sphere.center, offset, outward};
+  if (hn::AllFalse(d, by_ray)) return {sphere.center, offset, outward, footprint2};
   const V refined = refined_distance(d, ray, sphere, distance);
   return {select(by_ray, ray.origin, sphere.center),
-          select(by_ray, mul_add(ray.direction, refined, ray.origin_low), offset), outward};
+          select(by_ray, mul_add(ray.direction, refined, ray.origin_low), offset), outward, footprint2};
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "math/vec3.h"
 
@@ -36,6 +37,8 @@ class EnvironmentImage {
   const float* row(int y) const { return &values_[begin_of(y)]; }
 
   Sun sun;
+  /// The image at decreasing resolutions, without sun, for textures that are seen from far away; empty for backgrounds.
+  std::vector<EnvironmentImage> reduced;
 
  private:
   static constexpr std::size_t kPadding = 1;  ///< the kernel loads texels as four floats

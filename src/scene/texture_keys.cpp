@@ -61,7 +61,7 @@ std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
             {"",
              "Image file, relative to the scene file: EXR, HDR, PNG, JPEG, TIFF or PPM, with +y at the top, +x "
              "at the centre and +z halfway to the left edge. May contain a frame pattern such as `####`",
-             "12 bytes per texel"},
+             "16 bytes per texel"},
             [](Texture& t) -> std::filesystem::path& { return t.file; })),
         text<Texture>("color_space",
                       {"",

@@ -23,6 +23,18 @@ struct StoredImage {
   std::uint64_t hash;  ///< FNV-1a of the bytes of all values
 };
 
+/// Writes the map of image textures: independent bytes, so that every level differs from the next.
+void write_map(const fs::path& file) {
+  constexpr int kWidth = 260, kHeight = 130;
+  std::ofstream out(file, std::ios::binary);
+  out << "P6\n" << kWidth << ' ' << kHeight << "\n255\n";
+  std::uint32_t state = 1;
+  for (int i = 0; i < 3 * kWidth * kHeight; ++i) {
+    state = state * 1664525u + 1013904223u;
+    out.put(static_cast<char>(state >> 24));
+  }
+}
+
 class DeterminismProgram : public testing::TestWithParam<StoredImage> {
  protected:
   void SetUp() override {
@@ -31,14 +43,17 @@ class DeterminismProgram : public testing::TestWithParam<StoredImage> {
     folder_ = fs::path(testing::TempDir()) / ("orrery-determinism-" + name);
     fs::remove_all(folder_);
     fs::create_directories(folder_);
+    fs::copy_file(std::string(ORRERY_SCENES) + GetParam().scene, folder_ / GetParam().scene);
+    write_map(folder_ / "map.ppm");
   }
   void TearDown() override { fs::remove_all(folder_); }
 
   /// Renders the scene to a reproducible 32-bit EXR file; `arguments` are appended.
   fs::path render(const std::string& name, const std::string& arguments) {
     fs::path file = folder_ / (name + ".exr");
-    const std::string command = std::string("\"") + ORRERY_PROGRAM + "\" render \"" + ORRERY_SCENES + GetParam().scene +
-                                "\" -o \"" + file.string() + "\" --type float --reproducible -q " + arguments;
+    const std::string command = std::string("\"") + ORRERY_PROGRAM + "\" render \"" +
+                                (folder_ / GetParam().scene).string() + "\" -o \"" + file.string() +
+                                "\" --type float --reproducible -q " + arguments;
     EXPECT_EQ(std::system(command.c_str()), 0) << command;
     return file;
   }
@@ -124,7 +139,8 @@ INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                          testing::Values(StoredImage{"everything.toml", 0x3fa6a00f7e524967u},
                                          StoredImage{"lights.toml", 0x12f07436d90f5202u},
                                          StoredImage{"sky-and-lights.toml", 0xfd9514c5c175e0aeu},
-                                         StoredImage{"textures.toml", 0xf986224e4a21d9f2u}),
+                                         StoredImage{"textures.toml", 0xf986224e4a21d9f2u},
+                                         StoredImage{"image-textures.toml", 0xfcae157c25f25d31u}),
                          [](const auto& instance) {
                            std::string name = instance.param.scene;
                            std::replace(name.begin(), name.end(), '-', '_');

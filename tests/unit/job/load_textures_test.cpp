@@ -161,9 +161,11 @@ TEST_F(JobLoadTextures, TheMemoryLimitHoldsForAllOfThem) {
   write_flat("a.png", 0.5F);
   write_flat("b.png", 0.5F);
   add("a.png");
-  EXPECT_NO_THROW(load(nullptr, 64 * 32 * 12));
+  constexpr std::uint64_t kBytes = (64 * 32 + 32 * 16) * 12;  // with a mip map
+  EXPECT_THROW(load(nullptr, kBytes - 1), base::Error);
+  EXPECT_NO_THROW(load(nullptr, kBytes));
   add("b.png");
-  EXPECT_THROW(load(nullptr, 64 * 32 * 12 * 3 / 2), base::Error);
+  EXPECT_THROW(load(nullptr, kBytes * 3 / 2), base::Error);
 }
 
 TEST_F(JobLoadTextures, TheSceneGetsTheImages) {

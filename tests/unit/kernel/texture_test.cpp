@@ -35,6 +35,7 @@ struct TextureLook {
 /// A point given as a sum, and the colour of the texture there.
 struct SolidPoint {
   double base[3] = {}, rest[3] = {}, outward[3] = {};
+  double footprint2 = 0;
   double rgb[3] = {};
 };
 #endif
@@ -64,7 +65,7 @@ void look_all(D d, const Texture& texture, std::vector<TextureLook>& looks) {
     const auto hit = closest_distance<D, kPrecision>(d, ray, sphere, no);
     if (hn::AllFalse(d, hit.mask)) continue;
     const auto at = hit_point<D, kPrecision>(d, ray, sphere, no, hit.value);
-    const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, hit.value);
+    const auto point = texture_point<D, kPrecision>(d, ray, sphere, at.offset, at.outward, hit.value, zero);
     const auto color = texture_color(d, texture, point);
     look.distance = static_cast<double>(hn::GetLane(hit.value));
     look.rgb[0] = static_cast<double>(hn::GetLane(color.x));
@@ -75,7 +76,8 @@ void look_all(D d, const Texture& texture, std::vector<TextureLook>& looks) {
 template <class D>
 void evaluate_all(D d, const Texture& texture, std::vector<SolidPoint>& points) {
   for (SolidPoint& p : points) {
-    const TexturePoint<D> at{set_all(d, p.base), set_all(d, p.rest), set_all(d, p.outward)};
+    const TexturePoint<D> at{set_all(d, p.base), set_all(d, p.rest), set_all(d, p.outward),
+                             hn::Set(d, static_cast<hn::TFromD<D>>(p.footprint2))};
     const auto color = texture_color(d, texture, at);
     p.rgb[0] = static_cast<double>(hn::GetLane(color.x));
     p.rgb[1] = static_cast<double>(hn::GetLane(color.y));
@@ -434,10 +436,9 @@ TEST(KernelTexture, ImagesAreSeenFromOutsideAsInTheBook) {
       texels[3 * (8 * y + x)] = static_cast<float>(x);
       texels[3 * (8 * y + x) + 1] = static_cast<float>(y);
     }
-  Environment map;
-  map.texels = texels.data();
-  map.width = 8;
-  map.height = 4;
+  TextureImage map;
+  map.levels[0] = {texels.data(), 8, 4};
+  map.level_count = 1;
   map.turn = 0.75;
   Texture texture;
   texture.kind = TextureKind::kImage;

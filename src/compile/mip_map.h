@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "scene/environment_image.h"
+
+namespace orrery::compile {
+
+/// Adds the levels of a mip map to an image texture: each has half the width and height of the one before, rounded
+/// down. A texel is the mean of those that it covers, by solid angle, so that all levels have the same mean over the
+/// sphere, and a level of a constant image has its bits.
+///
+/// The last level has at least 16 rows and 32 columns: a coarser one would mix the sphere's visible side with the
+/// other.
+///
+/// Precision  sums in double, rounded to float
+void add_mip_map(scene::EnvironmentImage& image);
+
+/// Returns the memory of an image of this size and its mip map, in bytes.
+std::uint64_t mip_map_bytes(int width, int height);
+
+}  // namespace orrery::compile
