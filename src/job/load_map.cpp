@@ -38,7 +38,7 @@ class Loader {
       const image::MapHeader header = image::read_map_header(request_.file, request_.formats);
       out_.width = header.width;
       out_.height = header.height;
-      out_.bytes = request_.is_texture ? compile::mip_map_bytes(header.width, header.height)
+      out_.bytes = request_.has_mip_map ? compile::mip_map_bytes(header.width, header.height)
                                        : compile::environment_bytes(header.width, header.height, request_.sampling);
       if (header.width != 2 * header.height)
         warn(request_.file_key, fmt::format("{} x {} texels; a latitude-longitude map is twice as wide as high",
@@ -142,7 +142,7 @@ class Loader {
       }
     };
     image::read_map(request_.file, take, request_.formats);
-    if (request_.is_texture) compile::add_mip_map(*image);
+    if (request_.has_mip_map) compile::add_mip_map(*image);
     out_.image = image;
     if (replaced_.nan + replaced_.infinite + replaced_.negative > 0)
       warn(request_.file_key, fmt::format("{} values are NaN, {} infinite and {} negative; they are replaced by 0",

@@ -27,7 +27,7 @@ struct MapRequest {
   float largest = static_cast<float>(scene::kBrightestLight);  ///< values above are clamped
   std::string ocio_config;                                     ///< in the form of display::Settings
   compile::EnvironmentSampling sampling = compile::EnvironmentSampling::kNone;
-  bool is_texture = false;         ///< adds a mip map
+  bool has_mip_map = false;        ///< adds one
   std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
   bool skips_large = false;        ///< an image that does not fit into memory is a warning and is not read
 };

@@ -28,7 +28,7 @@ MapRequest request_of(const scene::NamedTexture& named, const fs::path& folder, 
   out.is_color = named.use != scene::TextureUse::kNumber;
   if (named.use != scene::TextureUse::kRadiance) out.largest = 1;
   out.ocio_config = ocio_config;
-  out.is_texture = true;
+  out.has_mip_map = named.texture->filter == scene::TextureFilter::kMip;
   return out;
 }
 
@@ -38,9 +38,10 @@ std::string name_of(const MapRequest& request) {
   const std::uintmax_t size = fs::file_size(request.file, size_error);
   const fs::file_time_type time = fs::last_write_time(request.file, time_error);
   const bool is_known = !size_error && !time_error;
-  return fmt::format("{}\n{} {}\n{}\n{}\n{}\n{}\n{} {}", fs::absolute(request.file).string(), is_known ? size : 0,
+  return fmt::format("{}\n{} {}\n{}\n{}\n{}\n{}\n{} {} {}", fs::absolute(request.file).string(), is_known ? size : 0,
                      is_known ? time.time_since_epoch().count() : 0, request.ocio_config, request.color_space,
-                     request.default_space, request.working_space, request.is_color, request.largest);
+                     request.default_space, request.working_space, request.is_color, request.largest,
+                     request.has_mip_map);
 }
 
 }  // namespace

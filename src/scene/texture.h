@@ -14,6 +14,9 @@ class EnvironmentImage;
 
 enum class TextureType { kChecker, kNoise, kTurbulence, kMarble, kImage };
 
+/// How the texels of an image are averaged over the footprint of a ray: by a mip map, or by the samples alone.
+enum class TextureFilter { kMip, kBilinear };
+
 /// A texture of a material. Where it stands for a number, such as `fuzz`, all components of a colour are equal.
 struct Texture {
   TextureType type = TextureType::kChecker;
@@ -25,6 +28,7 @@ struct Texture {
   std::filesystem::path file = {};                     ///< latitude-longitude map, relative to the scene file
   std::string color_space = {};                        ///< empty: by the file's attribute or format
   double rotation = 0;                                 ///< degrees about +y
+  TextureFilter filter = TextureFilter::kMip;
   std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`; null until loaded
 };
 

@@ -70,7 +70,13 @@ std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
                       [](Texture& t) -> std::string& { return t.color_space; }),
         number<Texture>("rotation", {-kLargestRotation, kLargestRotation},
                         {"degrees", "Rotation about +y; 90 turns +z to +x"},
-                        [](Texture& t) -> double& { return t.rotation; })}}};
+                        [](Texture& t) -> double& { return t.rotation; }),
+        choice<Texture>("filter", {"mip", "bilinear"},
+                        {"",
+                         "`mip`: where texels are small, a mip map averages them over a sixteenth of a pixel or lobe. "
+                         "`bilinear`: texels are only interpolated, and averaged by the samples",
+                         "`bilinear`: up to three times the error at the same number of samples, without blur"},
+                        [](Texture& t) -> TextureFilter& { return t.filter; })}}};
 }
 
 }  // namespace

@@ -33,8 +33,10 @@ class JobLoadTextures : public testing::Test {
     scene_.materials.push_back(
         {"m" + std::to_string(scene_.materials.size()), scene::Lambertian{{1, 1, 1}, map(name, color_space)}});
   }
-  static scene::TextureSlot map(const std::string& name, const std::string& color_space = {}) {
+  static scene::TextureSlot map(const std::string& name, const std::string& color_space = {},
+                                scene::TextureFilter filter = scene::TextureFilter::kMip) {
     scene::Texture texture;
+    texture.filter = filter;
     texture.type = scene::TextureType::kImage;
     texture.file = name;
     texture.color_space = color_space;
@@ -155,6 +157,19 @@ TEST_F(JobLoadTextures, AFileIsReadOnceForAllItsUses) {
   EXPECT_EQ(loaded[0].map.image, loaded[1].map.image);
   EXPECT_TRUE(loaded[1].is_shared);
   EXPECT_EQ(load(&cache)[0].map.image, loaded[0].map.image) << "by the next frame, too";
+}
+
+TEST_F(JobLoadTextures, OnlyFilteredImagesHaveAMipMap) {
+  write_flat("a.png", 0.5F);
+  add("a.png");
+  scene_.materials.push_back(
+      {"sharp", scene::Lambertian{{1, 1, 1}, map("a.png", {}, scene::TextureFilter::kBilinear)}});
+  const auto loaded = load();
+  EXPECT_EQ(loaded[0].map.image->reduced.size(), 1u);
+  EXPECT_EQ(loaded[0].map.bytes, (64 * 32 + 32 * 16) * 12u);
+  EXPECT_FALSE(loaded[1].is_shared);
+  EXPECT_TRUE(loaded[1].map.image->reduced.empty());
+  EXPECT_EQ(loaded[1].map.bytes, 64 * 32 * 12u);
 }
 
 TEST_F(JobLoadTextures, TheMemoryLimitHoldsForAllOfThem) {
