@@ -138,7 +138,7 @@ TEST(RenderDirectLight, NoVertexReflectsMoreThanOneAndAHalfTimesAlbedoAndRadianc
   const char* const wanted = std::getenv("ORRERY_LIGHT_VERTICES");
   const double vertices = wanted != nullptr ? std::atof(wanted) : 1e6;
   double largest_ratio = 0;
-  std::vector<test::NamedScene> scenes = test::lit_scenes(384, 256);
+  std::vector<test::NamedScene> scenes = test::lit_scenes(192, 128);
   for (test::NamedScene& named : scenes) {
     scene::Scene& s = named.scene;
     double brightest = 0;
@@ -164,13 +164,15 @@ TEST(RenderDirectLight, NoVertexReflectsMoreThanOneAndAHalfTimesAlbedoAndRadianc
     s.render.max_depth = 2;
     s.render.samples = 1;
     compile::CompiledScene compiled = compile::compile(s, named.closing ? &*named.closing : nullptr);
+    const std::unique_ptr<accel::Accel> accel = build(compiled, available_threads());
     Settings settings;
     settings.layers.diffuse = settings.layers.specular = true;
+    settings.traversal = accel::Traversal::kPacket;
     float largest = 0;
     double found = 0;
     for (std::uint32_t seed = 1; found < vertices / static_cast<double>(scenes.size()); ++seed) {
       compiled.sampler.seed = seed;
-      const Result result = render(compiled, settings);
+      const Result result = render(compiled, *accel, settings);
       EXPECT_EQ(result.statistics.bad_samples, 0u);
       for (const film::Plane& plane : result.picture.planes)
         if (plane.name.rfind("diffuse_direct", 0) == 0 || (!has_glass && plane.name.rfind("specular_direct", 0) == 0))
