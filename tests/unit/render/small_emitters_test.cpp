@@ -155,6 +155,7 @@ TEST(RenderSmallEmitters, ADistantLampIsNotMissed) {
   s.background.color = {1, 1, 1};
   s.spheres[0].radius = 0.012;
   const std::vector<EmitterCoverage> found = find(compile::compile(s));
+  ASSERT_FALSE(found.empty());
   const double lamp =
       static_cast<double>(std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
                             return a.light < b.light;
