@@ -19,43 +19,11 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
-PENUMBRA = """
+STAGE = """
 [camera]
 look_from = [0, 3, 8]
 look_at = [0, 0.8, 0]
 vfov = 30
-[background]
-type = "constant"
-color = [0, 0, 0]
-[render]
-max_depth = 5
-[material]
-floor = { type = "lambertian", albedo = [0.5, 0.5, 0.5] }
-ball = { type = "lambertian", albedo = [0.7, 0.3, 0.2] }
-lamp = { type = "emitter", radiance = [200, 180, 150] }
-[[sphere]]
-center = [0, -1000, 0]
-radius = 1000
-material = "floor"
-[[sphere]]
-center = [0, 1, 0]
-radius = 1
-material = "ball"
-[[sphere]]
-center = [3, 5, 2]
-radius = 0.2
-material = "lamp"
-"""
-
-# Balls under the image of a clear sky, a few texels of which hold the sun.
-IMAGE_SKY = """
-[camera]
-look_from = [0, 3, 8]
-look_at = [0, 0.8, 0]
-vfov = 30
-[background]
-type = "image"
-file = "sky.exr"
 [render]
 max_depth = 5
 [material]
@@ -66,15 +34,20 @@ brushed = { type = "metal", albedo = [0.8, 0.8, 0.8], fuzz = 0.5 }
 center = [0, -1000, 0]
 radius = 1000
 material = "floor"
-[[sphere]]
-center = [-1, 1, 0]
-radius = 1
-material = "ball"
-[[sphere]]
-center = [1, 1, 0]
-radius = 1
-material = "brushed"
 """
+
+
+def sphere(center, radius, material):
+    return f'[[sphere]]\ncenter = {center}\nradius = {radius}\nmaterial = "{material}"\n'
+
+
+PENUMBRA = ('[background]\ntype = "constant"\ncolor = [0, 0, 0]\n' + STAGE +
+            '[material.lamp]\ntype = "emitter"\nradiance = [200, 180, 150]\n' +
+            sphere([0, 1, 0], 1, "ball") + sphere([3, 5, 2], 0.2, "lamp"))
+
+# Balls under the image of a clear sky, a few texels of which hold the sun.
+IMAGE_SKY = ('[background]\ntype = "image"\nfile = "sky.exr"\n' + STAGE +
+             sphere([-1, 1, 0], 1, "ball") + sphere([1, 1, 0], 1, "brushed"))
 
 
 def run(program, *words):

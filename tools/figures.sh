@@ -5,12 +5,13 @@
 #
 #   tools/figures.sh           as many rays as in ./test.sh; takes one or two minutes
 #   tools/figures.sh --long    as in docs/numerics.md: 1e7 rays per regime, 1e9 in the furnace, 1e8 with Embree and with
-#                              the list; takes 15 minutes or more
+#                              the list, 1e9 vertices; takes half an hour or more
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${ORRERY_BUILD:-$root/build}
 if [ "${1:-}" = --long ]; then
   export ORRERY_NUMERIC_RAYS=10000000 ORRERY_FURNACE_RAYS=1e9 ORRERY_ACCEL_RAYS=1e8
+  export ORRERY_LIT_SAMPLES=4096 ORRERY_LIGHT_VERTICES=1e9
 fi
 status=0
 
@@ -39,6 +40,12 @@ figure "threads, tiles, shards, lanes, traversals: the same bits" unit_render 'R
 figure "a shell of negative radius is a sphere of the inverse index" unit_render 'RenderRender.NegativeRadius*'
 figure "an albedo wrong by 0.1 % is detected" statistical/statistical 'StatisticalClosedForm.AlbedoError*'
 figure "samplers against their distributions" statistical/statistical 'StatisticalSamplers.*'
+figure "irradiance of sphere lights, in full and cut by the horizon" unit_compile 'KernelLights.IrradianceOfASphere*'
+figure "light tree: 1e6 emitters; error against choosing by power" unit_compile 'CompileLightTree.FortyEight*:KernelLights.TheTree*'
+figure "a ball in an emissive shell" unit_render 'RenderLitLoop.*InAnEmissiveShell*'
+figure "penumbra of an eclipse, variance of a small lamp" unit_render 'RenderDirectLight.TheEclipses*:RenderDirectLight.ASmallLamp*'
+figure "direct light of a vertex" unit_render 'RenderDirectLight.NoVertex*'
+figure "mis, bsdf and light agree; a texel as a sun" statistical/statistical 'StatisticalDirectLight.A*'
 echo
 "$build/src/orrery" bench "$root/scenes/book/final.toml" --quiet
 exit "$status"

@@ -39,7 +39,7 @@ class Loader {
       out_.width = header.width;
       out_.height = header.height;
       out_.bytes = request_.has_mip_map ? compile::mip_map_bytes(header.width, header.height)
-                                       : compile::environment_bytes(header.width, header.height, request_.sampling);
+                                        : compile::environment_bytes(header.width, header.height, request_.sampling);
       if (header.width != 2 * header.height)
         warn(request_.file_key, fmt::format("{} x {} texels; a latitude-longitude map is twice as wide as high",
                                             header.width, header.height));

@@ -31,7 +31,7 @@ struct LightRange {
 struct Lights {
   static constexpr std::uint32_t kNoLeaf = 0xffffffffu;
   /// Up to this many emitters are chosen from a list. Measured: docs/decisions/0022-direct-lighting.md.
-  static constexpr std::uint32_t kFew = 16;
+  static constexpr std::uint32_t kFew = 64;
 
   const std::uint32_t* spheres = nullptr;  ///< sphere id of each leaf
   /// Of each range of two leaves or more, at its `middle`; of each leaf if there are few.

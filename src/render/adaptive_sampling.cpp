@@ -11,6 +11,7 @@
 #include "render/allocation.h"
 #include "render/noise_estimate.h"
 #include "render/progressive_sampling.h"
+#include "render/small_emitters.h"
 
 namespace orrery::render {
 namespace {
@@ -50,6 +51,9 @@ class AdaptiveSampling {
         iteration_begin_(progress.seconds()),
         iteration_begin_samples_(progress.done()) {
     if (settings.layers.coverage) pixels_.known_black.resize(pixels_.samples.size());
+    kernel::SceneView view = compiled.view();
+    if (settings.layers.coverage) view.background_visible = false;
+    pixels_.small_emitters = find_small_emitters(view, compiled.width, compiled.height);
     for (int y = 0; y < compiled.height; ++y)
       for (int x = 0; x < compiled.width; ++x) update(x, y);
   }

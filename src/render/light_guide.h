@@ -7,6 +7,12 @@
 
 namespace orrery::render {
 
+/// What the small emitters within a pixel cover of it; see find_small_emitters.
+struct EmitterCoverage {
+  float coverage = 0;  ///< fraction of the pixel
+  float light = 0;     ///< radiance that they add to the pixel's, mean of the three channels
+};
+
 /// Statistics of each pixel from its two independent halves of samples, in row-major order.
 struct PixelStatistics {
   PixelStatistics(int width_px, int height_px);
@@ -17,12 +23,17 @@ struct PixelStatistics {
   std::vector<float> variance;         ///< variance of `light`, mean of the three channels
   /// 1: no path reached anything that could emit, so the pixel is black; empty: unknown for all.
   std::vector<std::uint8_t> known_black;
+  std::vector<EmitterCoverage> small_emitters;  ///< empty: there are none
 
   bool is_known_black(std::size_t i) const { return !known_black.empty() && known_black[i] != 0; }
+  bool has_small_emitters(std::size_t i) const { return !small_emitters.empty() && small_emitters[i].light > 0; }
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
 };
+
+/// Samples per pixel in each half from which every error estimate counts as reliable.
+inline constexpr std::uint32_t kSamplesForReliability = 512;
 
 /// Number of interleaved pixel classes, (x mod 3, y mod 3). A pixel's 5 x 5 window has no other pixel of its class.
 inline constexpr int kClasses = 9;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "film/display_error.h"
+#include "render/small_emitters.h"
 
 namespace orrery::render {
 namespace {
@@ -22,8 +23,8 @@ constexpr double kSparse = 64;
 /// Side of a cell, px. Windows larger than kWideReach are 3 x 3 and 9 x 9 cells around the pixel's own.
 constexpr int kCell = 16;
 
-/// Lower bound of a pixel's error as a fraction of the image's, so that a pixel unlike its neighbours is never
-/// abandoned.
+/// Lower bound of a pixel's error as a fraction of the image's without its small emitters, so that a pixel unlike its
+/// neighbours is never abandoned.
 constexpr float kMinError = 1.0f / 64;
 
 /// Paths in a window that must have found light before its error is trusted.
@@ -72,7 +73,8 @@ class CrossValidatedErrors {
         cells_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)),
         wide_(cells_.size()) {}
 
-  /// Computes the errors of a block, whose sides are whole cells except at the image's border.
+  /// Computes the errors of a block, whose sides are whole cells except at the image's border. Pixels with small
+  /// emitters do not count in sums of cells, because it is known that other pixels have no such errors.
   ///
   /// `guide`    radiance of the block's pixels; empty: the block is noiseless
   void fill(const PixelBlock& b, const std::vector<float>& guide, int excluded_class) {
@@ -85,7 +87,7 @@ class CrossValidatedErrors {
         const bool is_excluded = class_of(x, y) == excluded_class;
         values_[at] =
             is_excluded || guide.empty() ? 0 : relative(s_.variance[at] * static_cast<float>(s_.samples[at]), guide[i]);
-        if (is_excluded) continue;
+        if (is_excluded || s_.has_small_emitters(at)) continue;
         const auto v = static_cast<double>(values_[at]);
         Sums& c = cell(x / kCell, y / kCell);
         c.sum += v;
@@ -159,6 +161,7 @@ class CrossValidatedErrors {
 bool has_reliable_estimate(const PixelStatistics& s, int x, int y) {
   const double n = s.samples[s.at(x, y)];
   if (n >= kSamplesForReliability) return true;
+  if (needs_samples_for_emitters(s, x, y)) return false;
   double light = 0, variance = 0, samples = 0;
   int count = 0, dark = 0;
   for (int v = std::max(y - kReliabilityReach, 0); v <= std::min(y + kReliabilityReach, s.height - 1); ++v) {
@@ -237,7 +240,7 @@ UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool
   const std::vector<PixelBlock> blocks = blocks_of(s.width, s.height);
   run(pool, blocks.size(), [&](std::size_t i) {
     const PixelBlock& b = blocks[i];
-    if (is_lit_without_noise(s, b)) return;
+    if (s.small_emitters.empty() && is_lit_without_noise(s, b)) return;
     for (int y = b.y; y < b.y + b.height; ++y)
       for (int x = b.x; x < b.x + b.width; ++x) out.of_pixel[s.at(x, y)] = has_reliable_estimate(s, x, y) ? 0 : 1;
   });
@@ -247,7 +250,8 @@ UnreliablePixels find_unreliable_pixels(const PixelStatistics& s, TilePool& pool
 
 std::vector<float> errors_of_one_sample(const PixelStatistics& s, const NoiseEstimate& noise, TilePool& pool) {
   double sum = 0;
-  for (std::size_t i = 0; i < s.samples.size(); ++i) sum += static_cast<double>(noise.of_pixel[i]) * s.samples[i];
+  for (std::size_t i = 0; i < s.samples.size(); ++i)
+    if (!s.has_small_emitters(i)) sum += static_cast<double>(noise.of_pixel[i]) * s.samples[i];
   const float least = kMinError * static_cast<float>(sum / static_cast<double>(s.samples.size()));
 
   std::vector<float> out(s.samples.size());
@@ -266,7 +270,8 @@ std::vector<float> errors_of_one_sample(const PixelStatistics& s, const NoiseEst
       const PixelBlock& b = blocks[i];
       for (int y = b.y; y < b.y + b.height; ++y)
         for (int x = b.x; x < b.x + b.width; ++x)
-          if (class_of(x, y) == own) out[s.at(x, y)] = errors.around(x, y) + least;
+          if (class_of(x, y) == own)
+            out[s.at(x, y)] = std::max(errors.around(x, y), error_of_small_emitters(s, x, y)) + least;
     });
   }
   return out;

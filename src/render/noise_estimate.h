@@ -35,9 +35,6 @@ struct UnreliablePixels {
 /// trusted, too.
 UnreliablePixels find_unreliable_pixels(const PixelStatistics& statistics, TilePool& pool);
 
-/// Samples per pixel in each half from which every error estimate counts as reliable.
-inline constexpr std::uint32_t kSamplesForReliability = 512;
-
 /// The squared relative error of a single sample of each pixel, as in --noise, estimated from the pixels around it. The
 /// pixel's own samples have no influence, so choosing pixels by the result cannot favour samples that happen to be
 /// bright, dark or alike (decision 16).

@@ -25,9 +25,9 @@ struct Texture {
   math::Vec3d high{1, 1, 1};  ///< checker: odd cells; noise: at 1
   std::uint32_t seed = 1;     ///< noise
   // Image.
-  std::filesystem::path file = {};                     ///< latitude-longitude map, relative to the scene file
-  std::string color_space = {};                        ///< empty: by the file's attribute or format
-  double rotation = 0;                                 ///< degrees about +y
+  std::filesystem::path file = {};  ///< latitude-longitude map, relative to the scene file
+  std::string color_space = {};     ///< empty: by the file's attribute or format
+  double rotation = 0;              ///< degrees about +y
   TextureFilter filter = TextureFilter::kMip;
   std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`; null until loaded
 };

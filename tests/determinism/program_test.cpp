@@ -138,7 +138,7 @@ TEST_P(DeterminismProgram, OptionsThatMatterChangeTheImage) {
 INSTANTIATE_TEST_SUITE_P(, DeterminismProgram,
                          testing::Values(StoredImage{"everything.toml", 0x3fa6a00f7e524967u},
                                          StoredImage{"lights.toml", 0x12f07436d90f5202u},
-                                         StoredImage{"sky-and-lights.toml", 0xfd9514c5c175e0aeu},
+                                         StoredImage{"sky-and-lights.toml", 0xf3919d87a625abe6u},
                                          StoredImage{"textures.toml", 0xf986224e4a21d9f2u},
                                          StoredImage{"image-textures.toml", 0xfcae157c25f25d31u}),
                          [](const auto& instance) {

@@ -76,8 +76,8 @@ inline std::vector<NamedScene> lit_scenes(int width_px, int height_px) {
   add_lamp(add("small lamp"), {1.5, 2.5, 1}, 0.25, {60, 50, 40});
   add_lamp(add("huge lamp"), {4, 9, -3}, 6, {1, 0.8, 0.6});
   scene::Scene& many = add("many lamps");
-  for (int i = 0; i < 40; ++i)
-    add_lamp(many, {-3 + 0.75 * (i % 8), 0.5 + 0.5 * (i / 8), -1.5 + 0.4 * (i % 5)}, 0.05 + 0.01 * (i % 7),
+  for (int i = 0; i < 80; ++i)  // more than a list holds
+    add_lamp(many, {-3 + 0.75 * (i % 8), 0.5 + 0.25 * (i / 8), -1.5 + 0.4 * (i % 5)}, 0.05 + 0.01 * (i % 7),
              {5.0 + i % 3, 5.0 + i % 5, 5.0 + i % 7});
   scene::Scene& glass = add("glass in front of a lamp");
   add_lamp(glass, {1.2, 2.2, 1}, 0.4, {20, 20, 20});

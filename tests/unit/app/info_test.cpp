@@ -105,9 +105,9 @@ TEST_F(AppInfo, ReportsHowLightIsSampled) {
   EXPECT_EQ(info(kLamps, {"render.direct_lighting=light", "sphere[2].material=black"}).lights,
             "1 emitter; light sampling");
   std::string many = "material.lamp = { type = \"emitter\", radiance = [1, 1, 1] }\n";
-  for (int i = 0; i < 20; ++i)
+  for (int i = 0; i < 100; ++i)
     many += "[[sphere]]\ncenter = [" + std::to_string(3 * i) + ", 0, 0]\nradius = 1\nmaterial = \"lamp\"\n";
-  EXPECT_EQ(info(many).lights, "20 emitters; light and BSDF sampling; emitters by a light tree of 0.9 KiB");
+  EXPECT_EQ(info(many).lights, "100 emitters; light and BSDF sampling; emitters by a light tree of 4.7 KiB");
 }
 
 TEST_F(AppInfo, ReportsHowTheBackgroundIsSampled) {

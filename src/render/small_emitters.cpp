@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/small_emitters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "film/display_error.h"
+#include "math/vec3.h"
+
+namespace orrery::render {
+namespace {
+
+using math::Vec3d;
+
+/// Side of the largest image of a small emitter, px, without the pixel filter. Larger ones are found through the
+/// neighbours.
+constexpr int kLargestSide = 3;
+
+/// Expected number of hits in each half before a pixel's error is trusted.
+constexpr double kHits = 4;
+/// Light below this fraction of that around the pixel is ignored.
+constexpr float kMinFraction = 1.0f / 8;
+/// Coverage from which on the error of a sample is not assumed to be larger, so that few samples are wasted on emitters
+/// that are occluded.
+constexpr float kMinCoverage = 1.0f / 32;
+/// Half-width of the window around a pixel, px.
+constexpr int kReach = 3;
+
+/// The distance of the sun of a daylight sky, in distances to the focus plane. Nothing depends on it as long as it is
+/// large.
+constexpr double kSunDistance = 0x1p40;
+
+Vec3d vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+/// The camera at the time when the shutter opens (0) or closes (1).
+kernel::Camera camera_at(const kernel::SceneView& scene, int time) {
+  kernel::Camera out = scene.camera;
+  if (time == 0 || !scene.features.motion) return out;
+  const kernel::Camera& change = scene.camera_motion;
+  for (int k = 0; k < 3; ++k) {
+    out.origin[k] += change.origin[k];
+    out.forward[k] += change.forward[k];
+    out.right[k] += change.right[k];
+    out.down[k] += change.down[k];
+    out.lens_u[k] += change.lens_u[k];
+    out.lens_v[k] += change.lens_v[k];
+  }
+  return out;
+}
+
+/// The image of a sphere: a rectangle around it, and its area without the blur of the lens.
+struct SphereImage {
+  double x0, x1, y0, y1;  ///< px, relative to the rendered window
+  double area;            ///< square pixels
+};
+
+/// Projects a sphere. Empty if it is behind the camera or around it.
+std::optional<SphereImage> image_of(const kernel::Camera& camera, Vec3d center, double radius) {
+  const Vec3d forward = vector(camera.forward), right = vector(camera.right), down = vector(camera.down);
+  const Vec3d to = center - vector(camera.origin), across = cross(right, down);
+  const double determinant = dot(forward, across);
+  const double depth = dot(to, across) / determinant;  // 1 at the focus plane
+  if (!(depth * length(forward) > radius)) return std::nullopt;
+  const double scale = camera.is_orthographic ? 1 : depth;
+  const double x = dot(to, cross(down, forward)) / (determinant * scale) + camera.half_width;
+  const double y = dot(to, cross(forward, right)) / (determinant * scale) + camera.half_height;
+  const double pixel_width = scale * length(right), pixel_height = scale * length(down);  // at the sphere
+  const double blurred = radius + length(vector(camera.lens_u)) * std::abs(1 - depth);
+  return SphereImage{x - blurred / pixel_width, x + blurred / pixel_width, y - blurred / pixel_height,
+                     y + blurred / pixel_height, std::numbers::pi * radius * radius / (pixel_width * pixel_height)};
+}
+
+/// Adds up the images of emitters.
+class Coverage {
+ public:
+  Coverage(const kernel::SceneView& scene, int width_px, int height_px)
+      : width_(width_px),
+        height_(height_px),
+        margin_(scene.filter.above != nullptr ? scene.filter.above[kernel::PixelFilter::kSteps] - 0.5 : 0) {}
+
+  /// `opening`, `closing`  images when the shutter opens and closes
+  /// `radiance`            mean of the channels
+  void add(const std::optional<SphereImage>& opening, const std::optional<SphereImage>& closing, double radiance) {
+    if (!opening || !closing) return;
+    const double x0 = std::min(opening->x0, closing->x0), x1 = std::max(opening->x1, closing->x1);
+    const double y0 = std::min(opening->y0, closing->y0), y1 = std::max(opening->y1, closing->y1);
+    if (!(std::floor(x1) - std::floor(x0) < kLargestSide && std::floor(y1) - std::floor(y0) < kLargestSide)) return;
+    const double left = std::floor(x0 - margin_), right = std::floor(x1 + margin_);
+    const double top = std::floor(y0 - margin_), bottom = std::floor(y1 + margin_);
+    if (!(right >= 0 && left < width_ && bottom >= 0 && top < height_)) return;
+    const double share = (opening->area + closing->area) / 2 / ((right - left + 1) * (bottom - top + 1));
+    if (pixels_.empty()) pixels_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+    for (int y = std::max(static_cast<int>(top), 0); y <= std::min(static_cast<int>(bottom), height_ - 1); ++y) {
+      for (int x = std::max(static_cast<int>(left), 0); x <= std::min(static_cast<int>(right), width_ - 1); ++x) {
+        EmitterCoverage& pixel =
+            pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+        pixel.coverage += static_cast<float>(share);
+        pixel.light += static_cast<float>(share * radiance);
+      }
+    }
+  }
+
+  std::vector<EmitterCoverage> take() { return std::move(pixels_); }
+
+ private:
+  int width_, height_;  ///< px
+  double margin_;       ///< px, by which the pixel filter extends beyond a pixel
+  std::vector<EmitterCoverage> pixels_;
+};
+
+double mean_of(const double (&rgb)[3]) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
+
+/// The fraction of a pixel's radiance that comes from small emitters if the rest is as bright as its neighbours of
+/// other classes; 0 if it is negligible.
+float fraction_of_emitters(const PixelStatistics& s, int x, int y) {
+  if (!s.has_small_emitters(s.at(x, y))) return 0;
+  const float own = s.small_emitters[s.at(x, y)].light;
+  double light = 0;
+  int count = 0;
+  for (int v = std::max(y - kReach, 0); v <= std::min(y + kReach, s.height - 1); ++v) {
+    for (int u = std::max(x - kReach, 0); u <= std::min(x + kReach, s.width - 1); ++u) {
+      if (class_of(u, v) == class_of(x, y)) continue;
+      light += static_cast<double>(s.light[s.at(u, v)]);
+      ++count;
+    }
+  }
+  const auto around = static_cast<float>(std::max(count > 0 ? light / count : 0, film::kDarkestLight));
+  return own < kMinFraction * around ? 0 : own / (own + around);
+}
+
+}  // namespace
+
+std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene, int width_px, int height_px) {
+  Coverage coverage(scene, width_px, height_px);
+  const kernel::Camera opening = camera_at(scene, 0), closing = camera_at(scene, 1);
+  for (std::size_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id) {
+    const double radiance = mean_of(scene.emission[scene.sphere_materials[id]].radiance);
+    if (!(radiance > 0)) continue;
+    const kernel::Sphere a = sphere_at(scene, id, 0), b = sphere_at(scene, id, 1);
+    coverage.add(image_of(opening, {a.x, a.y, a.z}, a.radius), image_of(closing, {b.x, b.y, b.z}, b.radius), radiance);
+  }
+  const kernel::Environment* const sky = scene.environment;
+  if (sky != nullptr && sky->has_sun && scene.background_visible && !opening.is_orthographic) {
+    const double distance = kSunDistance * length(vector(opening.forward));
+    const double radius = distance * std::sqrt(2 * sky->sun_one_minus_cos);
+    const auto image = [&](const kernel::Camera& camera) {
+      return image_of(camera, vector(camera.origin) + vector(sky->sun) * distance, radius);
+    };
+    coverage.add(image(opening), image(closing), mean_of(sky->sun_radiance));
+  }
+  return coverage.take();
+}
+
+bool needs_samples_for_emitters(const PixelStatistics& s, int x, int y) {
+  const std::uint32_t n = s.samples[s.at(x, y)];
+  if (n >= kSamplesForReliability || fraction_of_emitters(s, x, y) == 0) return false;
+  return n * static_cast<double>(s.small_emitters[s.at(x, y)].coverage) < kHits;
+}
+
+float error_of_small_emitters(const PixelStatistics& s, int x, int y) {
+  const float share = fraction_of_emitters(s, x, y);
+  if (share == 0) return 0;
+  // Hits are 1 with the probability of the coverage, and display errors half the relative errors of radiance.
+  const float coverage = std::max(s.small_emitters[s.at(x, y)].coverage, kMinCoverage);
+  return share * share * std::max(1 / coverage - 1, 0.0f) / 4;
+}
+
+}  // namespace orrery::render

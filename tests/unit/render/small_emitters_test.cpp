@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/small_emitters.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compile/compile.h"
+#include "render/noise_estimate.h"
+#include "render/render.h"
+#include "support/lit_scenes.h"
+
+namespace orrery::render {
+namespace {
+
+constexpr double kRadiance = 1000;
+
+/// A lamp of a tenth of a pixel, 10 units in front of the camera, in the left upper part of the image.
+scene::Scene distant_lamp() {
+  scene::Scene s;
+  s.image = {48, 32};
+  s.camera.look_from = {0, 0, 10};
+  s.camera.look_at = {0, 0, 0};
+  s.camera.vfov = 40;
+  s.background.type = scene::BackgroundType::kConstant;
+  s.background.color = {0, 0, 0};
+  s.render.samples = 2048;
+  test::add_lamp(s, {-2.13, 1.41, 0}, 0.04, {kRadiance, kRadiance, kRadiance});
+  return s;
+}
+
+std::vector<EmitterCoverage> find(const compile::CompiledScene& compiled) {
+  return find_small_emitters(compiled.view(), compiled.width, compiled.height);
+}
+
+/// Compares with the rendered image, in which nothing but the lamp is bright.
+void expect_where_rendered(const scene::Scene& opening, const std::string& name,
+                           const scene::Scene* closing = nullptr) {
+  const compile::CompiledScene compiled = compile::compile(opening, closing);
+  const std::vector<EmitterCoverage> found = find(compiled);
+  const std::vector<float> rendered = render(compiled, {}).picture.planes[0].values;
+  ASSERT_EQ(found.size(), rendered.size()) << name;
+  double light = 0, expected = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    light += static_cast<double>(found[i].light);
+    expected += static_cast<double>(rendered[i]);
+    EXPECT_FALSE(rendered[i] > 0 && found[i].light == 0) << name << ", pixel " << i;
+    EXPECT_NEAR(found[i].light, kRadiance * static_cast<double>(found[i].coverage), 1e-3) << name;
+  }
+  EXPECT_GT(expected, 0) << name;
+  EXPECT_NEAR(light, expected, 0.1 * expected) << name;
+  EXPECT_LE(std::count_if(found.begin(), found.end(), [](const EmitterCoverage& e) { return e.light > 0; }), 36)
+      << name;
+}
+
+TEST(RenderSmallEmitters, AreFoundWhereTheyAreRendered) {
+  expect_where_rendered(distant_lamp(), "perspective");
+  scene::Scene s = distant_lamp();
+  s.image.crop = scene::Window{4, 3, 20, 20};
+  expect_where_rendered(s, "crop");
+  s = distant_lamp();
+  s.camera.projection = scene::Projection::kOrthographic;
+  s.camera.width = 12;
+  expect_where_rendered(s, "orthographic");
+  s = distant_lamp();
+  s.render.filter = scene::Filter::kGaussian;
+  s.spheres[0].center = {-2.05, 1.5, 0};  // near the middle of a pixel
+  expect_where_rendered(s, "filter");
+  s = distant_lamp();
+  s.camera.defocus_angle = 1;
+  s.camera.focus_distance = 11;
+  expect_where_rendered(s, "lens");
+  s = distant_lamp();
+  scene::Scene closing = s;
+  closing.spheres[0].center.x += 0.2;
+  expect_where_rendered(s, "moving lamp", &closing);
+  closing = s;
+  closing.camera.look_at.y += 0.1;
+  expect_where_rendered(s, "moving camera", &closing);
+}
+
+TEST(RenderSmallEmitters, LargeEmittersAndThoseOutsideTheImageDoNotCount) {
+  scene::Scene s = distant_lamp();
+  s.spheres[0].radius = 0.5;
+  EXPECT_TRUE(find(compile::compile(s)).empty());
+  s = distant_lamp();
+  s.spheres[0].center.z = 20;
+  EXPECT_TRUE(find(compile::compile(s)).empty()) << "behind the camera";
+  s = distant_lamp();
+  s.spheres[0].center.x = -9;
+  EXPECT_TRUE(find(compile::compile(s)).empty()) << "beside the image";
+  s = distant_lamp();
+  s.materials[0].model = scene::Lambertian{{0.5, 0.5, 0.5}};
+  EXPECT_TRUE(find(compile::compile(s)).empty()) << "no emitter";
+}
+
+TEST(RenderSmallEmitters, TheSunOfASkyIsOne) {
+  scene::Scene s = distant_lamp();
+  s.spheres.clear();
+  s.background.type = scene::BackgroundType::kImage;
+  const auto map = std::make_shared<scene::EnvironmentImage>(32, 16);
+  for (int y = 0; y < map->height(); ++y) std::fill_n(map->row(y), 3 * map->width(), 0.0f);
+  map->sun.direction = math::normalized(math::Vec3d{0.13, 0.11, -1});
+  map->sun.one_minus_cos = 1.08e-5;
+  map->sun.radiance = {kRadiance, kRadiance, kRadiance};
+  s.background.image = map;
+  expect_where_rendered(s, "sun");
+  s.background.visible = false;
+  EXPECT_TRUE(find(compile::compile(s)).empty());
+}
+
+/// Pixels that are lit without noise, with an emitter of a fiftieth of the middle one.
+PixelStatistics with_emitter(std::uint32_t samples, float light) {
+  PixelStatistics s(15, 15);
+  std::fill(s.samples.begin(), s.samples.end(), samples);
+  std::fill(s.light.begin(), s.light.end(), 1.0f);
+  s.small_emitters.resize(s.samples.size());
+  s.small_emitters[s.at(7, 7)] = {0.02f, light};
+  return s;
+}
+
+TEST(RenderSmallEmitters, NeedSeveralExpectedHits) {
+  EXPECT_TRUE(needs_samples_for_emitters(with_emitter(8, 10), 7, 7));
+  EXPECT_TRUE(needs_samples_for_emitters(with_emitter(128, 10), 7, 7));
+  EXPECT_FALSE(needs_samples_for_emitters(with_emitter(256, 10), 7, 7));
+  EXPECT_FALSE(needs_samples_for_emitters(with_emitter(8, 10), 6, 7));
+  EXPECT_FALSE(needs_samples_for_emitters(with_emitter(8, 0.1f), 7, 7)) << "negligible light";
+  PixelStatistics tiny = with_emitter(511, 10);
+  tiny.small_emitters[tiny.at(7, 7)].coverage = 1e-5f;
+  EXPECT_TRUE(needs_samples_for_emitters(tiny, 7, 7));
+  std::fill(tiny.samples.begin(), tiny.samples.end(), kSamplesForReliability);
+  EXPECT_FALSE(needs_samples_for_emitters(tiny, 7, 7));
+  TilePool pool(1);
+  EXPECT_EQ(find_unreliable_pixels(with_emitter(8, 10), pool).count, 1u);
+}
+
+TEST(RenderSmallEmitters, RaiseTheErrorOfAPixelWhateverItsOwnValues) {
+  TilePool pool(1);
+  PixelStatistics s = with_emitter(256, 10);
+  const auto error = [&] { return errors_of_one_sample(s, estimate_noise(s, pool), pool)[s.at(7, 7)]; };
+  const float expected = (10.0f / 11) * (10.0f / 11) * 31 / 4;  // of a coverage of 1/32
+  EXPECT_NEAR(error(), expected, 1e-3f);
+  s.light[s.at(7, 7)] = 40;
+  EXPECT_NEAR(error(), expected, 1e-3f);
+  s.small_emitters[s.at(7, 7)].coverage = 0.5f;
+  EXPECT_NEAR(error(), (10.0f / 11) * (10.0f / 11) / 4, 1e-3f);
+}
+
+/// A lamp of a hundredth of a pixel before a bright sky: nothing but the lamp has noise, and 16 samples rarely hit it.
+TEST(RenderSmallEmitters, ADistantLampIsNotMissed) {
+  scene::Scene s = distant_lamp();
+  s.background.color = {1, 1, 1};
+  s.spheres[0].radius = 0.012;
+  const std::vector<EmitterCoverage> found = find(compile::compile(s));
+  ASSERT_FALSE(found.empty());
+  const double lamp =
+      static_cast<double>(std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
+                            return a.light < b.light;
+                          })->light);
+  ASSERT_GT(lamp, 3);
+  Settings settings;
+  settings.sampling.noise = 0.02;
+  settings.sampling.unlimited = true;
+  double sum = 0;
+  constexpr int kSeeds = 16;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    s.render.seed = static_cast<std::uint32_t>(seed);
+    const Result r = render(compile::compile(s), settings);
+    EXPECT_EQ(r.statistics.ended_by, "noise");
+    EXPECT_EQ(r.statistics.fewest_samples, 16u);
+    const double brightest = *std::max_element(r.picture.planes[0].values.begin(), r.picture.planes[0].values.end());
+    EXPECT_NEAR(brightest - 1, lamp, 0.5 * lamp) << seed;
+    sum += (brightest - 1) / kSeeds;
+  }
+  EXPECT_NEAR(sum, lamp, 0.15 * lamp);
+}
+
+}  // namespace
+}  // namespace orrery::render
