@@ -13,9 +13,9 @@
 namespace orrery::compile {
 namespace {
 
-constexpr int kLeastHeight = 16, kLeastWidth = 2 * kLeastHeight;
+constexpr int kMinHeight = 16, kMinWidth = 2 * kMinHeight;
 
-bool has_next(int width, int height) { return width / 2 >= kLeastWidth && height / 2 >= kLeastHeight; }
+bool has_next(int width, int height) { return width / 2 >= kMinWidth && height / 2 >= kMinHeight; }
 
 /// A texel of the finer level and its weight in a texel of the coarser one.
 struct Tap {

@@ -7,6 +7,9 @@
 #include <functional>
 
 #include "film/display_error.h"
+#include "render/light_guide.h"
+#include "render/tile_pool.h"
+#include "render/tile_renderer.h"
 
 namespace orrery::render {
 namespace {
