@@ -25,6 +25,8 @@
 
 #include "accel/accel.h"
 #include "accel/embree_compat.h"
+#include "kernel/ray_packet.h"
+#include "kernel/scene_view.h"
 
 namespace {
 

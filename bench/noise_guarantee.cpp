@@ -26,9 +26,14 @@
 
 #include "accel/accel.h"
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "film/display_error.h"
+#include "film/picture.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/room.h"
 
 namespace orrery::bench {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "baseline/program.h"
+#include "kernel/ray_packet.h"
 #include "support/workload.h"
 
 namespace orrery::bench {

@@ -7,8 +7,12 @@
 
 #include "baseline/program.h"
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "film/picture.h"
 #include "generate/generate.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 
 namespace orrery::bench {
 namespace {

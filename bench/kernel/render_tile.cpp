@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "kernel/path_stream.h"
+#include "kernel/pixel_sum.h"
 #include "kernel/render_tile.h"
 #include "support/tile_functions.h"
 #include "support/workload.h"

@@ -9,7 +9,10 @@
 #include <utility>
 
 #include "baseline/program.h"
+#include "kernel/ray_packet.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/scenes.h"
 
 namespace orrery::bench {

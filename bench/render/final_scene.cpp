@@ -7,6 +7,8 @@
 
 #include "baseline/program.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/scenes.h"
 
 namespace orrery::bench {

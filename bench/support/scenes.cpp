@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/scenes.h"
+#include "compile/compiled_scene.h"
 
 #include "compile/compile.h"
 #include "generate/generate.h"

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "accel/accel.h"
+#include "kernel/ray_packet.h"
+#include "kernel/render_tile.h"
 #include "render/recorded_rays.h"
 #include "render/traversals.h"
 #include "support/scenes.h"

@@ -8,9 +8,8 @@
 #include <string>
 
 #include "accel/traversal.h"
+#include "kernel/forward.h"
 #include "kernel/precision.h"
-#include "kernel/ray_packet.h"
-#include "kernel/scene_view.h"
 
 namespace orrery::accel {
 

@@ -3,6 +3,7 @@
 
 #include "base/duplicates.h"
 #include "kernel/coincidence.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::accel {
 

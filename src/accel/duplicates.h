@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/forward.h"
 #include "kernel/precision.h"
-#include "kernel/scene_view.h"
 
 namespace orrery::accel {
 
@@ -17,11 +17,5 @@ namespace orrery::accel {
 ///
 /// Cost       none if the scene is known to have none; else see base::find_duplicates
 std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision);
-
-/// A scene, and the ids of its duplicate spheres, which are never hit.
-struct DistinctSpheres {
-  kernel::SceneView view;
-  std::vector<std::uint32_t> duplicates;
-};
 
 }  // namespace orrery::accel

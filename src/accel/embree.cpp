@@ -10,12 +10,14 @@
 
 #include "accel/accel.h"
 #include "accel/duplicates.h"
+#include "accel/embree_query.h"
 #include "accel/embree_scene.h"
 #include "accel/owned_scene.h"
 #include "accel/size_classes.h"
 #include "accel/sphere_bvh.h"
 #include "base/error.h"
 #include "base/stop_point.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::accel {
 namespace {

@@ -12,6 +12,7 @@
 // After foreach_target:
 #include <hwy/highway.h>
 
+#include "accel/embree_query.h"
 #include "accel/embree_rays-inl.h"
 #include "math/dispatch.h"
 

@@ -13,7 +13,9 @@
 #include <cstddef>
 #include <limits>
 
+#include "accel/accel.h"
 #include "accel/box_ray-inl.h"
+#include "accel/embree_query.h"
 #include "accel/embree_scene.h"
 #include "kernel/intersect-inl.h"
 

@@ -2,14 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
-#include "accel/accel.h"
 #include "accel/box_frame.h"
 #include "accel/embree_compat.h"
-#include "kernel/precision.h"
-#include "kernel/ray_packet.h"
+#include "accel/traversal.h"
 #include "kernel/sphere_array.h"
 
 namespace orrery::accel {
@@ -42,40 +39,5 @@ struct EmbreeScene {
     return primitive;
   }
 };
-
-/// One call into Embree with some lanes of a packet. Embree passes the context to the callback, which finds the packet
-/// through it and stores the result there, in the packet's precision. Embree's hit record is not used.
-template <class Packet>
-struct EmbreeQuery {
-  EmbreeContext context;  // first member, so that Embree's pointer to it points to the query
-  const EmbreeScene* scene;
-  Packet* packet;
-  int first;  ///< the packet's lane that is Embree's lane 0
-  /// Distance by which each ray was advanced, by Embree's lane, box space.
-  alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
-};
-
-/// Callbacks and tracer, instantiated for the instruction set of this processor, for one precision, and with or without
-/// motion.
-struct EmbreeFunctions {
-  RTCIntersectFunctionN intersect = nullptr;
-  RTCOccludedFunctionN occluded = nullptr;
-  RTCIntersectFunctionN intersect_bvh = nullptr;  ///< for a geometry whose user data is a SphereBvh
-  RTCOccludedFunctionN occluded_by_bvh = nullptr;
-  kernel::Tracer tracer;  ///< `self` is not set
-
-  kernel::Tracer tracer_of(const EmbreeScene& scene) const noexcept {
-    kernel::Tracer t = tracer;
-    t.self = &scene;
-    return t;
-  }
-};
-EmbreeFunctions embree_functions(kernel::Precision precision, bool moves);
-
-/// Adds the occlusion queries to `functions`.
-void add_occlusion_functions(EmbreeFunctions& functions, kernel::Precision precision, bool moves);
-
-/// Adds the queries of a SphereBvh to `functions`.
-void add_bvh_functions(EmbreeFunctions& functions, kernel::Precision precision);
 
 }  // namespace orrery::accel

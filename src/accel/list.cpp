@@ -13,7 +13,21 @@
 #include <type_traits>
 
 #include "kernel/intersect-inl.h"
+#include "kernel/scene_view.h"
 #include "math/dispatch.h"
+
+#ifndef ORRERY_ACCEL_LIST_ONCE
+#define ORRERY_ACCEL_LIST_ONCE
+namespace orrery::accel {
+
+/// A scene, and the ids of its duplicate spheres, which are never hit.
+struct DistinctSpheres {
+  kernel::SceneView view;
+  std::vector<std::uint32_t> duplicates;
+};
+
+}  // namespace orrery::accel
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {

@@ -4,6 +4,8 @@
 #include "accel/accel.h"
 #include "accel/embree_compat.h"
 #include "accel/owned_scene.h"
+#include "kernel/ray_packet.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::accel {
 namespace {

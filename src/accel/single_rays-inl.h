@@ -16,7 +16,7 @@
 #include <limits>
 
 #include "accel/single_ray-inl.h"
-#include "kernel/gather-inl.h"
+#include "kernel/gather_spheres-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {

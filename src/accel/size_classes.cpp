@@ -10,6 +10,7 @@
 #include "accel/sphere_bvh.h"
 #include "base/stop_point.h"
 #include "kernel/isa.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::accel {
 namespace {

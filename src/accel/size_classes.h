@@ -5,8 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernel/scene_view.h"
-#include "kernel/sphere_array.h"
+#include "kernel/forward.h"
 
 /// Classification of spheres by size: which are too large for the BVHs.
 namespace orrery::accel {

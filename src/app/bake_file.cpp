@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/output_file.h"
+#include "display/settings.h"
 #include "job/job_files.h"
 
 namespace orrery::app {

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "display/bake.h"
+#include "display/settings.h"
 
 namespace orrery::app {
 

@@ -13,7 +13,9 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/text.h"
+#include "image/exr_options.h"
 #include "image/format.h"
+#include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "job/machine.h"
@@ -25,6 +27,7 @@
 #include "metrics/flip.h"
 #include "metrics/ssim.h"
 #include "render/tile_pool.h"
+#include "render/tile_renderer.h"
 
 namespace orrery::app {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "job/memory.h"
+#include "particles/open.h"
 #include "points/derived.h"
 
 namespace orrery::app {
@@ -67,7 +68,7 @@ DataInfo data_info(const DataInfoRequest& request) {
   data::OpenOptions options;
   options.component = request.component;
   options.limit_memory(job::available_memory().value_or(0));
-  const std::unique_ptr<data::DataFile> file = data::open(request.file, options);
+  const std::unique_ptr<data::DataFile> file = particles::open(request.file, options);
   DataInfo info;
   info.file = request.file;
   info.format = file->format();

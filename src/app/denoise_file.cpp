@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "image/format.h"
+#include "image/header.h"
+#include "image/library.h"
 #include "job/machine.h"
 #include "job/version.h"
 

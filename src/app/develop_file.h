@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "display/develop.h"
+#include "display/settings.h"
 #include "film/picture.h"
 
 namespace orrery::app {

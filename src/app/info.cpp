@@ -11,16 +11,23 @@
 #include "app/precision_advice.h"
 #include "base/text.h"
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "film/layer_film.h"
+#include "format/read_result.h"
 #include "job/layers.h"
+#include "job/load_scene.h"
+#include "job/load_textures.h"
+#include "job/loaded_scene.h"
 #include "job/scene_hash.h"
 #include "job/text.h"
 #include "kernel/isa.h"
 #include "measure/bench_scene.h"
+#include "measure/feature_cost.h"
 #include "render/traversals.h"
 #include "scene/layers.h"
 #include "scene/schema.h"
 #include "scene/textures.h"
+#include "scene/value_text.h"
 
 namespace orrery::app {
 namespace {

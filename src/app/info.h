@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "job/load_scene.h"
+#include "job/forward.h"
+#include "job/loaded_map.h"
 #include "job/memory.h"
 
 namespace orrery::app {
@@ -40,7 +41,7 @@ struct TextureInfo {
 /// Properties of a scene that are known before rendering.
 struct SceneInfo {
   std::string scene_hash;
-  int frame = format::kFirstFrame;
+  int frame = 1;
   int width = 0, height = 0, samples = 0, max_depth = 0;
   std::uint64_t spheres = 0;
   double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};  ///< bounds, scene units; valid if spheres > 0

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "base/text.h"
+#include "compile/compiled_scene.h"
 #include "compile/emitters.h"
+#include "compile/environment.h"
 #include "kernel/lights.h"
 
 namespace orrery::app {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "compile/compiled_scene.h"
+#include "compile/forward.h"
 
 namespace orrery::app {
 

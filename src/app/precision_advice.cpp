@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "compile/compiled_scene.h"
 #include "kernel/precision.h"
 
 namespace orrery::app {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compile/compiled_scene.h"
+#include "compile/forward.h"
 
 namespace orrery::app {
 

@@ -6,6 +6,7 @@
 #include "cli/display_options.h"
 #include "cli/option_checks.h"
 #include "cli/signals.h"
+#include "display/settings.h"
 
 namespace orrery::cli {
 namespace {

@@ -13,6 +13,7 @@
 #include "cli/signals.h"
 #include "job/memory.h"
 #include "plot/convert.h"
+#include "plot/converted_file.h"
 
 namespace orrery::cli {
 namespace {

@@ -3,10 +3,12 @@
 
 #include <string>
 
-#include "cli/arguments.h"
 #include "plot/data_options.h"
 
 namespace orrery::cli {
+
+class Command;
+class Option;
 
 /// Texts of the data options that need further parsing.
 struct DataArguments {

@@ -5,7 +5,13 @@
 
 #include <utility>
 
+#include "cli/preview_screen.h"
+#include "film/partial.h"
+#include "film/picture.h"
+#include "film/rendered_pixels.h"
+#include "job/hooks.h"
 #include "preview/file_sink.h"
+#include "preview/preview.h"
 #include "preview/terminal_sink.h"
 #include "preview/tev_sink.h"
 

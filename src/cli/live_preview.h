@@ -3,30 +3,14 @@
 
 #include <memory>
 
-#include "cli/progress.h"
-#include "job/hooks.h"
-#include "preview/preview.h"
-#include "preview/screen.h"
+#include "job/forward.h"
+#include "preview/forward.h"
+#include "preview/sink.h"
 #include "preview/target.h"
 
 namespace orrery::cli {
 
-/// The terminal of `--preview terminal`, which then shows progress and messages as well.
-class PreviewScreen : public BarDisplay {
- public:
-  /// Opens the terminal of stderr.
-  ///
-  /// Errors     base::Error(kUsage) if stderr is not a terminal, or one without colours
-  PreviewScreen();
-  ~PreviewScreen() override { screen_.finish(); }
-
-  void bar(const std::string& text) override { screen_.bar(text); }
-  void note(const std::string& text) override { screen_.note(text); }
-  preview::Screen& screen() { return screen_; }
-
- private:
-  preview::Screen screen_;
-};
+class PreviewScreen;
 
 /// Opens the terminal of `--preview terminal`; null for other targets.
 ///

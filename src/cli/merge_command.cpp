@@ -10,6 +10,7 @@
 #include "cli/render_report.h"
 #include "cli/signals.h"
 #include "job/job.h"
+#include "job/job_report.h"
 #include "job/merge_shards.h"
 
 namespace orrery::cli {

@@ -9,6 +9,8 @@
 #include "base/text.h"
 #include "cli/display_options.h"
 #include "cli/option_checks.h"
+#include "display/settings.h"
+#include "job/job.h"
 
 namespace orrery::cli {
 

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/arguments.h"
-#include "job/job.h"
+#include "job/forward.h"
 
 namespace orrery::cli {
+
+class Command;
 
 /// Heading of these options in the help.
 inline constexpr const char* kImageOptions = "Image options";

@@ -21,6 +21,7 @@
 #include "job/check_job.h"
 #include "job/job_files.h"
 #include "job/load_scene.h"
+#include "job/loaded_scene.h"
 #include "job/memory.h"
 #include "job/working_space.h"
 #include "plot/plot.h"

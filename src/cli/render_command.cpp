@@ -19,11 +19,15 @@
 #include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
+#include "cli/preview_screen.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/render_report.h"
 #include "cli/signals.h"
+#include "job/job_report.h"
 #include "job/provenance.h"
+#include "preview/preview.h"
+#include "render/progress.h"
 
 namespace orrery::cli {
 namespace {

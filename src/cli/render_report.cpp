@@ -4,6 +4,9 @@
 #include <fmt/core.h>
 
 #include "base/diagnostic.h"
+#include "display/settings.h"
+#include "job/job.h"
+#include "job/job_report.h"
 
 namespace orrery::cli {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "job/job.h"
+#include "job/forward.h"
 
 namespace orrery::cli {
 

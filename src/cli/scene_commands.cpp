@@ -17,6 +17,10 @@
 #include "cli/option_checks.h"
 #include "cli/output.h"
 #include "cli/scene_options.h"
+#include "format/read_scene.h"
+#include "job/load_background.h"
+#include "job/load_scene.h"
+#include "job/load_textures.h"
 
 namespace orrery::cli {
 namespace {

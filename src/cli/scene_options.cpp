@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/option_checks.h"
+#include "format/read_scene.h"
 
 namespace orrery::cli {
 

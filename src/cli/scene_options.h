@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/arguments.h"
-#include "job/load_scene.h"
+#include "format/override.h"
 
 namespace orrery::cli {
 

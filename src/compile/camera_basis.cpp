@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "scene/scene.h"
+
 namespace orrery::compile {
 namespace {
 

@@ -9,7 +9,9 @@
 
 #include "base/stop_point.h"
 #include "compile/camera_basis.h"
+#include "compile/compiled_scene.h"
 #include "compile/daylight.h"
+#include "compile/environment.h"
 #include "compile/light_tree.h"
 #include "compile/material_table.h"
 #include "compile/pixel_filter.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "compile/compiled_scene.h"
-#include "scene/scene.h"
+#include "compile/forward.h"
+#include "scene/forward.h"
 
 namespace orrery::compile {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "compile/environment.h"
+#include "compile/forward.h"
 #include "compile/light_tree.h"
 #include "compile/packed_indices.h"
 #include "compile/pixel_filter.h"
@@ -18,6 +18,7 @@
 #include "kernel/scene_view.h"
 #include "math/vec3.h"
 #include "scene/accelerator.h"
+#include "scene/forward.h"
 
 namespace orrery::compile {
 

@@ -10,6 +10,7 @@
 #include "compile/atmosphere.h"
 #include "compile/scattering.h"
 #include "math/trigonometry.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/environment_image.h"
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::compile {
 

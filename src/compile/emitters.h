@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/forward.h"
 #include "kernel/precision.h"
-#include "kernel/scene_view.h"
 
 namespace orrery::compile {
 

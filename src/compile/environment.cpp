@@ -7,6 +7,9 @@
 #include <numbers>
 #include <utility>
 
+#include "math/vec3.h"
+#include "scene/environment_image.h"
+
 namespace orrery::compile {
 namespace {
 

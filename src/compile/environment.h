@@ -7,7 +7,7 @@
 
 #include "kernel/environment.h"
 #include "kernel/lights.h"
-#include "scene/environment_image.h"
+#include "scene/forward.h"
 
 namespace orrery::compile {
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compile/emitters.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::compile {
 namespace {

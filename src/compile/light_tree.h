@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "kernel/forward.h"
 #include "kernel/lights.h"
 #include "kernel/precision.h"
-#include "kernel/scene_view.h"
 
 namespace orrery::compile {
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "compile/compiled_scene.h"
 #include "compile/textures.h"
 #include "scene/layers.h"
 
@@ -120,6 +121,9 @@ std::uint16_t light_group(CompiledScene& compiled, const std::string& name) {
   if (index == names.size()) names.push_back(name);
   return static_cast<std::uint16_t>(index);
 }
+
+MaterialTable::MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
+    : scene_(scene), out_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}
 
 std::uint32_t MaterialTable::index(std::uint32_t authored, bool inside_out) {
   std::uint32_t& at = compiled_[authored][inside_out ? 1 : 0];

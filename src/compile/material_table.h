@@ -9,9 +9,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compile/compiled_scene.h"
+#include "compile/forward.h"
 #include "math/vec3.h"
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::compile {
 
@@ -29,8 +29,7 @@ class MaterialTable {
   /// A table that compiles materials of `scene` into `compiled`.
   ///
   /// Domain     `scene` and `compiled` outlive it
-  MaterialTable(const scene::Scene& scene, CompiledScene& compiled)
-      : scene_(scene), out_(compiled), compiled_(scene.materials.size(), {kNone, kNone}) {}
+  MaterialTable(const scene::Scene& scene, CompiledScene& compiled);
 
   /// Returns the index of a material for spheres whose normals point outward or inward.
   std::uint32_t index(std::uint32_t authored, bool inside_out);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kernel/pixel_filter.h"
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::compile {
 

@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "base/stop_point.h"
+#include "math/vec3.h"
+#include "scene/number_array.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 namespace {

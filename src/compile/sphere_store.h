@@ -8,7 +8,7 @@
 
 #include "base/huge_pages.h"
 #include "kernel/sphere_array.h"
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::compile {
 

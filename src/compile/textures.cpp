@@ -7,22 +7,18 @@
 #include <random>
 #include <set>
 
+#include "scene/environment_image.h"
+#include "scene/texture.h"
+
 namespace orrery::compile {
 namespace {
 
 using math::set;
 using math::Vec3d;
 
-kernel::TextureKind kind_of(scene::TextureType type) {
-  switch (type) {
-    case scene::TextureType::kChecker: return kernel::TextureKind::kChecker;
-    case scene::TextureType::kNoise: return kernel::TextureKind::kNoise;
-    case scene::TextureType::kTurbulence: return kernel::TextureKind::kTurbulence;
-    case scene::TextureType::kMarble: return kernel::TextureKind::kMarble;
-    case scene::TextureType::kImage: return kernel::TextureKind::kImage;
-  }
-  return kernel::TextureKind::kChecker;
-}
+/// Both enumerations have the same order.
+kernel::TextureKind kind_of(scene::TextureType type) { return static_cast<kernel::TextureKind>(type); }
+static_assert(static_cast<int>(scene::TextureType::kImage) == static_cast<int>(kernel::TextureKind::kImage));
 
 /// Unit vectors distributed uniformly: points in a ball, normalized. Only the generator and correctly rounded
 /// operations decide their bits.

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
+#include "kernel/environment.h"
 #include "kernel/texture.h"
 #include "math/vec3.h"
-#include "scene/environment_image.h"
-#include "scene/texture.h"
+#include "scene/forward.h"
 
 namespace orrery::compile {
 

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "data/faults.h"
+
 namespace orrery::data {
 namespace {
 

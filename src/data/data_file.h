@@ -66,12 +66,6 @@ class DataFile {
   virtual Table read(int frame, const std::vector<std::string>& columns) = 0;
 };
 
-/// Opens a data file. Its format is recognised by its content; CSV, TSV and plain XYZ, which have no signature, also by
-/// the extension.
-///
-/// Errors     base::Error: kMissingInput, kIo; kBadData with a remedy for unknown formats, LAZ and ADIOS2; kNoMemory
-std::unique_ptr<DataFile> open(const std::filesystem::path& file, const OpenOptions& options = {});
-
 /// The first bytes of a file and its extension, by which formats are recognised.
 struct Signature {
   std::string head;       ///< up to 64 KiB, decompressed

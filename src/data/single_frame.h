@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "data/data_file.h"
-#include "data/readers.h"
+#include "data/forward.h"
 
 namespace orrery::data {
 

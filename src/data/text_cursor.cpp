@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "data/byte_source.h"
 #include "data/faults.h"
 #include "data/text_lines.h"
 

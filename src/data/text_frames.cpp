@@ -5,6 +5,9 @@
 
 #include <fmt/core.h>
 
+#include "data/byte_source.h"
+#include "data/faults.h"
+
 namespace orrery::data {
 
 int TextFrames::frame_count() {

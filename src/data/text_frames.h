@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "data/readers.h"
+#include "data/data_file.h"
+#include "data/forward.h"
 #include "data/text_cursor.h"
 
 namespace orrery::data {

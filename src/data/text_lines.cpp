@@ -5,6 +5,9 @@
 #include <cstring>
 #include <limits>
 
+#include "data/byte_source.h"
+#include "data/faults.h"
+
 namespace orrery::data {
 namespace {
 

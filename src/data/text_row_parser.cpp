@@ -8,6 +8,11 @@
 
 #include <fmt/core.h>
 
+#include "data/faults.h"
+#include "data/table.h"
+#include "data/text_lines.h"
+#include "data/text_rows.h"
+
 namespace orrery::data {
 namespace {
 

@@ -8,10 +8,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "data/text_lines.h"
 #include "data/text_rows.h"
 
 namespace orrery::data {
+
+class TextLines;
 
 /// Distinct words of a column, in order of first appearance. The words are views of text that the caller keeps.
 class WordList {

@@ -18,6 +18,9 @@
 #include <fmt/core.h>
 
 #include "base/stop_point.h"
+#include "data/byte_source.h"
+#include "data/faults.h"
+#include "data/text_lines.h"
 #include "data/text_row_parser.h"
 
 namespace orrery::data {

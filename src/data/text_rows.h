@@ -6,12 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "data/byte_source.h"
 #include "data/column_survey.h"
-#include "data/faults.h"
 #include "data/table.h"
 
 namespace orrery::data {
+
+class ByteSource;
+class Faults;
 
 inline constexpr std::uint64_t kRowsToEnd = std::numeric_limits<std::uint64_t>::max();
 

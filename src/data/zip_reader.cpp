@@ -10,6 +10,7 @@
 #include <new>
 
 #include "base/stop_point.h"
+#include "data/byte_source.h"
 #include "data/faults.h"
 
 namespace orrery::data {

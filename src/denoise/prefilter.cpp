@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/prefilter.h"
 
+#include "denoise/source_planes.h"
+#include "denoise/tiles.h"
+
 namespace orrery::denoise {
 namespace {
 

@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "denoise/plane_values.h"
-#include "denoise/source_planes.h"
-#include "denoise/tiles.h"
 
 namespace orrery::denoise {
+
+class Tiles;
+struct SourcePlanes;
 
 /// Filters the guides by their own similarity. They are noisy where defocus or motion blurs them, and behind glass.
 ///

@@ -9,6 +9,8 @@
 
 #include <fmt/core.h>
 
+#include "display/settings.h"
+
 #include "display/view.h"
 
 namespace orrery::display {

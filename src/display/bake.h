@@ -4,6 +4,7 @@
 #include <string>
 
 #include "display/develop.h"
+#include "display/settings.h"
 
 namespace orrery::display {
 

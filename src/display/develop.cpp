@@ -8,7 +8,9 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "display/settings.h"
 #include "display/view.h"
+#include "film/picture.h"
 
 namespace orrery::display {
 namespace {

@@ -4,46 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "film/picture.h"
+#include "film/forward.h"
 
 namespace orrery::display {
 
-/// Settings of the display transform of scene-linear images.
-struct Settings {
-  std::string config;                        ///< OCIO config file; empty: $OCIO, or the built-in config if unset
-  std::string working_space = "lin_rec709";  ///< the image's colour space: a name, alias or role of the config
-  std::string display;                       ///< empty: the config's default
-  std::string view;                          ///< empty: the display's default
-  std::string look;                          ///< look applied before the view; empty: only the view's own
-  std::optional<double> exposure;            ///< stops; empty: none
-
-  double stops() const { return exposure.value_or(0); }
-};
-
-/// The resolved display transform.
-struct Choice {
-  std::string config;        ///< "built-in", or the config file
-  std::string config_id;     ///< OCIO's digest of the config; it changes with the text of the config
-  std::string transform_id;  ///< OCIO's digest of the display transform; it changes with the contents of LUT files
-  std::string display, view;
-  std::string working_space;  ///< canonical name in the config
-  bool is_hdr = false;        ///< the result is for a high dynamic range display
-
-  /// Default bits per channel. With 8 bits, banding is visible on high dynamic range displays.
-  int default_bits() const { return is_hdr ? 16 : 8; }
-  std::vector<std::string> warnings;  ///< messages of OCIO about the config
-};
-
-/// Resolves the settings against the config.
-///
-/// Errors     base::Error: kMissingInput for a config (or a LUT file of it) that cannot be opened, kBadData for an
-///            invalid config, kUsage for an unknown display, view, look or colour space (the message suggests similar
-///            names), and for an exposure that is not finite
-Choice choose(const Settings& settings);
+struct Settings;
 
 /// Treatment of an image's alpha.
 enum class Alpha {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "display/find_color_space.h"
+#include "display/settings.h"
 #include "display/view.h"
 
 namespace orrery::display {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "display/develop.h"
+#include "display/settings.h"
 
 namespace orrery::display {
 

@@ -11,6 +11,7 @@
 #include "display/config.h"
 #include "display/find_color_space.h"
 #include "display/names.h"
+#include "display/settings.h"
 
 namespace orrery::display {
 namespace {

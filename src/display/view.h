@@ -5,6 +5,7 @@
 
 #include "display/config.h"
 #include "display/develop.h"
+#include "display/settings.h"
 
 namespace orrery::display {
 

@@ -5,7 +5,10 @@
 
 #include "base/frames.h"
 #include "job/job_files.h"
-#include "points/open_once.h"
+#include "job/job_report.h"
+#include "job/load_background.h"
+#include "job/load_textures.h"
+#include "points/open_data.h"
 
 namespace orrery::farm {
 namespace {

@@ -6,8 +6,10 @@
 
 #include <fmt/core.h>
 
+#include "format/read_scene.h"
 #include "job/job_files.h"
 #include "job/load_scene.h"
+#include "job/loaded_scene.h"
 
 namespace orrery::farm {
 namespace {

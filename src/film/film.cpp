@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film/film.h"
 
+#include "film/picture.h"
+
 namespace orrery::film {
 
 Film::Film(int width_px, int height_px)

@@ -4,10 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "film/picture.h"
 #include "kernel/pixel_sum.h"
 
 namespace orrery::film {
+
+struct Picture;
 
 /// Exact sample sums of all pixels, independent of the order of addition.
 class Film {
@@ -31,7 +32,7 @@ class Film {
   /// The mean of every pixel's samples as planes R, G, B, and A = 1. Pixels without samples are black.
   ///
   /// `second`   more samples, of a film of the same size; null: none
-  film::Picture picture(const Film* second = nullptr) const;
+  Picture picture(const Film* second = nullptr) const;
 
  private:
   int width_, height_;

@@ -7,7 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "film/layers.h"
 #include "film/light_cells.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::film {
 namespace {

@@ -4,14 +4,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "film/half_sums.h"
 #include "film/layer_pixel.h"
-#include "film/layers.h"
 #include "film/picture.h"
-#include "kernel/pixel_sum.h"
-#include "kernel/scene_view.h"
 
 namespace orrery::film {
+
+struct LayerRequest;
 
 /// The planes of the requested layers in file order, without values.
 std::vector<Plane> planes_of(const LayerRequest& request);
@@ -37,7 +35,7 @@ class LayerFilm {
 
  private:
   const LayerRequest& request_;
-  kernel::SceneView view_;
+  const kernel::SceneView& view_;
   std::vector<Plane> planes_;
   std::vector<float> coverage_;
   DeepPicture deep_;

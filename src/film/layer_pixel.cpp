@@ -6,6 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "film/layers.h"
+#include "kernel/path_record.h"
+#include "kernel/scene_view.h"
+
 namespace orrery::film {
 namespace {
 
@@ -141,7 +145,7 @@ void LayerPixel::add(const LayerRequest& request, const kernel::SceneView& scene
 void LayerPixel::add(const LayerRequest& request, const PathRecord& path, const kernel::LightEvent& event,
                      std::int64_t path_weight) {
   if (!is_valid(path.light)) return;
-  const std::size_t cell = request.light_cell(event);
+  const std::size_t cell = request.light_cell(event.group, event.lobe);
   if (cell >= light.size()) light.resize(request.light_cells());
   add3(light[cell], event.value, path_weight);
 }

@@ -6,12 +6,14 @@
 #include <limits>
 #include <vector>
 
-#include "film/layers.h"
-#include "kernel/path_record.h"
+#include "kernel/forward.h"
+#include "kernel/guide_sum.h"
 #include "kernel/pixel_sum.h"
-#include "kernel/scene_view.h"
+#include "kernel/sphere.h"
 
 namespace orrery::film {
+
+struct LayerRequest;
 
 /// The paths of a pixel whose first hit is a given sphere.
 struct SphereCoverage {
@@ -57,6 +59,21 @@ struct LayerPixel {
   std::uint32_t sphere = kernel::kNoSphere;
   std::vector<SphereCoverage> shares;  ///< by ascending sphere, the background last; only for mattes and deep images
 };
+
+/// Sums over half of a pixel's paths.
+struct HalfSums {
+  kernel::PixelSum light;
+  kernel::GuideSum guides;
+
+  HalfSums& operator+=(const HalfSums& other) noexcept {
+    light += other.light;
+    guides += other.guides;
+    return *this;
+  }
+};
+
+/// Both halves of a pixel.
+using Halves = std::array<HalfSums, 2>;
 
 /// Upper bound to which squared radiance is clamped. The radiance itself already reveals a variance that large.
 inline constexpr double kLargestSquare = 0x1p48;

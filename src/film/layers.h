@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/path_record.h"
+#include "kernel/lobe.h"
 
 namespace orrery::film {
 
@@ -68,8 +68,10 @@ struct LayerRequest {
   /// Number of sums that a pixel's light is divided into: a lobe each, or a lobe of a light group.
   std::size_t light_cells() const;
   /// The sum that a light event belongs to.
-  std::size_t light_cell(const kernel::LightEvent& event) const {
-    return (light_groups ? event.group : std::size_t{0}) * kernel::kLobes + static_cast<std::size_t>(event.lobe);
+  ///
+  /// `group`    of a kernel::LightEvent
+  std::size_t light_cell(std::size_t group, kernel::Lobe lobe) const {
+    return (light_groups ? group : std::size_t{0}) * kernel::kLobes + static_cast<std::size_t>(lobe);
   }
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "film/layer_pixel.h"
+#include "film/layers.h"
 #include "math/single.h"
 
 namespace orrery::film {

@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "film/layer_pixel.h"
-#include "film/layers.h"
-#include "kernel/pixel_sum.h"
+#include "kernel/forward.h"
+#include "kernel/lobe.h"
 
 namespace orrery::film {
+
+struct LayerPixel;
+struct LayerRequest;
 
 /// The mean radiance of a pixel by light group and lobe. The lobes, the groups, and the lobes of the groups each sum to
 /// the beauty, the lobes of a group to the group, and the groups' parts of a lobe to that lobe: bit for bit in single

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "film/layers.h"
+
 namespace orrery::film {
 
 RenderWork& RenderWork::operator+=(const RenderWork& other) {

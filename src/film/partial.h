@@ -3,13 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "film/film.h"
-#include "film/half_sums.h"
 #include "film/layer_pixel.h"
-#include "kernel/pixel_place.h"
 
 namespace orrery::film {
 
@@ -20,14 +17,6 @@ struct RenderWork {
   double seconds = 0;             ///< rendering time, without BVH construction and file I/O
 
   RenderWork& operator+=(const RenderWork& other);
-};
-
-/// Pixels that have received samples.
-///
-/// Domain     `pixels` is relative to x, y and inside the rectangle
-struct RenderedPixels {
-  int x = 0, y = 0, width = 0, height = 0;  ///< px, a rectangle around the pixels
-  std::span<const kernel::PixelPlace> pixels = {};
 };
 
 /// An incomplete render: the content of a checkpoint or shard.

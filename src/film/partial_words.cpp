@@ -9,6 +9,10 @@
 
 #include "base/error.h"
 #include "base/image_limits.h"
+#include "film/film.h"
+#include "film/layer_pixel.h"
+#include "film/layers.h"
+#include "film/partial.h"
 
 namespace orrery::film {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "film/partial.h"
-
 namespace orrery::film {
+
+struct Partial;
 
 /// Serializes a partial render to 32-bit words: a header, then for each word of each per-pixel number a plane over all
 /// pixels, or a single value if all pixels have the same.

@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "scene/value_text.h"
+
 namespace orrery::format {
 namespace {
 

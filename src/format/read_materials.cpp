@@ -9,7 +9,10 @@
 #include <fmt/core.h>
 
 #include "base/frames.h"
+#include "base/text.h"
 #include "format/overrides.h"
+#include "format/read_keys.h"
+#include "scene/texture.h"
 
 namespace orrery::format {
 namespace {

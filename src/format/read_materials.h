@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <toml++/toml.h>
+
 #include <vector>
 
-#include "format/read_keys.h"
 #include "scene/scene.h"
 
 namespace orrery::format {
+
+struct ReadState;
 
 /// Reads the [material.NAME] tables in the order of the file, which defines the material indices of points files.
 /// Materials that only overrides define follow. An invalid material keeps its name and index, so that spheres that use

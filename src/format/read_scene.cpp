@@ -14,9 +14,12 @@
 #include "format/overrides.h"
 #include "format/read_keys.h"
 #include "format/read_materials.h"
+#include "format/read_result.h"
 #include "format/read_tracks.h"
 #include "points/load_points.h"
+#include "points/source_rows.h"
 #include "scene/animation.h"
+#include "scene/diagnostic.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
 

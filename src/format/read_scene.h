@@ -5,35 +5,19 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
 #include "format/override.h"
-#include "points/load_points.h"
-#include "scene/scene.h"
-#include "scene/validate.h"
+#include "points/open_data.h"
+#include "scene/forward.h"
 
 namespace orrery::format {
 
-/// The value of a key, and its origin.
-struct Setting {
-  std::string key;     ///< "camera.vfov"
-  std::string value;   ///< as written in a scene file
-  std::string origin;  ///< "default", "scene.toml:12", "--set", "--samples"
-};
+struct ReadResult;
 
 /// The frame that is read by default.
 inline constexpr int kFirstFrame = 1;
-
-struct ReadResult {
-  scene::Scene scene;
-  std::vector<base::Diagnostic> warnings;
-  std::vector<Setting> settings;  ///< all keys that a scene has at most once, in documentation order
-  /// The scene at shutter close, without points; `scene` is then the scene at shutter open. Empty without motion blur.
-  std::optional<scene::Scene> closing = {};
-};
 
 /// A further check of a scene, such as for names that are not in the OCIO config.
 using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene::Scene&)>;

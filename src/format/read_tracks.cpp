@@ -7,8 +7,12 @@
 
 #include <fmt/core.h>
 
+#include "base/text.h"
+#include "format/read_keys.h"
+
 #include "scene/animation.h"
 #include "scene/limits.h"
+#include "scene/value_text.h"
 
 namespace orrery::format {
 namespace {

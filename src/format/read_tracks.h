@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "format/read_keys.h"
-#include "scene/scene.h"
+#include <toml++/toml.h>
+
+#include "scene/forward.h"
 
 namespace orrery::format {
+
+struct ReadState;
 
 /// Reads the [[key]] tables into the tracks of a scene whose materials and spheres have been read.
 void read_tracks(ReadState& state, const toml::array& list, scene::Scene& scene);

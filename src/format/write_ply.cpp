@@ -37,7 +37,7 @@ void append_float(std::string& out, double value, std::size_t index) {
   append_bytes(out, static_cast<float>(value));
 }
 
-/// The header up to the comment that names the writer, as in data::write_table.
+/// The header up to the comment that names the writer, as in particles::write_table.
 std::string header_begin(std::string_view writer) {
   return fmt::format("ply\nformat binary_little_endian 1.0\ncomment made by {}\n", writer);
 }

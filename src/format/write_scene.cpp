@@ -12,6 +12,8 @@
 #include "format/write_ply.h"
 #include "scene/animation.h"
 #include "scene/schema.h"
+#include "scene/texture.h"
+#include "scene/value_text.h"
 
 namespace orrery::format {
 namespace {

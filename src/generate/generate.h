@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "film/picture.h"
-#include "scene/scene.h"
+#include "film/forward.h"
+#include "scene/forward.h"
 
 namespace orrery::generate {
 

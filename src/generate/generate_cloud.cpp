@@ -12,6 +12,7 @@
 #include "generate/generate_random.h"
 #include "scene/limits.h"
 #include "scene/schema.h"
+#include "scene/value_text.h"
 
 namespace orrery::generate {
 namespace {

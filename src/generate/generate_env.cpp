@@ -9,9 +9,11 @@
 
 #include "base/error.h"
 #include "compile/daylight.h"
+#include "film/picture.h"
 #include "generate/generate.h"
 #include "math/trigonometry.h"
 #include "scene/limits.h"
+#include "scene/scene.h"
 #include "scene/value_text.h"
 
 namespace orrery::generate {

@@ -8,11 +8,16 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_set.h"
+#include "film/picture.h"
 #include "format/write_ply.h"
 #include "format/write_scene.h"
+#include "generate/generate.h"
+#include "image/exr_options.h"
 #include "image/format.h"
+#include "image/header.h"
 #include "image/write.h"
 #include "scene/schema.h"
+#include "scene/value_text.h"
 
 namespace orrery::generate {
 namespace {

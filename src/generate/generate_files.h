@@ -3,9 +3,12 @@
 
 #include <filesystem>
 
-#include "generate/generate.h"
+#include "scene/forward.h"
 
 namespace orrery::generate {
+
+struct Cloud;
+struct FinalScene;
 
 /// Writes a generated scene: TOML to `file`, points to a file of the same name with the extension .ply.
 ///

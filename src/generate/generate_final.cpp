@@ -11,6 +11,8 @@
 #include "base/error.h"
 #include "generate/generate.h"
 #include "generate/generate_random.h"
+#include "scene/scene.h"
+#include "scene/texture.h"
 
 namespace orrery::generate {
 namespace {

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "film/picture.h"
 #include "generate/generate.h"
 #include "generate/generate_noise.h"
 

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "film/picture.h"
 
 namespace orrery::image {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "film/picture.h"
+#include "film/forward.h"
 
 namespace orrery::image {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/picture.h"
+#include "image/header.h"
 #include "image/write.h"
 
 namespace orrery::image {

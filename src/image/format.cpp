@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 
 #include <fmt/core.h>
 
@@ -12,29 +13,26 @@
 namespace orrery::image {
 namespace {
 
-struct Extension {
-  const char* name;
-  Format format;
-};
-constexpr Extension kExtensions[] = {{"exr", Format::kExr},   {"hdr", Format::kHdr},   {"png", Format::kPng},
-                                     {"tif", Format::kTiff},  {"tiff", Format::kTiff}, {"jpg", Format::kJpeg},
-                                     {"jpeg", Format::kJpeg}, {"ppm", Format::kPpm}};
-
-/// The maximum side that an encoder accepts, px. OpenImageIO 2.5 limits PNG, Radiance and PPM to 65535; earlier
-/// releases accept more. A TIFF of more than 4 GB becomes a BigTIFF.
-int largest_side(Format format) {
-  switch (format) {
-    case Format::kJpeg: return 65500;  // libjpeg's JPEG_MAX_DIMENSION
-    case Format::kPng:
-    case Format::kHdr:
-    case Format::kPpm: return 65535;
-    case Format::kTiff: return 1 << 20;
-    case Format::kExr: return (1 << 30) - 1;  // keeps window coordinates within 32 bits
-  }
-  return 0;
+/// All formats, in the order of Format.
+///
+/// OpenImageIO 2.5 limits PNG, Radiance and PPM to 65535 pixels; earlier releases accept more. A TIFF of more than 4 GB
+/// becomes a BigTIFF.
+const std::vector<FormatInfo>& formats() {
+  constexpr int kLargestExr = (1 << 30) - 1;  // keeps window coordinates within 32 bits
+  constexpr int kLargestJpeg = 65500;         // libjpeg's JPEG_MAX_DIMENSION
+  static const std::vector<FormatInfo> all = {
+      {Format::kExr, {"exr"}, "openexr", kLargestExr, false, 0, false, 0, 0},
+      {Format::kHdr, {"hdr"}, "hdr", 65535, false, 0, false, 3, 3},
+      {Format::kPng, {"png"}, "png", 65535, true, 16, true, 1.8, 4.8},
+      {Format::kTiff, {"tif", "tiff"}, "tiff", 1 << 20, true, 16, true, 1.8, 4.8},
+      {Format::kJpeg, {"jpg", "jpeg"}, "jpeg", kLargestJpeg, true, 8, false, 0.8, 0.8},
+      {Format::kPpm, {"ppm"}, "pnm", 65535, true, 8, false, 3, 3}};
+  return all;
 }
 
 }  // namespace
+
+const FormatInfo& info_of(Format format) { return formats().at(static_cast<std::size_t>(format)); }
 
 Format format_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -42,9 +40,11 @@ Format format_of(const std::filesystem::path& file) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::vector<std::string> known;
-  for (const Extension& e : kExtensions) {
-    if (extension == e.name) return e.format;
-    known.emplace_back(e.name);
+  for (const FormatInfo& info : formats()) {
+    for (const char* name : info.extensions) {
+      if (extension == name) return info.format;
+      known.emplace_back(name);
+    }
   }
   const std::string near = base::did_you_mean(extension, known);
   throw base::Error(base::ErrorKind::kUsage, fmt::format("{}; {}known formats are {}",
@@ -53,12 +53,8 @@ Format format_of(const std::filesystem::path& file) {
                                                          near.empty() ? "" : near + " ", base::joined(known)));
 }
 
-bool is_display_format(Format format) { return format != Format::kExr && format != Format::kHdr; }
-
-bool holds_alpha(Format format) { return format == Format::kPng || format == Format::kTiff; }
-
 void check_size(const std::filesystem::path& file, int width_px, int height_px) {
-  const int largest = largest_side(format_of(file));
+  const int largest = info_of(format_of(file)).largest_side;
   if (width_px <= largest && height_px <= largest) return;
   throw base::Error(
       base::ErrorKind::kUsage,
@@ -66,7 +62,5 @@ void check_size(const std::filesystem::path& file, int width_px, int height_px) 
           "{} cannot hold {} x {} pixels: the maximum side of its format is {}; use TIFF or EXR for larger images",
           file.string(), width_px, height_px, largest));
 }
-
-int max_bits(Format format) { return format == Format::kPng || format == Format::kTiff ? 16 : 8; }
 
 }  // namespace orrery::image

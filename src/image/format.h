@@ -17,23 +17,40 @@ enum class Format {
   kPpm,   ///< display, 8 bit
 };
 
+/// What the program knows about a format.
+struct FormatInfo {
+  Format format;
+  std::vector<const char*> extensions;  ///< lower case, without the dot
+  const char* library_name;             ///< OpenImageIO's name
+  int largest_side;                     ///< px, that the encoder accepts
+  bool is_display;                      ///< holds display-encoded colours; the others hold scene-linear values
+  int max_bits;                         ///< of display formats: maximum number of bits per channel
+  bool holds_alpha;                     ///< of display formats
+  /// Estimated size of an image, which is noise in the worst case: bytes per pixel with up to 8 bits per channel, and
+  /// with 16. 0: depends on the image (EXR).
+  double bytes_per_pixel, bytes_per_pixel_16;
+};
+
+/// Properties of a format.
+const FormatInfo& info_of(Format format);
+
 /// The format of a file by its extension, regardless of case.
 ///
 /// Errors     base::Error(kUsage) listing the known extensions
 Format format_of(const std::filesystem::path& file);
 
 /// Whether a format holds display-encoded colours. The others hold scene-linear values without a display transform.
-bool is_display_format(Format format);
+inline bool is_display_format(Format format) { return info_of(format).is_display; }
 
 /// Whether a display format has a channel for alpha.
-bool holds_alpha(Format format);
+inline bool holds_alpha(Format format) { return info_of(format).holds_alpha; }
+
+/// The maximum number of bits per channel of a display format.
+inline int max_bits(Format format) { return info_of(format).max_bits; }
 
 /// Checks before rendering that the format of a file supports this image size.
 ///
 /// Errors     base::Error(kUsage) with the limit
 void check_size(const std::filesystem::path& file, int width_px, int height_px);
-
-/// The maximum number of bits per channel of a display format.
-int max_bits(Format format);
 
 }  // namespace orrery::image

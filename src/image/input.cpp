@@ -16,18 +16,6 @@ namespace {
 /// Rows decoded at a time: a multiple of the block height of every EXR compression except dwab.
 constexpr int kRowsAtATime = 64;
 
-const char* library_name(Format format) {
-  switch (format) {
-    case Format::kExr: return "openexr";
-    case Format::kHdr: return "hdr";
-    case Format::kPng: return "png";
-    case Format::kTiff: return "tiff";
-    case Format::kJpeg: return "jpeg";
-    case Format::kPpm: return "pnm";
-  }
-  return "";
-}
-
 }  // namespace
 
 void fail_to_read(const std::filesystem::path& file, const std::string& reason) {
@@ -66,7 +54,7 @@ Input open_input(const std::filesystem::path& file, Alpha alpha) {
   const Format format = format_of(file);
   base::require_readable(file);
   if (const std::string damage = damage_of(file, format); !damage.empty()) fail_to_read(file, damage);
-  Input out{OIIO::ImageInput::create(library_name(format)), {}, 0};
+  Input out{OIIO::ImageInput::create(info_of(format).library_name), {}, 0};
   if (!out.in)
     throw base::Error(base::ErrorKind::kInternal,
                       fmt::format("this OpenImageIO cannot read {}{}", file.string(), OIIO::geterror()));

@@ -17,6 +17,7 @@
 #include "film/partial_words.h"
 #include "image/digest.h"
 #include "image/exr_spec.h"
+#include "image/header.h"
 #include "image/library.h"
 #include "image/whole_file.h"
 

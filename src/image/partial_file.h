@@ -2,20 +2,16 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <string>
 
 #include "film/partial.h"
-#include "film/picture.h"
-#include "image/write.h"
+#include "image/provenance.h"
 
 namespace orrery::image {
 
+struct Header;
+
 /// Prefix of the attributes by which shards and checkpoints differ from images.
 inline constexpr const char* kPartialPrefix = "orrery/partial/";
-
-/// Origin of a checkpoint or shard as name-value pairs, e.g. "sceneHash" = "0123456789abcdef".
-using Provenance = std::map<std::string, std::string>;
 
 /// Writes a checkpoint or shard as a two-part EXR with a digest: a preview image that any program opens, and the exact
 /// sums. `provenance` is stored in the header as "orrery/partial/NAME".

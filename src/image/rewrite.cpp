@@ -18,6 +18,7 @@
 #include "base/error.h"
 #include "image/exr_spec.h"
 #include "image/format.h"
+#include "image/header.h"
 #include "image/input.h"
 #include "image/partial_file.h"
 #include "image/whole_file.h"

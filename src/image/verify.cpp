@@ -10,6 +10,7 @@
 
 #include "image/damage.h"
 #include "image/format.h"
+#include "image/header.h"
 #include "image/input.h"
 #include "image/library.h"
 #include "image/write.h"

@@ -8,7 +8,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "image/exr_options.h"
 #include "image/exr_spec.h"
+#include "image/header.h"
 #include "image/whole_file.h"
 
 namespace orrery::image {

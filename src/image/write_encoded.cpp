@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <OpenImageIO/imageio.h>
 
+#include <fmt/core.h>
 #include "base/error.h"
 
-#include <fmt/core.h>
+#include "film/picture.h"
 #include "image/format.h"
+#include "image/header.h"
 #include "image/whole_file.h"
 #include "image/write.h"
 
@@ -15,23 +17,12 @@ using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
 /// Sets the attributes of a format.
-///
-/// Result     OpenImageIO's name of the format
-const char* add_format(Format format, ImageSpec& spec) {
-  switch (format) {
-    case Format::kPng: return "png";
-    case Format::kTiff:
-      spec.attribute("compression", "zip");
-      // To write EXIF data OpenImageIO reads back the unfinished file. That fails and loses the image's own directory.
-      spec.attribute("tiff:write_exif", 0);
-      leave_out_date(spec);
-      return "tiff";
-    case Format::kJpeg: return "jpeg";
-    case Format::kPpm: return "pnm";
-    case Format::kExr:
-    case Format::kHdr: break;
-  }
-  throw base::Error(base::ErrorKind::kInternal, "EXR and HDR hold scene-linear light");
+void add_attributes(Format format, ImageSpec& spec) {
+  if (format != Format::kTiff) return;
+  spec.attribute("compression", "zip");
+  // To write EXIF data OpenImageIO reads back the unfinished file. That fails and loses the image's own directory.
+  spec.attribute("tiff:write_exif", 0);
+  leave_out_date(spec);
 }
 
 }  // namespace
@@ -39,6 +30,7 @@ const char* add_format(Format format, ImageSpec& spec) {
 void write_encoded(const std::filesystem::path& file, const film::EncodedPicture& picture, const std::string& software,
                    const std::string& stamp) {
   const Format format = format_of(file);
+  if (!is_display_format(format)) throw base::Error(base::ErrorKind::kInternal, "EXR and HDR hold scene-linear light");
   if (picture.bits > max_bits(format))
     throw base::Error(base::ErrorKind::kUsage, file.string() + " holds 8 bits per channel; PNG and TIFF hold 16");
   check_size(file, picture.width, picture.height);
@@ -54,7 +46,8 @@ void write_encoded(const std::filesystem::path& file, const film::EncodedPicture
   if (!stamp.empty()) spec.attribute("ImageDescription", fmt::format("{} {}", kStampName, stamp));
   if (picture.channels > 3) spec.attribute("oiio:UnassociatedAlpha", 1);  // else OpenImageIO divides by alpha
   if (picture.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
-  const char* const name = add_format(format, spec);
+  add_attributes(format, spec);
+  const char* const name = info_of(format).library_name;
   if (picture.bits == 8) {
     const std::vector<std::uint8_t> bytes(picture.values.begin(), picture.values.end());
     write_whole(file, name, TypeDesc::UINT8, {{spec, bytes.data()}});

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "compile/camera_basis.h"
+#include "scene/scene.h"
 
 namespace orrery::job {
 namespace {

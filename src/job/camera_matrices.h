@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
 

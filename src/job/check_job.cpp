@@ -7,9 +7,14 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "compile/compiled_scene.h"
+#include "format/override.h"
+#include "image/exr_options.h"
 #include "image/format.h"
+#include "job/job.h"
 #include "job/job_files.h"
 #include "job/machine.h"
+#include "scene/scene.h"
 
 namespace orrery::job {
 namespace {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "compile/compiled_scene.h"
-#include "job/job.h"
-#include "scene/scene.h"
+#include "compile/forward.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
+
+struct Job;
 
 /// Checks everything in a request that does not depend on the scene: formats, bit depths, whether files can be created,
 /// compression, instruction set.

@@ -7,6 +7,9 @@
 
 #include "base/error.h"
 #include "base/file_name.h"
+#include "film/partial.h"
+#include "image/partial_file.h"
+#include "job/hooks.h"
 #include "job/provenance.h"
 
 namespace orrery::job {

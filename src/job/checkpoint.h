@@ -6,11 +6,12 @@
 #include <functional>
 #include <optional>
 
-#include "film/partial.h"
-#include "image/partial_file.h"
-#include "job/hooks.h"
+#include "film/forward.h"
+#include "image/provenance.h"
 
 namespace orrery::job {
+
+struct Hooks;
 
 /// The checkpoint file of a job with this first output: shot.0007.checkpoint.exr for shot.0007.exr. A name that would
 /// be too long is shortened.

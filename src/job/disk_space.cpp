@@ -8,7 +8,10 @@
 
 #include "base/error.h"
 #include "film/layer_film.h"
+#include "film/layers.h"
+#include "image/exr_options.h"
 #include "image/format.h"
+#include "job/outputs.h"
 #include "job/text.h"
 
 namespace orrery::job {
@@ -30,21 +33,16 @@ constexpr double kShardBytes = 27, kShardLayerBytes = 130, kShardLightGroupBytes
 
 double bytes_per_pixel(const Outputs& outputs, bool is_shard, image::Format format, const ImageSize& size) {
   const image::ExrOptions& exr = outputs.exr;
-  switch (format) {
-    case image::Format::kExr:
-      if (is_shard)
-        return kShardBytes + (size.half_planes + size.float_planes > 0 ? kShardLayerBytes : 0) +
-               kShardLightGroupBytes * static_cast<double>(size.light_groups);
-      return static_cast<double>(4 + size.half_planes) * (exr.as_float ? 4 : 2) *
-                 compressed_fraction(exr.compression, exr.as_float) +
-             static_cast<double>(size.float_planes) * 4 * compressed_fraction(exr.compression, true);
-    case image::Format::kHdr: return 3;
-    case image::Format::kJpeg: return 0.8;
-    case image::Format::kPng:
-    case image::Format::kTiff: return outputs.bits == 16 ? 4.8 : 1.8;
-    case image::Format::kPpm: return 3;
+  if (format != image::Format::kExr) {
+    const image::FormatInfo& info = image::info_of(format);
+    return outputs.bits == 16 ? info.bytes_per_pixel_16 : info.bytes_per_pixel;
   }
-  return 0;
+  if (is_shard)
+    return kShardBytes + (size.half_planes + size.float_planes > 0 ? kShardLayerBytes : 0) +
+           kShardLightGroupBytes * static_cast<double>(size.light_groups);
+  return static_cast<double>(4 + size.half_planes) * (exr.as_float ? 4 : 2) *
+             compressed_fraction(exr.compression, exr.as_float) +
+         static_cast<double>(size.float_planes) * 4 * compressed_fraction(exr.compression, true);
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {

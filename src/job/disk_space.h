@@ -6,10 +6,11 @@
 #include <filesystem>
 #include <map>
 
-#include "film/layers.h"
-#include "job/outputs.h"
+#include "film/forward.h"
 
 namespace orrery::job {
+
+struct Outputs;
 
 /// Properties of an image that determine the size of its files.
 struct ImageSize {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/display_writer.h"
 
+#include "display/develop.h"
 #include "image/format.h"
 #include "image/write.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "display/develop.h"
+#include "display/forward.h"
 #include "film/picture.h"
 
 namespace orrery::job {

@@ -7,7 +7,10 @@
 
 #include "base/diagnostic.h"
 #include "display/picture_info.h"
+#include "display/settings.h"
+#include "film/forward.h"
 #include "film/partial.h"
+#include "render/forward.h"
 #include "render/progress.h"
 
 namespace orrery::job {

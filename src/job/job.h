@@ -10,23 +10,18 @@
 
 #include "accel/traversal.h"
 #include "base/file_set.h"
-#include "image/partial_file.h"
 #include "job/checkpoint.h"
 #include "job/hooks.h"
-#include "job/job_report.h"
-#include "job/load_background.h"
-#include "job/load_textures.h"
 #include "job/outputs.h"
 #include "job/scene_source.h"
+#include "job/shard_file.h"
 #include "render/sampling_limits.h"
 
 namespace orrery::job {
 
-/// An EXR with a shard of an image, and its provenance.
-struct ShardFile {
-  std::filesystem::path file;
-  image::Provenance provenance;
-};
+struct BackgroundCache;
+struct JobReport;
+struct TextureCache;
 
 /// Limits on the job's use of the machine.
 struct Resources {

@@ -5,8 +5,10 @@
 #include "display/config_files.h"
 #include "format/named_files.h"
 #include "job/checkpoint.h"
+#include "job/job.h"
 #include "job/matte_manifest.h"
 #include "job/working_space.h"
+#include "scene/scene.h"
 #include "scene/textures.h"
 
 namespace orrery::job {

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "base/file_set.h"
-#include "job/job.h"
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
+
+struct Job;
+struct SceneSource;
 
 /// A file that a job writes, and its role.
 struct OutputFile {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "display/develop.h"
+#include "display/settings.h"
 #include "film/picture.h"
 #include "image/write.h"
 #include "render/statistics.h"

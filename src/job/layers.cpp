@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 
+#include "compile/compiled_scene.h"
 #include "film/cryptomatte.h"
 #include "scene/layers.h"
 #include "scene/limits.h"

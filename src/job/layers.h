@@ -2,25 +2,17 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "compile/compiled_scene.h"
+#include "compile/forward.h"
 #include "film/layers.h"
-#include "scene/scene.h"
+#include "job/matte_names.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
 
 /// The layers that are Cryptomattes.
 inline constexpr std::array kMatteLayers = {"CryptoObject", "CryptoMaterial", "CryptoGroup"};
-
-/// A Cryptomatte's names, as in its EXR header.
-struct MatteNames {
-  std::string layer;                                          ///< "CryptoObject"
-  std::vector<std::pair<std::string, std::uint32_t>> things;  ///< unique names and their ids
-};
 
 /// The layers that a scene requests.
 struct Layers {

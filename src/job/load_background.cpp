@@ -10,6 +10,7 @@
 #include "compile/environment.h"
 #include "display/color_space.h"
 #include "job/load_map.h"
+#include "scene/scene.h"
 
 namespace orrery::job {
 namespace {

@@ -6,13 +6,10 @@
 #include <memory>
 #include <string>
 
-#include "job/load_map.h"
-#include "scene/scene.h"
+#include "job/loaded_map.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
-
-/// An image background that was read, or a sky.
-using LoadedBackground = LoadedMap;
 
 /// The last background that was read, for the frames of a sequence. A file that has changed since is read again.
 struct BackgroundCache {

@@ -9,11 +9,14 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "compile/environment.h"
 #include "compile/mip_map.h"
 #include "display/color_space.h"
 #include "image/read_map.h"
+#include "job/loaded_map.h"
 #include "job/memory.h"
 #include "job/text.h"
+#include "scene/environment_image.h"
 
 namespace orrery::job {
 namespace {

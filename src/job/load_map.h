@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "compile/environment.h"
+#include "compile/forward.h"
 #include "image/read_map.h"
-#include "scene/environment_image.h"
 #include "scene/limits.h"
-#include "scene/validate.h"
 
 namespace orrery::job {
+
+struct LoadedMap;
 
 /// A latitude-longitude map to read: an image background or a texture.
 struct MapRequest {
@@ -26,20 +26,10 @@ struct MapRequest {
   bool is_color = true;                                        ///< false: data, which are not converted
   float largest = static_cast<float>(scene::kBrightestLight);  ///< values above are clamped
   std::string ocio_config;                                     ///< in the form of display::Settings
-  compile::EnvironmentSampling sampling = compile::EnvironmentSampling::kNone;
-  bool has_mip_map = false;        ///< adds one
-  std::uint64_t memory_limit = 0;  ///< bytes; 0: the free memory
-  bool skips_large = false;        ///< an image that does not fit into memory is a warning and is not read
-};
-
-/// A map that was read, and the properties of its file.
-struct LoadedMap {
-  int width = 0, height = 0;  ///< texels
-  std::string color_space;    ///< of the file; empty for data
-  std::uint64_t bytes = 0;    ///< estimated memory of the texels, and of their mip map or the tables to sample them
-  std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
-  float brightest = 0;                                   ///< largest value of `image`, a sun included
-  std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
+  compile::EnvironmentSampling sampling = {};  ///< of the background for direct lighting; default: kNone
+  bool has_mip_map = false;                    ///< adds one
+  std::uint64_t memory_limit = 0;              ///< bytes; 0: the free memory
+  bool skips_large = false;                    ///< an image that does not fit into memory is a warning and is not read
 };
 
 /// Reads a map and converts it to the working space. The file is in the space that it declares (colorInteropID,

@@ -8,8 +8,14 @@
 
 #include "base/error.h"
 #include "display/look_up.h"
+#include "format/read_result.h"
+#include "format/read_scene.h"
+#include "job/load_background.h"
+#include "job/load_textures.h"
+#include "job/loaded_scene.h"
 #include "job/memory.h"
 #include "job/working_space.h"
+#include "scene/validate.h"
 
 namespace orrery::job {
 namespace {

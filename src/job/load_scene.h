@@ -4,17 +4,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
-#include <vector>
 
-#include "base/diagnostic.h"
-#include "display/develop.h"
-#include "format/read_scene.h"
-#include "job/load_background.h"
-#include "job/load_textures.h"
+#include "display/settings.h"
 #include "job/scene_source.h"
 
 namespace orrery::job {
+
+struct BackgroundCache;
+struct LoadedScene;
+struct TextureCache;
 
 /// A scene to load, and the display transform of its images.
 struct SceneRequest {
@@ -25,15 +23,6 @@ struct SceneRequest {
   bool skips_large_background = false;  ///< see BackgroundRequest::skips_large; holds for textures, too
   std::shared_ptr<BackgroundCache> background_cache = nullptr;
   std::shared_ptr<TextureCache> texture_cache = nullptr;
-};
-
-struct LoadedScene {
-  format::ReadResult read;                     ///< colours are in the working space
-  display::Settings display;                   ///< from the command line and the scene
-  std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
-  std::optional<LoadedBackground> background;  ///< of an image background or sky; the scene has its image
-  std::vector<LoadedTexture> textures;         ///< image textures; the scene has their images
-  std::vector<base::Diagnostic> warnings;
 };
 
 /// Reads a scene with its textures and its image background or sky, checks everything that a render would reject, and

@@ -7,7 +7,10 @@
 
 #include <fmt/core.h>
 
+#include "image/read_map.h"
+#include "job/load_map.h"
 #include "job/memory.h"
+#include "scene/scene.h"
 #include "scene/textures.h"
 
 namespace orrery::job {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "job/load_map.h"
-#include "scene/scene.h"
+#include "job/loaded_map.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
 

@@ -10,10 +10,19 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "compile/compiled_scene.h"
+#include "film/picture.h"
 #include "image/format.h"
+#include "image/partial_file.h"
 #include "image/verify.h"
+#include "job/checkpoint.h"
+#include "job/job.h"
+#include "job/job_report.h"
 #include "job/merge_shards.h"
 #include "job/provenance.h"
+#include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 
 namespace orrery::job {
 namespace {

@@ -3,13 +3,16 @@
 
 #include <string>
 
-#include "compile/compiled_scene.h"
-#include "image/partial_file.h"
-#include "job/checkpoint.h"
-#include "job/job.h"
-#include "render/render.h"
+#include "compile/forward.h"
+#include "film/forward.h"
+#include "image/provenance.h"
+#include "render/forward.h"
 
 namespace orrery::job {
+
+class Checkpoint;
+struct Job;
+struct JobReport;
 
 /// Renders, from the checkpoint if there is one, and writes a checkpoint if stopped.
 ///

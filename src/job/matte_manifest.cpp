@@ -9,6 +9,8 @@
 #include "base/output_file.h"
 #include "film/cryptomatte.h"
 #include "image/format.h"
+#include "job/layers.h"
+#include "job/outputs.h"
 
 namespace orrery::job {
 namespace {

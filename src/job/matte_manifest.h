@@ -5,11 +5,12 @@
 #include <filesystem>
 #include <vector>
 
-#include "image/write.h"
-#include "job/layers.h"
-#include "job/outputs.h"
+#include "image/header.h"
+#include "job/matte_names.h"
 
 namespace orrery::job {
+
+struct Outputs;
 
 /// A manifest of more names than this is written to a separate file next to the image, since every reader loads the
 /// whole header.

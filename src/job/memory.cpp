@@ -9,9 +9,11 @@
 
 #include "accel/accel.h"
 #include "base/error.h"
-#include "film/half_sums.h"
+#include "compile/compiled_scene.h"
+#include "compile/environment.h"
 #include "film/layer_film.h"
 #include "film/layer_pixel.h"
+#include "film/layers.h"
 #include "job/text.h"
 #include "kernel/pixel_sum.h"
 

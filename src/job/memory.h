@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "compile/compiled_scene.h"
-#include "film/layers.h"
+#include "compile/forward.h"
+#include "film/forward.h"
 
 namespace orrery::job {
 

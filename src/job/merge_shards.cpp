@@ -14,7 +14,11 @@
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/text.h"
+#include "image/partial_file.h"
+#include "job/checkpoint.h"
+#include "job/job.h"
 #include "job/provenance.h"
+#include "render/sampling_limits.h"
 
 namespace orrery::job {
 namespace {

@@ -6,10 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "film/partial.h"
-#include "job/job.h"
+#include "job/shard_file.h"
 
 namespace orrery::job {
+
+struct Job;
 
 /// Reads the provenance of shards and checks that they belong to one image.
 ///

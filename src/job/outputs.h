@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "display/develop.h"
+#include "display/settings.h"
 #include "image/exr_options.h"
 #include "image/format.h"
 

@@ -7,8 +7,12 @@
 #include <fmt/core.h>
 
 #include "compile/camera_basis.h"
+#include "compile/compiled_scene.h"
 #include "display/color_space.h"
+#include "format/read_result.h"
+#include "image/header.h"
 #include "job/camera_matrices.h"
+#include "job/job_report.h"
 #include "job/version.h"
 #include "scene/schema.h"
 #include "scene/value_text.h"

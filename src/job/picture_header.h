@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "compile/compiled_scene.h"
-#include "format/read_scene.h"
-#include "job/job_report.h"
+#include "compile/forward.h"
+#include "format/forward.h"
+#include "image/forward.h"
 
 namespace orrery::job {
+
+struct JobReport;
 
 /// The header of a job's images: camera, colour space, settings, statistics.
 ///

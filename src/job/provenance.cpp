@@ -9,9 +9,16 @@
 
 #include <fmt/core.h>
 
+#include "compile/compiled_scene.h"
+#include "display/settings.h"
 #include "film/layer_film.h"
+#include "format/override.h"
+#include "image/partial_file.h"
+#include "job/job.h"
+#include "job/layers.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
+#include "render/sampling_limits.h"
 
 namespace orrery::job {
 namespace {

@@ -4,12 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "compile/compiled_scene.h"
-#include "image/partial_file.h"
-#include "job/job.h"
-#include "job/layers.h"
+#include "compile/forward.h"
+#include "display/forward.h"
+#include "image/forward.h"
+#include "image/provenance.h"
+#include "render/forward.h"
 
 namespace orrery::job {
+
+struct Job;
+struct Layers;
 
 /// The provenance of a shard or checkpoint of this job: program version, scene, and every setting that its sums depend
 /// on. It prevents merging or resuming incompatible files.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/read_result.h"
+
 namespace orrery::job {
 
 void reduce_picture(format::ReadResult& scene, double pixels) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "format/read_scene.h"
+#include "format/forward.h"
 
 namespace orrery::job {
 

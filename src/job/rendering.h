@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "base/file_set.h"
-#include "display/develop.h"
+#include "display/settings.h"
 #include "film/picture.h"
-#include "image/partial_file.h"
-#include "image/write.h"
+#include "image/forward.h"
+#include "image/header.h"
+#include "image/provenance.h"
 #include "job/job.h"
+#include "job/job_report.h"
 #include "job/layers.h"
 
 namespace orrery::job {

@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 
 #include "base/stop_point.h"
+#include "compile/compiled_scene.h"
+#include "compile/environment.h"
 
 namespace orrery::job {
 namespace {

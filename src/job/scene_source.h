@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "format/override.h"
-#include "format/read_scene.h"
+#include "points/open_data.h"
 
 namespace orrery::job {
 
@@ -16,10 +16,10 @@ struct SceneSource {
   std::filesystem::path file;
   std::vector<format::Override> overrides;  ///< "camera.vfov=30"
   int frame = 1;
-  std::shared_ptr<const std::string> text = {};             ///< of the scene; null: read the file
-  bool has_file = true;                                     ///< false: `file` is only a name
-  decltype(format::ReadOptions::open_data) open_data = {};  ///< see format::ReadOptions
-  bool is_generated = false;                                ///< see format::ReadOptions
+  std::shared_ptr<const std::string> text = {};  ///< of the scene; null: read the file
+  bool has_file = true;                          ///< false: `file` is only a name
+  points::OpenData open_data = {};               ///< see format::ReadOptions
+  bool is_generated = false;                     ///< see format::ReadOptions
 };
 
 }  // namespace orrery::job

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/output_file.h"
+#include "film/picture.h"
+#include "job/job_report.h"
 #include "job/text.h"
 #include "job/version.h"
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "job/job_report.h"
-
 namespace orrery::job {
+
+struct JobReport;
 
 /// Outcome of a job.
 struct Outcome {

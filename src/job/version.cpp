@@ -7,6 +7,7 @@
 #include "accel/accel.h"
 #include "display/develop.h"
 #include "format/read_scene.h"
+#include "image/library.h"
 #include "image/write.h"
 #include "kernel/isa.h"
 #include "render/render.h"

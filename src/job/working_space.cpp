@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "display/color_space.h"
+#include "scene/scene.h"
 #include "scene/textures.h"
 
 namespace orrery::job {

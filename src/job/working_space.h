@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
 

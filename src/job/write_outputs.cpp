@@ -4,9 +4,14 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "display/settings.h"
+#include "image/exr_options.h"
 #include "image/format.h"
+#include "image/header.h"
+#include "image/write.h"
 #include "job/display_writer.h"
 #include "job/matte_manifest.h"
+#include "job/outputs.h"
 
 namespace orrery::job {
 
@@ -29,19 +34,15 @@ image::WriteReport write_outputs(const Outputs& outputs, const display::Settings
     report.not_finite += one.not_finite;
   };
   const auto write = [&](const std::filesystem::path& output, image::Format format) {
-    switch (format) {
-      case image::Format::kExr: {
-        image::Header own = header;
-        own.matte_attributes = matte_attributes(mattes, output);
-        write_manifests(mattes, output);  // first, so that no image refers to a missing file
-        add(image::write_exr(output, picture, own, outputs.exr));
-        break;
-      }
-      case image::Format::kHdr: add(image::write_hdr(output, picture)); break;
-      case image::Format::kPng:
-      case image::Format::kTiff:
-      case image::Format::kJpeg:
-      case image::Format::kPpm: developed.write(output, header.software, header.stamp); break;
+    if (image::is_display_format(format)) {
+      developed.write(output, header.software, header.stamp);
+    } else if (format == image::Format::kHdr) {
+      add(image::write_hdr(output, picture));
+    } else {
+      image::Header own = header;
+      own.matte_attributes = matte_attributes(mattes, output);
+      write_manifests(mattes, output);  // first, so that no image refers to a missing file
+      add(image::write_exr(output, picture, own, outputs.exr));
     }
   };
   std::vector<base::Error> errors;

@@ -3,13 +3,14 @@
 
 #include <vector>
 
-#include "display/develop.h"
-#include "film/picture.h"
-#include "image/write.h"
-#include "job/layers.h"
-#include "job/outputs.h"
+#include "display/forward.h"
+#include "film/forward.h"
+#include "image/forward.h"
+#include "job/matte_names.h"
 
 namespace orrery::job {
+
+struct Outputs;
 
 /// Checks that the display formats among the outputs have enough bits per channel for the display.
 ///

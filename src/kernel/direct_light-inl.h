@@ -17,6 +17,7 @@
 #include "kernel/cone-inl.h"
 #include "kernel/environment-inl.h"
 #include "kernel/light-inl.h"
+#include "kernel/path_record.h"
 #include "kernel/path_stream.h"
 #include "kernel/record-inl.h"
 #include "kernel/scatter-inl.h"

@@ -3,24 +3,11 @@
 
 #include <cstdint>
 
+#include "kernel/lobe.h"
 #include "kernel/sphere.h"
 #include "math/vec3.h"
 
 namespace orrery::kernel {
-
-/// The light path by its first scattering event, and by whether the light came to that surface straight from its source
-/// (direct) or from another surface (indirect). Light that only passes through glass counts as direct.
-enum class Lobe : std::uint8_t {
-  kBackground,  ///< no surface: the camera sees the source itself
-  kDiffuseDirect,
-  kDiffuseIndirect,
-  kSpecularDirect,
-  kSpecularIndirect,
-  kTransmissionDirect,
-  kTransmissionIndirect,
-  kEmission,  ///< no surface but the emitter's own: the camera sees it directly
-};
-inline constexpr int kLobes = 8;
 
 /// Data of one path for the layers besides the beauty and the denoiser guides. Computed only for tiles that request
 /// records. Of a path without a first hit only the sphere and the light are set.

@@ -13,6 +13,8 @@
 #include <type_traits>
 
 #include "kernel/compaction-inl.h"
+#include "kernel/guide_sum.h"
+#include "kernel/path_record.h"
 #include "kernel/render_tile.h"
 #include "kernel/scatter-inl.h"
 

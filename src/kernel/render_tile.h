@@ -3,22 +3,11 @@
 
 #include <cstdint>
 
-#include "kernel/guide_sum.h"
-#include "kernel/path_record.h"
-#include "kernel/path_stream.h"
+#include "kernel/forward.h"
 #include "kernel/pixel_place.h"
-#include "kernel/pixel_sum.h"
 #include "kernel/precision.h"
-#include "kernel/ray_packet.h"
-#include "kernel/scene_view.h"
 
 namespace orrery::kernel {
-
-/// A pixel's place from its number y << 16 | x within the frame. No side of an image exceeds 65536.
-inline PixelPlace place_of(std::uint64_t name, const SceneView& scene) noexcept {
-  return {static_cast<int>((name - scene.window_x) & 0xffff),
-          static_cast<int>(((name >> 16) - scene.window_y) & 0xffff)};
-}
 
 /// A rectangle of pixels, or some of its pixels, and the range of samples to render.
 struct Tile {

@@ -11,6 +11,7 @@
 #include "kernel/lights.h"
 #include "kernel/material.h"
 #include "kernel/pixel_filter.h"
+#include "kernel/pixel_place.h"
 #include "kernel/sampler.h"
 #include "kernel/sphere_array.h"
 #include "kernel/texture.h"
@@ -98,6 +99,12 @@ inline Sphere sphere_at(const SceneView& scene, std::size_t id, double time) noe
   s.z = std::fma(change.z, time, s.z);
   s.radius = std::fma(change.radius, time, s.radius);
   return s;
+}
+
+/// A pixel's place from its number y << 16 | x within the frame. No side of an image exceeds 65536.
+inline PixelPlace place_of(std::uint64_t name, const SceneView& scene) noexcept {
+  return {static_cast<int>((name - scene.window_x) & 0xffff),
+          static_cast<int>(((name >> 16) - scene.window_y) & 0xffff)};
 }
 
 /// The bounding sphere and power of a single emitter; if it moves, of its whole motion.

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/gather-inl.h"
+#include "kernel/gather_spheres-inl.h"
 #include "kernel/intersect-inl.h"
 #include "kernel/scatter-inl.h"
 #include "kernel/scene_view.h"

@@ -11,8 +11,6 @@
 
 #include <cstddef>
 
-#include "math/vec3.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace orrery::math::HWY_NAMESPACE {
 
@@ -89,8 +87,9 @@ HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const T* v) {
   using F = hn::TFromD<D>;
   return {hn::Set(d, static_cast<F>(v[0])), hn::Set(d, static_cast<F>(v[1])), hn::Set(d, static_cast<F>(v[2]))};
 }
-template <class D>
-HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const Vec3d& v) {
+template <class D, class V>
+requires requires(const V& v) { v.x + v.y + v.z; }
+HWY_INLINE Vec3<hn::Vec<D>> set3(D d, const V& v) {
   using F = hn::TFromD<D>;
   return {hn::Set(d, static_cast<F>(v.x)), hn::Set(d, static_cast<F>(v.y)), hn::Set(d, static_cast<F>(v.z))};
 }

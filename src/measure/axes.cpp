@@ -7,6 +7,9 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "compile/compiled_scene.h"
+#include "compile/environment.h"
+#include "scene/scene.h"
 
 namespace orrery::measure {
 namespace {

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "compile/compiled_scene.h"
-#include "render/render.h"
-#include "scene/scene.h"
+#include "accel/traversal.h"
+#include "compile/forward.h"
+#include "scene/forward.h"
 
 namespace orrery::measure {
 

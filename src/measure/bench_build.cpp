@@ -7,6 +7,8 @@
 #include <string>
 
 #include "accel/accel.h"
+#include "kernel/scene_view.h"
+#include "measure/bench_scene.h"
 
 namespace orrery::measure {
 namespace {

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "kernel/scene_view.h"
-#include "measure/bench_scene.h"
+#include "kernel/forward.h"
 
 namespace orrery::measure {
+
+struct BenchBuild;
 
 /// The accelerator that a benchmark compares with the default one: one Embree primitive per sphere if the default has a
 /// BVH of many spheres, otherwise such a BVH.

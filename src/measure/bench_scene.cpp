@@ -14,14 +14,22 @@
 #include "base/stop_point.h"
 #include "base/text.h"
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "format/read_result.h"
 #include "job/load_scene.h"
+#include "job/loaded_scene.h"
 #include "job/machine.h"
 #include "job/reduced_picture.h"
 #include "job/scene_hash.h"
+#include "kernel/ray_packet.h"
+#include "kernel/render_tile.h"
 #include "measure/bench_build.h"
 #include "measure/bench_tracing.h"
+#include "measure/feature_cost.h"
 #include "render/recorded_rays.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 
 namespace orrery::measure {
 namespace {

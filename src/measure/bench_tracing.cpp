@@ -3,7 +3,11 @@
 
 #include <cstddef>
 
+#include "kernel/ray_packet.h"
+#include "kernel/scene_view.h"
 #include "measure/bench_build.h"
+#include "measure/bench_scene.h"
+#include "render/recorded_rays.h"
 
 namespace orrery::measure {
 

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "accel/accel.h"
-#include "measure/bench_scene.h"
-#include "render/recorded_rays.h"
+#include "kernel/forward.h"
+#include "render/forward.h"
 
 namespace orrery::measure {
+
+struct BenchTracing;
 
 /// Benchmark of closest-hit queries on the same rays: packets and single rays with the accelerator that renders the
 /// scene, then with the other kind (one Embree primitive per sphere, or a SphereBvh); single rays with Embree's own

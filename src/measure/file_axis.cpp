@@ -6,8 +6,12 @@
 
 #include <fmt/core.h>
 
+#include "image/exr_options.h"
+#include "image/header.h"
+
 #include "image/read.h"
 #include "image/write.h"
+#include "measure/study.h"
 #include "measure/temp_dir.h"
 #include "metrics/pixel_errors.h"
 

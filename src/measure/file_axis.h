@@ -3,10 +3,11 @@
 
 #include <vector>
 
-#include "film/picture.h"
-#include "measure/study.h"
+#include "film/forward.h"
 
 namespace orrery::measure {
+
+struct FilePoint;
 
 /// Measures size, write time and error of an image as EXR, in half and float with each compression.
 ///

@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include "measure/study.h"
+
 namespace orrery::measure {
 
 void test_bias(std::vector<Point>& points) {

@@ -3,9 +3,10 @@
 
 #include <vector>
 
-#include "measure/study.h"
-
 namespace orrery::measure {
+
+struct Point;
+struct Slope;
 
 /// Family-wise error rate: the probability that a study of unbiased choices reports a bias in any of them.
 inline constexpr double kFamilyWiseError = 0.01;

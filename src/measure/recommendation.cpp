@@ -9,7 +9,13 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "compile/compiled_scene.h"
 #include "format/read_scene.h"
+#include "measure/study.h"
+#include "measure/study_renderer.h"
+#include "render/result.h"
+#include "render/settings.h"
+#include "render/statistics.h"
 
 namespace orrery::measure {
 namespace {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "compile/compiled_scene.h"
-#include "measure/study.h"
-#include "measure/study_renderer.h"
+#include "compile/forward.h"
 
 namespace orrery::measure {
+
+class StudyRenderer;
+struct Request;
+struct Study;
 
 /// Chooses settings for the target noise from the points of a study and tests them at full resolution, as far as the
 /// budget allows.

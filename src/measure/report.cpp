@@ -10,6 +10,7 @@
 #include "base/base64.h"
 #include "base/text.h"
 #include "display/develop.h"
+#include "display/settings.h"
 #include "image/write.h"
 #include "measure/report_page.h"
 #include "measure/study.h"

@@ -16,9 +16,13 @@
 #include "base/stop_point.h"
 #include "base/text.h"
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "compile/environment.h"
+#include "format/read_result.h"
 #include "job/job_files.h"
 #include "job/layers.h"
 #include "job/load_scene.h"
+#include "job/loaded_scene.h"
 #include "job/machine.h"
 #include "job/memory.h"
 #include "job/reduced_picture.h"
@@ -32,6 +36,8 @@
 #include "measure/recommendation.h"
 #include "measure/study_renderer.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 
 namespace orrery::measure {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "film/picture.h"
 #include "job/scene_source.h"
-#include "measure/bench_scene.h"
+#include "measure/feature_cost.h"
 
 namespace orrery::measure {
 
@@ -90,7 +90,7 @@ struct Study {
   std::vector<FilePoint> files;
   std::vector<Slope> slopes;
   std::vector<std::string> left_out;  ///< axes without effect on this scene, and choices that exceed the budget
-  std::vector<measure::FeatureCost> features;
+  std::vector<FeatureCost> features;
   Recommendation recommendation;
 };
 

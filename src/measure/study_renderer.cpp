@@ -6,6 +6,10 @@
 #include "base/error.h"
 #include "compile/compile.h"
 #include "denoise/denoise.h"
+#include "measure/study.h"
+#include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 
 namespace orrery::measure {
 

@@ -12,10 +12,11 @@
 #include <vector>
 #include "accel/accel.h"
 #include "compile/compiled_scene.h"
-#include "measure/study.h"
-#include "render/render.h"
+#include "render/forward.h"
 
 namespace orrery::measure {
+
+struct Request;
 
 /// The spheres of a scene, lent to one CompiledScene at a time instead of copied, since there may be ten million.
 class Spheres {

@@ -16,8 +16,10 @@
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/text.h"
-#include "data/write_table.h"
+#include "particles/write_table.h"
+#include "plot/converted_file.h"
 #include "plot/data_frames.h"
+#include "plot/loaded_frame.h"
 #include "plot/view.h"
 #include "points/color_map.h"
 
@@ -223,7 +225,7 @@ class Converter {
     if (!output.left_out().empty())
       out.notes.push_back(
           fmt::format("left out {}: the name is that of a column above", base::joined(output.left_out())));
-    const std::vector<std::string> unwritten = data::write_table(out.file, output.table());
+    const std::vector<std::string> unwritten = particles::write_table(out.file, output.table());
     if (!unwritten.empty())
       out.notes.push_back(fmt::format("left out {}: the format cannot store these strings", base::joined(unwritten)));
     for (const data::Column& column : output.table().columns)
@@ -241,7 +243,7 @@ class Converter {
 }  // namespace
 
 void convert(const ConvertOptions& options, const std::function<void(const ConvertedFile&)>& written) {
-  data::table_format(options.output);
+  particles::table_format(options.output);
   Converter(options).run(written);
 }
 

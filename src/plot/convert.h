@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <string>
-#include <vector>
 
-#include "base/diagnostic.h"
 #include "plot/data_options.h"
 
 namespace orrery::plot {
 
+struct ConvertedFile;
+
 struct ConvertOptions : DataOptions {
   std::filesystem::path output;  ///< .ply, .xyz, .npy or .csv; with a frame pattern if there are several frames
-};
-
-/// A file that convert() has written.
-struct ConvertedFile {
-  std::filesystem::path file;
-  std::size_t spheres = 0;
-  std::vector<std::string> columns;
-  std::vector<std::string> notes;  ///< what was omitted, and why
-  std::vector<base::Diagnostic> warnings;
 };
 
 /// Writes the spheres of a data file: x, y, z, radius, then red, green, blue, then the other columns of their rows.
@@ -34,7 +23,8 @@ struct ConvertedFile {
 /// - The order is that of the particle ids, if the file has any.
 ///
 /// `written`  called for each file
-/// Errors     base::Error: those of points::load_points(), data::open() and data::write_table(); kUsage if an output
+/// Errors     base::Error: those of points::load_points(), particles::open() and particles::write_table(); kUsage if an
+/// output
 ///            would replace an input, and for the wrong number of outputs
 /// Cost       one read of all columns per frame; with a colour map without a range and several frames, one read before
 void convert(const ConvertOptions& options, const std::function<void(const ConvertedFile&)>& written);

@@ -9,8 +9,13 @@
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "data/data_file.h"
+#include "plot/data_options.h"
+#include "plot/loaded_frame.h"
 #include "points/color_map.h"
 #include "points/derived.h"
+#include "points/load_points.h"
+#include "points/source_rows.h"
 
 namespace orrery::plot {
 namespace {
@@ -60,6 +65,10 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   numbers_.resize(static_cast<std::size_t>(file_->frame_count()));
   std::iota(numbers_.begin(), numbers_.end(), 1);
 }
+
+DataFrames::~DataFrames() = default;
+
+data::Format DataFrames::format() const { return file_->format(); }
 
 std::optional<int> DataFrames::frame_count() const {
   if (is_sequence_) return 1;

@@ -7,19 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
-#include "data/data_file.h"
-#include "plot/data_options.h"
-#include "points/load_points.h"
-#include "points/open_once.h"
+#include "data/forward.h"
+#include "data/table.h"
+#include "points/open_data.h"
+#include "points/source_rows.h"
+#include "scene/forward.h"
 
 namespace orrery::plot {
 
-/// Spheres of a frame, and warnings about the data and the options.
-struct LoadedFrame {
-  scene::Points points;
-  std::vector<base::Diagnostic> warnings;
-};
+struct DataOptions;
+struct LoadedFrame;
 
 /// The frames of a data file, or of a sequence of files.
 class DataFrames {
@@ -28,11 +25,13 @@ class DataFrames {
   ///
   /// `folder`   to which the file of a colour map is relative
   /// Domain     `options` outlive it
-  /// Errors     base::Error: those of data::open(); kUsage for all frames of a sequence of files; kBadData for frames
+  /// Errors     base::Error: those of particles::open(); kUsage for all frames of a sequence of files; kBadData for
+  /// frames
   ///            that the file does not have
   DataFrames(const DataOptions& options, const std::filesystem::path& folder);
+  ~DataFrames();
 
-  data::Format format() const { return file_->format(); }
+  data::Format format() const;
   /// The first of the frames, with derived columns.
   const data::FrameInfo& info() const { return info_; }
   /// Its number in the file, from 1.

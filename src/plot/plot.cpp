@@ -7,8 +7,11 @@
 
 #include <fmt/core.h>
 
+#include "data/data_file.h"
+
 #include "display/look_up.h"
 #include "plot/data_frames.h"
+#include "plot/loaded_frame.h"
 #include "plot/scene_text.h"
 #include "plot/view.h"
 #include "points/color_map.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "display/develop.h"
+#include "display/settings.h"
 #include "plot/data_options.h"
 #include "plot/write_legend.h"
 #include "scene/scene.h"
@@ -44,7 +44,8 @@ struct PlotScene {
 ///
 /// `folder`   of the scene file; paths in the scene are relative to it
 /// `check`    called with PlotScene::frames before any row is read: a request that cannot be met should fail early
-/// Errors     base::Error: those of points::load_points() and data::open(); kBadData with its errors; kUsage for an
+/// Errors     base::Error: those of points::load_points() and particles::open(); kBadData with its errors; kUsage for
+/// an
 ///            invalid view, and for options without effect; those of `check`
 /// Cost       reads every frame once, to fit the camera and the colour map
 PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder,

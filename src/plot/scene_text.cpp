@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "plot/plot.h"
+
 #include "scene/schema.h"
 #include "scene/value_text.h"
 

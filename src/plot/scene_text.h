@@ -4,10 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "plot/plot.h"
 #include "plot/view.h"
 
 namespace orrery::plot {
+
+struct PlotOptions;
 
 /// The parts of the scene of a plot.
 struct PlotParts {

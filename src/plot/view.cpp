@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "scene/limits.h"
+#include "scene/scene.h"
 
 namespace orrery::plot {
 namespace {

@@ -4,7 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "scene/scene.h"
+#include "math/vec3.h"
+#include "scene/forward.h"
 
 namespace orrery::plot {
 

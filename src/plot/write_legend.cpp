@@ -11,6 +11,8 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "display/develop.h"
+#include "display/settings.h"
 #include "film/picture.h"
 #include "image/format.h"
 #include "image/write.h"

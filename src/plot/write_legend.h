@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "display/develop.h"
+#include "display/forward.h"
 #include "scene/scene.h"
 
 namespace orrery::plot {

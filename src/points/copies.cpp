@@ -11,6 +11,9 @@
 
 #include "base/text.h"
 #include "math/single.h"
+#include "points/rows.h"
+#include "scene/number_array.h"
+#include "scene/scene.h"
 
 namespace orrery::points {
 namespace {

@@ -6,10 +6,13 @@
 #include <vector>
 
 #include "data/table.h"
-#include "points/rows.h"
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::points {
+
+class KeyFaults;
+class Rows;
+struct Labels;
 
 /// Unwraps the coordinates of particles: p + i a + j b + k c, with the periodic image flags i, j, k of the file.
 ///

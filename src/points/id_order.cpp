@@ -9,6 +9,8 @@
 #include <variant>
 
 #include "base/stop_point.h"
+#include "data/table.h"
+#include "points/rows.h"
 
 namespace orrery::points {
 namespace {

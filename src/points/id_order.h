@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "data/table.h"
-#include "points/rows.h"
+#include "data/forward.h"
 
 namespace orrery::points {
+
+class Rows;
 
 /// Returns rows ascending by particle id; rows with equal ids keep their order, and those without an id are last.
 ///

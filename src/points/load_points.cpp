@@ -13,6 +13,8 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
+#include "particles/open.h"
+#include "points/color_source.h"
 #include "points/copies.h"
 #include "points/derived.h"
 #include "points/id_order.h"
@@ -21,7 +23,9 @@
 #include "points/read_memory.h"
 #include "points/rows.h"
 #include "points/select.h"
+#include "points/source_rows.h"
 #include "scene/limits.h"
+#include "scene/validate.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {
@@ -43,7 +47,7 @@ class Loader {
     options.component = points_.component;
     options.limit_memory(request_.memory_limit);
     file_ = request_.open && !request_.is_sequence ? request_.open(request_.file, options)
-                                                   : data::open(request_.file, options);
+                                                   : particles::open(request_.file, options);
     if (points_.component && file_->format() != data::Format::kHdf5)
       faults_.warning(".component", "has no effect: only HDF5 files have components");
     if (const std::optional<int> frame = choose_frame()) {

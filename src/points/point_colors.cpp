@@ -9,7 +9,11 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "data/table.h"
+#include "points/color_map.h"
+#include "points/color_source.h"
 #include "points/elements.h"
+#include "points/rows.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {

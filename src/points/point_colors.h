@@ -8,24 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "points/color_map.h"
-#include "points/rows.h"
+#include "data/forward.h"
 #include "scene/scene.h"
 
 namespace orrery::points {
 
-/// How the colours of a file's spheres are determined: one of the alternatives of scene::PointsColor.
-struct ColorSource {
-  enum class Kind { kNone, kMap, kElement, kType, kRgb };
-  Kind kind = Kind::kNone;
-  std::vector<std::string> columns;  ///< to read
-  double rgb_maximum = 255;
-  std::optional<ColorMap> map;
-};
+class KeyFaults;
+class Rows;
+struct ColorSource;
 
 /// Colours of spheres: a palette and one index per sphere.
 struct PointColors {
-  std::vector<Vec3d> palette;
+  std::vector<math::Vec3d> palette;
   std::size_t rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in the scene's colour space
   std::vector<std::uint16_t> indices;
   std::vector<std::string> names;        ///< of the colours, if they stand for types, elements or texts

@@ -6,7 +6,11 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "data/table.h"
 #include "points/elements.h"
+#include "points/rows.h"
+#include "scene/number_array.h"
+#include "scene/scene.h"
 #include "scene/value_text.h"
 
 namespace orrery::points {

@@ -4,10 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "points/rows.h"
-#include "scene/scene.h"
+#include "data/forward.h"
+#include "scene/forward.h"
 
 namespace orrery::points {
+
+class KeyFaults;
+class Rows;
 
 /// How the radii of a file's spheres are determined: one of the alternatives of scene::PointsRadius, or the file's own.
 struct RadiusSource {

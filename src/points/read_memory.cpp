@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "points/copies.h"
+#include "points/point_radii.h"
+#include "scene/scene.h"
 
 namespace orrery::points {
 namespace {

@@ -7,10 +7,11 @@
 #include <string>
 
 #include "data/table.h"
-#include "points/point_radii.h"
-#include "scene/scene.h"
+#include "scene/forward.h"
 
 namespace orrery::points {
+
+struct RadiusSource;
 
 /// Memory that reading the spheres of a data file takes.
 struct ReadMemory {

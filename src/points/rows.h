@@ -12,7 +12,7 @@
 
 #include "base/stop_point.h"
 #include "data/table.h"
-#include "scene/validate.h"
+#include "scene/diagnostic.h"
 
 /// The rows of a table that become spheres, and access to their values. Used only within this room.
 namespace orrery::points {

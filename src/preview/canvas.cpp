@@ -3,6 +3,10 @@
 
 #include <algorithm>
 
+#include "film/partial.h"
+#include "film/picture.h"
+#include "film/rendered_pixels.h"
+
 namespace orrery::preview {
 namespace {
 

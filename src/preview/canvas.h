@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "film/partial.h"
-#include "film/picture.h"
+#include "film/forward.h"
 
 namespace orrery::preview {
 

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "preview/file_sink.h"
 
+#include <utility>
+
 #include "base/output_file.h"
+#include "display/develop.h"
+#include "preview/canvas.h"
 
 namespace orrery::preview {
+
+FileSink::FileSink(std::filesystem::path file) : file_(std::move(file)) {}
+FileSink::~FileSink() = default;
 
 void FileSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   canvas_ = &canvas;

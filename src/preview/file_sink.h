@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "display/forward.h"
 #include "preview/png.h"
 #include "preview/sink.h"
 
@@ -12,7 +13,8 @@ namespace orrery::preview {
 /// Rewrites a PNG, uncompressed and through the display transform. Its readers never see an incomplete file.
 class FileSink : public Sink {
  public:
-  explicit FileSink(std::filesystem::path file) : file_(std::move(file)) {}
+  explicit FileSink(std::filesystem::path file);
+  ~FileSink() override;
 
   double interval_s() const override { return 1; }
   void begin(const display::PictureInfo& picture, const Canvas& canvas) override;

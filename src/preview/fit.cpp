@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "preview/canvas.h"
+
 namespace orrery::preview {
 
 Fit fit(int width_px, int height_px, double pixel_aspect, const Screen::CellGrid& grid) {

@@ -3,10 +3,11 @@
 
 #include <vector>
 
-#include "preview/canvas.h"
 #include "preview/screen.h"
 
 namespace orrery::preview {
+
+class Canvas;
 
 /// The size of an image in a terminal.
 struct Fit {

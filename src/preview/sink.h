@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "display/picture_info.h"
-#include "preview/canvas.h"
 
 namespace orrery::preview {
+
+class Canvas;
 
 /// Receives whole lines for the user. Called on the preview's thread.
 using OnNote = std::function<void(const std::string& text)>;

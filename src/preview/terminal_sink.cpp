@@ -3,9 +3,14 @@
 
 #include <utility>
 
+#include "display/develop.h"
+#include "preview/canvas.h"
 #include "preview/fit.h"
 
 namespace orrery::preview {
+
+TerminalSink::TerminalSink(Screen& screen) : screen_(screen) {}
+TerminalSink::~TerminalSink() = default;
 
 void TerminalSink::begin(const display::PictureInfo& picture, const Canvas& canvas) {
   picture_ = picture;

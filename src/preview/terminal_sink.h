@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "display/forward.h"
 #include "preview/screen.h"
 #include "preview/sink.h"
 
@@ -14,7 +15,8 @@ class TerminalSink : public Sink {
   /// A sink that draws on `screen`.
   ///
   /// Domain     `screen` outlives this
-  explicit TerminalSink(Screen& screen) : screen_(screen) {}
+  explicit TerminalSink(Screen& screen);
+  ~TerminalSink() override;
 
   double interval_s() const override { return 0.5; }
   void begin(const display::PictureInfo& picture, const Canvas& canvas) override;

@@ -22,6 +22,10 @@
 
 #include "base/error.h"
 #include "base/module.h"
+#include "display/settings.h"
+#include "film/picture.h"
+#include "job/job.h"
+#include "job/job_report.h"
 #include "job/version.h"
 #include "plot/view.h"
 #include "points/color_map.h"
@@ -30,6 +34,7 @@
 #include "python/read_points.h"
 #include "python/render.h"
 #include "python/scene_data.h"
+#include "scene/scene.h"
 
 namespace py = pybind11;
 

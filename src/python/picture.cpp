@@ -5,14 +5,20 @@
 #include <utility>
 
 #include "base/error.h"
+#include "display/develop.h"
+#include "display/settings.h"
+#include "film/picture.h"
+#include "job/job_report.h"
+#include "job/outputs.h"
+#include "job/rendering.h"
 #include "python/arrays.h"
 
 namespace py = pybind11;
 
 namespace orrery::python {
 
-Picture::Picture(job::Rendering rendering) : rendering_(std::move(rendering)) {
-  std::vector<film::Plane>& planes = rendering_.picture.planes;
+Picture::Picture(job::Rendering rendering) : rendering_(std::make_unique<job::Rendering>(std::move(rendering))) {
+  std::vector<film::Plane>& planes = rendering_->picture.planes;
   for (std::size_t p = 0; p < planes.size(); ++p) {
     // Z is a layer of its own, although its channel has no layer name in an EXR.
     const bool is_beauty = planes[p].name.size() == 1 && std::string("RGBA").find(planes[p].name) != std::string::npos;
@@ -35,6 +41,13 @@ Picture::Picture(job::Rendering rendering) : rendering_(std::move(rendering)) {
   }
 }
 
+Picture::Picture(Picture&&) noexcept = default;
+Picture::~Picture() = default;
+
+int Picture::width() const { return rendering_->picture.width; }
+int Picture::height() const { return rendering_->picture.height; }
+const job::JobReport& Picture::report() const { return rendering_->report; }
+
 const Picture::Layer* Picture::find(const std::string& name) const {
   for (const Layer& layer : layers_)
     if (layer.name == name) return &layer;
@@ -52,7 +65,7 @@ std::vector<std::string> Picture::channels(const std::string& layer) const {
   std::vector<std::string> out;
   if (const Layer* found = find(layer))
     for (const std::size_t p : found->planes) {
-      const std::string& name = rendering_.picture.planes[p].name;
+      const std::string& name = rendering_->picture.planes[p].name;
       const std::size_t dot = name.rfind('.');
       out.push_back(dot == std::string::npos ? name : name.substr(dot + 1));
     }
@@ -69,7 +82,7 @@ py::object Picture::array(const py::object& self, const std::string& layer) {
 }
 
 job::Rendering Picture::with_planes() const {
-  job::Rendering out = rendering_;
+  job::Rendering out = *rendering_;
   for (const Layer& layer : layers_) {
     const std::size_t channels = layer.planes.size();
     for (std::size_t c = 0; c < channels; ++c) {
@@ -84,8 +97,8 @@ job::Rendering Picture::with_planes() const {
 void Picture::write(const job::Outputs& outputs) const { job::write_rendering(with_planes(), outputs); }
 
 film::EncodedPicture Picture::srgb8(const display::Settings& display) const {
-  const bool keeps_alpha = rendering_.picture.is_transparent;
-  film::EncodedPicture out = display::develop(with_planes().picture, job::display_of(rendering_, display), 8, false,
+  const bool keeps_alpha = rendering_->picture.is_transparent;
+  film::EncodedPicture out = display::develop(with_planes().picture, job::display_of(*rendering_, display), 8, false,
                                               keeps_alpha ? display::Alpha::kStraight : display::Alpha::kOverBlack);
   if (!out.is_srgb) throw base::Error(base::ErrorKind::kUsage, "the scene's display is not sRGB; set display=\"sRGB\"");
   return out;

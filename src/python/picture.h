@@ -3,14 +3,13 @@
 
 #include <pybind11/numpy.h>
 
-#include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "display/develop.h"
-#include "job/outputs.h"
-#include "job/rendering.h"
+#include "display/forward.h"
+#include "film/forward.h"
+#include "job/forward.h"
 
 namespace orrery::python {
 
@@ -18,10 +17,12 @@ namespace orrery::python {
 class Picture {
  public:
   explicit Picture(job::Rendering rendering);
+  Picture(Picture&&) noexcept;
+  ~Picture();
 
-  int width() const { return rendering_.picture.width; }
-  int height() const { return rendering_.picture.height; }
-  const job::JobReport& report() const { return rendering_.report; }
+  int width() const;
+  int height() const;
+  const job::JobReport& report() const;
   std::vector<std::string> layers() const;
   std::vector<std::string> channels(const std::string& layer) const;
 
@@ -52,7 +53,7 @@ class Picture {
   /// The rendering with its planes, which are otherwise empty.
   job::Rendering with_planes() const;
 
-  job::Rendering rendering_;
+  std::unique_ptr<job::Rendering> rendering_;
   std::vector<Layer> layers_;
 };
 

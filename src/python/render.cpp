@@ -19,6 +19,8 @@
 #include "base/diagnostic.h"
 #include "job/rendering.h"
 #include "python/arrays.h"
+#include "python/picture.h"
+#include "render/progress.h"
 
 namespace py = pybind11;
 

@@ -3,10 +3,11 @@
 
 #include <pybind11/pybind11.h>
 
-#include "job/job.h"
-#include "python/picture.h"
+#include "job/forward.h"
 
 namespace orrery::python {
+
+class Picture;
 
 /// Renders on a thread of its own, without the GIL, while the calling thread reports progress and warnings and checks
 /// for signals: KeyboardInterrupt, and an exception in a callback, stop the render.

@@ -8,15 +8,18 @@
 #include "base/file_set.h"
 #include "base/output_file.h"
 #include "data/table_file.h"
-#include "data/write_table.h"
 #include "format/named_files.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "format/source_text.h"
 #include "format/write_ply.h"
 #include "format/write_tree.h"
 #include "job/job_files.h"
 #include "job/load_scene.h"
+#include "job/loaded_scene.h"
 #include "job/memory.h"
+#include "particles/open.h"
+#include "particles/write_table.h"
 
 namespace orrery::python {
 namespace {
@@ -62,7 +65,7 @@ job::SceneSource SceneData::source() const {
                                                                 const data::OpenOptions& options) {
       for (const auto& [name, table] : own)
         if (path == folder / name) return data::open_table(name, table);
-      return data::open(path, options);
+      return particles::open(path, options);
     };
   return out;
 }
@@ -114,7 +117,8 @@ void save(const SceneData& scene, const fs::path& file) {
   };
   const std::string text = format::merged_text(scene.file, scene.text, source.overrides, renamed);
   for (const auto& [name, table] : scene.tables)
-    static_cast<void>(data::write_table(folder / table_file_name(file, name), *table, kWriter));  // all are numbers
+    static_cast<void>(
+        particles::write_table(folder / table_file_name(file, name), *table, kWriter));  // all are numbers
   base::write_text_file(file, text);
 }
 

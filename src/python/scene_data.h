@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "data/table.h"
+#include "data/forward.h"
 #include "job/scene_source.h"
 
 namespace orrery::python {

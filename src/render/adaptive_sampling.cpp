@@ -7,11 +7,19 @@
 #include <limits>
 #include <vector>
 
+#include "compile/compiled_scene.h"
 #include "film/display_error.h"
+#include "film/partial.h"
 #include "render/allocation.h"
+#include "render/light_guide.h"
 #include "render/noise_estimate.h"
+#include "render/progress_reporter.h"
 #include "render/progressive_sampling.h"
+#include "render/settings.h"
 #include "render/small_emitters.h"
+#include "render/statistics.h"
+#include "render/tile_pool.h"
+#include "render/tile_renderer.h"
 
 namespace orrery::render {
 namespace {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "compile/compiled_scene.h"
-#include "film/partial.h"
-#include "render/progress_reporter.h"
-#include "render/render.h"
-#include "render/tile_pool.h"
-#include "render/tile_renderer.h"
+#include "compile/forward.h"
+#include "film/forward.h"
 
 namespace orrery::render {
+
+class ProgressReporter;
+class TilePool;
+class TileRenderer;
+struct Settings;
+struct Statistics;
 
 /// Adaptive sampling: each iteration chooses the pixels that double their samples, until the image reaches the target
 /// noise or the time budget or the samples are used up.

@@ -7,7 +7,10 @@
 #include <functional>
 
 #include "film/display_error.h"
+#include "render/light_guide.h"
 #include "render/small_emitters.h"
+#include "render/tile_pool.h"
+#include "render/tile_renderer.h"
 
 namespace orrery::render {
 namespace {

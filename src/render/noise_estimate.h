@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/light_guide.h"
-#include "render/tile_pool.h"
-
 namespace orrery::render {
+
+class TilePool;
+struct PixelStatistics;
 
 /// The squared relative display error of an image, as in --noise.
 struct NoiseEstimate {

@@ -4,7 +4,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "film/partial.h"
+#include "render/progress.h"
+#include "render/settings.h"
+
 namespace orrery::render {
+
+ProgressReporter::ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before)
+    : settings_(settings), seconds_before_(before.seconds), done_(before.paths), total_(total) {}
 
 double ProgressReporter::seconds() const {
   if (settings_.clock) return seconds_before_ + settings_.clock(done());

@@ -7,9 +7,11 @@
 #include <mutex>
 #include <string>
 
-#include "render/render.h"
+#include "film/forward.h"
 
 namespace orrery::render {
+
+struct Settings;
 
 /// Reports progress to the caller, from the rendering threads: at each whole percent, and at most ten times a second in
 /// between.
@@ -19,8 +21,7 @@ class ProgressReporter {
   ///
   /// `total`    samples to render, as far as known
   /// `before`   work of earlier runs
-  ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before = {})
-      : settings_(settings), seconds_before_(before.seconds), done_(before.paths), total_(total) {}
+  ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before);
 
   /// Counts rendered samples.
   void add(std::uint64_t samples);

@@ -5,6 +5,19 @@
 #include <cmath>
 #include <vector>
 
+#include "compile/compiled_scene.h"
+#include "film/film.h"
+#include "film/partial.h"
+#include "film/rendered_pixels.h"
+#include "kernel/render_tile.h"
+#include "render/progress_reporter.h"
+#include "render/render.h"
+#include "render/sampling_limits.h"
+#include "render/settings.h"
+#include "render/statistics.h"
+#include "render/tile_pool.h"
+#include "render/tile_renderer.h"
+
 namespace orrery::render {
 namespace {
 

@@ -6,14 +6,19 @@
 #include <functional>
 #include <vector>
 
-#include "compile/compiled_scene.h"
-#include "film/partial.h"
-#include "render/progress_reporter.h"
-#include "render/render.h"
-#include "render/tile_pool.h"
-#include "render/tile_renderer.h"
+#include "compile/forward.h"
+#include "film/forward.h"
+#include "kernel/forward.h"
+#include "kernel/pixel_place.h"
 
 namespace orrery::render {
+
+class ProgressReporter;
+class TilePool;
+class TileRenderer;
+struct Settings;
+struct Statistics;
+struct TileWorker;
 
 /// Renders pixels up to their target sample counts, on all threads. Can be stopped at any time without losing samples.
 class ProgressiveSampling {

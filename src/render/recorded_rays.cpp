@@ -5,6 +5,12 @@
 #include <memory>
 #include <utility>
 
+#include "accel/accel.h"
+#include "kernel/path_stream.h"
+#include "kernel/pixel_sum.h"
+#include "kernel/render_tile.h"
+#include "kernel/scene_view.h"
+
 namespace orrery::render {
 namespace {
 

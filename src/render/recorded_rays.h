@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/accel.h"
-#include "kernel/ray_packet.h"
-#include "kernel/render_tile.h"
-#include "kernel/scene_view.h"
+#include "accel/forward.h"
+#include "kernel/forward.h"
+#include "kernel/precision.h"
 
 namespace orrery::render {
 

@@ -16,11 +16,19 @@
 
 #include "accel/accel.h"
 #include "base/error.h"
+#include "compile/compiled_scene.h"
+#include "film/film.h"
 #include "film/layer_film.h"
+#include "film/layers.h"
+#include "film/partial.h"
+#include "film/rendered_pixels.h"
 #include "kernel/isa.h"
 #include "render/adaptive_sampling.h"
 #include "render/progress_reporter.h"
 #include "render/progressive_sampling.h"
+#include "render/result.h"
+#include "render/sampling_limits.h"
+#include "render/settings.h"
 #include "render/tile_pool.h"
 #include "render/tile_renderer.h"
 #include "render/traversals.h"
@@ -95,7 +103,8 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   result.picture.frame_height = compiled.frame_height;
   result.picture.pixel_aspect = compiled.pixel_aspect;
   if (!request.any()) return result;
-  film::LayerFilm layers(request, compiled.view(), compiled.width, compiled.height);
+  const kernel::SceneView view = compiled.view();
+  film::LayerFilm layers(request, view, compiled.width, compiled.height);
   const film::LayerPixel no_layers;
   const film::Halves no_halves;
   const auto set_pixels = [&](const tbb::blocked_range<std::size_t>& range) {
@@ -109,6 +118,10 @@ Result finished(const compile::CompiledScene& compiled, const film::LayerRequest
   layers.move_to(result.picture);
   result.deep = layers.take_deep();
   return result;
+}
+
+Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings) {
+  return render(compiled, accel, settings, std::nullopt);
 }
 
 Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const Settings& settings,
@@ -146,6 +159,10 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
   statistics.finish_s = seconds_since(rendered);
   result.statistics = std::move(statistics);
   return result;
+}
+
+Result render(const compile::CompiledScene& compiled, const Settings& settings) {
+  return render(compiled, settings, std::nullopt);
 }
 
 Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from) {

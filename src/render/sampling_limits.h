@@ -3,10 +3,22 @@
 
 #include <algorithm>
 #include <cstdint>
-
-#include "render/pixel_shard.h"
+#include <vector>
 
 namespace orrery::render {
+
+/// A shard of an image's pixels. Squares are assigned round-robin, so that neighbouring ones, which cost about the
+/// same, go to different shards.
+struct PixelShard {
+  int index = 0;  ///< from 0
+  int count = 1;  ///< number of shards
+};
+
+/// Side of the squares, px.
+inline constexpr int kShardSide = 16;
+
+/// Mask of the pixels that belong to a shard, in row-major order. The shards of one count partition the image.
+std::vector<bool> pixels_of(const PixelShard& shard, int width_px, int height_px);
 
 /// Which samples are rendered, and when adaptive sampling stops.
 struct SamplingLimits {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "film/display_error.h"
+#include "kernel/scene_view.h"
 #include "math/vec3.h"
 
 namespace orrery::render {
@@ -113,7 +114,7 @@ class Coverage {
   std::vector<EmitterCoverage> pixels_;
 };
 
-double mean_of(const double (&rgb)[3]) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
+double mean_of(Vec3d rgb) { return (rgb.x + rgb.y + rgb.z) / 3; }
 
 /// The fraction of a pixel's radiance that comes from small emitters if the rest is as bright as its neighbours of
 /// other classes; 0 if it is negligible.
@@ -139,7 +140,7 @@ std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene,
   Coverage coverage(scene, width_px, height_px);
   const kernel::Camera opening = camera_at(scene, 0), closing = camera_at(scene, 1);
   for (std::size_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id) {
-    const double radiance = mean_of(scene.emission[scene.sphere_materials[id]].radiance);
+    const double radiance = mean_of(vector(scene.emission[scene.sphere_materials[id]].radiance));
     if (!(radiance > 0)) continue;
     const kernel::Sphere a = sphere_at(scene, id, 0), b = sphere_at(scene, id, 1);
     coverage.add(image_of(opening, {a.x, a.y, a.z}, a.radius), image_of(closing, {b.x, b.y, b.z}, b.radius), radiance);
@@ -149,7 +150,7 @@ std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene,
     const double distance = kSunDistance * length(vector(opening.forward));
     const double radius = distance * std::sqrt(2 * sky->sun_one_minus_cos);
     const auto image = [&](const kernel::Camera& camera) {
-      return image_of(camera, vector(camera.origin) + vector(sky->sun) * distance, radius);
+      return image_of(camera, vector(camera.origin) + sky->sun * distance, radius);
     };
     coverage.add(image(opening), image(closing), mean_of(sky->sun_radiance));
   }

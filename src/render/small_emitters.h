@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernel/scene_view.h"
+#include "kernel/forward.h"
 #include "render/light_guide.h"
 
 namespace orrery::render {

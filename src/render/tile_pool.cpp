@@ -11,6 +11,9 @@
 #include <atomic>
 #include <optional>
 
+#include "kernel/render_tile.h"
+#include "render/tile_renderer.h"
+
 namespace orrery::render {
 
 struct TilePool::Impl {

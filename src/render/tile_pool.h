@@ -6,11 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include "kernel/render_tile.h"
-#include "render/render.h"
-#include "render/tile_renderer.h"
+#include "kernel/forward.h"
 
 namespace orrery::render {
+
+struct TileWorker;
 
 /// A thread pool for tiles, with buffers that each thread keeps from tile to tile.
 class TilePool {

@@ -4,6 +4,12 @@
 #include <algorithm>
 #include <cfenv>
 
+#include "accel/accel.h"
+#include "compile/compiled_scene.h"
+#include "film/layer_pixel.h"
+#include "film/layers.h"
+#include "film/partial.h"
+
 namespace orrery::render {
 namespace {
 

@@ -4,11 +4,16 @@
 #include <memory>
 #include <vector>
 
-#include "accel/accel.h"
-#include "compile/compiled_scene.h"
-#include "film/layers.h"
-#include "film/partial.h"
+#include "accel/forward.h"
+#include "compile/forward.h"
+#include "film/forward.h"
+#include "kernel/guide_sum.h"
+#include "kernel/path_record.h"
+#include "kernel/path_stream.h"
+#include "kernel/pixel_sum.h"
+#include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::render {
 

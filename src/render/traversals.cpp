@@ -5,6 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "accel/accel.h"
+#include "compile/compiled_scene.h"
+#include "kernel/path_stream.h"
+#include "kernel/render_tile.h"
 #include "render/recorded_rays.h"
 
 namespace orrery::render {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "accel/accel.h"
-#include "compile/compiled_scene.h"
-#include "render/render.h"
+#include "accel/forward.h"
+#include "accel/traversal.h"
+#include "compile/forward.h"
 
 namespace orrery::render {
 

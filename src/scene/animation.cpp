@@ -10,6 +10,8 @@
 
 #include <fmt/core.h>
 
+#include "scene/schema.h"
+
 namespace orrery::scene {
 namespace {
 

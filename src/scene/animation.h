@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
-#include "scene/schema.h"
+#include "scene/value.h"
 
 namespace orrery::scene {
 

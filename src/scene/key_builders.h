@@ -10,6 +10,7 @@
 
 #include "scene/limits.h"
 #include "scene/schema.h"
+#include "scene/value_text.h"
 
 namespace orrery::scene {
 

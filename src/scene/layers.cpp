@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 
 #include <fmt/core.h>
 
 #include "base/text.h"
 #include "scene/limits.h"
-#include "scene/schema.h"
 
 namespace orrery::scene {
 namespace {
@@ -20,17 +20,6 @@ constexpr const char* kLobes[] = {
 
 /// Integers above this are not all exact in a float.
 constexpr std::size_t kMaxFloatId = std::size_t{1} << 24;
-
-/// Returns all valid names of [output] layers.
-const std::vector<std::string>& layer_names() {
-  static const std::vector<std::string> names = [] {
-    for (const Table& table : tables())
-      for (const auto& key : table.keys)
-        if (table.name == "output" && key.name == "layers") return key.choices;
-    return std::vector<std::string>{};
-  }();
-  return names;
-}
 
 bool is_emitter(const Material& material) { return std::holds_alternative<Emitter>(material.model); }
 
@@ -53,7 +42,52 @@ bool has_groups(const Scene& scene) {
          std::any_of(scene.points.begin(), scene.points.end(), has_group);
 }
 
+/// A layer, and which scenes can have it.
+struct LayerRule {
+  const char* name;
+  bool is_light = false;                        ///< requires paths
+  bool (*has_content)(const Scene&) = nullptr;  ///< whether it is not empty; null: always
+};
+
+/// All layers, in the order of the documentation.
+constexpr LayerRule kLayerRules[] = {{"Z"},
+                                     {"depth"},
+                                     {"N"},
+                                     {"P"},
+                                     {"albedo"},
+                                     {"diffuse", true},
+                                     {"specular", true},
+                                     {"transmission", true},
+                                     {"background", true},
+                                     {"emission", true, has_emitters},
+                                     {"light_groups", true, has_light_groups},
+                                     {"variance"},
+                                     {"samples"},
+                                     {"object_id"},
+                                     {"material_id"},
+                                     {"denoise.albedo"},
+                                     {"denoise.normal"},
+                                     {kHalvesLayer},
+                                     {"CryptoObject"},
+                                     {"CryptoMaterial"},
+                                     {"CryptoGroup", false, has_groups}};
+
+const LayerRule* rule_of(const std::string& layer) {
+  const auto found = std::find_if(std::begin(kLayerRules), std::end(kLayerRules),
+                                  [&](const LayerRule& rule) { return layer == rule.name; });
+  return found != std::end(kLayerRules) ? found : nullptr;
+}
+
 }  // namespace
+
+const std::vector<std::string>& layer_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const LayerRule& rule : kLayerRules) out.emplace_back(rule.name);
+    return out;
+  }();
+  return names;
+}
 
 std::string background_light_group(const Background& background) {
   const bool has_key = background.type == BackgroundType::kImage || background.type == BackgroundType::kSky;
@@ -70,7 +104,7 @@ std::string light_group_fault(const std::string& name) {
   if (name.size() > kLongestLightGroup)
     return fmt::format("has {} characters; the maximum is {}", name.size(), kLongestLightGroup);
   // The beauty's part of a multi-part file, and its channels.
-  static const std::vector<std::string> reserved = {"rgba", "R", "G", "B", "A", "half_a", "half_b"};
+  static const std::vector<std::string> reserved = {kAllLayers, "rgba", "R", "G", "B", "A", "half_a", "half_b"};
   bool is_layer = base::contains(reserved, name) || name.starts_with("Crypto");
   for (const std::string& layer : layer_names()) is_layer = is_layer || name == layer.substr(0, layer.find('.'));
   for (const char* lobe : kLobes) is_layer = is_layer || name == lobe;
@@ -82,9 +116,8 @@ std::string light_group_fault(const std::string& name) {
 }
 
 std::string layer_fault(const Scene& scene, const std::string& layer) {
-  static const std::vector<std::string> light = {"diffuse",    "specular", "transmission",
-                                                 "background", "emission", "light_groups"};
-  if (base::contains(light, layer) && scene.render.shading != Shading::kPath)
+  const LayerRule* const rule = rule_of(layer);
+  if (rule != nullptr && rule->is_light && scene.render.shading != Shading::kPath)
     return layer + " requires render.shading = \"path\"";
   if (layer == "object_id" && scene.sphere_count() >= kMaxFloatId)
     return fmt::format("a float cannot represent the ids of {} spheres exactly; use CryptoObject",
@@ -93,13 +126,10 @@ std::string layer_fault(const Scene& scene, const std::string& layer) {
 }
 
 std::vector<std::string> available_layers(const Scene& scene) {
-  const auto is_empty = [&](const std::string& name) {
-    return (name == "CryptoGroup" && !has_groups(scene)) || (name == "emission" && !has_emitters(scene)) ||
-           (name == "light_groups" && !has_light_groups(scene));
-  };
   std::vector<std::string> out;
-  for (const std::string& name : layer_names())
-    if (name != kAllLayers && layer_fault(scene, name).empty() && !is_empty(name)) out.push_back(name);
+  for (const LayerRule& rule : kLayerRules)
+    if (layer_fault(scene, rule.name).empty() && (rule.has_content == nullptr || rule.has_content(scene)))
+      out.emplace_back(rule.name);
   return out;
 }
 

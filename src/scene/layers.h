@@ -14,6 +14,9 @@ inline constexpr const char* kAllLayers = "all";
 /// Name in [output] of the layer for denoising, which kAllLayers does not include.
 inline constexpr const char* kHalvesLayer = "halves";
 
+/// Returns the names of all layers, in the order of the documentation.
+const std::vector<std::string>& layer_names();
+
 /// Light group of emitters and backgrounds that name none. May also be named explicitly.
 inline constexpr const char* kDefaultLightGroup = "default";
 
@@ -27,7 +30,7 @@ std::string light_group_fault(const std::string& name);
 /// Returns why a scene cannot have a layer; empty if it can.
 std::string layer_fault(const Scene& scene, const std::string& layer);
 
-/// Returns the non-empty layers that a scene can have, in schema order.
+/// Returns the non-empty layers that a scene can have, in the order of layer_names().
 std::vector<std::string> available_layers(const Scene& scene);
 
 /// Returns the layers in [output], with kAllLayers expanded.

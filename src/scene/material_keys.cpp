@@ -2,6 +2,7 @@
 // The keys of materials.
 #include "scene/key_builders.h"
 #include "scene/schema.h"
+#include "scene/texture.h"
 
 namespace orrery::scene {
 namespace {

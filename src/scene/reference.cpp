@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "scene/schema.h"
+#include "scene/texture.h"
 
 namespace orrery::scene {
 namespace {

@@ -14,12 +14,18 @@
 #include "math/vec3.h"
 #include "scene/accelerator.h"
 #include "scene/number_array.h"
-#include "scene/texture.h"
 
 /// The authored scene: names, user units, nothing compiled.
 ///
 /// The member initialisers are the defaults documented in docs/scene-format.md, and their only definition.
 namespace orrery::scene {
+
+class EnvironmentImage;
+struct Texture;
+
+/// A texture that replaces a constant of a material; null: the constant. Shared by copies of the scene, and never
+/// modified.
+using TextureSlot = std::shared_ptr<const Texture>;
 
 /// A rectangle of pixels.
 struct Window {

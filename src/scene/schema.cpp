@@ -2,6 +2,7 @@
 #include "scene/schema.h"
 
 #include <limits>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -208,31 +209,11 @@ Table render_table() {
 }
 
 Table output_table() {
+  std::vector<std::string> layers = layer_names();
+  layers.emplace_back(kAllLayers);
   return {
       "output",
-      {choices<S>("layers",
-                  {"Z",
-                   "depth",
-                   "N",
-                   "P",
-                   "albedo",
-                   "diffuse",
-                   "specular",
-                   "transmission",
-                   "background",
-                   "emission",
-                   "light_groups",
-                   "variance",
-                   "samples",
-                   "object_id",
-                   "material_id",
-                   "denoise.albedo",
-                   "denoise.normal",
-                   kHalvesLayer,
-                   "CryptoObject",
-                   "CryptoMaterial",
-                   "CryptoGroup",
-                   kAllLayers},
+      {choices<S>("layers", std::move(layers),
                   {"",
                    "Layers of EXR files in addition to the beauty image. `all`: every layer that the scene can have, "
                    "except `halves`",

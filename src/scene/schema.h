@@ -7,29 +7,15 @@
 #include <variant>
 #include <vector>
 
-#include "scene/scene.h"
-#include "scene/value_text.h"
+#include "scene/value.h"
 
 /// The schema of scene files: the one description of all keys, from which reading, checking, `--set`, suggestions,
 /// `--settings` and the documentation are derived. Defaults are the member initialisers in scene/scene.h.
 namespace orrery::scene {
 
-/// Value of a key in a scene file. A kName is a string or an integer, and stored as a string.
-using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window, bool, Interval>;
-
-enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWindow, kBoolean, kInterval, kName };
-
-/// Interval of allowed numbers, closed unless an end is marked open; for a vector it applies to each component.
-struct Range {
-  double from = 0, to = 0;
-  bool from_open = false, to_open = false;
-
-  bool contains(double x) const { return (from_open ? x > from : x >= from) && (to_open ? x < to : x <= to); }
-  /// Returns the interval for documentation: "0..1", "above 0 and below 180".
-  std::string text() const;
-  /// Returns the interval for messages: "must be in 0..1", "must be above 0 and below 180".
-  std::string requirement() const;
-};
+enum class TextureType;
+enum class TextureUse;
+struct Texture;
 
 /// Formats a window for a scene file: "[0, 0, 640, 360]".
 std::string window_text(const Window& window);
@@ -59,9 +45,6 @@ struct Table {
   std::vector<Key<Scene>> keys;
 };
 const std::vector<Table>& tables();
-
-/// Use of a texture, which decides the type and range of its values.
-enum class TextureUse { kReflectance, kRadiance, kNumber };
 
 /// A type of texture: the keys that a material's key has in addition to `texture` if its value is a texture.
 struct TextureTypeKeys {

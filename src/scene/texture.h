@@ -32,8 +32,7 @@ struct Texture {
   std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`; null until loaded
 };
 
-/// A texture that replaces a constant of a material; null: the constant. Shared by copies of the scene, and never
-/// modified.
-using TextureSlot = std::shared_ptr<const Texture>;
+/// Use of a texture, which decides the type and range of its values.
+enum class TextureUse { kReflectance, kRadiance, kNumber };
 
 }  // namespace orrery::scene

@@ -5,6 +5,7 @@
 #include "scene/key_builders.h"
 #include "scene/limits.h"
 #include "scene/schema.h"
+#include "scene/texture.h"
 
 namespace orrery::scene {
 namespace {

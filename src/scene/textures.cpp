@@ -6,6 +6,9 @@
 
 #include <fmt/core.h>
 
+#include "scene/scene.h"
+#include "scene/schema.h"
+
 namespace orrery::scene {
 
 std::vector<NamedTexture> textures(const Scene& scene) {

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
-#include "scene/schema.h"
+#include "scene/texture.h"
 
 namespace orrery::scene {
+
+struct Scene;
 
 /// A texture of a scene, and the key whose value it is.
 struct NamedTexture {

@@ -10,10 +10,15 @@
 
 #include <fmt/core.h>
 
+#include "base/diagnostic.h"
+#include "base/error.h"
+
 #include "base/stop_point.h"
 #include "scene/coincident.h"
+#include "scene/diagnostic.h"
 #include "scene/layers.h"
 #include "scene/limits.h"
+#include "scene/texture.h"
 #include "scene/value_text.h"
 
 namespace orrery::scene {

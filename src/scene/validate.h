@@ -5,22 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
-#include "base/error.h"
-#include "scene/scene.h"
+#include "math/vec3.h"
+#include "scene/forward.h"
 
 namespace orrery::scene {
 
 /// Maximum number of similar diagnostics of bulk data; of the rest only the number is reported.
 inline constexpr std::size_t kMaxReported = 10;
-
-/// A diagnostic that concerns several values of the scene, or one element of bulk data.
-struct SceneDiagnostic {
-  base::Severity severity = base::Severity::kError;
-  std::string key;  ///< "camera.up", "sphere[3].radius", "points[0].file", 0-based; empty: the whole scene
-  std::string text;
-  base::ErrorKind kind = base::ErrorKind::kBadData;  ///< of an error; kBadData or kMissingInput
-};
 
 /// Returns what is wrong with the exposure of a light; empty if the light is not too bright.
 ///
@@ -29,7 +20,7 @@ struct SceneDiagnostic {
 std::string exposure_fault(double radiance, double exposure);
 
 /// Returns what is wrong with a centre and a radius, one text for each; none if the sphere is in the domain.
-std::vector<std::string> sphere_faults(Vec3d center, double radius, Precision precision);
+std::vector<std::string> sphere_faults(math::Vec3d center, double radius, Precision precision);
 
 /// Returns the name of a sphere of a points file for messages: "row 3 of melt.dump", counted from 1; "sphere 3 of
 /// melt.dump" if the spheres are not the rows of the file.

@@ -111,7 +111,7 @@ TEST_F(CliStartup, OnlyCommandsWithImagesLoadOpenImageIO) {
       std::filesystem::remove(entry.path());
     }
     EXPECT_NE(loaded.find("libOpenColorIO"), std::string::npos) << "LD_DEBUG has no effect";
-    EXPECT_EQ(loaded.find("orrery-data"), std::string::npos) << words;
+    EXPECT_EQ(loaded.find("orrery-particles"), std::string::npos) << words;
     return loaded.find("libOpenImageIO") != std::string::npos;
   };
   for (const char* words : {"--help", "info good.toml", "check good.toml", "generate final -o final.toml",

@@ -3,7 +3,11 @@
 #include <cstdio>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
+#include "scene/scene.h"
 
 double sine_of_quarter_turn();
 

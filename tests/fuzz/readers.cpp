@@ -13,11 +13,14 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
+#include "particles/open.h"
 #include "points/color_map.h"
 #include "points/load_points.h"
 #include "points/select.h"
+#include "scene/diagnostic.h"
 #include "scene/validate.h"
 
 namespace orrery::fuzz {
@@ -167,7 +170,7 @@ std::unique_ptr<data::DataFile> open_data(const std::filesystem::path& folder, c
     file = folder / name;
     write(file, bytes);
     try {
-      return data::open(file, options);
+      return particles::open(file, options);
     } catch (const base::Error& error) {
       const bool is_unknown = !error.diagnostics().empty() && error.diagnostics()[0].text == "unknown file format";
       if (!is_unknown || file.extension() == ".csv") throw;

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
+#include "generate/generate.h"
 #include "generate/generate_files.h"
 
 namespace orrery {

@@ -12,12 +12,18 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "film/picture.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "generate/generate.h"
 #include "image/render_scene.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "scene/environment_image.h"
+#include "scene/scene.h"
+#include "scene/schema.h"
 #include "scene/textures.h"
 
 namespace orrery {

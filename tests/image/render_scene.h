@@ -6,8 +6,13 @@
 #include <utility>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "film/picture.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 
 namespace orrery::test {
 

@@ -8,7 +8,13 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "math/vec3.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
+#include "scene/accelerator.h"
+#include "scene/scene.h"
 
 namespace orrery::test {
 namespace {

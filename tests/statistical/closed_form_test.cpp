@@ -8,7 +8,11 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
+#include "scene/scene.h"
 #include "support/chi_square.h"
 
 namespace orrery::test {

@@ -5,8 +5,12 @@
 #include <cmath>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "film/display_error.h"
+#include "film/picture.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/room.h"
 
 namespace orrery::render {

@@ -15,6 +15,7 @@
 
 #include "compile/atmosphere.h"
 #include "compile/daylight.h"
+#include "scene/scene.h"
 
 namespace orrery::test {
 namespace {

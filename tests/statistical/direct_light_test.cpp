@@ -12,7 +12,10 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/lit_scenes.h"
 
 namespace orrery::test {

@@ -25,6 +25,7 @@
 #include "kernel/isa.h"
 #include "kernel/sampler-inl.h"
 #include "math/dispatch.h"
+#include "scene/environment_image.h"
 #include "support/chi_square.h"
 
 namespace orrery::test {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "accel/accel.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::test {
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
+#include "particles/open.h"
 
 namespace orrery::support {
 
@@ -25,7 +26,7 @@ inline std::vector<std::string> column_names(const data::FrameInfo& info) {
 inline std::string data_errors(const std::filesystem::path& file) {
   std::string all;
   try {
-    const auto opened = data::open(file);
+    const auto opened = particles::open(file);
     for (int frame = 0; frame < opened->frame_count(); ++frame)
       opened->read(frame, column_names(opened->describe(frame)));
   } catch (const base::Error& error) {

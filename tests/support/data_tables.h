@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "data/data_file.h"
+#include "particles/open.h"
 #include "support/temp_dir.h"
 
 namespace orrery::support {
@@ -30,7 +31,7 @@ inline data::Table read_table(data::DataFile& file, int frame = 0) {
   for (const data::ColumnInfo& column : file.describe(frame).columns) names.push_back(column.name);
   return file.read(frame, names);
 }
-inline data::Table read_table(const std::filesystem::path& file) { return read_table(*data::open(file)); }
+inline data::Table read_table(const std::filesystem::path& file) { return read_table(*particles::open(file)); }
 
 /// The numbers of a column; fails if there is none.
 inline std::vector<double> numbers(const data::Table& table, std::string_view name) {
@@ -72,7 +73,7 @@ inline std::string columns_text(const data::FrameInfo& info) {
 inline std::string read_faults(const std::filesystem::path& file, const data::OpenOptions& options = {}) {
   std::string out;
   try {
-    read_table(*data::open(file, options));
+    read_table(*particles::open(file, options));
   } catch (const base::Error& error) {
     EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
     for (const base::Diagnostic& d : error.diagnostics())

@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.h"
 #include "base/error.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "support/temp_dir.h"
 

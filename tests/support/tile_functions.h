@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/render_tile.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::test {
 

@@ -7,6 +7,8 @@
 #include <future>
 
 #include "base/module.h"
+#include "image/exr_options.h"
+#include "image/header.h"
 #include "image/module/functions.h"
 
 namespace orrery::image {

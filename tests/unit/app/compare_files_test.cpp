@@ -10,6 +10,8 @@
 
 #include "app/compared_channels.h"
 #include "base/error.h"
+#include "image/exr_options.h"
+#include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "support/temp_dir.h"

@@ -6,6 +6,8 @@
 #include <cstdlib>
 
 #include "base/error.h"
+#include "image/exr_options.h"
+#include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "support/temp_dir.h"

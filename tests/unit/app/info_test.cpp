@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "format/override.h"
+#include "job/load_scene.h"
 #include "support/temp_dir.h"
 
 namespace orrery::app {

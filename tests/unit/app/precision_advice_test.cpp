@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "scene/scene.h"
 
 namespace orrery::app {
 namespace {

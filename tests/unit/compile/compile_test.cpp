@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "compile/camera_basis.h"
+#include "compile/compiled_scene.h"
 #include "compile/daylight.h"
+#include "compile/environment.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compile/atmosphere.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 namespace {

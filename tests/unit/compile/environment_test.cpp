@@ -9,6 +9,9 @@
 #include <numbers>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "scene/environment_image.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 namespace {

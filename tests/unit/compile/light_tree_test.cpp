@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "compile/environment.h"
 #include "support/light_batch.h"
 #include "support/lit_scenes.h"
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernel/sphere.h"
+#include "scene/scene.h"
 
 namespace orrery::compile {
 namespace {

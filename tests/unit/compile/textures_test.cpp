@@ -7,6 +7,11 @@
 #include <memory>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "compile/environment.h"
+#include "scene/environment_image.h"
+#include "scene/scene.h"
+#include "scene/texture.h"
 
 namespace orrery::compile {
 namespace {

@@ -14,6 +14,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "data/byte_source.h"
+#include "data/faults.h"
 #include "support/temp_dir.h"
 
 namespace orrery::data {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "display/settings.h"
 #include "display/view.h"
 #include "support/temp_dir.h"
 

@@ -10,6 +10,8 @@
 #include <limits>
 
 #include "base/error.h"
+#include "display/settings.h"
+#include "film/picture.h"
 #include "support/temp_dir.h"
 
 namespace orrery::display {

@@ -13,6 +13,8 @@
 #include "display/config_files.h"
 #include "display/develop.h"
 #include "display/look_up.h"
+#include "display/settings.h"
+#include "film/picture.h"
 #include "support/temp_dir.h"
 
 namespace orrery::display {

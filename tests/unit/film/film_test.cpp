@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "film/picture.h"
+
 namespace orrery::film {
 namespace {
 

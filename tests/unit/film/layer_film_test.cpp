@@ -10,6 +10,10 @@
 #include <random>
 
 #include "base/image_limits.h"
+#include "film/layers.h"
+#include "kernel/material.h"
+#include "kernel/path_record.h"
+#include "kernel/scene_view.h"
 
 namespace orrery::film {
 namespace {

@@ -7,6 +7,10 @@
 #include <random>
 
 #include "base/error.h"
+#include "film/film.h"
+#include "film/layer_pixel.h"
+#include "film/partial.h"
+#include "kernel/path_record.h"
 
 namespace orrery::film {
 namespace {

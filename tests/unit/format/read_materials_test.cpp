@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/texture.h"
 #include "support/scene_files.h"
 
 namespace orrery::format {

@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "format/diagnostics.h"
+#include "format/read_result.h"
+#include "scene/diagnostic.h"
 #include "support/scene_files.h"
 
 namespace orrery::format {

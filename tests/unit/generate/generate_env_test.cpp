@@ -9,7 +9,9 @@
 #include "base/error.h"
 #include "compile/atmosphere.h"
 #include "compile/daylight.h"
+#include "film/picture.h"
 #include "generate/generate.h"
+#include "scene/scene.h"
 
 namespace orrery::generate {
 namespace {

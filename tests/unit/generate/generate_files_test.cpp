@@ -9,8 +9,10 @@
 #include <string>
 
 #include "base/error.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "format/write_scene.h"
+#include "generate/generate.h"
 #include "image/read.h"
 
 namespace orrery::generate {

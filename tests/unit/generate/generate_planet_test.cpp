@@ -6,7 +6,9 @@
 #include <cstddef>
 
 #include "base/error.h"
+#include "film/picture.h"
 #include "generate/generate.h"
+#include "math/vec3.h"
 
 namespace orrery::generate {
 namespace {

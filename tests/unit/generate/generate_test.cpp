@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "format/write_scene.h"
 #include "generate/generate_random.h"
+#include "scene/diagnostic.h"
 #include "scene/validate.h"
 
 namespace orrery::generate {

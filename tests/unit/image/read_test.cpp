@@ -12,6 +12,8 @@
 #include <random>
 #include <sstream>
 
+#include "image/exr_options.h"
+#include "image/header.h"
 #include "image/write.h"
 #include "support/temp_dir.h"
 #include "unit/image/test_pictures.h"

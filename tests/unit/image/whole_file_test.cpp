@@ -5,6 +5,8 @@
 #include <csignal>
 #include <functional>
 
+#include "image/exr_options.h"
+#include "image/header.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "support/temp_dir.h"

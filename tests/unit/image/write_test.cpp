@@ -8,6 +8,9 @@
 #include <cstdlib>
 #include <limits>
 
+#include "image/exr_options.h"
+#include "image/header.h"
+#include "image/library.h"
 #include "image/read.h"
 #include "support/temp_dir.h"
 #include "unit/image/exr_header.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compile/camera_basis.h"
+#include "scene/scene.h"
 
 namespace orrery::job {
 namespace {

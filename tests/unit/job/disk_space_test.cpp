@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "film/layers.h"
+#include "generate/generate.h"
 #include "generate/generate_files.h"
 #include "job/job.h"
+#include "job/job_report.h"
 #include "support/temp_dir.h"
 
 namespace orrery::job {

@@ -14,9 +14,13 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "image/exr_options.h"
+#include "image/header.h"
 #include "image/partial_file.h"
 #include "image/read.h"
+#include "job/job_report.h"
 #include "job/merge_shards.h"
+#include "render/progress.h"
 #include "support/exr_file.h"
 #include "support/temp_dir.h"
 

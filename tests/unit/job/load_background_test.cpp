@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "compile/daylight.h"
+#include "scene/scene.h"
 #include "support/exr_file.h"
 #include "support/temp_dir.h"
 

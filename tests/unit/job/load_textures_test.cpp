@@ -16,6 +16,8 @@
 #include "base/error.h"
 #include "film/picture.h"
 #include "image/write.h"
+#include "scene/scene.h"
+#include "scene/texture.h"
 #include "support/exr_file.h"
 #include "support/temp_dir.h"
 

@@ -5,8 +5,10 @@
 
 #include "base/error.h"
 #include "compile/compile.h"
-#include "film/half_sums.h"
+#include "compile/compiled_scene.h"
+#include "film/layer_pixel.h"
 #include "job/layers.h"
+#include "scene/scene.h"
 #include "support/temp_dir.h"
 
 namespace orrery::job {

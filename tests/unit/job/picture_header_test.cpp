@@ -6,7 +6,11 @@
 #include <regex>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "format/read_result.h"
+#include "image/header.h"
 #include "job/camera_matrices.h"
+#include "job/job_report.h"
 #include "job/version.h"
 
 namespace orrery::job {

@@ -9,8 +9,11 @@
 #include <set>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "generate/generate.h"
+#include "scene/accelerator.h"
 #include "scene/environment_image.h"
+#include "scene/scene.h"
 
 namespace orrery::job {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "job/job_report.h"
 #include "job/version.h"
 
 namespace orrery::job {

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "kernel/isa.h"
+#include "measure/feature_cost.h"
 #include "support/temp_dir.h"
 
 namespace orrery::measure {

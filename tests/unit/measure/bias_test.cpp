@@ -7,10 +7,15 @@
 #include <random>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "measure/axes.h"
 #include "measure/paired_errors.h"
 #include "measure/pareto.h"
+#include "measure/study.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
+#include "scene/scene.h"
 
 namespace orrery::measure {
 namespace {

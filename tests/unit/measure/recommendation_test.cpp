@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "measure/study.h"
+#include "measure/study_renderer.h"
 #include "support/everything.h"
 
 namespace orrery::measure {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "measure/study.h"
 #include "support/lit_scenes.h"
 
 namespace orrery::measure {

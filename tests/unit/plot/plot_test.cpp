@@ -8,6 +8,8 @@
 
 #include "base/error.h"
 #include "display/develop.h"
+#include "film/picture.h"
+#include "format/read_result.h"
 #include "format/read_scene.h"
 #include "points/color_map.h"
 #include "points/elements.h"

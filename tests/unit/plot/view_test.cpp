@@ -8,6 +8,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "scene/scene.h"
 
 namespace orrery::plot {
 namespace {

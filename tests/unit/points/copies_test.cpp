@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "points_file.h"
+#include "scene/number_array.h"
+#include "scene/scene.h"
 
 namespace orrery::points {
 namespace {

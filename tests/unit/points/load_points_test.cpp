@@ -6,10 +6,16 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "data/data_file.h"
+#include "particles/open.h"
 #include "points/color_map.h"
-#include "points/open_once.h"
+#include "points/open_data.h"
+#include "points/point_radii.h"
 #include "points/read_memory.h"
+#include "points/source_rows.h"
 #include "points_file.h"
+#include "scene/scene.h"
+#include "scene/validate.h"
 
 namespace orrery::points {
 namespace {
@@ -55,7 +61,7 @@ class ClaimsRows final : public data::DataFile {
 TEST_F(PointsLoadPoints, MoreSpheresThanIdsAreRefusedBeforeTheyAreRead) {
   write("a.csv", "x,y,z,radius\n1,2,3,0.5\n");
   request.open = [](const std::filesystem::path& file, const data::OpenOptions& options) {
-    return std::make_unique<ClaimsRows>(data::open(file, options), std::uint64_t{1} << 32);
+    return std::make_unique<ClaimsRows>(particles::open(file, options), std::uint64_t{1} << 32);
   };
   EXPECT_EQ(load(), "error points[0].file: has 4294967296 rows; the maximum is 4294967295\n");
 }
@@ -65,7 +71,7 @@ TEST_F(PointsLoadPoints, DecompressedDataCountAsMemory) {
   std::uint64_t limit = 0;
   request.open = [&](const std::filesystem::path& file, const data::OpenOptions& options) {
     limit = options.decompressed_limit;
-    return data::open(file, options);
+    return particles::open(file, options);
   };
   load();
   EXPECT_EQ(limit, data::OpenOptions().decompressed_limit);
@@ -548,7 +554,7 @@ TEST_F(PointsLoadPointsMemory, ChainsReduceTheNeed) {
   write("a.pdb", protein());
   request.memory_limit = 2000;
   // Parsing the text takes more than that.
-  request.open = [](const std::filesystem::path& file, const data::OpenOptions&) { return data::open(file); };
+  request.open = [](const std::filesystem::path& file, const data::OpenOptions&) { return particles::open(file); };
   EXPECT_EQ(shortage(), "");
   EXPECT_EQ(points.centers.size(), 3u);
 }

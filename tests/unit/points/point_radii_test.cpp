@@ -5,6 +5,8 @@
 
 #include "points/elements.h"
 #include "points_file.h"
+#include "scene/number_array.h"
+#include "scene/scene.h"
 
 namespace orrery::points {
 namespace {

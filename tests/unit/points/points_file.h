@@ -9,6 +9,7 @@
 
 #include "points/load_points.h"
 #include "points/rows.h"
+#include "scene/scene.h"
 #include "support/temp_dir.h"
 
 namespace orrery::points {

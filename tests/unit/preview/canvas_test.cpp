@@ -7,6 +7,10 @@
 #include <set>
 #include <thread>
 
+#include "film/film.h"
+#include "film/partial.h"
+#include "film/rendered_pixels.h"
+#include "kernel/pixel_place.h"
 #include "unit/preview/pictures.h"
 
 namespace orrery::preview {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "film/partial.h"
 #include "unit/preview/pictures.h"
 
 namespace orrery::preview {

@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "film/partial.h"
+#include "film/rendered_pixels.h"
+#include "kernel/pixel_place.h"
 #include "preview/canvas.h"
 #include "preview/png.h"
 

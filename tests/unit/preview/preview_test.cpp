@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "display/develop.h"
+#include "film/picture.h"
+#include "film/rendered_pixels.h"
 #include "preview/file_sink.h"
 #include "preview/terminal_sink.h"
 #include "support/pseudo_terminal.h"

@@ -8,8 +8,14 @@
 #include <utility>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "film/display_error.h"
+#include "film/partial.h"
+#include "film/picture.h"
+#include "render/progress.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/everything.h"
 #include "support/room.h"
 

@@ -6,7 +6,11 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "film/picture.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/everything.h"
 #include "support/lit_scenes.h"
 

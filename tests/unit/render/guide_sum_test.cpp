@@ -12,7 +12,9 @@
 
 #include "accel/accel.h"
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "kernel/isa.h"
+#include "kernel/path_stream.h"
 #include "kernel/render_tile.h"
 #include "support/everything.h"
 

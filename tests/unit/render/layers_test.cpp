@@ -9,9 +9,14 @@
 #include <utility>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "film/layers.h"
+#include "film/picture.h"
 #include "kernel/isa.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/sampling_limits.h"
+#include "render/settings.h"
 #include "support/everything.h"
 
 namespace orrery::render {

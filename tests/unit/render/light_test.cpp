@@ -5,7 +5,12 @@
 #include <cmath>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "math/vec3.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
+#include "scene/scene.h"
 
 namespace orrery::render {
 namespace {

@@ -13,6 +13,9 @@
 
 #include "accel/accel.h"
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "film/layer_pixel.h"
+#include "film/layers.h"
 #include "render/tile_renderer.h"
 #include "support/everything.h"
 

@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
 #include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "scene/animation.h"
 #include "support/everything.h"
 #include "support/plane_values.h"

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/tile_pool.h"
+#include "render/tile_renderer.h"
 #include "support/pixel_statistics.h"
 
 namespace orrery::render {

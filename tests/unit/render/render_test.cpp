@@ -8,6 +8,10 @@
 #include <random>
 
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "render/progress.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/everything.h"
 #include "support/lit_scenes.h"
 #include "support/plane_values.h"

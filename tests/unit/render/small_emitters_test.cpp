@@ -170,7 +170,7 @@ TEST(RenderSmallEmitters, ADistantLampIsNotMissed) {
     s.render.seed = static_cast<std::uint32_t>(seed);
     const Result r = render(compile::compile(s), settings);
     EXPECT_EQ(r.statistics.ended_by, "noise");
-    EXPECT_EQ(r.statistics.fewest_samples, 16u);
+    EXPECT_EQ(r.statistics.min_samples, 16u);
     const double brightest = *std::max_element(r.picture.planes[0].values.begin(), r.picture.planes[0].values.end());
     EXPECT_NEAR(brightest - 1, lamp, 0.5 * lamp) << seed;
     sum += (brightest - 1) / kSeeds;

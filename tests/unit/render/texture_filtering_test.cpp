@@ -14,6 +14,7 @@
 #include "compile/mip_map.h"
 #include "render/render.h"
 #include "scene/environment_image.h"
+#include "scene/texture.h"
 #include "support/plane_values.h"
 
 namespace orrery::render {

@@ -8,6 +8,8 @@
 #include <set>
 #include <thread>
 
+#include "render/tile_renderer.h"
+
 namespace orrery::render {
 namespace {
 

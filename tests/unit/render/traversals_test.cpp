@@ -6,7 +6,12 @@
 #include <memory>
 #include <vector>
 
+#include "accel/accel.h"
 #include "compile/compile.h"
+#include "compile/compiled_scene.h"
+#include "render/render.h"
+#include "render/result.h"
+#include "render/settings.h"
 #include "support/everything.h"
 #include "support/plane_values.h"
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "scene/diagnostic.h"
 #include "scene/validate.h"
 
 namespace orrery::scene {

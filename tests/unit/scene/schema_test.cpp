@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "scene/texture.h"
+
 namespace orrery::scene {
 namespace {
 

@@ -5,6 +5,11 @@
 
 #include <limits>
 
+#include "base/diagnostic.h"
+#include "scene/diagnostic.h"
+#include "scene/scene.h"
+#include "scene/texture.h"
+
 namespace orrery::scene {
 namespace {
 

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// GSD files of HOOMD-blue: the schema `hoomd` on top of the file layer in gsd_file.h.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+#include <fmt/core.h>
+
+#include "arrays/gsd_file.h"
+#include "arrays/readers.h"
+#include "data/byte_source.h"
+#include "data/data_file.h"
+#include "data/faults.h"
+
+namespace orrery::arrays {
+
+using namespace data;  // NOLINT(google-build-using-namespace)
+
+namespace {
+
+/// Columns from a chunk of the schema. Only positions, diameters and types are listed when a file lacks them.
+struct ChunkColumns {
+  const char* chunk;
+  std::uint32_t components;
+  std::array<const char*, 3> columns;
+};
+
+constexpr ChunkColumns kPosition{"particles/position", 3, {"x", "y", "z"}};
+constexpr ChunkColumns kOptional[] = {
+    {"particles/velocity", 3, {"velocity[1]", "velocity[2]", "velocity[3]"}},
+    {"particles/image", 3, {"image[1]", "image[2]", "image[3]"}},
+    {"particles/mass", 1, {"mass"}},
+    {"particles/charge", 1, {"charge"}},
+    {"particles/body", 1, {"body"}},
+};
+constexpr const char* kDiameter = "particles/diameter";
+constexpr const char* kTypeId = "particles/typeid";
+/// Diameter of particles without one, by the schema.
+constexpr float kDefaultDiameter = 1;
+
+class GsdReader final : public DataFile {
+ public:
+  explicit GsdReader(const Bytes& bytes) : file_(bytes) {
+    if (file_.schema() != "hoomd")
+      fail(fmt::format("the schema of this GSD file is `{}`", file_.schema()), "only the schema `hoomd` is supported");
+    if (file_.frame_count() == 0) fail("the file has no frames");
+  }
+
+  Format format() const override { return Format::kGsd; }
+  int frame_count() override { return static_cast<int>(file_.frame_count()); }
+  FrameInfo describe(int frame) override;
+  Table read(int frame, const std::vector<std::string>& columns) override;
+
+ private:
+  [[noreturn]] void fail(const std::string& text, const std::string& remedy = {}) const {
+    Faults(file_.path()).fail(0, text, remedy);
+  }
+  std::uint64_t rows_of(std::uint64_t frame);
+  std::vector<double> setting(std::uint64_t frame, const char* name, std::size_t size);
+  const GsdChunk* chunk_of(std::uint64_t frame, const char* name, std::uint32_t components);
+  std::vector<std::string> type_names(std::uint64_t frame);
+  std::optional<Box> box_of(std::uint64_t frame);
+  Words types_of(std::uint64_t frame, std::uint64_t rows);
+
+  GsdFile file_;
+};
+
+/// Returns the values of a chunk that does not belong to particles; empty if neither the frame nor frame 0 has it.
+std::vector<double> GsdReader::setting(std::uint64_t frame, const char* name, std::size_t size) {
+  const GsdChunk* chunk = file_.find(frame, name);
+  if (chunk == nullptr) chunk = file_.find(0, name);
+  if (chunk == nullptr) return {};
+  const std::uint64_t values = chunk->rows * chunk->components;
+  if (values != size) fail(fmt::format("frame {}: `{}` has {} values instead of {}", frame, name, values, size));
+  std::vector<double> out;
+  for (std::uint32_t i = 0; i < chunk->components; ++i) {
+    const Column column{name, file_.component(*chunk, i)};
+    for (std::size_t row = 0; row < column.size(); ++row) out.push_back(column.number(row));
+  }
+  return out;
+}
+
+/// Returns the number of particles. It is backed by positions, so that memory can be allocated for it.
+std::uint64_t GsdReader::rows_of(std::uint64_t frame) {
+  const std::vector<double> count = setting(frame, "particles/N", 1);
+  constexpr double kMaxRows = 1e15;
+  if (!count.empty() && !(count[0] >= 0 && count[0] < kMaxRows))
+    fail(fmt::format("frame {}: the number of particles is out of range", frame));
+  const auto rows = count.empty() ? 0 : static_cast<std::uint64_t>(count[0]);
+  if (rows > 0) {
+    const GsdChunk* position = file_.find(frame, kPosition.chunk);
+    if (position == nullptr) position = file_.find(0, kPosition.chunk);
+    if (position == nullptr || position->rows != rows)
+      fail(fmt::format("frame {} has {} particles, but {} positions", frame, rows,
+                       position == nullptr ? 0 : position->rows));
+  }
+  return rows;
+}
+
+/// Returns a chunk with one row per particle: the frame's, else frame 0's if it has as many particles; else null.
+const GsdChunk* GsdReader::chunk_of(std::uint64_t frame, const char* name, std::uint32_t components) {
+  const std::uint64_t rows = rows_of(frame);
+  const GsdChunk* chunk = file_.find(frame, name);
+  if (chunk == nullptr && rows_of(0) == rows) chunk = file_.find(0, name);
+  if (chunk != nullptr && (chunk->rows != rows || chunk->components != components))
+    fail(fmt::format("frame {}: `{}` has {} rows of {} values instead of {} rows of {}", frame, name, chunk->rows,
+                     chunk->components, rows, components));
+  return chunk;
+}
+
+/// Names of the types: rows of characters, padded by null characters.
+std::vector<std::string> GsdReader::type_names(std::uint64_t frame) {
+  const GsdChunk* chunk = file_.find(frame, "particles/types");
+  if (chunk == nullptr) chunk = file_.find(0, "particles/types");
+  if (chunk == nullptr) return {"A"};
+  if (size_of(chunk->type) != 1) fail("`particles/types` is not text");
+  const std::string text = file_.raw(*chunk);
+  std::vector<std::string> names;
+  for (std::size_t at = 0; at < text.size(); at += chunk->components)
+    names.emplace_back(text.substr(at, chunk->components).c_str());
+  return names;
+}
+
+std::optional<Box> GsdReader::box_of(std::uint64_t frame) {
+  const std::vector<double> b = setting(frame, "configuration/box", 6);
+  if (b.empty()) return std::nullopt;
+  for (const double value : b)
+    if (!std::isfinite(value)) fail(fmt::format("frame {}: the box has values that are not finite", frame));
+  const std::vector<double> dimensions = setting(frame, "configuration/dimensions", 1);
+  const bool is_flat = !dimensions.empty() && dimensions[0] == 2;
+  // Lengths x, y, z, then tilt factors xy, xz, yz. The box is centred at the origin.
+  const double height = is_flat && b[2] == 0 ? 1 : b[2];
+  Box box;
+  box.edges = {Vec3d{b[0], 0, 0}, Vec3d{b[3] * b[1], b[1], 0}, Vec3d{b[4] * height, b[5] * height, height}};
+  box.origin = -0.5 * (box.edges[0] + box.edges[1] + box.edges[2]);
+  box.periodic = {true, true, !is_flat};
+  return box;
+}
+
+Words GsdReader::types_of(std::uint64_t frame, std::uint64_t rows) {
+  const std::vector<std::string> names = type_names(frame);
+  const GsdChunk* chunk = chunk_of(frame, kTypeId, 1);
+  Column ids{"type", std::vector<std::uint8_t>(chunk == nullptr ? static_cast<std::size_t>(rows) : 0)};
+  if (chunk != nullptr) ids.values = file_.component(*chunk, 0);
+  constexpr auto kUnused = static_cast<std::uint32_t>(-1);
+  std::vector<std::uint32_t> word_of(names.size(), kUnused);
+  std::unordered_map<std::string, std::uint32_t> number_of;
+  Words out;
+  out.index.reserve(ids.size());
+  for (std::size_t row = 0; row < ids.size(); ++row) {
+    const double id = ids.number(row);
+    if (!(id >= 0 && id < static_cast<double>(names.size())))
+      fail(fmt::format("frame {}: particle {} has a type without a name; there are {} types", frame, row + 1,
+                       names.size()));
+    std::uint32_t& word = word_of[static_cast<std::size_t>(id)];
+    if (word == kUnused) {
+      const std::string& name = names[static_cast<std::size_t>(id)];
+      const auto [same, is_new] = number_of.try_emplace(name, static_cast<std::uint32_t>(out.words.size()));
+      if (is_new) out.words.push_back(name);
+      word = same->second;
+    }
+    out.index.push_back(word);
+  }
+  return out;
+}
+
+FrameInfo GsdReader::describe(int index) {
+  const auto frame = static_cast<std::uint64_t>(index);
+  FrameInfo info;
+  info.rows = rows_of(frame);
+  const auto add = [&](const GsdChunk* chunk, const ChunkColumns& source) {
+    for (std::uint32_t i = 0; i < source.components; ++i)
+      info.columns.push_back({source.columns[i], chunk != nullptr ? column_type(chunk->type) : ColumnType::kFloat32});
+  };
+  add(chunk_of(frame, kPosition.chunk, kPosition.components), kPosition);
+  add(chunk_of(frame, kDiameter, 1), {kDiameter, 1, {"diameter"}});
+  info.columns.push_back({"type", ColumnType::kText});
+  for (const ChunkColumns& source : kOptional)
+    if (const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components)) {
+      add(chunk, source);
+      if (source.chunk == std::string("particles/image"))
+        std::copy(source.columns.begin(), source.columns.end(), info.roles.image.begin());
+    }
+  info.roles.position = {"x", "y", "z"};
+  info.roles.radius = "diameter";
+  info.roles.radius_scale = 0.5;
+  info.roles.type = "type";
+  info.box = box_of(frame);
+  const std::vector<double> step = setting(frame, "configuration/step", 1);
+  info.step = step.empty() ? 0 : step[0];
+  return info;
+}
+
+Table GsdReader::read(int index, const std::vector<std::string>& columns) {
+  const auto frame = static_cast<std::uint64_t>(index);
+  Table table;
+  table.rows = static_cast<std::size_t>(rows_of(frame));
+  const auto from = [&](const ChunkColumns& source, const std::string& name) {
+    for (std::uint32_t i = 0; i < source.components; ++i)
+      if (name == source.columns[i]) {
+        const GsdChunk* const chunk = chunk_of(frame, source.chunk, source.components);
+        // Only a frame without particles has no positions.
+        table.columns.push_back({name, chunk != nullptr ? file_.component(*chunk, i) : Values(std::vector<float>())});
+      }
+  };
+  for (const std::string& name : columns) {
+    if (name == "type") {
+      table.columns.push_back({name, types_of(frame, table.rows)});
+    } else if (name == "diameter" && chunk_of(frame, kDiameter, 1) == nullptr) {
+      table.columns.push_back({name, std::vector<float>(table.rows, kDefaultDiameter)});
+    } else {
+      from(kPosition, name);
+      from({kDiameter, 1, {"diameter"}}, name);
+      for (const ChunkColumns& source : kOptional) from(source, name);
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+bool is_gsd(const Signature& signature) { return signature.head.starts_with("\xdf\x65\xdf\x65\xdf\x65\xdf\x65"); }
+
+std::unique_ptr<DataFile> open_gsd(const Bytes& bytes) { return std::make_unique<GsdReader>(bytes); }
+
+}  // namespace orrery::arrays

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "arrays/npy_columns.h"
+#include "arrays/npy_header.h"
+#include "arrays/readers.h"
+
+#include "base/text.h"
+#include "data/byte_source.h"
+#include "data/customary.h"
+#include "data/faults.h"
+#include "data/quoted_word.h"
+#include "data/single_frame.h"
+#include "data/zip_reader.h"
+
+namespace orrery::arrays {
+
+using namespace data;  // NOLINT(google-build-using-namespace)
+
+namespace {
+
+using namespace std::string_view_literals;
+
+/// More members than that are not a file of columns.
+constexpr std::size_t kMaxMembers = 10000;
+
+struct Member {
+  std::string name;  ///< without ".npy"
+  NpyHeader header;
+  std::string fault;  ///< why it cannot be a column; empty: it can
+  std::vector<NpyColumn> columns;
+};
+
+/// Reads the header of the archive's current member.
+Member described(ZipReader& zip) {
+  constexpr std::uint64_t kShortestHead = 12;
+  Member member;
+  member.name = zip.name().substr(0, zip.name().rfind(".npy"));
+  std::vector<char> head = zip.read(kShortestHead);
+  if (!has_npy_signature({head.data(), head.size()})) {
+    member.fault = "not an array in NumPy's format";
+    return member;
+  }
+  const std::uint64_t end = std::min(npy_header_end({head.data(), head.size()}), kLongestNpyHeader);
+  const std::vector<char> rest = zip.read(end - std::min<std::uint64_t>(end, head.size()));
+  head.insert(head.end(), rest.begin(), rest.end());
+  member.fault = parse_npy_header({head.data(), head.size()}, member.header);
+  const NpyHeader& header = member.header;
+  const bool is_table =
+      header.shape.size() == 1 || (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMaxColumns);
+  if (member.fault.empty() && !is_table)
+    member.fault = fmt::format("the shape {} is not that of columns", shape_text(header));
+  return member;
+}
+
+/// Returns whether a member contains positions, and therefore defines the number of rows.
+bool has_positions(const Member& member) {
+  const NpyHeader& header = member.header;
+  if (!member.fault.empty()) return false;
+  std::vector<ColumnInfo> columns;
+  if (header.is_structured || header.shape.size() == 1 || header.shape[1] == 3)
+    for (const NpyColumn& column : npy_columns(header, member.name, columns))
+      if (column.name == "x" || column.name == "X") return true;
+  return false;
+}
+
+class NpzFile final : public SingleFrame {
+ public:
+  NpzFile(const Bytes& bytes, std::uint64_t limit) : SingleFrame(data::Format::kNpz, bytes), limit_(limit) {
+    Faults faults(bytes->file());
+    for (ZipReader zip(*bytes); zip.next();) {
+      members_.push_back(described(zip));
+      if (members_.size() > kMaxMembers)
+        faults.fail(0, fmt::format("the archive has more than {} members", kMaxMembers));
+    }
+    const auto positions = std::find_if(members_.begin(), members_.end(), has_positions);
+    if (positions == members_.end())
+      faults.fail(0, "there is no array of positions; the arrays are: " + listed_members(),
+                  "save an array `pos` with shape (N, 3), or arrays `x`, `y` and `z` with shape (N,)");
+    info_.rows = positions->header.rows();
+    for (Member& member : members_) add_columns(member);
+    info_.roles = required_roles(info_.columns, faults);
+  }
+
+  Table read(int, const std::vector<std::string>& names) override {
+    Faults faults(bytes_->file());
+    Table table;
+    table.rows = static_cast<std::size_t>(info_.rows);
+    table.columns.resize(names.size());
+    std::uint64_t limit = limit_;
+    ZipReader zip(*bytes_);
+    for (const Member& member : members_) {
+      zip.next();
+      std::vector<NpyColumn> columns;
+      std::vector<std::size_t> targets;
+      for (std::size_t i = 0; i < names.size(); ++i)
+        for (const NpyColumn& column : member.columns)
+          if (column.name == names[i]) {
+            columns.push_back(column);
+            targets.push_back(i);
+          }
+      if (columns.empty()) continue;
+      const auto array = ByteSource::of_memory(bytes_->file(), array_bytes(zip, member, limit, faults));
+      std::vector<Column> read = read_npy_columns(*array, info_.rows, columns, faults);
+      for (std::size_t i = 0; i < targets.size(); ++i) table.columns[targets[i]] = std::move(read[i]);
+    }
+    faults.raise_if_any();
+    return table;
+  }
+
+ private:
+  /// Makes columns of an array of as many rows as there are positions. Others are no columns: times, boxes, images.
+  void add_columns(Member& member) {
+    if (!member.fault.empty() || member.header.rows() != info_.rows) return;
+    const std::vector<ColumnInfo> before = info_.columns;
+    member.columns = npy_columns(member.header, member.name, info_.columns);
+    Faults faults(bytes_->file());
+    for (const NpyColumn& column : member.columns)
+      if (has_column(before, column.name)) faults.fail(0, "duplicate column " + quoted_word(column.name));
+    if (info_.columns.size() > kMaxColumns) faults.fail(0, fmt::format("there are more than {} columns", kMaxColumns));
+  }
+
+  std::string listed_members() const {
+    std::vector<ColumnInfo> names;
+    for (const Member& member : members_)
+      names.push_back({member.name +
+                       (member.fault.empty() ? " " + shape_text(member.header) : fmt::format(" ({})", member.fault))});
+    return listed(names);
+  }
+
+  /// Decompresses an array, of which at most `limit` bytes, and subtracts its size from the limit.
+  static std::vector<char> array_bytes(ZipReader& zip, const Member& member, std::uint64_t& limit, Faults& faults) {
+    const std::uint64_t data = npy_data_bytes(member.header), begin = member.header.begin;
+    if (data > limit || begin > limit - data)
+      faults.fail(0, fmt::format("array {} with shape {} exceeds the limit of {} of decompressed data",
+                                 quoted_word(member.name), shape_text(member.header), base::bytes_text(limit)));
+    limit -= data + begin;
+    std::vector<char> bytes = zip.read(data + begin + 1);
+    if (bytes.size() != data + begin)
+      faults.fail(0, fmt::format("array {} with shape {} needs {} bytes of data, but {} follow its header",
+                                 quoted_word(member.name), shape_text(member.header), data,
+                                 bytes.size() > data + begin
+                                     ? "more"
+                                     : std::to_string(bytes.size() -
+                                                      std::min(begin, static_cast<std::uint64_t>(bytes.size())))));
+    return bytes;
+  }
+
+  std::uint64_t limit_;
+  std::vector<Member> members_;  ///< all members of the archive, in its order
+};
+
+}  // namespace
+
+bool is_npz(const Signature& signature) {
+  // Local file header of a ZIP archive: the length of the name at byte 26, the name at byte 30.
+  constexpr std::size_t kNameLength = 26, kName = 30;
+  const std::string& head = signature.head;
+  if (signature.extension == ".npz") return head.starts_with("PK"sv);
+  return head.starts_with("PK\3\4"sv) && head.size() > kName &&
+         head.substr(kName, load<std::uint16_t>(head.data() + kNameLength, false)).ends_with(".npy");
+}
+
+std::unique_ptr<DataFile> open_npz(const Bytes& bytes, const OpenOptions& options) {
+  return std::make_unique<NpzFile>(bytes, options.decompressed_limit);
+}
+
+}  // namespace orrery::arrays

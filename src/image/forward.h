@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Declarations of the room's types, for headers that only name them.
+namespace orrery::image {
+
+struct Header;
+struct PartialFile;
+struct WriteReport;
+
+}  // namespace orrery::image

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Declarations of the room's types, for headers that only name them.
+namespace orrery::job {
+
+struct Hooks;
+struct Job;
+struct JobReport;
+struct Outputs;
+struct Rendering;
+struct SceneRequest;
+
+}  // namespace orrery::job

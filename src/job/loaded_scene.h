@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "display/settings.h"
+#include "format/read_result.h"
+#include "job/load_textures.h"
+#include "job/loaded_map.h"
+
+namespace orrery::job {
+
+/// A scene that is ready to be compiled, and what was found while it was loaded.
+struct LoadedScene {
+  format::ReadResult read;                     ///< colours are in the working space
+  display::Settings display;                   ///< from the command line and the scene
+  std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
+  std::optional<LoadedBackground> background;  ///< of an image background or sky; the scene has its image
+  std::vector<LoadedTexture> textures;         ///< image textures; the scene has their images
+  std::vector<base::Diagnostic> warnings;
+};
+
+}  // namespace orrery::job

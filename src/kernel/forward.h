@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+/// Declarations of the room's types, for headers that only name them.
+namespace orrery::kernel {
+
+struct Features;
+struct GuideSum;
+struct LightEvent;
+struct LightEvents;
+struct PathRecord;
+struct PixelSum;
+struct SceneView;
+struct SphereArray;
+struct Tile;
+struct TileCounts;
+struct Tracer;
+
+template <class T, class Id>
+struct RayPacketOf;
+using RayPacket = RayPacketOf<double, std::uint64_t>;
+using RayPacketFast = RayPacketOf<float, std::uint32_t>;
+
+template <class T, class Id>
+struct PathStreamOf;
+using PathStream = PathStreamOf<double, std::uint64_t>;
+using PathStreamFast = PathStreamOf<float, std::uint32_t>;
+
+}  // namespace orrery::kernel

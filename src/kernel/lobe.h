@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace orrery::kernel {
+
+/// The light path by its first scattering event, and by whether the light came to that surface straight from its source
+/// (direct) or from another surface (indirect). Light that only passes through glass counts as direct.
+enum class Lobe : std::uint8_t {
+  kBackground,  ///< no surface: the camera sees the source itself
+  kDiffuseDirect,
+  kDiffuseIndirect,
+  kSpecularDirect,
+  kSpecularIndirect,
+  kTransmissionDirect,
+  kTransmissionIndirect,
+  kEmission,  ///< no surface but the emitter's own: the camera sees it directly
+};
+inline constexpr int kLobes = 8;
+
+}  // namespace orrery::kernel

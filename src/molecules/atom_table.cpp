@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "molecules/atom_table.h"
+
+#include <algorithm>
+
+namespace orrery::molecules {
+
+using namespace data;  // NOLINT(google-build-using-namespace)
+
+namespace {
+
+constexpr const char* kPositionNames[] = {"x", "y", "z"};
+
+struct TextMember {
+  const char* name;
+  std::string Atom::*member;
+};
+constexpr std::array<TextMember, 7> kTexts = {{{"element", &Atom::element},
+                                               {"chain", &Atom::chain},
+                                               {"subchain", &Atom::subchain},
+                                               {"name", &Atom::name},
+                                               {"residue", &Atom::residue},
+                                               {"altloc", &Atom::altloc},
+                                               {"record", &Atom::record}}};
+
+/// Identifies an atom among its alternate locations, which may belong to different residues of one number.
+std::string identity(const Atom& atom) {
+  return atom.chain + '\n' + atom.subchain + '\n' + std::to_string(atom.residue_number) + atom.insertion + '\n' +
+         atom.name;
+}
+
+}  // namespace
+
+std::uint32_t AtomTable::Texts::index_of(const std::string& text) {
+  // Neighbouring atoms mostly share the text.
+  if (!words.index.empty() && words.words[words.index.back()] == text) return words.index.back();
+  const auto [it, is_new] = known.try_emplace(text, static_cast<std::uint32_t>(words.words.size()));
+  if (is_new) words.words.push_back(text);
+  return it->second;
+}
+
+/// Drops texts of replaced atoms and restores the order of first appearance.
+Words AtomTable::Texts::compacted() const {
+  constexpr auto kUnused = static_cast<std::uint32_t>(-1);
+  std::vector<std::uint32_t> renumbered(words.words.size(), kUnused);
+  Words out;
+  out.index.reserve(words.index.size());
+  for (const std::uint32_t old : words.index) {
+    if (renumbered[old] == kUnused) {
+      renumbered[old] = static_cast<std::uint32_t>(out.words.size());
+      out.words.push_back(words.words[old]);
+    }
+    out.index.push_back(renumbered[old]);
+  }
+  return out;
+}
+
+void AtomTable::add(const Atom& atom) {
+  if (!atom.altloc.empty()) {
+    const auto [it, is_new] = alternates_.try_emplace(identity(atom), numbers_.size());
+    if (!is_new) {
+      if (static_cast<float>(atom.occupancy) > occupancies_[it->second]) set(it->second, atom);
+      return;
+    }
+  }
+  const std::size_t row = numbers_.size();
+  for (auto& values : position_) values.emplace_back();
+  b_factors_.emplace_back();
+  occupancies_.emplace_back();
+  numbers_.emplace_back();
+  for (std::size_t i = 0; i < kTexts.size(); ++i)
+    texts_[i].words.index.push_back(texts_[i].index_of(atom.*kTexts[i].member));
+  set(row, atom);
+}
+
+void AtomTable::set(std::size_t row, const Atom& atom) {
+  position_[0][row] = atom.position.x;
+  position_[1][row] = atom.position.y;
+  position_[2][row] = atom.position.z;
+  b_factors_[row] = static_cast<float>(atom.b_factor);
+  occupancies_[row] = static_cast<float>(atom.occupancy);
+  numbers_[row] = atom.residue_number;
+  for (std::size_t i = 0; i < kTexts.size(); ++i)
+    texts_[i].words.index[row] = texts_[i].index_of(atom.*kTexts[i].member);
+}
+
+FrameInfo AtomTable::info(bool has_subchains) const {
+  FrameInfo info;
+  info.rows = rows();
+  for (const char* name : kPositionNames) info.columns.push_back({name, ColumnType::kFloat64});
+  for (const TextMember& text : kTexts)
+    if (has_subchains || text.member != &Atom::subchain) info.columns.push_back({text.name, ColumnType::kText});
+  info.columns.push_back({"residue_number", ColumnType::kInt32});
+  info.columns.push_back({"b_factor", ColumnType::kFloat32});
+  info.columns.push_back({"occupancy", ColumnType::kFloat32});
+  info.roles.position = {"x", "y", "z"};
+  info.roles.element = "element";
+  info.roles.chain = has_subchains ? "subchain" : "chain";
+  info.z_up = false;
+  return info;
+}
+
+Table AtomTable::table(const std::vector<std::string>& columns) const {
+  Table table;
+  table.rows = numbers_.size();
+  for (const std::string& name : columns) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (name == kPositionNames[i]) table.columns.push_back({name, position_[i]});
+    for (std::size_t i = 0; i < kTexts.size(); ++i)
+      if (name == kTexts[i].name) table.columns.push_back({name, texts_[i].compacted()});
+    if (name == "residue_number") table.columns.push_back({name, numbers_});
+    if (name == "b_factor") table.columns.push_back({name, b_factors_});
+    if (name == "occupancy") table.columns.push_back({name, occupancies_});
+  }
+  return table;
+}
+
+}  // namespace orrery::molecules

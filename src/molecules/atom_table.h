@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "data/table.h"
+
+namespace orrery::molecules {
+
+/// An atom of a PDB or mmCIF file.
+struct Atom {
+  data::Vec3d position{0, 0, 0};  ///< ångström
+  double b_factor = 0;
+  double occupancy = 1;
+  std::int32_t residue_number = 0;
+  std::string insertion;  ///< tells residues of the same number apart
+  std::string element;    ///< "C", "Zn"; "X": unknown
+  std::string chain;
+  std::string subchain;  ///< mmCIF: label_asym_id, to which assemblies refer
+  std::string name;      ///< "CA"
+  std::string residue;   ///< "ALA"
+  std::string altloc;    ///< name of an alternate location; empty: the atom has only one
+  std::string record;    ///< "ATOM", "HETATM"
+};
+
+/// The table of atoms that PDB and mmCIF share. Of the alternate locations of an atom, which would be overlapping
+/// spheres, only the one with the highest occupancy is kept, of equal ones the first.
+class AtomTable {
+ public:
+  /// Adds an atom, or replaces an alternate location of the same atom.
+  void add(const Atom& atom);
+
+  std::uint64_t rows() const { return numbers_.size(); }
+
+  /// Describes the table.
+  ///
+  /// `has_subchains`   true: lists the column `subchain`, and assigns it the role of the chain
+  data::FrameInfo info(bool has_subchains) const;
+
+  data::Table table(const std::vector<std::string>& columns) const;
+
+ private:
+  /// A text column that is being filled.
+  struct Texts {
+    data::Words words;
+    std::unordered_map<std::string, std::uint32_t> known;
+
+    std::uint32_t index_of(const std::string& text);
+    data::Words compacted() const;
+  };
+
+  void set(std::size_t row, const Atom& atom);
+
+  std::array<std::vector<double>, 3> position_;
+  std::vector<float> b_factors_, occupancies_;
+  std::vector<std::int32_t> numbers_;
+  std::array<Texts, 7> texts_;
+  std::unordered_map<std::string, std::size_t> alternates_;  ///< rows of atoms with alternate locations
+};
+
+}  // namespace orrery::molecules

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "data/data_file.h"
+#include "data/forward.h"
+
+/// One function per format: recognises it by its signature, and opens it. Used only by particles::open().
+namespace orrery::molecules {
+
+bool is_pdb(const data::Signature& signature);
+std::unique_ptr<data::DataFile> open_pdb(const data::Bytes& bytes, const data::OpenOptions& options);
+
+bool is_mmcif(const data::Signature& signature);
+std::unique_ptr<data::DataFile> open_mmcif(const data::Bytes& bytes, const data::OpenOptions& options);
+
+}  // namespace orrery::molecules

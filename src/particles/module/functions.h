@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "particles/open.h"
+#include "particles/write_table.h"
+
+namespace orrery::particles {
+
+/// The public functions of this room, which needs third-party libraries. They are in a module that the program loads at
+/// the first call.
+struct Functions {
+  decltype(&particles::open) open;
+  decltype(&particles::table_format) table_format;
+  decltype(&particles::write_table) write_table;
+};
+
+}  // namespace orrery::particles

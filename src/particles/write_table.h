@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "data/table.h"
+
+namespace orrery::particles {
+
+/// Formats that are written.
+enum class TableFormat { kPly, kXyz, kNpy, kCsv };
+
+/// Returns the format that the extension of a file selects: .ply, .xyz, .npy, .csv.
+///
+/// Errors     base::Error(kUsage) for another extension
+TableFormat table_format(const std::filesystem::path& file);
+
+/// Writes a table; what open() reads from the file has the same values.
+///
+/// - .ply: binary, little-endian. It has no texts.
+/// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`. It has no empty texts,
+///   blanks and quotes.
+/// - .npy: a structured array.
+/// - .csv: a header row; texts are quoted, numbers have as many digits as needed.
+///
+/// Text formats have fewer types of numbers, and reading returns float64 or int64. An integer column of a CSV file
+/// is read as int64 only if float64 cannot represent all of its values.
+///
+/// `writer`   named in a comment of .ply
+/// Domain     columns x, y, z of numbers; all columns have table.rows rows and different names
+/// Result     names of the columns that were omitted because the format cannot store their texts
+/// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
+///            kCannotCreate; kIo
+[[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const data::Table& table,
+                                                   const std::string& writer = "orrery");
+
+}  // namespace orrery::particles

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/sampling_limits.h"
+
+#include <cstddef>
+
+namespace orrery::render {
+
+std::vector<bool> pixels_of(const PixelShard& shard, int width_px, int height_px) {
+  std::vector<bool> out(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), true);
+  if (shard.count == 1) return out;
+  const int across = (width_px + kShardSide - 1) / kShardSide;
+  std::size_t at = 0;
+  for (int y = 0; y < height_px; ++y)
+    for (int x = 0; x < width_px; ++x)
+      out[at++] = (y / kShardSide * across + x / kShardSide) % shard.count == shard.index;
+  return out;
+}
+
+}  // namespace orrery::render

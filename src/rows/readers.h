@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "data/data_file.h"
+#include "data/forward.h"
+
+/// One function per format: recognises it by its signature, and opens it. Used only by particles::open().
+namespace orrery::rows {
+
+bool is_lammps_dump(const data::Signature& signature);
+std::unique_ptr<data::DataFile> open_lammps_dump(const data::Bytes& bytes);
+
+bool is_lammps_data(const data::Signature& signature);
+std::unique_ptr<data::DataFile> open_lammps_data(const data::Bytes& bytes);
+
+bool is_xyz(const data::Signature& signature);
+std::unique_ptr<data::DataFile> open_xyz(const data::Bytes& bytes);
+
+bool is_ply(const data::Signature& signature);
+std::unique_ptr<data::DataFile> open_ply(const data::Bytes& bytes);
+
+bool is_csv(const data::Signature& signature);
+std::unique_ptr<data::DataFile> open_csv(const data::Bytes& bytes);
+
+}  // namespace orrery::rows

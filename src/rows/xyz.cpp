@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "data/byte_source.h"
+
+#include "data/customary.h"
+#include "data/faults.h"
+#include "data/text_cursor.h"
+#include "data/text_frames.h"
+#include "data/text_rows.h"
+#include "rows/readers.h"
+#include "rows/xyz_comment.h"
+
+namespace orrery::rows {
+
+using namespace data;  // NOLINT(google-build-using-namespace)
+
+namespace {
+
+constexpr std::size_t kMaxShown = 60;
+const std::array<std::string, 3> kXyz = {"x", "y", "z"};
+
+/// A line with nothing but a number of atoms.
+bool parse_count(std::string_view line, std::int64_t& count) {
+  const auto words = words_of(line);
+  return words.size() == 1 && parse_integer(words[0], count) && count >= 0;
+}
+
+struct XyzHeader {
+  FrameInfo info;
+  bool is_extended = false;
+  std::uint64_t count_line = 0;  ///< the line with the number of atoms
+  TextCursor::Place rows;
+};
+
+class XyzHeaderReader {
+ public:
+  XyzHeaderReader(const ByteSource& bytes, TextCursor cursor) : cursor_(cursor), faults_(bytes.file()) {}
+
+  XyzHeader read() {
+    std::string line;
+    cursor_.next_filled(line);
+    out_.count_line = cursor_.line() - 1;
+    std::int64_t rows = 0;
+    parse_count(line, rows);
+    out_.info.rows = static_cast<std::uint64_t>(rows);
+    cursor_.next(line);
+    comment_line_ = cursor_.line() - 1;
+    out_.rows = cursor_.place();
+    std::string first;
+    if (rows > 0) cursor_.next(first);
+    const XyzValues values = xyz_values(line);
+    out_.info.box = xyz_box(values, comment_line_, faults_);
+    for (const char* const key : {"Timestep", "timestep", "Step", "step"})
+      if (double step = 0; values.count(key) > 0 && parse_number(values.at(key), step) && std::isfinite(step))
+        out_.info.step = step;
+    const auto properties = values.find("Properties");
+    out_.is_extended = properties != values.end();
+    if (out_.is_extended) {
+      add_properties(xyz_properties(properties->second, comment_line_, faults_), words_of(first));
+    } else {
+      out_.info.title = line;
+      add_plain(words_of(first));
+    }
+    return std::move(out_);
+  }
+
+ private:
+  using Parts = std::vector<std::string_view>;
+
+  /// Adds a column, under another name if there is one with this name. Returns its name.
+  std::string add(const std::string& name, ColumnType type) {
+    out_.info.columns.push_back({names_.add(name), type});
+    return out_.info.columns.back().name;
+  }
+  std::array<std::string, 3> add_three(const std::array<std::string, 3>& names, ColumnType type) {
+    return {add(names[0], type), add(names[1], type), add(names[2], type)};
+  }
+
+  /// Elements, or types: numbers in the place of elements mean atomic numbers to some programs, types to others.
+  void set_species(const std::string& name, const Parts& first, std::size_t column) {
+    std::int64_t ignored = 0;
+    const bool is_number = column < first.size() && parse_integer(first[column], ignored);
+    (is_number ? out_.info.roles.type : out_.info.roles.element) = name;
+  }
+
+  void add_properties(const std::vector<XyzProperty>& properties, const Parts& first) {
+    Roles& roles = out_.info.roles;
+    std::string diameter;
+    for (const XyzProperty& p : properties) {
+      if (p.name == "pos") {
+        if (p.count != 3 || p.type != ColumnType::kFloat64)
+          faults_.fail(comment_line_, "property \"pos\" is not of 3 real numbers", "write pos:R:3");
+        roles.position = add_three(kXyz, p.type);
+        continue;
+      }
+      if (p.name == "color" && p.count == 3 && p.type == ColumnType::kFloat64) {
+        roles.rgb = add_three({"color[1]", "color[2]", "color[3]"}, p.type);
+        roles.rgb_maximum = 1;
+        continue;
+      }
+      if (p.count == 1) {
+        const std::size_t column = out_.info.columns.size();
+        const std::string name = add(p.name, p.type);
+        const bool is_number = p.type != ColumnType::kText;
+        if (p.name == "species" && !is_number) set_species(name, first, column);
+        if (p.name == "type" || (p.name == "species" && is_number)) roles.type = name;
+        if (p.name == "id" && is_number) roles.id = name;
+        if (p.name == "radius" && is_number) roles.radius = name;
+        if (p.name == "diameter" && is_number) diameter = name;
+        continue;
+      }
+      for (std::size_t i = 1; i <= p.count; ++i) add(fmt::format("{}[{}]", p.name, i), p.type);
+    }
+    if (roles.radius.empty() && !diameter.empty()) {
+      roles.radius = diameter;
+      roles.radius_scale = 0.5;
+    }
+    if (roles.rgb[0].empty()) {
+      const Roles customary = customary_roles(out_.info.columns);
+      roles.rgb = customary.rgb;
+      roles.rgb_maximum = customary.rgb_maximum;
+    }
+    if (roles.position[0].empty())
+      faults_.fail(comment_line_, "Properties has no positions", "write for example Properties=species:S:1:pos:R:3");
+  }
+
+  void add_plain(const Parts& first) {
+    set_species("element", first, 0);
+    if (out_.info.roles.element.empty()) {
+      out_.info.roles.type = "type";
+      add("type", ColumnType::kInt64);
+    } else {
+      add("element", ColumnType::kText);
+    }
+    out_.info.roles.position = add_three(kXyz, ColumnType::kFloat64);
+    for (std::size_t i = 4; i < std::min<std::size_t>(first.size(), kMaxColumns); ++i) {
+      double ignored = 0;
+      add("column" + std::to_string(i + 1), parse_number(first[i], ignored) ? ColumnType::kFloat64 : ColumnType::kText);
+    }
+  }
+
+  TextCursor cursor_;
+  Faults faults_;
+  UniqueNames names_;
+  XyzHeader out_;
+  std::uint64_t comment_line_ = 0;
+};
+
+class Xyz final : public TextFrames {
+ public:
+  explicit Xyz(const Bytes& bytes) : TextFrames(bytes) {}
+
+  Format format() const override { return Format::kXyz; }
+
+  FrameInfo describe(int number) override { return header(number).info; }
+
+  Table read(int number, const std::vector<std::string>& columns) override {
+    const XyzHeader header = this->header(number);
+    TextLayout layout;
+    layout.begin = header.rows.offset;
+    layout.first_line = header.rows.line;
+    layout.rows = header.info.rows;
+    std::vector<std::string> names;
+    for (const ColumnInfo& column : header.info.columns) {
+      layout.columns.push_back({column.type, std::find(columns.begin(), columns.end(), column.name) != columns.end()});
+      names.push_back(column.name);
+    }
+    // Rows of plain XYZ may have anything behind the position.
+    constexpr std::size_t kPlainColumns = 4;
+    layout.allows_more = !header.is_extended;
+    while (!header.is_extended && layout.columns.size() > kPlainColumns && !layout.columns.back().is_wanted)
+      layout.columns.pop_back();
+    Faults faults(bytes().file());
+    TextTable text = read_text_rows(bytes(), layout, faults);
+    require_end(TextCursor(bytes(), {text.end, layout.first_line + text.rows}), header.count_line);
+    Table table;
+    table.rows = text.rows;
+    for (std::size_t c = 0; c < layout.columns.size(); ++c)
+      if (layout.columns[c].is_wanted) table.columns.push_back({names[c], std::move(text.values[c])});
+    return table;
+  }
+
+ private:
+  XyzHeader header(int number) { return XyzHeaderReader(bytes(), frame(number)).read(); }
+
+  std::uint64_t skip_header(TextCursor& cursor) const override {
+    std::string line;
+    cursor.next_filled(line);
+    std::int64_t count = 0;
+    if (!parse_count(line, count))
+      Faults(bytes().file())
+          .fail(cursor.line() - 1, fmt::format("expected a number of atoms, found '{}'", line.substr(0, kMaxShown)),
+                "check the number of atoms of the frame before");
+    cursor.skip(1);
+    return static_cast<std::uint64_t>(count);
+  }
+
+  bool begins_frame(std::string_view line) const override {
+    std::int64_t ignored = 0;
+    return parse_count(line, ignored);
+  }
+};
+
+}  // namespace
+
+bool is_xyz(const Signature& signature) {
+  const std::string_view head = signature.head;
+  const std::size_t first = head.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return false;
+  const std::size_t end = std::min(head.find('\n', first), head.size());
+  std::int64_t ignored = 0;
+  if (!parse_count(head.substr(first, end - first), ignored)) return false;
+  if (signature.extension == ".xyz" || signature.extension == ".extxyz" || signature.extension == ".exyz") return true;
+  const std::string_view comment = head.substr(end, std::min(head.find('\n', end + 1), head.size()) - end);
+  return comment.find("Properties=") != std::string_view::npos;
+}
+
+std::unique_ptr<DataFile> open_xyz(const Bytes& bytes) { return std::make_unique<Xyz>(bytes); }
+
+}  // namespace orrery::rows

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Declarations of the room's types, for headers that only name them.
+namespace orrery::scene {
+
+enum class Precision;
+
+class EnvironmentImage;
+class NumberArray;
+class PointArray;
+
+struct Background;
+struct Camera;
+struct Color;
+struct Image;
+struct Interval;
+struct Points;
+struct PointsColor;
+struct PointsRadius;
+struct PointsTransform;
+struct Render;
+struct Scene;
+struct SceneDiagnostic;
+struct Texture;
+
+}  // namespace orrery::scene
