@@ -75,6 +75,8 @@ std::vector<Case> cases() {
           file("light/thousand-lamps.toml"),
           file("light/grey-and-chrome.toml"),
           file("light/eclipse-ground.toml"),
+          file("light/eclipse-space.toml"),
+          file("next-week/07-lamp.toml"),
           {"mirror", room_with_mirror},
           room("room 3.7, sky 5", 3.7, 5),
           room("room 3.8, sky 50", 3.8, 50),

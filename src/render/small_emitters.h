@@ -21,8 +21,7 @@ std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene,
 /// Whether a pixel has too few samples to have hit its small emitters several times.
 ///
 /// Result     false from kSamplesForReliability on, and if their light would not matter among that of the neighbours.
-/// Does
-///            not depend on the pixel's own values, nor on those of its class
+///            Does not depend on the pixel's own values, nor on those of its class
 bool needs_samples_for_emitters(const PixelStatistics& statistics, int x, int y);
 
 /// The squared relative display error of a single sample of a pixel that comes from hitting its small emitters by
