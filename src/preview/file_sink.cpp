@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "preview/file_sink.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "base/output_file.h"
 #include "display/develop.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "display/forward.h"
 #include "preview/screen.h"

@@ -2,6 +2,7 @@
 // Helpers for the definition of keys; used only by the files that define them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <type_traits>
