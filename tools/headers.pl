@@ -1,7 +1,7 @@
 #!/usr/bin/env perl
 # SPDX-License-Identifier: Apache-2.0
-# Counts the project headers behind each header under src/: those that it includes, directly or through others. Prints
-# the share of headers with at most six, and the headers with more, worst first. Exit status 1 if the share is below the
+# Counts the project headers that each header under src/ includes, directly or through others. Prints the share of
+# headers that include at most six, and the others, worst first. Exit status 1 if the share is below the
 # goal.
 #
 #   tools/headers.pl           prints the share and all headers above the limit
@@ -11,7 +11,7 @@ use warnings;
 use File::Find;
 use FindBin;
 
-use constant LIMIT => 6;      # project headers behind a header
+use constant LIMIT => 6;      # included project headers
 use constant GOAL => 0.9;     # of the headers
 
 my $check = @ARGV && $ARGV[0] eq '--check';
@@ -25,22 +25,22 @@ find({no_chdir => 1, wanted => sub {
   $includes{$header} = [map { /^\s*#\s*include\s+"([^"]+)"/ ? $1 : () } <$in>];
 }}, '.');
 
-my %behind;
+my %included;
 for my $header (keys %includes) {
   my (%seen, @next);
   @next = ($header);
   while (defined(my $at = shift @next)) {
     push @next, grep { $includes{$_} && $_ ne $header && !$seen{$_}++ } @{$includes{$at}};
   }
-  $behind{$header} = keys %seen;
+  $included{$header} = keys %seen;
 }
 
-my @above = sort { $behind{$b} <=> $behind{$a} || $a cmp $b } grep { $behind{$_} > LIMIT } keys %behind;
-my $share = 1 - @above / keys %behind;
+my @above = sort { $included{$b} <=> $included{$a} || $a cmp $b } grep { $included{$_} > LIMIT } keys %included;
+my $share = 1 - @above / keys %included;
 my $met = $share >= GOAL;
 if (!$check || !$met) {
-  printf "%.1f %% of %d headers have at most %d project headers behind them; the goal is %.0f %%\n", 100 * $share,
-         scalar keys %behind, LIMIT, 100 * GOAL;
-  printf "%4d  %s\n", $behind{$_}, $_ for @above;
+  printf "%.1f %% of %d headers include at most %d project headers, directly or through others; the goal is %.0f %%\n", 100 * $share,
+         scalar keys %included, LIMIT, 100 * GOAL;
+  printf "%4d  %s\n", $included{$_}, $_ for @above;
 }
 exit($met ? 0 : 1);

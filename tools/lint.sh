@@ -41,7 +41,7 @@ if ! awk -F '[ :]' '
     /^```/ { inside = !inside }
     inside && index($0, "-o " name ".jpg") { writes = 1 }
     END { check(); exit bad }' docs/gallery.md >&2; then status=1; fi
-# Headers with too many project headers behind them (docs/decisions/0001-rooms-and-layering.md).
+# Headers that include too many others (docs/decisions/0001-rooms-and-layering.md).
 tools/headers.pl --check >&2 || status=1
 # Words and phrases that the project does not use; Markdown whose lines were joined by mistake.
 tools/terms.pl || status=1
