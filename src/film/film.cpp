@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film/film.h"
 
+#include "film/layer_pixel.h"
 #include "film/picture.h"
 
 namespace orrery::film {
@@ -26,8 +27,7 @@ Picture Film::picture(const Film* second) const {
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       kernel::PixelSum sum = sums_[i];
       if (second != nullptr) sum += second->sums_[i];
-      if (sum.weight > 0)
-        plane.values[i] = static_cast<float>(kernel::from_fixed_point(sum.rgb[c]) / static_cast<double>(sum.weight));
+      plane.values[i] = static_cast<float>(mean(sum.rgb[c], sum.weight));
     }
     out.planes.push_back(std::move(plane));
   }

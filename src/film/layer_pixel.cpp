@@ -15,6 +15,7 @@ namespace {
 
 using kernel::PathRecord;
 using math::Vec3d;
+using math::vector_of;
 
 bool is_valid(const double (&light)[3]) { return kernel::is_valid_sample(light[0], light[1], light[2]); }
 
@@ -46,8 +47,6 @@ struct Hit {
   double z;         ///< distance along the view axis, scene units
   double exit_z;    ///< the same of the point where the ray leaves the sphere
 };
-
-Vec3d vector_of(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 Vec3d fma(Vec3d a, double s, Vec3d b) { return {std::fma(a.x, s, b.x), std::fma(a.y, s, b.y), std::fma(a.z, s, b.z)}; }
 

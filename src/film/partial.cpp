@@ -40,10 +40,7 @@ void Partial::mean(int x, int y, float* rgb) const {
   const std::size_t i =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width()) + static_cast<std::size_t>(x);
   const kernel::PixelSum total = sum(i);
-  for (int c = 0; c < 3; ++c)
-    rgb[c] = total.weight > 0
-                 ? static_cast<float>(kernel::from_fixed_point(total.rgb[c]) / static_cast<double>(total.weight))
-                 : 0.0f;
+  for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(film::mean(total.rgb[c], total.weight));
 }
 
 }  // namespace orrery::film

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/format.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cstddef>
 
 #include <fmt/core.h>
@@ -35,10 +33,8 @@ const std::vector<FormatInfo>& formats() {
 const FormatInfo& info_of(Format format) { return formats().at(static_cast<std::size_t>(format)); }
 
 Format format_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
+  std::string extension = base::lower(file.extension().string());
   if (!extension.empty()) extension.erase(0, 1);
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::vector<std::string> known;
   for (const FormatInfo& info : formats()) {
     for (const char* name : info.extensions) {

@@ -11,8 +11,8 @@
 
 #include <cstddef>
 
-#include "kernel/environment-inl.h"
 #include "kernel/intersect-inl.h"
+#include "kernel/lat_long-inl.h"
 #include "kernel/noise-inl.h"
 #include "kernel/texture.h"
 #include "kernel/texture_point-inl.h"

@@ -6,8 +6,6 @@
 
 namespace orrery::kernel {
 
-struct Environment;
-
 enum class TextureKind : std::uint32_t { kChecker, kNoise, kTurbulence, kMarble, kImage };
 
 /// Number of gradient vectors of the noise; a power of two.

@@ -26,6 +26,9 @@ constexpr void set(double (&to)[3], Vec3d from) {
   to[2] = from.z;
 }
 
+/// A vector from an array of kernel data.
+constexpr Vec3d vector_of(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+
 constexpr double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 constexpr Vec3d cross(Vec3d a, Vec3d b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

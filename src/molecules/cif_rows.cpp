@@ -3,9 +3,9 @@
 #include "molecules/cif_rows.h"
 
 #include <algorithm>
-#include <cctype>
 #include <gemmi/cif.hpp>
 
+#include "base/text.h"
 #include "data/faults.h"
 
 namespace orrery::molecules {
@@ -62,9 +62,8 @@ class RowReader {
   }
 
  private:
-  Slot slot_of(std::string tag) const {
-    std::transform(tag.begin(), tag.end(), tag.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  Slot slot_of(const std::string& name) const {
+    const std::string tag = base::lower(name);
     for (std::size_t t = 0; t < tables_.size(); ++t) {
       if (tag.rfind(tables_[t].category, 0) != 0) continue;
       const auto& items = tables_[t].items;

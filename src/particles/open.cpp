@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "particles/open.h"
+
 #include <algorithm>
 #include <iterator>
 #include <string_view>
@@ -11,7 +13,6 @@
 #include "data/data_file.h"
 #include "data/faults.h"
 #include "molecules/readers.h"
-#include "particles/open.h"
 #include "rows/readers.h"
 
 namespace orrery::particles {

@@ -17,6 +17,7 @@ namespace orrery::render {
 namespace {
 
 using math::Vec3d;
+using math::vector_of;
 
 /// Side of the largest image of a small emitter, px, without the pixel filter. Larger ones are found through the
 /// neighbours.
@@ -35,8 +36,6 @@ constexpr int kReach = 3;
 /// The distance of the sun of a daylight sky, in distances to the focus plane. Nothing depends on it as long as it is
 /// large.
 constexpr double kSunDistance = 0x1p40;
-
-Vec3d vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 /// The camera at the time when the shutter opens (0) or closes (1).
 kernel::Camera camera_at(const kernel::SceneView& scene, int time) {
@@ -62,8 +61,8 @@ struct SphereImage {
 
 /// Projects a sphere. Empty if it is behind the camera or around it.
 std::optional<SphereImage> image_of(const kernel::Camera& camera, Vec3d center, double radius) {
-  const Vec3d forward = vector(camera.forward), right = vector(camera.right), down = vector(camera.down);
-  const Vec3d to = center - vector(camera.origin), across = cross(right, down);
+  const Vec3d forward = vector_of(camera.forward), right = vector_of(camera.right), down = vector_of(camera.down);
+  const Vec3d to = center - vector_of(camera.origin), across = cross(right, down);
   const double determinant = dot(forward, across);
   const double depth = dot(to, across) / determinant;  // 1 at the focus plane
   if (!(depth * length(forward) > radius)) return std::nullopt;
@@ -71,7 +70,7 @@ std::optional<SphereImage> image_of(const kernel::Camera& camera, Vec3d center, 
   const double x = dot(to, cross(down, forward)) / (determinant * scale) + camera.half_width;
   const double y = dot(to, cross(forward, right)) / (determinant * scale) + camera.half_height;
   const double pixel_width = scale * length(right), pixel_height = scale * length(down);  // at the sphere
-  const double blurred = radius + length(vector(camera.lens_u)) * std::abs(1 - depth);
+  const double blurred = radius + length(vector_of(camera.lens_u)) * std::abs(1 - depth);
   return SphereImage{x - blurred / pixel_width, x + blurred / pixel_width, y - blurred / pixel_height,
                      y + blurred / pixel_height, std::numbers::pi * radius * radius / (pixel_width * pixel_height)};
 }
@@ -140,17 +139,17 @@ std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene,
   Coverage coverage(scene, width_px, height_px);
   const kernel::Camera opening = camera_at(scene, 0), closing = camera_at(scene, 1);
   for (std::size_t id = 0; scene.emission != nullptr && id < scene.sphere_count; ++id) {
-    const double radiance = mean_of(vector(scene.emission[scene.sphere_materials[id]].radiance));
+    const double radiance = mean_of(vector_of(scene.emission[scene.sphere_materials[id]].radiance));
     if (!(radiance > 0)) continue;
     const kernel::Sphere a = sphere_at(scene, id, 0), b = sphere_at(scene, id, 1);
     coverage.add(image_of(opening, {a.x, a.y, a.z}, a.radius), image_of(closing, {b.x, b.y, b.z}, b.radius), radiance);
   }
   const kernel::Environment* const sky = scene.environment;
   if (sky != nullptr && sky->has_sun && scene.background_visible && !opening.is_orthographic) {
-    const double distance = kSunDistance * length(vector(opening.forward));
+    const double distance = kSunDistance * length(vector_of(opening.forward));
     const double radius = distance * std::sqrt(2 * sky->sun_one_minus_cos);
     const auto image = [&](const kernel::Camera& camera) {
-      return image_of(camera, vector(camera.origin) + sky->sun * distance, radius);
+      return image_of(camera, vector_of(camera.origin) + sky->sun * distance, radius);
     };
     coverage.add(image(opening), image(closing), mean_of(sky->sun_radiance));
   }

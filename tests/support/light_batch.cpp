@@ -9,6 +9,7 @@
 
 #include "kernel/light-inl.h"
 #include "math/dispatch.h"
+#include "support/first_lane-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orrery::test::HWY_NAMESPACE {
@@ -20,7 +21,6 @@ using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 
 k::Vec3<V> all_lanes(D d, math::Vec3d v) { return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)}; }
-math::Vec3d first_lane(const k::Vec3<V>& v) { return {hn::GetLane(v.x), hn::GetLane(v.y), hn::GetLane(v.z)}; }
 
 k::Vertex<D> vertex(D d, math::Vec3d point, math::Vec3d normal) {
   return {all_lanes(d, point), all_lanes(d, {0, 0, 0}), all_lanes(d, normal)};

@@ -13,6 +13,7 @@
 
 #include "kernel/camera-inl.h"
 #include "math/dispatch.h"
+#include "support/first_lane-inl.h"
 
 namespace orrery::kernel {
 #ifndef ORRERY_UNIT_KERNEL_CAMERA_TEST_CASE_
@@ -39,13 +40,8 @@ void camera_case(CameraCase& c) {
   scene.features.lens = c.has_lens;
   const auto ray =
       camera_ray(d, scene, camera_vectors(d, scene.camera), hn::Set(d, c.pixel[0]), hn::Set(d, c.pixel[1]), random);
-  const auto store = [](const auto& v, double(&to)[3]) {
-    to[0] = hn::GetLane(v.x);
-    to[1] = hn::GetLane(v.y);
-    to[2] = hn::GetLane(v.z);
-  };
-  store(ray.offset, c.offset);
-  store(ray.direction, c.direction);
+  math::set(c.offset, test::HWY_NAMESPACE::first_lane(ray.offset));
+  math::set(c.direction, test::HWY_NAMESPACE::first_lane(ray.direction));
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

@@ -14,6 +14,7 @@
 
 #include "kernel/cone-inl.h"
 #include "math/dispatch.h"
+#include "support/first_lane-inl.h"
 
 namespace orrery::kernel {
 #ifndef ORRERY_UNIT_KERNEL_CONE_TEST_CASE_
@@ -82,13 +83,8 @@ void camera_cone_case(CameraConeCase& c) {
   const auto camera = camera_vectors(d, scene.camera);
   const auto ray = camera_ray(d, scene, camera, hn::Set(d, c.pixel[0]), hn::Set(d, c.pixel[1]), random);
   c.cone = moments_of(camera_cone(d, scene, camera, ray.direction, c.width));
-  const auto store = [](const auto& v, double(&to)[3]) {
-    to[0] = hn::GetLane(v.x);
-    to[1] = hn::GetLane(v.y);
-    to[2] = hn::GetLane(v.z);
-  };
-  store(ray.offset, c.offset);
-  store(ray.direction, c.direction);
+  math::set(c.offset, test::HWY_NAMESPACE::first_lane(ray.offset));
+  math::set(c.direction, test::HWY_NAMESPACE::first_lane(ray.direction));
 }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE

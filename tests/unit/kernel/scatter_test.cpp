@@ -15,6 +15,7 @@
 
 #include "kernel/scatter-inl.h"
 #include "math/dispatch.h"
+#include "support/first_lane-inl.h"
 
 namespace orrery::kernel {
 #ifndef ORRERY_UNIT_KERNEL_SCATTER_TEST_CASE_
@@ -45,14 +46,9 @@ void scatter_case(ScatterCase& c) {
   at.eta = hn::Set(d, c.eta);
   at.r0 = hn::Set(d, c.r0);
   at.fresnel = at.kind = hn::Set(IdTag<std::remove_const_t<D>>(), static_cast<std::uint64_t>(c.fresnel));
-  const auto store = [](const auto& v, double(&to)[3]) {
-    to[0] = hn::GetLane(v.x);
-    to[1] = hn::GetLane(v.y);
-    to[2] = hn::GetLane(v.z);
-  };
-  store(sample_dielectric(d, at, hn::Set(d, c.u)), c.glass);
+  math::set(c.glass, test::HWY_NAMESPACE::first_lane(sample_dielectric(d, at, hn::Set(d, c.u))));
   const auto metal = sample_metal(d, at, set3(d, c.on_sphere));
-  store(metal.direction, c.metal);
+  math::set(c.metal, test::HWY_NAMESPACE::first_lane(metal.direction));
   c.metal_alive = !hn::AllFalse(d, metal.alive);
   const double sin_leaving = c.eta * arriving[0];
   c.reflectance = hn::GetLane(reflectance(d, at, hn::Set(d, c.cos_arriving),

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "data/data_file.h"
 #include "particles/open.h"
+#include "support/data_file_test.h"
 #include "support/data_tables.h"
 #include "support/temp_dir.h"
 
@@ -45,28 +46,14 @@ std::string assembly(const std::string& rows) {
 
 const std::string kCarbon = "ATOM 1 C CA . ALA A 1.5 -2 1e3 1.00 20.5 7 X 1\n";
 
-class MoleculesMmcif : public testing::Test {
+class MoleculesMmcif : public support::DataFileTest {
  protected:
-  std::unique_ptr<DataFile> opened(const std::string& text) {
-    support::write_bytes(folder_ / "a.cif", text);
-    return particles::open(folder_ / "a.cif");
-  }
-  base::Diagnostic error_of(const std::string& text) {
-    try {
-      opened(text);
-    } catch (const base::Error& error) {
-      EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-      return error.diagnostics().at(0);
-    }
-    return {};
-  }
-
-  support::TempDir folder_;
+  MoleculesMmcif() : DataFileTest("a.cif") {}
 };
 
 TEST_F(MoleculesMmcif, ReadsTheColumnsOfAtoms) {
-  const auto file = opened("# comment\ndata_1ABC\n_struct.title 'A virus''s coat'\n" + kLoop + kCarbon +
-                           "HETATM 2 ZN \"ZN'\" ? ZN B 0 0.25 -1 0.50 ? . Y 1\n#\n_other.item 1\n");
+  const auto file = open("# comment\ndata_1ABC\n_struct.title 'A virus''s coat'\n" + kLoop + kCarbon +
+                         "HETATM 2 ZN \"ZN'\" ? ZN B 0 0.25 -1 0.50 ? . Y 1\n#\n_other.item 1\n");
   EXPECT_EQ(file->format(), Format::kMmcif);
   EXPECT_EQ(file->frame_count(), 1);
   const FrameInfo info = file->describe(0);
@@ -95,9 +82,9 @@ TEST_F(MoleculesMmcif, ReadsTheColumnsOfAtoms) {
 }
 
 TEST_F(MoleculesMmcif, ModelsAreFramesAndAlternateLocationsAreResolved) {
-  const auto file = opened("data_a\n" + kLoop + "ATOM 1 C CB A SER A 1 0 0 0.4 0 7 A 1\n" +
-                           "ATOM 2 C CB B SER A 2 0 0 0.6 0 7 A 1\nATOM 3 C CB A SER A 3 0 0 0.5 0 7 A 12\n" +
-                           "ATOM 4 C CA . SER A 4 0 0 1 0 7 A 1\n");
+  const auto file = open("data_a\n" + kLoop + "ATOM 1 C CB A SER A 1 0 0 0.4 0 7 A 1\n" +
+                         "ATOM 2 C CB B SER A 2 0 0 0.6 0 7 A 1\nATOM 3 C CB A SER A 3 0 0 0.5 0 7 A 12\n" +
+                         "ATOM 4 C CA . SER A 4 0 0 1 0 7 A 1\n");
   ASSERT_EQ(file->frame_count(), 2);
   EXPECT_EQ(numbers(file->read(0, {"x"}), "x"), (std::vector<double>{2, 4}));
   EXPECT_EQ(numbers(file->read(1, {"x"}), "x"), (std::vector<double>{3}));
@@ -113,14 +100,14 @@ TEST_F(MoleculesMmcif, SingleItemsAreATableOfOneRow) {
     values.erase(0, value_end + 1);
     at = tag_end + 1;
   }
-  const Table table = opened(text)->read(0, {"x", "chain"});
+  const Table table = open(text)->read(0, {"x", "chain"});
   EXPECT_EQ(numbers(table, "x"), (std::vector<double>{1.5}));
   EXPECT_EQ(texts(table, "chain"), (Strings{"X"}));
 }
 
 TEST_F(MoleculesMmcif, AssembliesComposeTheirOperators) {
   const auto file =
-      opened("data_a\n" + assembly("1 '(1-3)' A,B\n1 2 C\nPAU '(P)(2,3)' 'A, B'\n") + kOperators + kLoop + kCarbon);
+      open("data_a\n" + assembly("1 '(1-3)' A,B\n1 2 C\nPAU '(P)(2,3)' 'A, B'\n") + kOperators + kLoop + kCarbon);
   const auto assemblies = file->describe(0).assemblies;
   ASSERT_EQ(assemblies.size(), 2U);
   EXPECT_EQ(assemblies[0].name, "1");
@@ -142,7 +129,7 @@ TEST_F(MoleculesMmcif, AssembliesComposeTheirOperators) {
 
 TEST_F(MoleculesMmcif, TheRightmostOperatorIsAppliedFirst) {
   const auto parts =
-      opened("data_a\n" + assembly("1 (2)(P) A\n") + kOperators + kLoop + kCarbon)->describe(0).assemblies.at(0).parts;
+      open("data_a\n" + assembly("1 (2)(P) A\n") + kOperators + kLoop + kCarbon)->describe(0).assemblies.at(0).parts;
   EXPECT_EQ(parts.at(0).transforms.at(0).translation, (Vec3d{10 - 2, 20 + 1, 30 + 3}));
 }
 
@@ -178,7 +165,7 @@ TEST_F(MoleculesMmcif, DamagedFilesAreRefusedWithTheirLine) {
 TEST_F(MoleculesMmcif, MemoryIsCheckedBeforeTheFileIsParsed) {
   std::string text = "data_a\n" + kLoop;
   for (int i = 0; i < 100; ++i) text += kCarbon;
-  opened(text);
+  open(text);
   OpenOptions options;
   options.limit_memory(text.size() * 9 / 4 + 1);
   EXPECT_EQ(particles::open(folder_ / "a.cif", options)->describe(0).rows, 100u);
@@ -192,7 +179,7 @@ TEST_F(MoleculesMmcif, MemoryIsCheckedBeforeTheFileIsParsed) {
 }
 
 TEST_F(MoleculesMmcif, UnknownCoordinatesAreNotNumbers) {
-  const auto file = opened("data_a\n" + kLoop + "ATOM 1 C CA . ALA A ? 0 . 1 0 7 X 1\n");
+  const auto file = open("data_a\n" + kLoop + "ATOM 1 C CA . ALA A ? 0 . 1 0 7 X 1\n");
   const Table table = file->read(0, {"x", "z"});
   EXPECT_TRUE(std::isnan(numbers(table, "x")[0]));
   EXPECT_TRUE(std::isnan(numbers(table, "z")[0]));

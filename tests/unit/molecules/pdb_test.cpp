@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "data/data_file.h"
 #include "particles/open.h"
+#include "support/data_file_test.h"
 #include "support/data_tables.h"
 #include "support/shared_data.h"
 #include "support/temp_dir.h"
@@ -29,31 +30,16 @@ std::string atom(const std::string& name, const std::string& residue, char chain
   return line;
 }
 
-class MoleculesPdb : public testing::Test {
+class MoleculesPdb : public support::DataFileTest {
  protected:
-  std::unique_ptr<DataFile> opened(const std::string& text) {
-    support::write_bytes(folder_ / "a.pdb", text);
-    return particles::open(folder_ / "a.pdb");
-  }
-  base::Diagnostic error_of(const std::string& text) {
-    try {
-      opened(text)->read(0, {"x"});
-    } catch (const base::Error& error) {
-      EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-      return error.diagnostics().at(0);
-    }
-    return {};
-  }
-
-  support::TempDir folder_;
+  MoleculesPdb() : DataFileTest("a.pdb") {}
 };
 
 using Strings = std::vector<std::string>;
 
 TEST_F(MoleculesPdb, ReadsTheColumnsOfAtoms) {
-  const auto file =
-      opened("TITLE     A SMALL ONE\n" + atom(" CA", "ALA", 'B', -3, {1.5, -2.25, 1000.125}, " C") +
-             "TER\nHETATM99999 ZN    ZN C9999    -999.999 999.999   0.000  0.50 99.99          ZN\nEND\n");
+  const auto file = open("TITLE     A SMALL ONE\n" + atom(" CA", "ALA", 'B', -3, {1.5, -2.25, 1000.125}, " C") +
+                         "TER\nHETATM99999 ZN    ZN C9999    -999.999 999.999   0.000  0.50 99.99          ZN\nEND\n");
   EXPECT_EQ(file->format(), Format::kPdb);
   EXPECT_EQ(file->frame_count(), 1);
   const FrameInfo info = file->describe(0);
@@ -81,14 +67,14 @@ TEST_F(MoleculesPdb, ReadsTheColumnsOfAtoms) {
 }
 
 TEST_F(MoleculesPdb, ElementsAreDeducedFromAtomNames) {
-  const auto file = opened(atom(" CA", "ALA", 'A', 1, {}, "") + atom("CA", "CA", 'A', 2, {}, "") +
-                           atom("HG21", "VAL", 'A', 3, {}, "") + atom("1HB ", "ALA", 'A', 4, {}, "") +
-                           atom("FE", "HEM", 'A', 5, {}, "") + atom(" QQ", "UNK", 'A', 6, {}, ""));
+  const auto file = open(atom(" CA", "ALA", 'A', 1, {}, "") + atom("CA", "CA", 'A', 2, {}, "") +
+                         atom("HG21", "VAL", 'A', 3, {}, "") + atom("1HB ", "ALA", 'A', 4, {}, "") +
+                         atom("FE", "HEM", 'A', 5, {}, "") + atom(" QQ", "UNK", 'A', 6, {}, ""));
   EXPECT_EQ(texts(file->read(0, {"element"}), "element"), (Strings{"C", "Ca", "H", "H", "Fe", "X"}));
 }
 
 TEST_F(MoleculesPdb, OnlyTheMostOccupiedAlternateLocationIsKept) {
-  const auto file = opened(
+  const auto file = open(
       atom(" N", "SER", 'A', 1, {1, 0, 0}, " N") + atom(" CB", "SER", 'A', 1, {2, 0, 0}, " C", 'A', 0.3) +
       atom(" CB", "SER", 'A', 1, {3, 0, 0}, " C", 'B', 0.7) + atom(" OG", "SER", 'A', 1, {4, 0, 0}, " O", 'A', 0.5) +
       atom(" OG", "SER", 'A', 1, {5, 0, 0}, " O", 'B', 0.5) +
@@ -106,19 +92,19 @@ TEST_F(MoleculesPdb, OnlyTheMostOccupiedAlternateLocationIsKept) {
 TEST_F(MoleculesPdb, AtomsOfOneNameWithoutAlternateLocationsAreAllKept) {
   // Residue numbers restart in large simulations.
   const std::string water = atom(" O", "SOL", 'A', 1, {}, " O");
-  EXPECT_EQ(opened(water + water + water)->describe(0).rows, 3U);
+  EXPECT_EQ(open(water + water + water)->describe(0).rows, 3U);
 }
 
 TEST_F(MoleculesPdb, ModelsAreFrames) {
   const std::string one = atom(" C", "ALA", 'A', 1, {1, 0, 0}, " C"), two = atom(" C", "ALA", 'A', 1, {2, 0, 0}, " C");
-  const auto models = opened("MODEL        1\n" + one + "ENDMDL\nMODEL        7\n" + two + two + "ENDMDL\nEND\n");
+  const auto models = open("MODEL        1\n" + one + "ENDMDL\nMODEL        7\n" + two + two + "ENDMDL\nEND\n");
   ASSERT_EQ(models->frame_count(), 2);
   EXPECT_EQ(models->describe(0).step, 1);
   EXPECT_EQ(models->describe(1).step, 7);
   EXPECT_EQ(numbers(models->read(1, {"x"}), "x"), (std::vector<double>{2, 2}));
   EXPECT_EQ(numbers(models->read(0, {"x"}), "x"), (std::vector<double>{1}));
   // Trajectories without MODEL.
-  const auto frames = opened(one + "END\n" + two + "END\n" + one + two + "END\nMASTER\n");
+  const auto frames = open(one + "END\n" + two + "END\n" + one + two + "END\nMASTER\n");
   ASSERT_EQ(frames->frame_count(), 3);
   EXPECT_FALSE(frames->describe(0).step);
   EXPECT_EQ(numbers(frames->read(2, {"x"}), "x"), (std::vector<double>{1, 2}));
@@ -126,25 +112,24 @@ TEST_F(MoleculesPdb, ModelsAreFrames) {
 
 TEST_F(MoleculesPdb, CellWithoutSymmetryIsTheBox) {
   const std::string carbon = atom(" C", "ALA", 'A', 1, {}, " C");
-  const auto md = opened("CRYST1   10.000   20.000   30.000  90.00  90.00  60.00 P 1           1\n" + carbon +
-                         "END\nCRYST1   11.000   20.000   30.000  90.00  90.00  90.00 P 1           1\n" + carbon);
+  const auto md = open("CRYST1   10.000   20.000   30.000  90.00  90.00  60.00 P 1           1\n" + carbon +
+                       "END\nCRYST1   11.000   20.000   30.000  90.00  90.00  90.00 P 1           1\n" + carbon);
   const auto box = md->describe(0).box;
   ASSERT_TRUE(box);
   EXPECT_EQ(box->edges[0], (Vec3d{10, 0, 0}));
   EXPECT_NEAR(box->edges[1].x, 10, 1e-12);
   EXPECT_NEAR(box->edges[1].y, 17.320508075688775, 1e-12);
   EXPECT_EQ(md->describe(1).box->edges[0].x, 11);
-  const auto models =
-      opened("CRYST1   10.000   20.000   30.000  90.00  90.00  60.00 P 1           1\nMODEL        1\n" + carbon +
-             "ENDMDL\nMODEL        2\n" + carbon + "ENDMDL\n");
+  const auto models = open("CRYST1   10.000   20.000   30.000  90.00  90.00  60.00 P 1           1\nMODEL        1\n" +
+                           carbon + "ENDMDL\nMODEL        2\n" + carbon + "ENDMDL\n");
   ASSERT_TRUE(models->describe(1).box);
   EXPECT_EQ(models->describe(1).box->edges[0].x, 10);
   EXPECT_FALSE(
-      opened("CRYST1   10.000   20.000   30.000  90.00  90.00  90.00 P 21 21 21    4\n" + carbon)->describe(0).box);
+      open("CRYST1   10.000   20.000   30.000  90.00  90.00  90.00 P 21 21 21    4\n" + carbon)->describe(0).box);
   EXPECT_FALSE(
-      opened("CRYST1    1.000    1.000    1.000  90.00  90.00  90.00 P 1           1\n" + carbon)->describe(0).box);
+      open("CRYST1    1.000    1.000    1.000  90.00  90.00  90.00 P 1           1\n" + carbon)->describe(0).box);
   EXPECT_FALSE(
-      opened("CRYST1    0.000    0.000    0.000  90.00  90.00  90.00 P 1           1\n" + carbon)->describe(0).box)
+      open("CRYST1    0.000    0.000    0.000  90.00  90.00  90.00 P 1           1\n" + carbon)->describe(0).box)
       << "of VMD";
 }
 
@@ -164,10 +149,10 @@ std::string biomt(int first, int count) {
 
 TEST_F(MoleculesPdb, AssembliesAreReadFromRemark350) {
   const auto file =
-      opened("REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A, B,\n" +
-             std::string("REMARK 350                    AND CHAINS: C\n") + biomt(1, 2) +
-             "REMARK 350 APPLY THE FOLLOWING TO CHAINS: D\n" + biomt(3, 1) + "REMARK 350 BIOMOLECULE: 2\n" +
-             "REMARK 350 APPLY THE FOLLOWING TO CHAINS: AA\n" + biomt(998, 3) + atom(" C", "ALA", 'A', 1, {}, " C"));
+      open("REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A, B,\n" +
+           std::string("REMARK 350                    AND CHAINS: C\n") + biomt(1, 2) +
+           "REMARK 350 APPLY THE FOLLOWING TO CHAINS: D\n" + biomt(3, 1) + "REMARK 350 BIOMOLECULE: 2\n" +
+           "REMARK 350 APPLY THE FOLLOWING TO CHAINS: AA\n" + biomt(998, 3) + atom(" C", "ALA", 'A', 1, {}, " C"));
   const auto assemblies = file->describe(0).assemblies;
   ASSERT_EQ(assemblies.size(), 2U);
   EXPECT_EQ(assemblies[0].name, "1");
@@ -218,7 +203,7 @@ TEST_F(MoleculesPdb, MalformedAtomsAreRefusedWithTheirLine) {
   EXPECT_NE(error_of(carbon + null).text.find("null"), std::string::npos);
   // The line in a later model.
   try {
-    opened("MODEL        1\r\n" + carbon + "ENDMDL\r\nMODEL        2\r\n" + carbon + carbon.substr(0, 40) + "\n")
+    open("MODEL        1\r\n" + carbon + "ENDMDL\r\nMODEL        2\r\n" + carbon + carbon.substr(0, 40) + "\n")
         ->describe(1);
     FAIL();
   } catch (const base::Error& error) {
@@ -233,14 +218,14 @@ TEST_F(MoleculesPdb, CrLfAndUnusualSerialNumbersAreRead) {
     line.replace(6, 5, serial);
     text += line.substr(0, line.size() - 1) + "\r\n";
   }
-  const Table table = opened(text)->read(0, {"z"});
+  const Table table = open(text)->read(0, {"z"});
   EXPECT_EQ(numbers(table, "z"), (std::vector<double>{3, 3, 3, 3}));
 }
 
 TEST_F(MoleculesPdb, TwoLetterChainsAreRead) {
   std::string line = atom(" C", "ALA", 'B', 1, {}, " C");
   line[20] = 'A';
-  EXPECT_EQ(texts(opened(line)->read(0, {"chain"}), "chain"), (Strings{"AB"}));
+  EXPECT_EQ(texts(open(line)->read(0, {"chain"}), "chain"), (Strings{"AB"}));
 }
 
 TEST_F(MoleculesPdb, LinesAcrossBlocksAreRead) {
@@ -249,7 +234,7 @@ TEST_F(MoleculesPdb, LinesAcrossBlocksAreRead) {
   constexpr int kAtoms = 40000;
   for (int i = 0; i < kAtoms; ++i) text += atom(" C", "ALA", 'A', i % 9999, {i / 8.0, 0, 0}, " C");
   text += "REMARK " + std::string(3 << 20, 'x') + "\n" + atom(" C", "ALA", 'A', 1, {-1, 0, 0}, " C");
-  const Table table = opened(text)->read(0, {"x"});
+  const Table table = open(text)->read(0, {"x"});
   ASSERT_EQ(table.rows, kAtoms + 1U);
   std::vector<double> x = numbers(table, "x");
   std::sort(x.begin(), x.end());
@@ -257,7 +242,7 @@ TEST_F(MoleculesPdb, LinesAcrossBlocksAreRead) {
 }
 
 TEST_F(MoleculesPdb, HeaderWithoutAtomsIsAnEmptyFrame) {
-  const auto file = opened("HEADER    VIRUS\nTITLE     NOTHING\nEND\n");
+  const auto file = open("HEADER    VIRUS\nTITLE     NOTHING\nEND\n");
   EXPECT_EQ(file->frame_count(), 1);
   EXPECT_EQ(file->read(0, {"x", "element"}).rows, 0U);
 }
@@ -287,7 +272,7 @@ TEST_F(MoleculesPdb, TruncatedFilesOfTheDataBankAreRefused) {
 TEST_F(MoleculesPdb, MemoryIsCheckedBeforeAtomsAreParsed) {
   std::string text;
   for (int i = 0; i < 100; ++i) text += atom(" C", "ALA", 'A', i, {1, 2, 3}, " C");
-  opened(text);
+  open(text);
   OpenOptions options;
   options.limit_memory(text.size() * 11 / 2 + 1);
   EXPECT_EQ(particles::open(folder_ / "a.pdb", options)->describe(0).rows, 100u);

@@ -7,6 +7,7 @@
 #include "data/data_file.h"
 #include "particles/open.h"
 #include "support/data_errors.h"
+#include "support/data_file_test.h"
 #include "support/shared_data.h"
 #include "support/temp_dir.h"
 
@@ -26,16 +27,10 @@ const std::string kHead =
     "a title\n\n2 atoms # comment\n1 bonds\n2 atom types\n-1 3 xlo xhi\n0 5 ylo yhi\n1 7 zlo zhi\n\nMasses\n\n1 12\n2 "
     "1\n\n";
 
-class RowsLammpsData : public testing::Test {
+class RowsLammpsData : public support::DataFileTest {
  protected:
-  std::filesystem::path write(const std::string& text) {
-    support::write_bytes(folder_ / "a.lmp", text);
-    return folder_ / "a.lmp";
-  }
-  std::unique_ptr<DataFile> open(const std::string& text) { return particles::open(write(text)); }
+  RowsLammpsData() : DataFileTest("a.lmp") {}
   std::string errors(const std::string& text) { return data_errors(write(text)); }
-
-  support::TempDir folder_;
 };
 
 TEST_F(RowsLammpsData, ColumnsFollowFromTheStyle) {

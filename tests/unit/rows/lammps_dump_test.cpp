@@ -9,6 +9,7 @@
 #include "data/data_file.h"
 #include "particles/open.h"
 #include "support/data_errors.h"
+#include "support/data_file_test.h"
 #include "support/shared_data.h"
 #include "support/temp_dir.h"
 
@@ -27,16 +28,10 @@ using Numbers = std::vector<double>;
 const std::string kFrameHead = "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\n";
 const std::string kBox = "ITEM: BOX BOUNDS pp ff mm\n-1 3\n0 10\n2 4\n";
 
-class RowsLammpsDump : public testing::Test {
+class RowsLammpsDump : public support::DataFileTest {
  protected:
-  std::filesystem::path write(const std::string& text) {
-    support::write_bytes(folder_ / "a.dump", text);
-    return folder_ / "a.dump";
-  }
-  std::unique_ptr<DataFile> open(const std::string& text) { return particles::open(write(text)); }
+  RowsLammpsDump() : DataFileTest("a.dump") {}
   std::string errors(const std::string& text) { return data_errors(write(text)); }
-
-  support::TempDir folder_;
 };
 
 /// As with `dump_modify types labels`.

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "data/data_file.h"
-#include "particles/open.h"
+#include "support/data_file_test.h"
 #include "support/data_tables.h"
 
 namespace orrery::rows {
@@ -21,21 +21,14 @@ std::string header(const std::string& encoding, const std::string& elements) {
   return "ply\nformat " + encoding + " 1.0\n" + elements + "end_header\n";
 }
 
-class RowsPly : public testing::Test {
+class RowsPly : public support::DataFileTest {
  protected:
-  std::unique_ptr<DataFile> open(const std::string& bytes) {
-    support::write_bytes(folder_ / "a.ply", bytes);
-    return particles::open(folder_ / "a.ply");
-  }
+  RowsPly() : DataFileTest("a.ply") {}
   Table read(const std::string& bytes) { return support::read_table(*open(bytes)); }
   Roles roles(const std::string& properties) {
     return open(header("ascii", "element vertex 0\n" + properties))->describe(0).roles;
   }
-  std::string faults(const std::string& bytes) {
-    support::write_bytes(folder_ / "a.ply", bytes);
-    return support::read_faults(folder_ / "a.ply");
-  }
-  support::TempDir folder_;
+  std::string faults(const std::string& bytes) { return support::read_faults(write(bytes)); }
 };
 
 TEST_F(RowsPly, AsciiNumbersAreFloat64OrInt64) {

@@ -8,6 +8,7 @@
 #include "particles/open.h"
 #include "rows/xyz_comment.h"
 #include "support/data_errors.h"
+#include "support/data_file_test.h"
 #include "support/shared_data.h"
 #include "support/temp_dir.h"
 
@@ -24,16 +25,10 @@ using support::data_errors;
 using Numbers = std::vector<double>;
 using Texts = std::vector<std::string>;
 
-class RowsXyz : public testing::Test {
+class RowsXyz : public support::DataFileTest {
  protected:
-  std::filesystem::path write(const std::string& text) {
-    support::write_bytes(folder_ / "a.xyz", text);
-    return folder_ / "a.xyz";
-  }
-  std::unique_ptr<DataFile> open(const std::string& text) { return particles::open(write(text)); }
+  RowsXyz() : DataFileTest("a.xyz") {}
   std::string errors(const std::string& text) { return data_errors(write(text)); }
-
-  support::TempDir folder_;
 };
 
 TEST_F(RowsXyz, PlainFilesHaveElementsAndPositions) {
