@@ -12,7 +12,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 install_missing "$root/tools/packages-build.txt"
 # An existing configuration, for example that of test.sh, is kept.
 if [ ! -f "$root/build/.configured-with" ]; then configure -DBUILD_TESTING=OFF; fi
-build 9 orrery
+build 5 orrery
 
 orrery="$root/build/src/orrery"
 if [ $# -gt 0 ]; then exec "$orrery" "$@"; fi

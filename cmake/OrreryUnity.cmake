@@ -2,7 +2,7 @@
 # Excludes sources with Highway code from unity builds: each is compiled once per instruction set and cannot share a
 # translation unit. Include this after all targets are defined.
 #
-# With CMAKE_UNITY_BUILD=ON, as test.sh configures, the tests are compiled in less than half the time. Developers build
+# With CMAKE_UNITY_BUILD=ON, as run.sh and test.sh configure, everything is compiled in half the time. Developers build
 # without it: changes are compiled faster, and missing includes are found.
 function(orrery_exclude_highway_from_unity directory)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)

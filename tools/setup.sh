@@ -57,7 +57,7 @@ Install them as root (apt-get install --no-install-recommends $missing) or insta
 }
 
 # configure OPTION...: configures build/ with these CMake options, unless it is already configured with the same ones.
-# Unity builds halve the time to compile the tests.
+# Unity builds halve the time to compile everything.
 configure() {
   local stamp="$root/build/.configured-with"
   set -- "-DORRERY_WERROR=${ORRERY_WERROR:-OFF}" -DCMAKE_UNITY_BUILD=ON "$@"

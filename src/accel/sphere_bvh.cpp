@@ -25,9 +25,6 @@ namespace {
 
 using math::rounded_up;
 
-constexpr std::size_t kArity = SphereBvh::kArity;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// Padding in units of the frame's reach. Derived in docs/decisions/0027-bvh-for-many-spheres.md: rounding moves a
 /// ray by at most 40 x 2^-24 relative to a sphere and by at most 19 x 2^-24 relative to a box.
 constexpr double kSpherePadding = 0x1.4p-17, kBoxPadding = 0x1p-18;

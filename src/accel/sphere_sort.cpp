@@ -20,9 +20,6 @@ namespace {
 using Item = SphereItem;
 using Cell = SphereBvh::Cell;
 
-constexpr std::size_t kArity = SphereBvh::kArity;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// Ranges larger than this are binned from a sample.
 constexpr std::size_t kSampleSize = 1 << 11;
 

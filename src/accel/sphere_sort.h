@@ -4,12 +4,16 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "accel/sphere_bvh.h"
 
 namespace orrery::accel {
+
+inline constexpr std::size_t kArity = SphereBvh::kArity;
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A sphere while its BVH is built.
 struct SphereItem {

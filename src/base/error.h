@@ -40,6 +40,9 @@ class Error : public std::runtime_error {
   std::vector<Diagnostic> diagnostics_;
 };
 
+/// Throws an Error of kind kUsage.
+[[noreturn]] inline void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
+
 /// Returns the program's exit status for a kind of error; stable, documented in the man page.
 constexpr int exit_status(ErrorKind kind) {
   switch (kind) {

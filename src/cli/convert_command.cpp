@@ -43,7 +43,7 @@ int run_convert(ConvertArguments& arguments) {
   plot::ConvertOptions& convert = arguments.convert;
   read_data_options(arguments.data, convert);
   if (convert.color_by.empty() && (convert.has_map || convert.points.color.range))
-    refuse("--map and --range need --color-by");
+    base::refuse("--map and --range need --color-by");
   convert.memory_limit = job::available_memory().value_or(0);
   plot::convert(convert, [&](const plot::ConvertedFile& written) { print_file(written, arguments.quiet); });
   return 0;

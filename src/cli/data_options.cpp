@@ -27,7 +27,7 @@ std::vector<double> numbers_of(const std::string& text, char separator, std::siz
     const auto [stop, error] = std::from_chars(at, end, value);
     const bool is_last = out.size() + 1 == count;
     if (error != std::errc() || !std::isfinite(value) || (is_last ? stop != end : stop == end || *stop != separator))
-      refuse(usage);
+      base::refuse(usage);
     out.push_back(value);
     at = is_last ? end : stop + 1;
   }
@@ -42,8 +42,9 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
     const char* const end = arguments.radius.data() + arguments.radius.size();
     const auto [stop, error] = std::from_chars(arguments.radius.data(), end, value);
     if (error == std::errc() && stop == end) {
-      if (!(value > 0) || !std::isfinite(value)) refuse("--radius: must be above 0");
-      if (points.radius.scale != 1) refuse("--radius-scale is for radii of the data; multiply the number of --radius");
+      if (!(value > 0) || !std::isfinite(value)) base::refuse("--radius: must be above 0");
+      if (points.radius.scale != 1)
+        base::refuse("--radius-scale is for radii of the data; multiply the number of --radius");
       points.radius.value = value;
     } else {
       points.radius.column = arguments.radius;
@@ -54,8 +55,8 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
         numbers_of(arguments.range, ':', 2,
                    fmt::format("--range: `{}` is not a range; write LOW:HIGH, e.g. 0:12", arguments.range));
     if (std::max(std::abs(ends[0]), std::abs(ends[1])) > scene::kLargestValue)
-      refuse("--range: the numbers must be from -1e+300 to 1e+300");
-    if (!(ends[0] < ends[1])) refuse("--range: the first number must be less than the second");
+      base::refuse("--range: the numbers must be from -1e+300 to 1e+300");
+    if (!(ends[0] < ends[1])) base::refuse("--range: the first number must be less than the second");
     points.color.range = scene::Interval{ends[0], ends[1]};
   }
   if (!arguments.replicate.empty()) {
@@ -64,7 +65,8 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
                    fmt::format("--replicate: `{}` must be three numbers of copies, e.g. 2,2,1", arguments.replicate));
     for (const double n : counts)
       if (!(n >= 1 && n <= scene::kMaxCopies && n == std::floor(n)))
-        refuse("--replicate: the numbers of copies must be integers from 1 to " + std::to_string(scene::kMaxCopies));
+        base::refuse("--replicate: the numbers of copies must be integers from 1 to " +
+                     std::to_string(scene::kMaxCopies));
     points.replicate = {counts[0], counts[1], counts[2]};
   }
 }
@@ -72,7 +74,7 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
 void read_slice(const std::string& text, plot::DataOptions& data) {
   if (text.empty()) return;
   const std::string usage = fmt::format("--slice: `{}` is not a plane; write AXIS=POSITION, e.g. z=10", text);
-  if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') refuse(usage);
+  if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') base::refuse(usage);
   data.slice = std::pair{text[0] - 'x', numbers_of(text.substr(2), '=', 1, usage)[0]};
 }
 
@@ -135,7 +137,7 @@ void add_look_options(Command& command, DataArguments& arguments, plot::DataOpti
 }
 
 void read_data_options(const DataArguments& arguments, plot::DataOptions& data) {
-  if (!arguments.frames.empty() && !arguments.frame.empty()) refuse("--frame and --frames exclude each other");
+  if (!arguments.frames.empty() && !arguments.frame.empty()) base::refuse("--frame and --frames exclude each other");
   data.all_frames = arguments.frames == "all";
   if (!arguments.frames.empty() && !data.all_frames) data.frames = base::parse_frames(arguments.frames);
   data.has_map = arguments.map->count() > 0;

@@ -26,8 +26,6 @@ bool parse(const std::string& text, Number& value) {
 
 }  // namespace
 
-void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
-
 Check one_of(std::vector<std::string> names) {
   return [names = std::move(names)](std::string& word) -> std::string {
     if (std::find(names.begin(), names.end(), word) != names.end()) return {};

@@ -14,9 +14,6 @@ inline constexpr std::uint64_t kMaxThreads = 4096;
 
 // Checks of option values. They replace CLI11's own, whose messages differ between versions.
 
-/// Ends the command with a usage error: base::Error(kUsage).
-[[noreturn]] void refuse(const std::string& text);
-
 /// Rejects a word that is not one of `names`, and suggests the closest one.
 Check one_of(std::vector<std::string> names);
 

@@ -178,8 +178,8 @@ void check_outputs(const PlotArguments& arguments) {
 
 int run_plot(PlotArguments& arguments) {
   if (arguments.plot.file.extension() == ".toml")
-    refuse(fmt::format("{} is a scene; render it: orrery render {}", arguments.plot.file.string(),
-                       arguments.plot.file.string()));
+    base::refuse(fmt::format("{} is a scene; render it: orrery render {}", arguments.plot.file.string(),
+                             arguments.plot.file.string()));
   RenderOptions& render = arguments.render;
   plot::PlotOptions& plot = arguments.plot;
   const std::vector<format::Override> overrides = render.scene.overrides();

@@ -57,15 +57,16 @@ void read_shard(const RenderOptions& options, job::Job& job) {
   if (const auto text = options.scene.sample_range()) {
     const auto range = pair_of<std::uint32_t>(*text, ':');
     if (!range || range->first >= range->second || range->second > std::numeric_limits<std::int32_t>::max())
-      refuse(fmt::format("--samples: `{}` is not a range of samples; write A:B, e.g. 0:100 and 100:200 for two shards",
-                         *text));
+      base::refuse(fmt::format(
+          "--samples: `{}` is not a range of samples; write A:B, e.g. 0:100 and 100:200 for two shards", *text));
     job.sampling.sample_begin = range->first;
     job.sampling.sample_end = range->second;
   }
   if (options.shard.empty()) return;
   const auto shard = pair_of<int>(options.shard, '/');
   if (!shard || shard->first < 1 || shard->first > shard->second || shard->second > job::kMaxShards)
-    refuse(fmt::format("--shard: `{}` is not a shard; write I/N, e.g. 1/2 and 2/2 for two shards", options.shard));
+    base::refuse(
+        fmt::format("--shard: `{}` is not a shard; write I/N, e.g. 1/2 and 2/2 for two shards", options.shard));
   job.sampling.shard = {shard->first - 1, shard->second};
   job.as_shard = true;
 }
@@ -111,8 +112,8 @@ void refuse_data_files(const std::vector<std::filesystem::path>& scenes) {
   for (const std::filesystem::path& scene : scenes)
     for (const char* extension : kExtensions)
       if (scene.extension() == extension)
-        refuse(fmt::format("{} is a data file, not a scene; render it: orrery plot {} -o IMAGE", scene.string(),
-                           scene.string()));
+        base::refuse(fmt::format("{} is a data file, not a scene; render it: orrery plot {} -o IMAGE", scene.string(),
+                                 scene.string()));
 }
 
 }  // namespace
@@ -123,7 +124,7 @@ int run_render(RenderOptions& options) {
   if (job.scene.text == nullptr) refuse_data_files(batch.scenes);
   for (std::size_t i = 1; i < batch.scenes.size(); ++i)
     if (batch.scenes[i].extension() != ".toml")
-      refuse(fmt::format("unexpected argument `{}`; name output files with -o", batch.scenes[i].string()));
+      base::refuse(fmt::format("unexpected argument `{}`; name output files with -o", batch.scenes[i].string()));
   job.scene.overrides = options.scene.overrides();
   options.picture.finish(job);
   read_shard(options, job);

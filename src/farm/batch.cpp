@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
-
 constexpr const char* kScenePattern = "{scene}";
 
 bool has_scene_pattern(const std::string& name) { return name.find(kScenePattern) != std::string::npos; }
@@ -40,13 +38,13 @@ std::vector<fs::path*> names_of(job::Job& job) {
 void check_name(const Batch& batch, const std::string& name) {
   const bool has_pattern = base::has_frame_pattern(name);
   if (batch.frames.size() > 1 && !has_pattern)
-    refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. shot.####.exr or shot.%04d.exr", name,
-                       batch.frames.size()));
+    base::refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. shot.####.exr or shot.%04d.exr",
+                             name, batch.frames.size()));
   if (batch.frames.empty() && has_pattern)
-    refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames 1-48");
+    base::refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames 1-48");
   if (batch.scenes.size() > 1 && !has_scene_pattern(name))
-    refuse(fmt::format("{} is one name for {} scenes; add a scene pattern, e.g. {{scene}}.png", name,
-                       batch.scenes.size()));
+    base::refuse(fmt::format("{} is one name for {} scenes; add a scene pattern, e.g. {{scene}}.png", name,
+                             batch.scenes.size()));
 }
 
 /// Adds the files that a scene names, if it can be parsed. Otherwise its job reports the errors.
@@ -74,7 +72,7 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   if (!batch.preview.empty()) files.add_output(batch.preview, "--preview");
   for (const job::OutputFile& other : batch.others) files.add_output(other.path, other.role);
   for (const fs::path& scene : batch.scenes)
-    if (common.scene.has_file && !files.add_input(scene, "scene")) refuse(scene.string() + " is given twice");
+    if (common.scene.has_file && !files.add_input(scene, "scene")) base::refuse(scene.string() + " is given twice");
   for (const fs::path& scene : batch.scenes) {
     for (const int frame : frames) {
       job::Job job = common;

@@ -28,7 +28,6 @@ using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-constexpr const char* kPrefix = kPartialPrefix;
 constexpr const char* kSumsName = "orrery.sums";
 
 /// Maximum number of words in a row of the part with the sums.
@@ -51,7 +50,7 @@ std::unique_ptr<ImageInput> open(const std::filesystem::path& file) {
 
 Provenance provenance_of(const ImageInput& in) {
   Provenance out;
-  const std::string prefix = kPrefix;
+  const std::string prefix = kPartialPrefix;
   for (const OIIO::ParamValue& value : in.spec().extra_attribs) {
     const std::string name = value.name().string();
     if (name.rfind(prefix, 0) == 0) out[name.substr(prefix.size())] = value.get_string();
@@ -64,7 +63,7 @@ Provenance provenance_of(const ImageInput& in) {
 void write_partial(const std::filesystem::path& file, const film::Picture& preview, const Header& header,
                    const Provenance& provenance, const film::Partial& partial) {
   Header own = header;
-  for (const auto& [name, value] : provenance) own.attributes.push_back({kPrefix + name, value});
+  for (const auto& [name, value] : provenance) own.attributes.push_back({kPartialPrefix + name, value});
   std::vector<std::uint32_t> words = film::to_words(partial);
   const auto row = static_cast<std::size_t>(std::min(preview.width, kMaxWordsInRow));
   words.resize((words.size() + row - 1) / row * row);

@@ -16,15 +16,10 @@ namespace orrery::kernel::HWY_NAMESPACE {
 template <Precision kPrecision, bool kRecords>
 constexpr Loop kLit{kPrecision, kRecords, true, true, false};
 
-template <Precision kPrecision>
-RenderTile instance(bool records) {
+RenderTile lit_instance(bool records) {
   using D = hn::ScalableTag<double>;
-  return records ? render_tile<D, kLit<kPrecision, true>, PathStream>
-                 : render_tile<D, kLit<kPrecision, false>, PathStream>;
-}
-
-RenderTile lit_instance(bool records, Precision precision) {
-  return precision == Precision::kBook ? instance<Precision::kBook>(records) : instance<Precision::kExact>(records);
+  return records ? render_tile<D, kLit<Precision::kExact, true>, PathStream>
+                 : render_tile<D, kLit<Precision::kExact, false>, PathStream>;
 }
 RenderTileFast lit_fast_instance(bool records) {
   using D = hn::ScalableTag<float>;
@@ -41,9 +36,7 @@ namespace orrery::kernel {
 HWY_EXPORT(lit_instance);
 HWY_EXPORT(lit_fast_instance);
 
-RenderTile lit_tile_function(bool records, Precision precision) {
-  return ORRERY_BEST(lit_instance)(records, precision);
-}
+RenderTile lit_tile_function(bool records) { return ORRERY_BEST(lit_instance)(records); }
 RenderTileFast lit_tile_fast_function(bool records) { return ORRERY_BEST(lit_fast_instance)(records); }
 
 }  // namespace orrery::kernel

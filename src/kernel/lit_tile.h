@@ -6,8 +6,9 @@
 
 namespace orrery::kernel {
 
-/// The lit loop for the best enabled instruction set, with records or without. Camera and spheres may move.
-RenderTile lit_tile_function(bool records, Precision precision);
+/// The lit loop for the best enabled instruction set, with records or without, in `exact` or `fast`. Camera and spheres
+/// may move.
+RenderTile lit_tile_function(bool records);
 RenderTileFast lit_tile_fast_function(bool records);
 
 }  // namespace orrery::kernel

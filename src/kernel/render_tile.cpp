@@ -16,29 +16,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-template <bool kRecords, bool kMoves>
-RenderTile instance(Precision precision) {
+template <Precision kPrecision, bool kRecords>
+RenderTile instance(bool moves) {
   using D = hn::ScalableTag<double>;
-  if (precision == Precision::kBook) return render_tile<D, Loop{Precision::kBook, kRecords, kMoves}, PathStream>;
-  return render_tile<D, Loop{Precision::kExact, kRecords, kMoves}, PathStream>;
+  return moves ? render_tile<D, Loop{kPrecision, kRecords, true}, PathStream>
+               : render_tile<D, Loop{kPrecision, kRecords, false}, PathStream>;
 }
-template <bool kRecords, bool kMoves>
-RenderTileFast fast_instance() {
-  return render_tile<hn::ScalableTag<float>, Loop{Precision::kFast, kRecords, kMoves}, PathStreamFast>;
+template <bool kRecords>
+RenderTileFast fast_instance(bool moves) {
+  using D = hn::ScalableTag<float>;
+  return moves ? render_tile<D, Loop{Precision::kFast, kRecords, true}, PathStreamFast>
+               : render_tile<D, Loop{Precision::kFast, kRecords, false}, PathStreamFast>;
 }
 
 RenderTile render_instance(bool moves, Precision precision) {
-  return moves ? instance<false, true>(precision) : instance<false, false>(precision);
+  return precision == Precision::kBook ? instance<Precision::kBook, false>(moves)
+                                       : instance<Precision::kExact, false>(moves);
 }
-RenderTile record_instance(bool moves, Precision precision) {
-  return moves ? instance<true, true>(precision) : instance<true, false>(precision);
-}
-RenderTileFast render_fast_instance(bool moves) {
-  return moves ? fast_instance<false, true>() : fast_instance<false, false>();
-}
-RenderTileFast record_fast_instance(bool moves) {
-  return moves ? fast_instance<true, true>() : fast_instance<true, false>();
-}
+RenderTile record_instance(bool moves) { return instance<Precision::kExact, true>(moves); }
+RenderTileFast render_fast_instance(bool moves) { return fast_instance<false>(moves); }
+RenderTileFast record_fast_instance(bool moves) { return fast_instance<true>(moves); }
 
 }  // namespace orrery::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -51,9 +48,19 @@ HWY_EXPORT(record_instance);
 HWY_EXPORT(render_fast_instance);
 HWY_EXPORT(record_fast_instance);
 
+namespace {
+
+/// Whether the extended loop renders these features. Precision::kBook is for comparison only and has no loop of its own
+/// for layers and lights.
+bool is_extended(const Features& features, bool records, Precision precision) {
+  return features.extended || (precision == Precision::kBook && (records || features.lit));
+}
+
+}  // namespace
+
 RenderTile render_tile_function(const Features& features, Precision precision) {
-  if (features.extended) return extended_tile_function(false, precision);
-  if (features.lit) return lit_tile_function(false, precision);
+  if (is_extended(features, false, precision)) return extended_tile_function(false, precision);
+  if (features.lit) return lit_tile_function(false);
   return ORRERY_BEST(render_instance)(features.motion, precision);
 }
 RenderTileFast render_tile_fast_function(const Features& features) {
@@ -63,9 +70,9 @@ RenderTileFast render_tile_fast_function(const Features& features) {
 }
 
 RenderTile record_tile_function(const Features& features, Precision precision) {
-  if (features.extended) return extended_tile_function(true, precision);
-  if (features.lit) return lit_tile_function(true, precision);
-  return ORRERY_BEST(record_instance)(features.motion, precision);
+  if (is_extended(features, true, precision)) return extended_tile_function(true, precision);
+  if (features.lit) return lit_tile_function(true);
+  return ORRERY_BEST(record_instance)(features.motion);
 }
 RenderTileFast record_tile_fast_function(const Features& features) {
   if (features.extended) return extended_tile_fast_function(true);

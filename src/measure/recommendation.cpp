@@ -168,9 +168,9 @@ class Recommender {
     for (const Point& p : study_.points)
       if (p.axis == "sampler" && p.name.find("independent") != std::string::npos) best = &p;
     if (best == nullptr) return {};
-    constexpr double kMaxSamples = 1 << 30;
+    constexpr double kMaxForecast = 1 << 30;
     const double samples =
-        std::clamp(std::ceil(best->samples * std::pow(best->error / request_.noise, 2)), 1.0, kMaxSamples);
+        std::clamp(std::ceil(best->samples * std::pow(best->error / request_.noise, 2)), 1.0, kMaxForecast);
     const double scale = static_cast<double>(full_.width) * full_.height / pixels();
     return {static_cast<int>(samples), best->seconds * scale * samples / best->samples};
   }

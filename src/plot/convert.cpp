@@ -28,8 +28,6 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
-
 /// Rounds a display-referred value; NaN is 0.
 std::uint8_t byte_of(double srgb) {
   return std::isnan(srgb) ? 0 : static_cast<std::uint8_t>(std::clamp(srgb, 0.0, 1.0) * 255 + 0.5);
@@ -192,10 +190,10 @@ class Converter {
   void check_outputs() const {
     const std::string name = options_.output.string();
     if (data_.numbers().size() > 1 && !base::has_frame_pattern(name))
-      refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. out.####.ply", name,
-                         data_.numbers().size()));
+      base::refuse(fmt::format("{} is one name for {} frames; add a frame pattern, e.g. out.####.ply", name,
+                               data_.numbers().size()));
     if (data_.numbers().empty() && base::has_frame_pattern(name))
-      refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames all");
+      base::refuse(name + " has a frame pattern; select frames with --frames, e.g. --frames all");
     base::FileSet files;
     for (const int frame : data_.all()) files.add_input(data_.file_of(frame), "data file");
     if (keys_.color.has_map_file()) files.add_input(keys_.color.map, "colour map");

@@ -32,8 +32,6 @@ const data::ColumnInfo* find_column(const data::FrameInfo& info, const std::stri
 /// Frames of larger files are not counted for a message: that would read the whole file.
 constexpr std::uintmax_t kMaxCountedBytes = std::uintmax_t{2} << 30;
 
-[[noreturn]] void refuse(const std::string& text) { throw base::Error(base::ErrorKind::kUsage, text); }
-
 bool is_text(const data::FrameInfo& info, const std::string& name) {
   const data::ColumnInfo* const column = find_column(info, name);
   return column != nullptr && column->type == data::ColumnType::kText;
@@ -52,8 +50,8 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   const int first = all().front();
   file_ = open_(file_of(first), open_options);
   if (options.points.component && file_->format() != data::Format::kHdf5)
-    refuse(fmt::format("--component: {} is {}; only HDF5 files have components", file_of(first).string(),
-                       data::format_name(file_->format())));
+    base::refuse(fmt::format("--component: {} is {}; only HDF5 files have components", file_of(first).string(),
+                             data::format_name(file_->format())));
   const int frame = options.points.frame ? *options.points.frame : is_sequence_ ? 1 : first;
   if (frame > 1 && frame <= file_->frame_count()) described_ = frame;  // load() reports frames that do not exist
   info_ = file_->describe(described_ - 1);
@@ -61,7 +59,7 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   require_frames();
   if (!options.all_frames) return;
   if (is_sequence_)
-    refuse("--frames: `all` are the frames of one file; for a sequence of files, write a range, e.g. 1-48");
+    base::refuse("--frames: `all` are the frames of one file; for a sequence of files, write a range, e.g. 1-48");
   numbers_.resize(static_cast<std::size_t>(file_->frame_count()));
   std::iota(numbers_.begin(), numbers_.end(), 1);
 }
@@ -148,11 +146,11 @@ bool set_color(const DataOptions& options, const std::string& color_by, const da
   const bool has_range = options.points.color.range.has_value();
   const bool is_chosen = choose_color(options, color_by, info, color);
   if (color.column.empty() && (options.has_map || has_range))
-    refuse(std::string(options.has_map ? "--map" : "--range") +
-           " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
+    base::refuse(std::string(options.has_map ? "--map" : "--range") +
+                 " has nothing to map: the colours are not those of a column; add --color-by COLUMN");
   const auto map = points::find_color_map(color.map);
   if (has_range && map && map->is_categorical)
-    refuse(fmt::format("--range has no effect: the map {} has a colour for each value", color.map));
+    base::refuse(fmt::format("--range has no effect: the map {} has a colour for each value", color.map));
   return is_chosen;
 }
 

@@ -17,11 +17,11 @@ namespace orrery::points {
 namespace {
 
 // Lengths in px.
-constexpr double kMargin = 12, kFont = 14, kTitleHeight = 28, kBarWidth = 24, kBarHeight = 240, kTickLength = 6,
-                 kGap = 6, kPatch = 16, kPatchPitch = 24;
+constexpr double kSvgMargin = 12, kSvgFont = 14, kSvgTitleHeight = 28, kSvgBarWidth = 24, kSvgBarHeight = 240,
+                 kSvgTickLength = 6, kSvgGap = 6, kSvgPatch = 16, kSvgPatchPitch = 24;
 /// Width of a character of a sans-serif font, in font sizes; the true width is unknown.
 constexpr double kCharacterWidth = 0.62;
-constexpr std::size_t kMaxTextBytes = 120;
+constexpr std::size_t kSvgMaxTextBytes = 120;
 
 /// Length of the valid UTF-8 character at a position, of characters that XML allows; 0 if there is none.
 std::size_t character_length(std::string_view text, std::size_t at) {
@@ -48,10 +48,10 @@ struct Label {
 
 Label label_of(const std::string& text) {
   Label out;
-  const std::string_view prefix = base::utf8_prefix(text, kMaxTextBytes);
+  const std::string_view prefix = base::utf8_prefix(text, kSvgMaxTextBytes);
   const auto add = [&](std::string_view xml) {
     out.xml += xml;
-    out.width += kCharacterWidth * kFont;
+    out.width += kCharacterWidth * kSvgFont;
   };
   for (std::size_t i = 0; i < prefix.size();) {
     const std::size_t length = character_length(prefix, i);
@@ -92,8 +92,8 @@ class Drawing {
  public:
   void add_title(const std::string& title) {
     if (title.empty()) return;
-    add_text(kMargin, y_ + kFont, title, " font-weight=\"bold\"");
-    y_ += kTitleHeight;
+    add_text(kSvgMargin, y_ + kSvgFont, title, " font-weight=\"bold\"");
+    y_ += kSvgTitleHeight;
   }
 
   void add_bar(const Legend& legend) {
@@ -104,30 +104,30 @@ class Drawing {
       body_ += fmt::format("<stop offset=\"{}%\" stop-color=\"{}\"/>\n", px(100 * offset), hex(legend.bar[i]));
     }
     body_ += "</linearGradient></defs>\n";
-    y_ += kFont / 2;  // half of the label of a tick at the end
-    add_rectangle(kMargin, y_, kBarWidth, kBarHeight, "url(#bar)");
+    y_ += kSvgFont / 2;  // half of the label of a tick at the end
+    add_rectangle(kSvgMargin, y_, kSvgBarWidth, kSvgBarHeight, "url(#bar)");
     for (const Tick& tick : nice_ticks(legend.first, legend.last)) {
-      const double y = y_ + kBarHeight * (1 - share_of(tick.value, legend)), x = kMargin + kBarWidth;
-      body_ += fmt::format("<path d=\"M{} {}h{}\" stroke=\"#000000\"/>\n", px(x), px(y), px(kTickLength));
-      add_text(x + kTickLength + kGap, y + 0.35 * kFont, tick.label);
+      const double y = y_ + kSvgBarHeight * (1 - share_of(tick.value, legend)), x = kSvgMargin + kSvgBarWidth;
+      body_ += fmt::format("<path d=\"M{} {}h{}\" stroke=\"#000000\"/>\n", px(x), px(y), px(kSvgTickLength));
+      add_text(x + kSvgTickLength + kSvgGap, y + 0.35 * kSvgFont, tick.label);
     }
-    y_ += kBarHeight + kFont / 2 + kMargin;
+    y_ += kSvgBarHeight + kSvgFont / 2 + kSvgMargin;
   }
 
   void add_patch(const Legend::Patch& patch) {
-    add_rectangle(kMargin, y_, kPatch, kPatch, hex(patch.color));
-    add_text(kMargin + kPatch + kGap, y_ + kPatch / 2 + 0.35 * kFont, patch.label);
-    y_ += kPatchPitch;
+    add_rectangle(kSvgMargin, y_, kSvgPatch, kSvgPatch, hex(patch.color));
+    add_text(kSvgMargin + kSvgPatch + kSvgGap, y_ + kSvgPatch / 2 + 0.35 * kSvgFont, patch.label);
+    y_ += kSvgPatchPitch;
   }
 
   std::string svg() const {
-    const std::string width = px(std::ceil(width_ + kMargin)), height = px(std::ceil(y_));
+    const std::string width = px(std::ceil(width_ + kSvgMargin)), height = px(std::ceil(y_));
     return fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
         "font-family=\"sans-serif\" font-size=\"{}\">\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
         "{}</svg>\n",
-        width, height, width, height, px(kFont), body_);
+        width, height, width, height, px(kSvgFont), body_);
   }
 
  private:
@@ -145,7 +145,7 @@ class Drawing {
   }
 
   std::string body_;
-  double y_ = kMargin, width_ = 0;
+  double y_ = kSvgMargin, width_ = 0;
 };
 
 }  // namespace

@@ -24,14 +24,14 @@ using math::vector_of;
 constexpr int kLargestSide = 3;
 
 /// Expected number of hits in each half before a pixel's error is trusted.
-constexpr double kHits = 4;
+constexpr double kExpectedHits = 4;
 /// Light below this fraction of that around the pixel is ignored.
 constexpr float kMinFraction = 1.0f / 8;
 /// Coverage from which on the error of a sample is not assumed to be larger, so that few samples are wasted on emitters
 /// that are occluded.
 constexpr float kMinCoverage = 1.0f / 32;
 /// Half-width of the window around a pixel, px.
-constexpr int kReach = 3;
+constexpr int kWindowReach = 3;
 
 /// The distance of the sun of a daylight sky, in distances to the focus plane. Nothing depends on it as long as it is
 /// large.
@@ -122,8 +122,8 @@ float fraction_of_emitters(const PixelStatistics& s, int x, int y) {
   const float own = s.small_emitters[s.at(x, y)].light;
   double light = 0;
   int count = 0;
-  for (int v = std::max(y - kReach, 0); v <= std::min(y + kReach, s.height - 1); ++v) {
-    for (int u = std::max(x - kReach, 0); u <= std::min(x + kReach, s.width - 1); ++u) {
+  for (int v = std::max(y - kWindowReach, 0); v <= std::min(y + kWindowReach, s.height - 1); ++v) {
+    for (int u = std::max(x - kWindowReach, 0); u <= std::min(x + kWindowReach, s.width - 1); ++u) {
       if (class_of(u, v) == class_of(x, y)) continue;
       light += static_cast<double>(s.light[s.at(u, v)]);
       ++count;
@@ -159,7 +159,7 @@ std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene,
 bool needs_samples_for_emitters(const PixelStatistics& s, int x, int y) {
   const std::uint32_t n = s.samples[s.at(x, y)];
   if (n >= kSamplesForReliability || fraction_of_emitters(s, x, y) == 0) return false;
-  return n * static_cast<double>(s.small_emitters[s.at(x, y)].coverage) < kHits;
+  return n * static_cast<double>(s.small_emitters[s.at(x, y)].coverage) < kExpectedHits;
 }
 
 float error_of_small_emitters(const PixelStatistics& s, int x, int y) {
