@@ -36,7 +36,7 @@ class OwnedScene {
   void commit();
 
  private:
-  std::atomic<std::int64_t> bytes_{0};  // first: Embree updates it until the last release
+  std::atomic<std::int64_t> bytes_{0};  // declared first: Embree updates it until the last release
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
 };

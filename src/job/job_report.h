@@ -30,8 +30,8 @@ struct Phases {
 struct JobReport {
   render::Statistics render;
   Phases phases;
-  film::BadValues bad_values;                                       ///< of the image, before any display transform
-  std::vector<std::pair<std::string, film::BadValues>> bad_layers;  ///< of each layer that has any
+  film::BadValues bad_values;  ///< bad values of the image, before any display transform
+  std::vector<std::pair<std::string, film::BadValues>> bad_layers;  ///< layers with bad values
   image::WriteReport written;                                       ///< values changed to fit the files
   int width = 0, height = 0;                                        ///< px
   std::string target_missed;  ///< "noise 0.013 instead of 0.01: the time budget ended"; empty: the target was met

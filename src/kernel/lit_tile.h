@@ -6,7 +6,7 @@
 
 namespace orrery::kernel {
 
-/// The lit loop for the best enabled instruction set, with records or without. Camera and spheres may move.
+/// Returns the lit loop for the best enabled instruction set, with or without records. Camera and spheres may move.
 RenderTile lit_tile_function(bool records, Precision precision);
 RenderTileFast lit_tile_fast_function(bool records);
 
