@@ -176,7 +176,7 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
 
 /// Traces the valid rays of Embree's packet.
 ///
-/// `limits`   out: by lane, distances beyond which nothing was searched
+/// `limits`   out: per lane, the distance beyond which nothing was searched
 /// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_single(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid,

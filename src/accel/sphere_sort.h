@@ -20,7 +20,7 @@ struct SphereItem {
 /// The cells of a BVH's nodes by level, starting with the level above the leaves.
 using NodeCells = std::array<std::vector<SphereBvh::Cell>, SphereBvh::kMaxDepth>;
 
-/// Sorts spheres into the order of the leaves of a BVH, by the surface area heuristic.
+/// Sorts spheres into the order of the leaves of a BVH, using the surface area heuristic.
 ///
 /// `margin`   average radius, for the surface area, box space
 /// `reach`    maximum distance of a sphere's surface from its centre, padded, box space

@@ -91,7 +91,7 @@ struct Duplicate {
   std::size_t index, first;
 };
 
-/// Finds all items of 0 .. count - 1 whose key equals that of an earlier item, by ascending index.
+/// Finds all items of 0 .. count - 1 whose key equals that of an earlier item, in ascending order.
 ///
 /// `key_of(i)` returns N numbers as a std::array; -0 equals 0, and a key with a NaN equals no other.
 /// Errors     base::Error(kStopped) in a StopScope

@@ -43,7 +43,7 @@ struct CompiledScene {
   TextureStore textures;
   LightTree light_tree;  ///< light tree of the emitting spheres; empty if lights are not sampled
   kernel::DirectLighting direct_lighting = kernel::DirectLighting::kMis;
-  std::vector<std::string> light_groups;  ///< names, by Emission::group; the first is the default group's, ""
+  std::vector<std::string> light_groups;  ///< names, indexed by Emission::group; the first is "", the default group
   std::vector<kernel::Sphere>
       motion;  ///< motion of the first motion.size() spheres, see kernel::SceneView; empty: none moves
   kernel::Camera camera;

@@ -66,7 +66,7 @@ class DataFile {
   virtual Table read(int frame, const std::vector<std::string>& columns) = 0;
 };
 
-/// The first bytes of a file and its extension, by which formats are recognised.
+/// The first bytes of a file and its extension, used to recognise formats.
 struct Signature {
   std::string head;       ///< up to 64 KiB, decompressed
   std::string extension;  ///< lower case, without ".gz", ".zst": ".xyz"; may be empty

@@ -21,7 +21,7 @@ struct LightChannel {
   std::vector<Sum> sums;
 };
 
-/// The light layers of an image by their names: lobe AOVs, light groups and the lobes of the groups.
+/// The light layers of an image, identified by name: lobe AOVs, light groups and the lobes of the groups.
 struct LightLayers {
   std::vector<LightChannel> channels;  ///< R, G, B
   std::vector<std::string> names;      ///< names of the layers

@@ -13,7 +13,7 @@
 
 namespace orrery::film {
 
-/// The layer of each lobe, by kernel::Lobe.
+/// The name of each lobe's layer, indexed by kernel::Lobe.
 inline constexpr const char* kLobeNames[kernel::kLobes] = {
     "background",        "diffuse_direct",      "diffuse_indirect",      "specular_direct",
     "specular_indirect", "transmission_direct", "transmission_indirect", "emission"};

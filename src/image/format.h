@@ -34,7 +34,7 @@ struct FormatInfo {
 /// Returns the properties of a format.
 const FormatInfo& info_of(Format format);
 
-/// The format of a file by its extension, regardless of case.
+/// Returns the format that a file's extension selects, ignoring case.
 ///
 /// Errors     base::Error(kUsage) listing the known extensions
 Format format_of(const std::filesystem::path& file);

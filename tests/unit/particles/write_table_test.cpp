@@ -220,7 +220,7 @@ TEST_F(ParticlesWriteTable, WhatAFormatCannotStoreIsRefused) {
   EXPECT_EQ(refusal(table, "a.vtp"), "a.vtp: unknown extension `.vtp`; use .ply, .xyz, .npy or .csv");
   table.columns.push_back(large_integers());
   EXPECT_EQ(refusal(table, "a.ply"),
-            "a.ply: PLY has no integers as large as those of column `id`; write .npy, or leave the column out");
+            "a.ply: PLY has no integer type that is large enough for column `id`; write .npy, or leave the column out");
   table.columns.push_back({"t", words({"a b", "", "\n", "c"})});
   EXPECT_EQ(refusal(table, "a.csv"),
             "a.csv: CSV cannot store the text `\n` of column `t`; write .npy, or leave the column out");

@@ -233,7 +233,7 @@ TEST_F(RowsLammpsDump, ErrorsHaveLines) {
             "8: a lower bound of the box exceeds the upper bound\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n-1\n"), "4: expected a number of atoms, found '-1'\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\n"),
-            "3: 'ITEM: NUMBER OF ENTRIES' is no item of a dump of atoms\n");
+            "3: 'ITEM: NUMBER OF ENTRIES' is not an item of an atom dump\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\n" + kBox + atoms + "0 0 0\n"),
             "7: the frame has no item \"NUMBER OF ATOMS\" before its atoms\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9000000000000000000\n" + atoms + "0 0 0\n"),
