@@ -40,9 +40,9 @@ class Option {
   Option* repeatable();
   /// Number of times that the option was given.
   std::size_t count() const;
-  /// Its arguments as typed: {"-o", "a.exr", "-o", "b.png"}.
+  /// The option's arguments as typed: {"-o", "a.exr", "-o", "b.png"}.
   std::vector<std::string> arguments() const;
-  /// Its heading in the help.
+  /// The option's heading in the help.
   std::string heading() const;
 
  private:
@@ -75,7 +75,7 @@ class Command {
                      const std::string& description);
   Option* add_flag(const std::string& names, bool& variable, const std::string& description);
 
-  /// The arguments that gave the options under a heading of the help, as typed.
+  /// The arguments, as typed, of the options listed under a heading of the help.
   std::vector<std::string> arguments(const std::string& heading) const;
 
   /// Sets the heading, in the program's help, of commands that are added from now on.

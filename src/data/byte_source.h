@@ -33,7 +33,7 @@ class ByteSource {
   /// Reads exactly `count` bytes.
   ///
   /// Domain     offset + count <= size()
-  /// Errors     base::Error(kIo), also if the file was truncated meanwhile
+  /// Errors     base::Error(kIo), also if the file has been truncated meanwhile
   virtual void read(std::uint64_t offset, std::size_t count, char* out) const = 0;
 
   /// Returns bytes from `offset`, fewer than `count` at the end of the file.

@@ -26,7 +26,7 @@ struct Hooks {
   std::function<void(const film::Picture&)> on_denoised;  ///< receives the denoised image
   bool develops_pixels = false;  ///< `on_pixels` applies the display transform, so its names must be checked
   std::function<void(const base::Diagnostic&)> on_warning;
-  std::function<void(const std::string&)> on_note;  ///< answers to requests made by signal
+  std::function<void(const std::string&)> on_note;  ///< receives replies to requests that were made by a signal
   const std::atomic<bool>* cancel = nullptr;        ///< true stops the job
   std::atomic<bool>* snapshot = nullptr;            ///< true requests a checkpoint; the job resets it to false
 };

@@ -19,7 +19,7 @@ struct Phases {
   double prepare_s = 0;  ///< Job::prepare_s: before the job, once for all jobs of a batch
   double read_s = 0, compile_s = 0, build_s = 0, render_s = 0;
   double denoise_s = 0;  ///< with Job::denoise
-  double finish_s = 0;   ///< from sums to the finished image and its layers; of a merge also reading the shards
+  double finish_s = 0;   ///< from sums to the finished image and its layers; for a merge, includes reading the shards
   double write_s = 0;
 
   /// Of the job.

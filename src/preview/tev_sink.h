@@ -13,8 +13,8 @@ namespace orrery::preview {
 
 /// Sends images to tev: scene-linear R, G, B in the working space, without exposure.
 ///
-/// At most one packet waits to be sent. A viewer that reads slowly gets fewer updates; one that closes the connection,
-/// or starts later, gets the whole image when it can be reached again.
+/// At most one packet waits to be sent. A viewer that reads slowly receives fewer updates; one that closes the
+/// connection, or starts later, receives the whole image when it can be reached again.
 class TevSink : public Sink {
  public:
   /// Resolves the address of tev.

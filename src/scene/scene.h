@@ -76,10 +76,10 @@ struct Background {
   double rotation = 0;                                 ///< degrees about +y
   double exposure = 0;                                 ///< stops
   std::string light_group = {};                        ///< empty: the default group
-  bool visible = true;                                 ///< to the camera; scattered rays always see the background
-  double sun_elevation = 45;                           ///< sky: degrees above the horizon
-  double sun_azimuth = 0;                              ///< sky: degrees from +z towards +x
-  double turbidity = 2;                                ///< sky: amount of haze; 1 is pure air
+  bool visible = true;        ///< visible to the camera; scattered rays always see the background
+  double sun_elevation = 45;  ///< sky: degrees above the horizon
+  double sun_azimuth = 0;     ///< sky: degrees from +z towards +x
+  double turbidity = 2;       ///< sky: amount of haze; 1 is pure air
   Vec3d ground_albedo{0.2, 0.2, 0.2};
   bool sun = true;  ///< sky: includes the sun's disc
 };

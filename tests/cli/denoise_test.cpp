@@ -99,7 +99,7 @@ TEST_F(CliDenoise, FilesInTilesAreRewrittenInTiles) {
   EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0").status, 0);
 }
 
-TEST_F(CliDenoise, PartsWithColorsOfTheirOwnAreCopiedAndNamed) {
+TEST_F(CliDenoise, PartsWithSeparateColorsAreCopiedAndNamed) {
   ASSERT_EQ(run("render good.toml -q --samples 8 -o left.exr --type float").status, 0);
   ASSERT_EQ(run("render good.toml -q --samples 8 -o right.exr --type float --seed 2").status, 0);
   const auto file = [&](const char* name) { return "'" + (folder_ / name).string() + "' "; };

@@ -127,7 +127,7 @@ class Scene:
         return self._data().check()
 
     def save(self, file):
-        """Writes a scene file, and a PLY file beside it for each add_points(). Both read back without loss.
+        """Writes a scene file, and a PLY file next to it for each add_points(). Both read back without loss.
 
         Comments of a loaded scene are not kept. No file that the scene reads is replaced.
         """

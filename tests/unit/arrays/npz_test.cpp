@@ -89,7 +89,7 @@ TEST_F(ArraysNpz, MembersAreColumns) {
   }
 }
 
-TEST_F(ArraysNpz, CoordinatesInArraysOfTheirOwnOrInAStructuredArray) {
+TEST_F(ArraysNpz, CoordinatesInSeparateArraysOrInAStructuredArray) {
   const std::string one = npy_bytes("'<f8'", false, "(1,)", number_bytes(7.0));
   EXPECT_EQ(numbers(support::read_table(*open({{"x.npy", one}, {"y.npy", one}, {"z.npy", one}})), "z"),
             std::vector<double>{7});
@@ -124,7 +124,7 @@ TEST_F(ArraysNpz, WithoutPositionsTheArraysAreListed) {
             "duplicate column `pos[1]`\n");
 }
 
-TEST_F(ArraysNpz, LyingShapesAreRefused) {
+TEST_F(ArraysNpz, ShapesBeyondTheDataAreRefused) {
   EXPECT_EQ(faults({{"pos.npy", npy_bytes("'<f8'", false, "(2, 3)", std::string(40, '\0'))}}),
             "array `pos` with shape (2, 3) needs 48 bytes of data, but 40 follow its header\n");
   EXPECT_EQ(faults({{"pos.npy", npy_bytes("'<f8'", false, "(2, 3)", std::string(49, '\0'))}}),

@@ -336,7 +336,7 @@ TEST_F(PlotPlot, TheFrameIsPrinted) {
   EXPECT_TRUE(chose("frame 1: the first; --frame N selects another")) << "the file ends in a header: " << choices();
 }
 
-TEST_F(PlotPlot, NothingToSeeIsAWarning) {
+TEST_F(PlotPlot, NothingToRenderIsAWarning) {
   const std::string none = frame("x y z radius", {}), one = frame("x y z radius", {"0 0 0 1"});
   const auto warning = [&](const std::string& text) {
     make("a.dump", text);
@@ -421,7 +421,7 @@ TEST_F(PlotPlot, StylesAndGround) {
 }
 
 /// From level or below, the ground would be in front of the spheres, or a bar at the bottom of the image.
-TEST_F(PlotPlot, TheGroundIsLeftOutWhereItWouldHideTheSpheres) {
+TEST_F(PlotPlot, TheGroundIsOmittedIfItWouldHideTheSpheres) {
   write("a.csv", "x,y,z,radius\n0,0,2,1\n0,0,7,1\n");
   options.ground = true;
   const auto has_ground = [&](const std::string& view) {

@@ -240,7 +240,7 @@ TEST_F(RowsLammpsDump, ErrorsHaveLines) {
             "7: the file ends after 1 of 9000000000000000000 rows\n");
 }
 
-TEST_F(RowsLammpsDump, RowsBehindTheFrameAreNotIgnored) {
+TEST_F(RowsLammpsDump, RowsAfterTheFrameAreNotIgnored) {
   const auto file = open(kFrameHead + kBox + "ITEM: ATOMS x y z\n0 0 0\n0 0 0\n0 0 0\n");
   try {
     file->read(0, {"x"});

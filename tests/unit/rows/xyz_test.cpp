@@ -188,7 +188,7 @@ TEST_F(RowsXyz, ColorsByName) {
   EXPECT_EQ(roles.rgb_maximum, 255);
 }
 
-TEST_F(RowsXyz, RowsBehindTheFrameAreNotIgnored) {
+TEST_F(RowsXyz, RowsAfterTheFrameAreNotIgnored) {
   const auto file = open("1\n\nH 1 2 3\nH 1 2 3\n");
   try {
     file->read(0, {"x"});
