@@ -33,7 +33,7 @@ struct ZTest {
 inline constexpr double kCertainZ = 1e6;
 
 /// Compares the means of blocks of kTestedSide px in each channel. A block without variance differs if all of its
-/// pixels differ in the same direction by more than half precision and it is not black.
+/// pixels differ in the same direction by more than the precision of half, and it is not black.
 ///
 /// Domain     views of the same size; variances are those of the pixel means; a reference without variance is exact
 /// Result     empty if the image has no variance
