@@ -75,7 +75,7 @@ void TevSink::finish() {
   canvas_ = nullptr;
 }
 
-/// Connects, and again after a while if that fails or the viewer goes away.
+/// Connects, and again after a while if that fails or the viewer disconnects.
 void TevSink::check_connection() {
   connection_.check();
   if (connection_.state() == Connection::State::kClosed) {
