@@ -52,7 +52,7 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
     if (spheres.in_single)
       middle[axis] = math::in_single_precision(middle[axis]);  // rays are translated by the same value
   }
-  // Measured from the rounded centre, which far from the world's origin differs from that of the corners.
+  // Measured from the rounded centre, which far from the world origin differs from that of the corners.
   double half = 0;
   each([&](const kernel::Sphere& s) {
     half = std::max({half, std::abs(s.x - middle[0]) + s.radius, std::abs(s.y - middle[1]) + s.radius,

@@ -15,7 +15,7 @@ struct CameraAxes {
 };
 CameraAxes camera_axes(const scene::Camera& camera);
 
-/// Returns the distance from look_from to the plane of focus, scene units.
+/// Returns the distance from look_from to the focus plane, scene units.
 double focus_distance(const scene::Camera& camera);
 
 /// Returns the power of two by which the view vectors of a camera are scaled: 1, unless their squares could overflow or

@@ -61,7 +61,7 @@ Table camera_table() {
            {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",
             "Above 0: one lens sample per path"},
            [](S& s) -> double& { return s.camera.defocus_angle; }),
-       optional_number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the plane of focus"},
+       optional_number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the focus plane"},
                           "distance to look_at",
                           [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
        number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
