@@ -318,7 +318,7 @@ TEST_F(PlotPlot, SequencesOfFiles) {
   EXPECT_EQ(read(1).camera.look_at.x, 3);
   options.frames.clear();
   options.all_frames = true;
-  EXPECT_NE(error().find("--frames: `all` are the frames of one file"), std::string::npos) << error();
+  EXPECT_NE(error().find("--frames: `all` selects the frames of a single file"), std::string::npos) << error();
 }
 
 TEST_F(PlotPlot, TheFrameIsPrinted) {
