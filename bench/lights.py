@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what sampling lights is worth, and what it costs.
+"""Measures the benefit and the cost of light sampling.
 
     bench/lights.py build/src/orrery [--runs 5] [--width 320] [--samples 64] [--scene NAME]
 

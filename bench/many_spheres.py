@@ -5,7 +5,7 @@
     bench/many_spheres.py build/src/orrery                       1 and 10 million, one thread
     bench/many_spheres.py build/src/orrery --counts 100000
     bench/many_spheres.py build/src/orrery --radii               spheres of many sizes
-    bench/many_spheres.py build/src/orrery --whole 100000000     from command to picture, all threads
+    bench/many_spheres.py build/src/orrery --whole 100000000     from command to image, all threads
 
 For each scene the first form prints closest hits per second of `orrery bench` (the BVH for many spheres with single rays
 and with packets, one Embree primitive per sphere, Embree's sphere points), the ratio of the scene's accelerator to sphere
@@ -99,7 +99,7 @@ def crystal(folder, count):
 
 
 def with_radii(folder, name, count, radius_of):
-    """Centres uniform in 1..2 on each axis, radii of their own."""
+    """Centres uniform in 1..2 on each axis, individual radii."""
     source = random.Random(1)
 
     def chunks():

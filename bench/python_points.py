@@ -5,7 +5,7 @@
     PYTHONPATH=build/lib/python3/dist-packages bench/python_points.py COUNT FOLDER [PROGRAM]
 
 Both render 64 x 36 pixels with one sample, so that reading the positions and building the BVH take nearly all of the time.
-Runs alternate, each in a process of its own; the time of Python includes loading the interpreter and the package, but not
+Runs alternate, each in a separate process; the time of Python includes loading the interpreter and the package, but not
 making the array. Prints the times, the median of each, and their ratio.
 """
 

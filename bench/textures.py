@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what filtering image textures by mip maps is worth, and what it costs and changes.
+"""Measures the benefit, the cost and the bias of filtering image textures with mip maps.
 
     bench/textures.py BEFORE AFTER... [--runs 5] [--scene NAME] [--reference 8192]
 

@@ -6,12 +6,11 @@ include(OrreryHeaders)
 #
 # Declares a room: one folder under src/, one target, one namespace.
 #
-# DEPENDS   rooms that it may include. Drives linking and, through rooms.txt in the build folder, the test `layering`.
-# FOREIGN   include prefixes of third-party libraries that only this room may include. A header that includes one is
-#           internal: other rooms must not include it, and it is not installed.
-# EXPOSED   include prefixes that any header of the room may include.
-# LIBRARIES, EXPOSED_LIBRARIES   the targets that provide FOREIGN and EXPOSED.
-# DECLARED  only declares the room: it has no library of its own and is not installed.
+# DEPENDS rooms that it may include. Drives linking and, through rooms.txt in the build folder, the test `layering`.
+# FOREIGN include prefixes of third-party libraries that only this room may include. A header that includes one is
+# internal: other rooms must not include it, and it is not installed. EXPOSED include prefixes that any header of the
+# room may include. LIBRARIES, EXPOSED_LIBRARIES the targets that provide FOREIGN and EXPOSED. DECLARED only declares
+# the room: it is no library and is not installed.
 function(orrery_room name)
   cmake_parse_arguments(PARSE_ARGV 1 ROOM "DECLARED" "" "DEPENDS;LIBRARIES;FOREIGN;EXPOSED_LIBRARIES;EXPOSED")
   if(ROOM_UNPARSED_ARGUMENTS)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Renders the images of docs/gallery.md by the commands in it.
+# Renders the images of docs/gallery.md with the commands in it.
 #
 #   tools/gallery.sh DATA [NAME...]    DATA: folder with the data files that the page names; tools/lammps/ makes some
 #                                      NAME: images to render, e.g. virus; default: all

@@ -29,7 +29,7 @@ for my $file (@files) {
       report($file, $., "text after the language of a code block") if $info =~ /[^\w+-]/ || ($fence && $info ne '');
       $fence = $fence ? 0 : $.;
     } elsif (!$fence && /\|\s*:?---/ && !/^\s*\|[-|: ]+$/) {
-      report($file, $., "the separator row of a table is not a line of its own");
+      report($file, $., "the separator row of a table is not a separate line");
     }
   }
   report($file, $fence, "the code block is not closed") if $fence;

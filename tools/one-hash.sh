@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks that a scene with every material renders to the same bytes with different compilers, optimisation levels, numbers
-# of threads, instruction sets and accelerators. Builds the program several times, which takes some minutes.
+# Checks that a scene with every material renders to the same bytes with different compilers, optimisation levels,
+# numbers of threads, instruction sets and accelerators. Builds the program several times, which takes a few minutes.
 #
 #   tools/one-hash.sh [WORKDIR]      keeping WORKDIR speeds up the next run
 set -euo pipefail

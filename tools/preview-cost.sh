@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Prints what `orrery render --preview` costs, in percent of the processor time of the render: the preview's thread, and
-# the copies that the rendering threads make. Samples of perf are compared, which do not depend on what else runs on the
-# machine. The image must be the same as without a preview.
+# the copies that the rendering threads make. It compares samples of perf, which do not depend on other load. The image
+# must be the same as without a preview.
 #
 #   tools/preview-cost.sh WHERE [SCENE [OPTION ...]]
 #

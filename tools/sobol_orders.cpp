@@ -3,8 +3,8 @@
 //   c++ -std=c++20 -O2 -Isrc tools/sobol_orders.cpp -o build/sobol_orders && build/sobol_orders
 //
 // Vertex v of a path uses the points of one two-dimensional sequence in the order index -> A_v index, where A_v is a
-// matrix over GF(2). All A_v together define one digital net with twice as many dimensions as vertices; the search
-// makes numbers of different vertices jointly well distributed, too. The cost function is the closed-form variance of
+// matrix over GF(2). All A_v together define one digital net with twice as many dimensions as vertices; the search also
+// makes numbers of different vertices jointly well distributed. The cost function is the closed-form variance of
 // scrambled nets: over all scramblings, two points whose coordinates share l leading digits have the covariance k(l) of
 // a random function with independent wavelets, and dimensions multiply as prod (1 + weight k(l)). The covariance
 // depends only on the difference of two indices, so 2^m points cost 2^m terms.

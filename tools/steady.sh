@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks that no test depends on the speed of the machine: runs the built tests several times on two processors of an idle
-# machine, on two processors with four busy processes, and on a single processor. Prints a table of the runs. Exit status
-# 1 if a test failed.
+# Checks that no test depends on the speed of the machine: runs the built tests several times on two processors of an
+# idle machine, on two processors with four busy processes, and on a single processor. Prints a table of the runs. Exit
+# status 1 if a test failed.
 #
 #   tools/steady.sh [--idle N] [--busy N] [--single N] [--build DIR] [CTEST_ARGUMENT ...]
 #

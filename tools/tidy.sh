@@ -9,10 +9,9 @@
 #
 # A header is checked in one translation unit: the source of the same name, or the first source that includes it.
 #
-# ORRERY_BUILD         a configured build folder; default: build, if it is configured and no unity build, else build-tidy,
-#                      which is created
-# ORRERY_TIDY_MINUTES  time limit: files not started by then are listed and not checked; default: none
-# ORRERY_TIDY_JOBS     parallel processes; default: one per core
+# ORRERY_BUILD a configured build folder; default: build, if it is configured and not a unity build, else build-tidy,
+# which is created ORRERY_TIDY_MINUTES time limit: files not started by then are listed and not checked; default: none
+# ORRERY_TIDY_JOBS parallel processes; default: one per core
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -4,7 +4,7 @@
     blender --background --factory-startup --python-exit-code 1 --python cycles.py -- \\
       SCENE.toml WxH SAMPLES THREADS OUT.exr [SEED]
 
-Spheres become points of point clouds, which Cycles intersects as spheres. Each point is a point cloud of its own, so
+Spheres become points of point clouds, which Cycles intersects as spheres. Each point is a separate point cloud, so
 that it can have its own material. Emitters become point lights of the same radius and radiance: Cycles does not sample
 emissive point clouds. The camera does not see them.
 """

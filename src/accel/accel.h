@@ -13,10 +13,10 @@
 
 namespace orrery::accel {
 
-/// Finds the closest hits and the occlusion of rays among a scene's spheres.
+/// Answers closest-hit and occlusion queries against a scene's spheres.
 ///
-/// All implementations give the same results: the smallest distance by the kernel's own arithmetic, then the smallest
-/// id; and occlusion by the same intersections.
+/// All implementations give the same results: the closest hit has the smallest distance as the kernel's arithmetic
+/// computes it, then the smallest id; occlusion uses the same intersections.
 class Accel {
  public:
   virtual ~Accel() = default;
@@ -24,13 +24,13 @@ class Accel {
   /// The queries that the kernel calls; valid during the lifetime of this Accel.
   virtual kernel::Tracer tracer() const noexcept = 0;
 
-  /// Sets the traversal; not while rays are traced. Lists ignore it.
+  /// Sets the traversal. Must not be called while rays are traced. Lists ignore it.
   virtual void use(Traversals) noexcept {}
 
   /// For example "embree 3.13.5" or "list".
   virtual std::string name() const = 0;
 
-  /// Allocated bytes, as far as they are known.
+  /// Allocated bytes, where known.
   virtual std::size_t bytes() const noexcept = 0;
 };
 
@@ -47,9 +47,9 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 /// Receives the progress of a build, 0..1, on any of its threads. Returns false to cancel the build.
 using BuildMonitor = std::function<bool(double fraction)>;
 
-/// If there are at least this many static spheres of similar size, they are one primitive of Embree's scene, with a BVH
-/// of their own inside (docs/decisions/0027-bvh-for-many-spheres.md). Below, each sphere is a primitive, because that
-/// is faster. Depends on the instruction set.
+/// Minimum number of static spheres of similar size for a SphereBvh: they then form a single primitive of Embree's
+/// scene (docs/decisions/0027-bvh-for-many-spheres.md). With fewer, each sphere is a primitive, which is faster.
+/// Depends on the instruction set.
 std::size_t bvh_threshold();
 
 /// A threshold that no scene reaches.
@@ -63,7 +63,7 @@ inline constexpr std::size_t kNoBvh = ~std::size_t{0};
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor = {}, std::size_t threshold = bvh_threshold());
 
-/// The number of spheres, to within a few, that make_embree puts into its BVH of many spheres: 10 to 13 bytes each
+/// Approximate number of spheres that make_embree puts into its BVH of many spheres, where each takes 10 to 13 bytes
 /// instead of Embree's hundred.
 std::size_t spheres_in_bvh(const kernel::SceneView& scene);
 

@@ -49,9 +49,10 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
   });
   for (int axis = 0; axis < 3; ++axis) {
     middle[axis] = lower[axis] / 2 + upper[axis] / 2;
-    if (spheres.in_single) middle[axis] = math::in_single_precision(middle[axis]);  // as rays are moved by it
+    if (spheres.in_single)
+      middle[axis] = math::in_single_precision(middle[axis]);  // rays are translated by the same value
   }
-  // Measured from the rounded centre, which far from the world's origin differs from that of the corners.
+  // Measured from the rounded centre, which far from the world origin differs from that of the corners.
   double half = 0;
   each([&](const kernel::Sphere& s) {
     half = std::max({half, std::abs(s.x - middle[0]) + s.radius, std::abs(s.y - middle[1]) + s.radius,
@@ -62,7 +63,7 @@ BoxFrame::BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_
   // Embree also interpolates motion-blurred bounds in single precision, which costs some more bits.
   padding = kPadding * reach * kFarthestStart * (moving_count > 0 ? 2 : 1);
   if (!spheres.in_single || moving_count == 0) return;
-  // The kernel rounds the interpolated sphere, of which each coordinate is the sum of two rounded numbers.
+  // The kernel rounds the interpolated sphere, whose coordinates are each the sum of two rounded numbers.
   double largest = 0;
   for (int axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(lower[axis]), std::abs(upper[axis])});
   padding += 0x1p-22 * largest * scale;

@@ -13,7 +13,7 @@ namespace orrery::accel {
 /// Spheres as the kernel intersects them: in `fast`, rounded to single precision. BVHs bound these.
 struct BoundedSpheres {
   kernel::SphereArray spheres;
-  bool in_single = false;  ///< rounds as `fast` does; far from the world's origin this exceeds the padding of boxes
+  bool in_single = false;  ///< rounded as in `fast`; far from the origin, the rounding exceeds the padding of boxes
 
   BoundedSpheres() = default;
   BoundedSpheres(const kernel::SphereArray& all, bool rounded = false)  // NOLINT(google-explicit-constructor)
@@ -40,7 +40,7 @@ class BoxFrame {
 
   /// The frame of the spheres with these ids.
   ///
-  /// `motion`   of the spheres below moving_count; the frame then encloses their whole motion
+  /// `motion`   motion of the first moving_count spheres; the frame then encloses their whole motion
   /// Domain     `ids` not empty
   BoxFrame(const BoundedSpheres& spheres, const std::vector<std::uint32_t>& ids, const kernel::Sphere* motion = nullptr,
            std::size_t moving_count = 0);

@@ -18,11 +18,11 @@ namespace orrery::accel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace k = kernel::HWY_NAMESPACE;
 
-/// Rays in box space, advanced to where the boxes begin.
+/// Rays in box space, advanced to the sphere that encloses all boxes.
 template <class D>
 struct BoxRays {
   math::HWY_NAMESPACE::Vec3<hn::Vec<D>> origin;
-  hn::Vec<D> start;     ///< distance by which each was advanced, box space
+  hn::Vec<D> start;     ///< distance by which each ray was advanced, box space
   hn::Mask<D> reaches;  ///< false: the ray misses all boxes
 };
 

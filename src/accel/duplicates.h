@@ -15,7 +15,7 @@ namespace orrery::accel {
 /// Accelerators skip them. Root exclusion is by the id of the sphere that a ray leaves, so a coincident second sphere
 /// would be hit again at a distance of a few rounding errors.
 ///
-/// Cost       none if the scene is known to have none; else see base::find_duplicates
+/// Cost       none if the scene is known to have no duplicates; else see base::find_duplicates
 std::vector<std::uint32_t> duplicates(const kernel::SceneView& scene, kernel::Precision precision);
 
 }  // namespace orrery::accel

@@ -30,7 +30,7 @@ std::vector<std::uint32_t> boxed(const EmbreeScene& scene, std::size_t count) {
   return complement_of(without, count);
 }
 
-/// A part of a whole's progress, from `begin` to `end`.
+/// Maps the progress of one stage to the range from `begin` to `end` of the whole.
 BuildMonitor part_of(const BuildMonitor& whole, double begin, double end) {
   if (!whole) return {};
   return [&whole, begin, end](double fraction) { return whole(begin + (end - begin) * fraction); };
@@ -83,7 +83,8 @@ class Embree final : public Accel {
   Embree(const kernel::SceneView& view, kernel::Precision precision, const BuildMonitor& monitor,
          std::size_t bvh_threshold)
       : functions_(embree_functions(precision, view.moving_count > 0)), scene_(make_scene(view, precision)) {
-    std::vector<std::uint32_t> ids = boxed(scene_, view.sphere_count);  // not empty: an outlier dwarfs others
+    std::vector<std::uint32_t> ids =
+        boxed(scene_, view.sphere_count);  // not empty: outliers are defined relative to other spheres
     const std::size_t primitives = view.sphere_count - scene_.outliers.size();
     const auto share = [primitives](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(primitives);
@@ -119,7 +120,7 @@ class Embree final : public Accel {
 
   /// Selects the static spheres of similar size for a BVH, if there are enough of them.
   ///
-  /// `ids`      ascending, of all spheres that are neither outliers nor duplicates
+  /// `ids`      ascending ids of all spheres that are neither outliers nor duplicates
   /// Result     empty: each sphere is a primitive
   std::vector<std::uint32_t> take_for_bvh(const kernel::SceneView& view, std::vector<std::uint32_t> ids,
                                           std::size_t threshold) {
@@ -209,7 +210,7 @@ std::unique_ptr<Accel> make_simd_list(const kernel::SceneView& scene, kernel::Pr
 
 std::unique_ptr<Accel> make_embree(const kernel::SceneView& scene, kernel::Precision precision,
                                    const BuildMonitor& monitor, std::size_t threshold) {
-  if (scene.sphere_count == 0) return make_list(scene, precision);  // there is nothing to build a BVH of
+  if (scene.sphere_count == 0) return make_list(scene, precision);  // there is nothing to build a BVH from
   return std::make_unique<Embree>(scene, precision, monitor, std::max<std::size_t>(1, threshold));
 }
 

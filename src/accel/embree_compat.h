@@ -16,7 +16,7 @@ using EmbreeContext = RTCRayQueryContext;
 
 inline void init(EmbreeContext& context) { rtcInitRayQueryContext(&context); }
 
-/// Traces a packet of 4, 8 or 16 rays, by the type of `rays`.
+/// Traces a packet of 4, 8 or 16 rays, depending on the type of `rays`.
 template <class Rays>
 inline void intersect(const int* valid, RTCScene scene, EmbreeContext& context, Rays& rays) {
   RTCIntersectArguments arguments;
@@ -39,7 +39,7 @@ inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) {
   rtcIntersect1(scene, &ray, &arguments);
 }
 
-/// Tests a packet of 4, 8 or 16 rays, by the type of `rays`, for occlusion.
+/// Tests a packet of 4, 8 or 16 rays, depending on the type of `rays`, for occlusion.
 template <class Rays>
 inline void occluded(const int* valid, RTCScene scene, EmbreeContext& context, Rays& rays) {
   RTCOccludedArguments arguments;

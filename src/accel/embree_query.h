@@ -12,14 +12,14 @@ namespace orrery::accel {
 struct EmbreeScene;
 
 /// One call into Embree with some lanes of a packet. Embree passes the context to the callback, which finds the packet
-/// through it and stores the result there, in the packet's precision. Embree's hit record is not used.
+/// through it and stores the result in the packet, in the packet's precision. Embree's hit record is not used.
 template <class Packet>
 struct EmbreeQuery {
   EmbreeContext context;  // first member, so that Embree's pointer to it points to the query
   const EmbreeScene* scene;
   Packet* packet;
-  int first;  ///< the packet's lane that is Embree's lane 0
-  /// Distance by which each ray was advanced, by Embree's lane, box space.
+  int first;  ///< packet lane that corresponds to Embree's lane 0
+  /// Distance by which each ray was advanced, indexed by Embree's lane, box space.
   alignas(64) std::remove_cvref_t<decltype(Packet::distance[0])> start[kernel::kPacketSize];
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A packet's rays as Embree takes them. Compiled once per instruction set.
+// Conversion of a packet's rays to Embree's layout. Compiled once per instruction set.
 #if defined(ORRERY_ACCEL_EMBREE_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
 #undef ORRERY_ACCEL_EMBREE_RAYS_INL_H_
@@ -55,7 +55,7 @@ struct ClosestHit {
     hn::Store(distance, d, packet.distance + first);
     hn::Store(ids, k::IdTag<D>(), packet.hit + first);
   }
-  /// Keeps the closer hit; of two at the same distance, that with the smaller id.
+  /// Keeps the closer hit; of two at the same distance, the one with the smaller id.
   HWY_INLINE void take(D d, const k::Distances<D>& found, hn::Vec<k::IdTag<D>> found_ids, hn::Mask<D> lanes) {
     const auto same_place = hn::And(found.value == distance, hn::RebindMask(d, ids > found_ids));
     const auto nearer = hn::And(hn::And(lanes, found.mask), hn::Or(found.value < distance, same_place));
@@ -77,7 +77,7 @@ HWY_INLINE void store_float(D d, hn::Vec<D> value, float* to) {
   (void)d;
 }
 
-/// A mask as one bit per lane.
+/// Converts a mask to one bit per lane.
 template <class D>
 HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
@@ -85,7 +85,7 @@ HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
   return static_cast<unsigned>(bytes[0]) | static_cast<unsigned>(bytes[1]) << 8;
 }
 
-/// Embree's valid flags as a mask.
+/// Converts Embree's valid flags to a mask.
 template <class D>
 HWY_INLINE hn::Mask<D> is_valid(D d, hn::Vec<hn::Rebind<std::int32_t, D>> flags) {
   if constexpr (sizeof(hn::TFromD<D>) == 8) {
@@ -138,7 +138,7 @@ HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid
     store_float(d, limit, rays.tfar + v);
     if constexpr (kMoves) store_float(d, hn::Load(d, packet.time + first), rays.time + v);
     hn::Store(box.start, d, query.start + v);
-    // A hit that is known before the boxes begin leaves nothing to find, and Embree takes no negative limit.
+    // If a known hit is in front of all boxes, there is nothing to find, and Embree does not accept a negative limit.
     const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first)));
     const unsigned lanes = bits_of(d, hn::And(hn::And(active, box.reaches), limit > hn::Zero(d)));
     for (int i = 0; i < step; ++i) valid[v + i] = (lanes >> i & 1) != 0 ? -1 : 0;

@@ -11,7 +11,7 @@
 
 namespace orrery::accel {
 
-/// The data of a packet query: Embree's scene, and the spheres outside of it.
+/// The data of a packet query: Embree's scene, and the spheres outside it.
 struct EmbreeScene {
   RTCScene scene = nullptr;  ///< null if every sphere is an outlier
   kernel::SphereArray spheres;
@@ -26,9 +26,9 @@ struct EmbreeScene {
   /// ray tests them first, so that their hits limit the traversal.
   std::vector<std::uint32_t> outliers;
   std::vector<std::uint32_t> duplicates;  ///< ascending ids of spheres that are never hit: their boxes are empty
-  /// If there is a SphereBvh: ascending ids of the static spheres outside of it, one primitive each.
+  /// If there is a SphereBvh: ascending ids of the static spheres outside it, one primitive each.
   std::vector<std::uint32_t> singles;
-  bool has_bvh = false;  ///< Embree is passed packets; `traversals` applies to the SphereBvh
+  bool has_bvh = false;  ///< Embree receives packets; `traversals` applies to the SphereBvh
   Traversals traversals;
 
   /// The sphere of a primitive: ids count all spheres, primitives only those that are not outliers.

@@ -14,7 +14,7 @@ namespace {
 /// that it leaves.
 constexpr float kShortestDistance = 0.001F;
 
-/// One ray of a packet as Embree's ray.
+/// Converts a ray of a packet to an Embree ray.
 template <class Packet>
 RTCRay one_ray(const Packet& packet, int lane) {
   RTCRay ray{};
@@ -45,7 +45,7 @@ void trace_points(const void* self, kernel::RayPacketFast& packet) {
   }
 }
 
-/// Ignores `target`: without an id test, the maximum distance has to end before the light.
+/// Ignores `target`: without an id test, the maximum distance must exclude the light.
 void occlude_points(const void* self, kernel::ShadowPacketFast& packet) {
   const auto scene = static_cast<RTCScene>(const_cast<void*>(self));
   EmbreeContext context;

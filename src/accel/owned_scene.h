@@ -15,7 +15,7 @@ namespace orrery::accel {
 /// An Embree scene with its own device and a count of its memory.
 class OwnedScene {
  public:
-  /// `settings` are Embree's, such as "threads=1". Embree is limited to the instruction set kernel::isa_name().
+  /// `settings` configure Embree's device, e.g. "threads=1". Limits Embree to the instruction set kernel::isa_name().
   ///
   /// Errors     base::Error(kInternal) if Embree does not start
   explicit OwnedScene(std::string settings = {});
@@ -36,7 +36,7 @@ class OwnedScene {
   void commit();
 
  private:
-  std::atomic<std::int64_t> bytes_{0};  // first: Embree updates it until the last release
+  std::atomic<std::int64_t> bytes_{0};  // declared first: Embree updates it until the last release
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
 };

@@ -18,15 +18,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
 
-/// A node or leaf that some rays of a packet have still to visit, or a sphere that they may hit.
+/// A node or leaf that some rays of a packet still have to visit, or a sphere that they may hit.
 struct SharedVisit {
-  float enter;  ///< a lower bound of the distance there, for all of these rays
+  float enter;  ///< lower bound of the entry distance of these rays
   std::uint32_t what;
   unsigned lanes;
 };
 
-/// The rays of an Embree packet, which visit nodes together: one pass over a node's children for all rays. Faster than
-/// each on its own way if they visit the same nodes, such as the camera rays of a pixel.
+/// The rays of an Embree packet, traversed together: one pass over a node's children tests all rays. Faster than
+/// single-ray traversal if the rays visit the same nodes, such as the camera rays of a pixel.
 template <class Packet, kernel::Precision kPrecision>
 class SharedRays {
  public:
@@ -88,7 +88,7 @@ class SharedRays {
   using Wide = hn::ScalableTag<float>;  // kWidth lanes
   static constexpr bool kShadows = requires(Packet p) { p.occluded; };
 
-  /// Boxes that some ray may enter, as bits, by interval arithmetic over all rays of the packet.
+  /// Boxes that some ray may enter, as bits. Uses interval arithmetic over all rays of the packet.
   HWY_INLINE unsigned entered_by_any(const float (&bound)[2][3][SphereBvh::kArity], unsigned count) const {
     const ChildTag d;
     unsigned bits = 0;
@@ -251,7 +251,7 @@ class SharedRays {
           if (hits == 0) continue;
           alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
           store_float(d, far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query_.start + v)), limits);
-          // Lanes outside of `part` may belong to no ray.
+          // Lanes outside `part` may have no ray.
           HWY_ALIGN DistanceOf<Packet> distance[hn::MaxLanes(D())];
           hn::Store(closest.distance, d, distance);
           for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
@@ -278,7 +278,7 @@ class SharedRays {
   // Bounds of the rays' origins, at the nearer and the farther side of boxes, and of their inverse directions.
   float near_origin_[3], far_origin_[3], least_inverse_[3], greatest_inverse_[3];
   int near_[3];        ///< the bound of a box that rays enter at
-  bool straddles_[3];  ///< rays go both ways along this axis: nothing is known
+  bool straddles_[3];  ///< rays have both signs along this axis: no bound
   unsigned lanes_ = 0, changed_ = 0;
   int candidate_count_ = 0;
   SharedVisit candidates_[kMaxCandidates];

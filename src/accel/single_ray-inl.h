@@ -27,24 +27,24 @@ struct alignas(64) SingleRay {
   std::uint32_t near[3];  ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
   std::uint32_t subtree;  ///< the node below which everything has been visited once the stack is empty
   unsigned subtree_level;
-  std::size_t waiting;  ///< entries of `enter` and `what`: the end of the stack, then the nearest last
-  int candidates;       ///< entries of `at` and `candidate`: spheres that the ray may hit
-  int ordered;          ///< entries of `order`
-  // Whole vectors are stored at the end of each of these.
+  std::size_t waiting;  ///< number of entries in `enter` and `what`: the end marker, then nodes, nearest last
+  int candidates;       ///< number of entries in `at` and `candidate`: spheres that the ray may hit
+  int ordered;          ///< number of entries in `order`
+  // Padded, because whole vectors are stored at the end of each array.
   alignas(64) std::int32_t order[kMaxCandidates + SphereBvh::kArity];  ///< keys of candidates, nearest last
   float at[kMaxCandidates + SphereBvh::kArity];                        ///< a lower bound of a candidate's distance
   std::uint32_t candidate[kMaxCandidates + SphereBvh::kArity];         ///< ids
   float enter[SphereBvh::kStackSize + SphereBvh::kArity];              ///< a lower bound of the distance there
-  std::uint32_t what[SphereBvh::kStackSize + SphereBvh::kArity];       ///< references as SphereBvh::root()
+  std::uint32_t what[SphereBvh::kStackSize + SphereBvh::kArity];  ///< node references, encoded like SphereBvh::root()
 };
 
-/// From lower to upper bounds in Node::bound.
+/// Offset from lower to upper bounds in Node::bound.
 constexpr std::uint32_t kOtherSide = 3 * SphereBvh::kArity;
 
-/// Stores the keys of the children that a ray enters before its limit, and then zeros up to the length of a vector.
+/// Stores the keys of the children that a ray enters before its limit, followed by zeros up to a vector's length.
 ///
-/// `except`   with kExcept: index of a child that is left out
-/// Result     their number
+/// `except`   with kExcept: index of a child to skip
+/// Result     number of keys
 template <bool kExcept>
 HWY_INLINE int entered(const SphereBvh::Node& node, const SingleRay& ray, int except, std::int32_t* keys) {
   const ChildTag d;
@@ -75,7 +75,7 @@ HWY_INLINE int entered(const SphereBvh::Node& node, const SingleRay& ray, int ex
   return count;
 }
 
-/// Visits a node: adds the children that the ray enters, with kExcept not child `except`, to its stack.
+/// Visits a node: pushes the children that the ray enters onto its stack. With kExcept, skips child `except`.
 template <bool kExcept = false>
 HWY_INLINE void visit_node(const SphereBvh::Node& node, SingleRay& ray, int except = 0) {
   const hn::FixedTag<std::int32_t, 4> d;
@@ -99,17 +99,17 @@ HWY_INLINE void visit_node(const SphereBvh::Node& node, SingleRay& ray, int exce
   ray.waiting += static_cast<std::size_t>(count);
 }
 
-/// Whether a ray ends, at its limit, in the region that belongs to one node alone.
+/// Returns whether a ray's end point, at its limit, lies in the region that only this node covers.
 HWY_INLINE bool stays_in(const SphereBvh::Cell& cell, const SingleRay& ray) {
   const hn::FixedTag<float, 4> d;
   const auto begin = hn::Load(d, ray.origin);
   const auto end = hn::MulAdd(hn::Load(d, ray.direction), hn::Set(d, ray.limit), begin);
   const auto lower = hn::LoadU(d, cell.lower), upper = hn::LoadU(d, cell.upper);
-  // False for an infinite limit, too.
+  // Also false for an infinite limit.
   return hn::AllTrue(d, hn::And(hn::And(begin >= lower, end >= lower), hn::And(begin <= upper, end <= upper)));
 }
 
-/// Goes on above a ray's subtree, unless nothing there can be nearer.
+/// Continues the traversal above a ray's subtree, unless nothing there can be closer.
 ///
 /// Result     false if the ray is done
 HWY_INLINE bool climb(const SphereBvh& bvh, SingleRay& ray) {
@@ -178,8 +178,8 @@ HWY_INLINE void visit_leaf(const SphereBvh& bvh, std::uint32_t index, float shor
     const auto inner = least - margin;
     const auto deep = hn::NegMulAdd(offset_square, growth, inner * inner);
     const auto pierced = hn::And(hn::And(may_hit, inner > zero), hn::And(deep > zero, begin > set(shortest)));
-    // A little less than the root, so that the distance is too long rather than too short. The approximation is off by
-    // less than 2^-11, and bits of the processor's do not reach the image.
+    // Slightly below the root, so that the distance is overestimated. The error of the approximate reciprocal square
+    // root is below 2^-11; it differs between processors, but does not affect the image.
     const auto root = deep * hn::ApproximateReciprocalSqrt(hn::Max(deep, set(0x1p-100F)));
     const auto certain = (hn::NegMulAdd(root, set(1 - 0x1p-10F), along) + margin) * set(kLonger);
     nearest = hn::Min(nearest, hn::IfThenElse(pierced, certain, nearest));

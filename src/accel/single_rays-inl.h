@@ -73,7 +73,7 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
       each_bit(rest, [&](int i) {
         SingleRay& one = rays[i];
         const auto next = static_cast<unsigned>(one.order[--one.ordered]) & (kMaxCandidates - 1);
-        // If this one is beyond the limit, the others are further away.
+        // If this one is beyond the limit, so are the others.
         const bool within = one.at[next] <= one.limit;
         if (within) ids[i - v] = one.candidate[next];
         now |= within ? 1u << i : 0u;
@@ -113,10 +113,10 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
   return changed;
 }
 
-/// Traces rays through the tree in rounds, in which each ray takes one step: while one waits for memory, the others go
-/// on. The spheres that they may hit are intersected at the end.
+/// Traces rays through the tree in rounds of one step per ray, so that the memory latency of one ray is hidden by the
+/// others. Candidate spheres are intersected at the end.
 ///
-/// `lanes`    of the query, as bits, that have a ray
+/// `lanes`    lanes of the query that have a ray, as bits
 /// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, unsigned lanes,
@@ -125,7 +125,7 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
   const EmbreeScene& scene = *query.scene;
   const float shortest = shortest_certain<kPrecision>(bvh, scene.frame);
   const Prefetcher prefetcher(bvh, scene.spheres);
-  // Rays by what they visit next: kWidth bits per kind.
+  // Rays grouped by the kind of what they visit next: kWidth bits per kind.
   std::uint64_t queue = 0;
   constexpr std::uint64_t kOneKind = (std::uint64_t{1} << 16) - 1;
   static_assert(kWidth <= 16 && kKinds <= 4);
@@ -145,8 +145,8 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
   };
   each_bit(lanes, enqueue);
   unsigned changed = 0;
-  // The arithmetic of all rays comes first, then what branches: a mispredicted branch would discard the next ray's
-  // arithmetic, which has already begun.
+  // The arithmetic of all rays comes before any branch: a mispredicted branch would discard the next ray's arithmetic,
+  // which is already in flight.
   while (queue != 0) {
     const unsigned at_nodes = take(kNode);
     each_bit(at_nodes, [&](int i) { visit_node(bvh.nodes[rays[i].what[--rays[i].waiting]], rays[i]); });
@@ -176,7 +176,7 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
 
 /// Traces the valid rays of Embree's packet.
 ///
-/// `limits`   out: by lane, distances beyond which nothing was searched
+/// `limits`   out: per lane, the distance beyond which nothing was searched
 /// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_single(const SphereBvh& bvh, const EmbreeQuery<Packet>& query, const int* valid,

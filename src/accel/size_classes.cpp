@@ -22,7 +22,8 @@ constexpr std::size_t kMaxOutliers = 4;
 /// scene. Its box would enclose every other sphere, and its size would determine their padding.
 constexpr double kOutlierRatio = 4;
 
-/// Spheres this many times larger than the median stay out of a SphereBvh: they would enlarge all boxes around them.
+/// Spheres this many times larger than the median are kept out of a SphereBvh, because they would enlarge all boxes
+/// around them.
 constexpr double kGiantRatio = 16;
 
 }  // namespace
@@ -63,7 +64,7 @@ std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std
     largest.insert(at, {radius, id});
     if (largest.size() > kMaxOutliers + 1) largest.pop_back();
   }
-  // Take the largest set whose smallest member dwarfs the rest.
+  // Take the largest set whose smallest member is an outlier relative to the rest.
   for (std::size_t n = std::min(largest.size(), kMaxOutliers); n > 0; --n) {
     // The rest has a frame at least as large as its largest sphere.
     if (n == largest.size() || !(largest[n - 1].radius > kOutlierRatio * largest[n].radius)) continue;

@@ -7,7 +7,7 @@
 
 #include "kernel/forward.h"
 
-/// Classification of spheres by size: which are too large for the BVHs.
+/// Finds the spheres that are too large for the BVHs.
 namespace orrery::accel {
 
 /// Ids of all spheres except those in `without`.
@@ -16,11 +16,11 @@ namespace orrery::accel {
 std::vector<std::uint32_t> complement_of(const std::vector<std::uint32_t>& without, std::size_t count);
 
 /// Ids, ascending, of the outliers: a few spheres that are much larger than the bounds of all smaller ones, such as a
-/// ground. Duplicates count neither as outliers nor as the rest.
+/// ground. Duplicates are ignored.
 std::vector<std::uint32_t> find_outliers(const kernel::SphereArray& spheres, std::size_t count,
                                          const std::vector<std::uint32_t>& duplicates);
 
-/// The radius above which a static sphere stays out of a SphereBvh, by the median of a sample.
+/// The radius above which a static sphere is kept out of a SphereBvh, derived from the median radius of a sample.
 ///
 /// Domain     at least one static sphere
 double giant_radius(const kernel::SceneView& view);

@@ -18,12 +18,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
 
-/// Keys of distances that are not negative, rounded down, with an index below kIndices in their last bits.
+/// Keys of non-negative distances, rounded down, with an index below kIndices in their low bits.
 template <unsigned kIndices, class D>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> keys_of(D, hn::Vec<D> distance, hn::Vec<hn::RebindToSigned<D>> index) {
   const hn::RebindToSigned<D> di;
   static_assert((kIndices & (kIndices - 1)) == 0);
-  // The sign goes, too, since a zero may be negative.
+  // Also clears the sign, since a zero may be negative.
   constexpr auto kReplaced = static_cast<std::int32_t>(0x80000000u | (kIndices - 1));
   return hn::Or(hn::AndNot(hn::Set(di, kReplaced), hn::BitCast(di, distance)), index);
 }
@@ -38,7 +38,7 @@ HWY_INLINE void each_bit(unsigned bits, F f) {
 /// lanes is faster.
 constexpr bool kHasCompress = HWY_TARGET <= HWY_AVX3;
 
-/// Stores the lanes of `mask` one after another, and then zeros up to the length of a vector at least.
+/// Stores the lanes of `mask` contiguously, followed by zeros up to at least a vector's length.
 ///
 /// Result     number of lanes in `mask`
 template <class D>
@@ -92,7 +92,7 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::int32_t, 8>> sorted8(hn::Vec<hn::FixedTag<s
 
 /// Sorts keys in place, largest first.
 ///
-/// Domain     `keys` is aligned to a vector; zeros follow the last key, up to eight in all
+/// Domain     `keys` is aligned to a vector and padded with zeros to eight keys
 HWY_INLINE void sort_keys(std::int32_t* keys, int count) {
   const hn::FixedTag<std::int32_t, 4> d;
   if (count <= 4) {

@@ -29,7 +29,7 @@ using math::rounded_up;
 /// ray by at most 40 x 2^-24 relative to a sphere and by at most 19 x 2^-24 relative to a box.
 constexpr double kSpherePadding = 0x1.4p-17, kBoxPadding = 0x1p-18;
 
-/// Leaves that are made before the memory of their items is released.
+/// Number of leaves that are created before the memory of their items is released.
 constexpr std::size_t kReleasedLeaves = 1 << 16;
 
 struct Bounds {
@@ -53,9 +53,9 @@ void release(SphereItem* begin, SphereItem* end) {
   if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
 }
 
-/// A code whose decoded bound is at most `bound`, and one whose is at least `bound`.
+/// Quantizes a bound, rounding down and up respectively: the decoded bound is at most, or at least, `bound`.
 ///
-/// Domain     `bound` is between origin and what code 255 stands for
+/// Domain     `bound` is between the origin and the decoded value of 255
 std::uint8_t code_below(float bound, float origin, float step) {
   int code = std::clamp(static_cast<int>((bound - origin) / step), 0, 255);
   while (code > 0 && std::fma(static_cast<float>(code), step, origin) > bound) --code;
@@ -148,7 +148,7 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
                   ids[i]};
     }
   });
-  std::vector<std::uint32_t>().swap(ids);  // they are in the items
+  std::vector<std::uint32_t>().swap(ids);  // copied to the items
   const float box_padding = rounded_up(kBoxPadding * frame.reach);
   const NodeCells node_cells = sort_spheres(items, static_cast<float>(sum / static_cast<double>(count) * frame.scale),
                                             radius + 2 * box_padding, monitor);
@@ -182,7 +182,7 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
       for (std::size_t i = 0; i < n; ++i) radii[l].radius[i] = code_above(r[i], 0, radii[l].step);
     }
   };
-  // Leaves take the place of items, so that memory is never needed for all of both.
+  // Leaves replace items step by step, so that both are never in memory completely.
   for (std::size_t begin = 0; begin < leaf_count; begin += kReleasedLeaves) {
     stop.check();
     const std::size_t end = std::min(leaf_count, begin + kReleasedLeaves);

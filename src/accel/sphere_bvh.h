@@ -17,7 +17,7 @@ namespace orrery::accel {
 /// A BVH over many static spheres, for one Embree primitive: 16 children per node, 16 spheres per leaf, bounds in 8
 /// bits relative to the parent. It takes 10 to 12 bytes per sphere, and one more if radii differ.
 ///
-/// Like Embree's boxes it only selects candidates. All bounds enclose the spheres plus the rounding errors of a
+/// Like Embree's boxes, it only selects candidates. All bounds enclose the spheres plus the rounding errors of a
 /// single-precision ray in box space (docs/decisions/0027-bvh-for-many-spheres.md), so no hit is lost.
 class SphereBvh {
  public:
@@ -29,7 +29,7 @@ class SphereBvh {
     std::uint8_t center[3][kArity];
     float origin[3];
     float step;
-    std::uint32_t ids[kArity];  ///< of the spheres; kNoSphere beyond the last one
+    std::uint32_t ids[kArity];  ///< sphere ids; kNoSphere beyond the last one
   };
 
   /// Radii of a leaf's spheres, if they differ between spheres: at most step * radius, box space.
@@ -41,11 +41,11 @@ class SphereBvh {
   /// Boxes of the children, in box space: origin + step * bound. Beyond the last child, lower bounds are 255 and upper
   /// bounds 0, so that no ray enters.
   struct alignas(64) Node {
-    std::uint8_t bound[2][3][kArity];  ///< lower and upper
+    std::uint8_t bound[2][3][kArity];  ///< [lower, upper][axis][child]
     float origin[3];
-    std::uint32_t first;  ///< the first child: a reference as `root()`
+    std::uint32_t first;  ///< reference to the first child, encoded like `root()`
     float step[3];
-    std::uint32_t count;  ///< of children
+    std::uint32_t count;  ///< number of children
   };
 
   /// A region of box space that no sphere below any other node reaches into. Empty if lower > upper. The fourth
@@ -57,11 +57,10 @@ class SphereBvh {
   /// Set in references to leaves; the other bits are the index of the leaf or node.
   static constexpr std::uint32_t kLeafBit = 0x80000000u;
 
-  /// Maximum number of references that a traversal has to remember: 15 siblings on each level, the last one visited,
-  /// and the end of the stack.
+  /// Traversal stack size: 15 siblings on each level, the node visited last, and the end marker.
   static constexpr std::size_t kMaxDepth = 8, kStackSize = kMaxDepth * (kArity - 1) + 2;
 
-  /// The largest number of spheres that fits references and depth.
+  /// Maximum number of spheres that references and kMaxDepth allow.
   static constexpr std::size_t kMaxSpheres = (std::size_t{1} << 31) - kArity;
 
   SphereBvh() = default;
@@ -88,8 +87,8 @@ class SphereBvh {
     return rest < kArity ? static_cast<unsigned>(rest) : kArity;
   }
 
-  std::size_t count = 0;            ///< of spheres
-  base::PackedArray start_nodes;    ///< of each sphere of the scene: the node above its leaf, or no_start_node
+  std::size_t count = 0;            ///< number of spheres
+  base::PackedArray start_nodes;    ///< for each sphere of the scene, the node above its leaf, or no_start_node
   std::uint32_t no_start_node = 0;  ///< stands for spheres that are not in the tree
   base::HugeVector<Leaf> leaves;
   base::HugeVector<LeafRadii> radii;                   ///< one per leaf; empty if all spheres have `radius`
@@ -98,8 +97,8 @@ class SphereBvh {
   std::array<std::uint32_t, kMaxDepth> level_begin{};  ///< index of the first node of each level
   std::uint32_t last_leaf = 0;                         ///< the only one that may have fewer than kArity spheres
   float radius = 0;                                    ///< box space, rounded up
-  float padding = 0;    ///< of a sphere's radius for the rounding errors of a ray's distance from it, box space
-  BoxFrame::Box box{};  ///< of all spheres, padded
+  float padding = 0;    ///< added to a sphere's radius to cover rounding errors of a ray's distance from it, box space
+  BoxFrame::Box box{};  ///< padded bounds of all spheres
 };
 
 }  // namespace orrery::accel

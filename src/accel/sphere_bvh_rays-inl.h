@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the traversals of a SphereBvh share. Compiled once per instruction set.
+// Shared code of the traversals of a SphereBvh. Compiled once per instruction set.
 #if defined(ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
 #undef ORRERY_ACCEL_SPHERE_BVH_RAYS_INL_H_
@@ -21,15 +21,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
 
-/// Floats of a vector of children or of a leaf's spheres.
+/// SIMD tag for the children of a node or the spheres of a leaf.
 using ChildTag = hn::CappedTag<float, SphereBvh::kArity>;
 constexpr int kChildLanes = static_cast<int>(hn::MaxLanes(ChildTag()));
 
-/// Components of a direction smaller than this are replaced by it: over the length of a frame that is far less than the
-/// padding, and its reciprocal is finite.
+/// Smaller direction components are replaced by this value. Its reciprocal is finite, and over the extent of a frame
+/// the deviation is far less than the padding.
 constexpr float kSmallestDirection = 0x1p-80F;
 
-/// Inserts what a ray enters at `enter` so that the nearest is the last.
+/// Inserts an entry by its entry distance `enter`, so that the nearest is last.
 template <class T>
 HWY_INLINE void insert(T* sorted, int begin, int& end, const T& added) {
   int at = end++;
@@ -37,7 +37,7 @@ HWY_INLINE void insert(T* sorted, int begin, int& end, const T& added) {
   sorted[at] = added;
 }
 
-/// Candidates of a ray that wait to be intersected; one leaf more must fit.
+/// Maximum number of pending candidates of a ray; one more leaf must fit.
 constexpr int kMaxCandidates = 2 * static_cast<int>(SphereBvh::kArity);
 
 HWY_INLINE hn::Vec<ChildTag> from_bytes(const std::uint8_t* bytes) {
@@ -54,11 +54,12 @@ constexpr std::uint32_t kIndexMask = (1u << kIndexWidth) - 1;
 constexpr std::uint32_t kEndOfStack = kEnd << kIndexWidth;
 static_assert(SphereBvh::kLeafBit == std::uint32_t{kLeaf} << kIndexWidth);
 
-/// The cache lines of nodes and leaves. Which kind a ray visits next is hard to predict, so nothing branches on it.
+/// Prefetches nodes and leaves. Which of the two a ray visits next is hard to predict, so the code does not branch on
+/// it.
 class Prefetcher {
  public:
   Prefetcher(const SphereBvh& bvh, const kernel::SphereArray& spheres) : has_radii_(!bvh.radii.empty()) {
-    // Spheres of the rarer kind are not prefetched.
+    // The less frequent kind of sphere is not prefetched.
     const bool plain = spheres.all_plain();
     sphere_stride_ = plain ? sizeof(kernel::Sphere) : 3 * sizeof(float);
     spheres_ = reinterpret_cast<std::uintptr_t>(spheres.address(plain ? 0 : spheres.plain_count)) -
@@ -95,8 +96,8 @@ constexpr float kGrowth = 1 + 0x1p-20F;
 /// Covers the rounding of a distance that is compared with others.
 constexpr float kLonger = 1 + 0x1p-18F;
 
-/// How far a sphere's centre may be from its code, and a ray from where it is computed. The factor is sqrt(3) / 2,
-/// rounded up: a centre is half a step off on each axis.
+/// Maximum quantization error of a sphere's centre plus rounding error of a ray's position. The factor is sqrt(3) / 2,
+/// rounded up: a centre is at most half a step off on each axis.
 HWY_INLINE float margin_of(const SphereBvh& bvh, const SphereBvh::Leaf& leaf) {
   return 0.875F * leaf.step + bvh.padding;
 }
@@ -116,7 +117,7 @@ HWY_INLINE RadiusBounds radii_of(const SphereBvh& bvh, std::uint32_t leaf, int f
   return {most, most - step};
 }
 
-/// The distance from which on a hit is certain, in box space: the book's arithmetic ignores near hits.
+/// The distance beyond which a hit is certain, in box space: the book's arithmetic ignores nearby hits.
 template <kernel::Precision kPrecision>
 HWY_INLINE float shortest_certain(const SphereBvh& bvh, const BoxFrame& frame) {
   if (kPrecision != kernel::Precision::kBook) return 0;

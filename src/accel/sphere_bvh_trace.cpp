@@ -19,9 +19,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::accel::HWY_NAMESPACE {
 
-/// Traces the valid rays of Embree's packet. There are no other packets, and no single rays: EmbreeScene::has_bvh.
+/// Traces the valid rays of Embree's packet. Embree calls this only with packets: see EmbreeScene::has_bvh.
 ///
-/// `limits`   out: by lane, distances beyond which nothing was searched
+/// `limits`   out: per lane, the distance beyond which nothing was searched
 /// Result     lanes with a new hit, as bits
 template <class Packet, kernel::Precision kPrecision>
 HWY_INLINE unsigned trace_valid(const void* bvh_of_geometry, const EmbreeQuery<Packet>& query, const int* valid,

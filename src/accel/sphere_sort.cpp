@@ -28,7 +28,7 @@ constexpr std::size_t kParallelSize = 1 << 14;
 
 constexpr int kBins = 32;
 
-/// Ranges up to this size have few bins: what is done once per bin would take longer than what is done per sphere.
+/// Ranges up to this size have few bins, because the work per bin would exceed the work per sphere.
 constexpr std::size_t kSmallRange = 512;
 constexpr int kFewBins = 16;
 
@@ -36,7 +36,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Four = hn::FixedTag<float, 4>;
 constexpr Four kFour;
 
-/// An item's centre, and 0. Its id would be a subnormal number, with which some processors take a hundred cycles.
+/// An item's centre, and 0 instead of its id: as a float the id would be subnormal, which costs some processors a
+/// hundred cycles.
 hn::Vec<Four> center_of(const Item& item) {
   alignas(16) static constexpr std::uint32_t kThree[4] = {~0u, ~0u, ~0u, 0};
   return hn::And(hn::LoadU(kFour, item.center), hn::BitCast(kFour, hn::Load(hn::RebindToUnsigned<Four>(), kThree)));
@@ -70,11 +71,11 @@ struct Split {
   int axis = 0;
   std::size_t left = 0;
   float at = 0;      ///< an estimate of the coordinate of that division
-  float spread = 0;  ///< how far off it may be; more is slower
+  float spread = 0;  ///< its uncertainty; larger values are slower
 };
 
-/// Moves the items before a plane to the front, in any order. Without branches, which would be mispredicted for half of
-/// the items.
+/// Moves the items before a plane to the front, in any order. Branchless, because a branch would be mispredicted for
+/// half of the items.
 ///
 /// Result     the first of the other items
 Item* partition(Item* first, Item* last, int axis, float at) {
@@ -89,13 +90,13 @@ Item* partition(Item* first, Item* last, int axis, float at) {
   return first;
 }
 
-/// Orders items as std::nth_element does for `middle`, quickly if the split's estimate is good.
+/// Orders items like std::nth_element for `middle`; fast if the split's estimate is good.
 ///
 /// Result     the coordinate of the division: no item on the left is beyond it, none on the right before it
 float divide_at(Item* first, Item* middle, Item* last, const Split& split) {
   Item* const cut = partition(first, last, split.axis, split.at);
   if (cut == middle) return split.at;
-  // Few items are between the estimate and the rank: a second plane separates most of the others.
+  // Few items are between the estimate and the requested rank: a second plane separates most of the others.
   Item *begin = first, *end = last;
   if (cut < middle) {
     begin = cut;
@@ -217,7 +218,7 @@ class Sorter {
         left.add(bins[axis][b - 1]);
         if (left.count == 0) continue;
         if (left.count == sampled) break;
-        // The split is moved to the next multiple of the unit, which makes it worse the further it moves.
+        // The split is moved to the next multiple of the unit; the farther it moves, the worse it gets.
         const float wanted = static_cast<float>(left.count) * units_per_sample;
         const auto left_units = std::clamp<std::size_t>(static_cast<std::size_t>(wanted + 0.5F), 1, units - 1);
         const float moved = static_cast<float>(left_units) - wanted;
@@ -226,7 +227,7 @@ class Sorter {
                            (1 + std::abs(moved) / static_cast<float>(units));
         if (cost < least) {
           least = cost;
-          // Centres are taken for evenly distributed within the bin into which the split moves.
+          // Centres are assumed to be evenly distributed within the bin into which the split moves.
           const std::size_t in_bin = bins[axis][moved > 0 ? b : b - 1].count;
           const float bins_moved =
               std::clamp(moved / std::max(static_cast<float>(in_bin) * units_per_sample, 0x1p-20F), -1.0F, 1.0F);

@@ -21,15 +21,15 @@ struct SphereItem {
   std::uint32_t id;
 };
 
-/// The cells of a BVH's nodes by level, those above the leaves first.
+/// The cells of a BVH's nodes by level, starting with the level above the leaves.
 using NodeCells = std::array<std::vector<SphereBvh::Cell>, SphereBvh::kMaxDepth>;
 
-/// Sorts spheres into the order of the leaves of a BVH, by the surface area heuristic.
+/// Sorts spheres into the order of the leaves of a BVH, using the surface area heuristic.
 ///
 /// `margin`   average radius, for the surface area, box space
-/// `reach`    distance from a centre that its sphere does not exceed, padded, box space
+/// `reach`    maximum distance of a sphere's surface from its centre, padded, box space
 /// `monitor`  receives the progress, 0..1, on any thread; returns false to cancel; or empty
-/// Errors     base::Error(kStopped) if the monitor cancelled, and in a base::StopScope
+/// Errors     base::Error(kStopped) if the monitor or a base::StopScope cancelled
 NodeCells sort_spheres(std::span<SphereItem> items, float margin, float reach,
                        const std::function<bool(double)>& monitor);
 

@@ -8,7 +8,7 @@ namespace orrery::accel {
 /// How rays traverse the BVH. Hits do not depend on it.
 enum class Traversal : std::uint8_t {
   kPacket,  ///< the rays of a packet together, which pays off as long as they visit the same nodes
-  kSingle,  ///< one ray after the other
+  kSingle,  ///< each ray separately
 };
 
 /// The traversal of camera rays and that of scattered rays.

@@ -21,17 +21,18 @@ struct Comparison {
   int width = 0, height = 0;          ///< px
   std::vector<std::string> channels;  ///< channels that `errors` covers
   metrics::PixelErrors errors;
-  std::optional<double> ssim;               ///< colours only
-  std::optional<double> flip;               ///< mean of flip_map; HDR-FLIP if scene-linear; colours only
-  std::optional<metrics::ZTest> z_test;     ///< set if the image has a layer `variance`
-  std::uint64_t values = 0, differing = 0;  ///< number of values in common channels of the layer, and of unequal ones
-  bool is_matte = false;                    ///< `errors` compares ComparedChannels::shares
-  std::uint64_t no_hit = 0, no_hit_in_one = 0;                  ///< skipped pixels, as in ComparedChannels
+  std::optional<double> ssim;            ///< colours only
+  std::optional<double> flip;            ///< mean of flip_map; HDR-FLIP if scene-linear; colours only
+  std::optional<metrics::ZTest> z_test;  ///< set if the image has a layer `variance`
+  std::uint64_t values = 0,
+                differing = 0;                  ///< values in common channels of the layer, and how many differ
+  bool is_matte = false;                        ///< `errors` compares ComparedChannels::shares
+  std::uint64_t no_hit = 0, no_hit_in_one = 0;  ///< skipped pixels, as in ComparedChannels
   std::vector<std::string> only_in_picture, only_in_reference;  ///< channels missing in the other image
 
   metrics::Map flip_map, display_map;  ///< per-pixel FLIP and display error
 
-  /// A metric by its name in `--fail-above`.
+  /// Returns a metric, given its name in `--fail-above`.
   ///
   /// Domain     one of limitable_metrics()
   /// Errors     base::Error(kUsage) if these images do not have the metric
@@ -56,7 +57,7 @@ struct ComparisonPictures {
 
 /// Compares two image files, and writes difference images.
 ///
-/// The difference is stored as is in scene-linear formats, and as half of it plus mid-grey in display formats. The heat
+/// Scene-linear formats store the difference itself; display formats store mid-grey plus half the difference. The heat
 /// map shows the display error in false colours up to metrics::kFalseColorMax, the FLIP map up to 1; scene-linear
 /// formats hold the values.
 ///

@@ -48,7 +48,7 @@ std::vector<std::pair<std::string, int>> layers_of(const std::vector<std::string
 struct Rank {
   const std::vector<float>*id, *coverage;
 };
-/// All ranks of a Cryptomatte; empty if the image does not have it.
+/// All ranks of a Cryptomatte; empty if the image does not contain it.
 std::vector<Rank> ranks_of(const film::Picture& picture, const std::string& layer) {
   std::vector<Rank> ranks;
   for (int pair = 0; pair < 100; ++pair) {

@@ -21,10 +21,10 @@ struct ComparedChannels {
   /// A Cryptomatte is compared by coverage: `picture` is the fraction of each pixel that belongs to different objects
   /// than in the reference, and `reference` is 0. The background counts as an object.
   bool is_matte = false;
-  std::vector<float> shares, zeros;  ///< the pixels of `picture` and `reference` for a matte
+  std::vector<float> shares, zeros;  ///< pixel values behind the views `picture` and `reference` for a matte
 };
 
-/// True if a channel belongs to the layer or Cryptomatte of this name; an empty `layer` has all channels.
+/// True if a channel belongs to the layer or Cryptomatte of this name; an empty `layer` matches all channels.
 bool is_of_layer(const film::Plane& channel, const std::string& layer);
 
 /// Selects the channels to compare: R, G, B for an empty `layer`, else those of the layer or Cryptomatte of this name.

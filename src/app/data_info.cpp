@@ -17,7 +17,7 @@
 namespace orrery::app {
 namespace {
 
-/// Memory of a small machine.
+/// Fallback if the available memory is unknown: that of a small machine.
 constexpr std::uint64_t kUnknownMemory = std::uint64_t{4} << 30;
 
 void summarize(const data::Words& words, ColumnSummary& out) {

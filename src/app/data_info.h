@@ -14,9 +14,10 @@ namespace orrery::app {
 
 struct DataInfoRequest {
   std::filesystem::path file;
-  int frame = 1;                      ///< of the file
+  int frame = 1;                      ///< frame of the file, from 1
   std::optional<int> component = {};  ///< see data::OpenOptions
-  /// Columns are read together up to this size, at least one; 0: a quarter of the available memory.
+  /// Maximum size of the columns that are read together, at least one column, bytes; 0: a quarter of the available
+  /// memory.
   std::uint64_t table_bytes = 0;
 };
 
@@ -25,10 +26,10 @@ struct ColumnSummary {
   using Number = std::variant<std::int64_t, double>;
 
   data::ColumnInfo column;
-  std::optional<Number> minimum = {}, maximum = {};  ///< of the finite numbers; empty if there are none
+  std::optional<Number> minimum = {}, maximum = {};  ///< over the finite numbers; empty if there are none
   std::uint64_t nan_count = 0, infinite_count = 0;
-  std::uint64_t distinct = 0;           ///< number of different texts
-  std::vector<std::string> texts = {};  ///< up to kMaxTexts of them, in order of first appearance
+  std::uint64_t distinct = 0;           ///< number of distinct strings
+  std::vector<std::string> texts = {};  ///< the first kMaxTexts distinct strings, in order of first appearance
 
   static constexpr std::size_t kMaxTexts = 8;
 };
@@ -39,7 +40,7 @@ struct DataInfo {
   data::Format format = data::Format::kCsv;
   int frames = 1;
   int frame = 1;
-  data::FrameInfo described;  ///< with the columns that are computed from others
+  data::FrameInfo described;  ///< includes the columns that are computed from others
   std::vector<ColumnSummary> columns;
 };
 

@@ -15,7 +15,7 @@
 namespace orrery::app {
 namespace {
 
-/// Lengths in bytes beyond which texts of a file are shortened.
+/// Maximum lengths of strings from a file, bytes; longer ones are shortened.
 constexpr std::size_t kLongestText = 32;
 constexpr std::size_t kLongestTitle = 200;
 /// Number of assemblies that are printed as text.

@@ -23,7 +23,7 @@ struct DenoisedFile {
 /// Filters the noise of an EXR. Its parts, other channels, pixel types and attributes are kept; the attribute
 /// denoise::kAttribute is added.
 ///
-/// Errors     base::Error of every kind; kUsage if the output is the input, or a file is not an EXR; kBadData if the
+/// Errors     base::Error of any kind; kUsage if the output is the input, or a file is not an EXR; kBadData if the
 ///            image has no R, G and B
 DenoisedFile denoise_file(const Denoising& denoising);
 

@@ -14,8 +14,8 @@ namespace orrery::app {
 struct Development {
   std::filesystem::path input;                 ///< scene-linear image
   std::vector<std::filesystem::path> outputs;  ///< files of display formats
-  display::Settings display;                   ///< working space empty: that of the image, else lin_rec709
-  int bits = 0;                                ///< 0: the display's default
+  display::Settings display;  ///< if the working space is empty, that of the image is used, else lin_rec709
+  int bits = 0;               ///< 0: the display's default
 };
 
 /// Result of develop_file().
@@ -26,7 +26,7 @@ struct DevelopReport {
 
 /// Develops an image file for a display and writes all outputs.
 ///
-/// Errors     base::Error of every kind; kUsage if an output is not in a display format, or the input is
+/// Errors     base::Error of any kind; kUsage if an output is not in a display format, or the input is
 DevelopReport develop_file(const Development& development);
 
 }  // namespace orrery::app

@@ -33,9 +33,9 @@ struct PointsInfo {
 struct TextureInfo {
   std::string key;            ///< "material.earth.albedo"
   std::string type;           ///< "checker"
-  std::string file;           ///< of an image, as in the scene, with the frame number
-  int width = 0, height = 0;  ///< texels of an image
-  std::string color_space;    ///< of an image; empty: data
+  std::string file;           ///< image file as in the scene, with the frame number
+  int width = 0, height = 0;  ///< size of an image, texels
+  std::string color_space;    ///< colour space of an image; empty: data
 };
 
 /// Properties of a scene that are known before rendering.
@@ -53,9 +53,9 @@ struct SceneInfo {
   std::vector<std::string> layers, available_layers;  ///< layers requested in [output], and all that the scene supports
   std::vector<Feature> features;
   std::string precision, accelerator, isa;
-  std::string traversal;  ///< BVH traversal, as far as it is known before rendering
+  std::string traversal;  ///< BVH traversal, if known before rendering
   job::MemoryEstimate memory;
-  std::optional<job::LoadedBackground> background;  ///< of an image background
+  std::optional<job::LoadedBackground> background;  ///< set for an image background
   std::string background_file;
   std::vector<TextureInfo> textures;
   struct Setting {

@@ -15,7 +15,7 @@ std::uint64_t count_emitters(const compile::CompiledScene& compiled);
 /// Describes how light is sampled: "40 emitters; light and BSDF sampling; emitters by a light tree of 1.9 KiB". Empty
 /// without emitters and image background.
 ///
-/// `count`    of emitters
+/// `count`    number of emitters
 std::string lights_text(const compile::CompiledScene& compiled, std::uint64_t count);
 
 }  // namespace orrery::app

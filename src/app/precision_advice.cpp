@@ -65,7 +65,7 @@ std::vector<std::string> precision_advice(const compile::CompiledScene& compiled
   if (error > kVisible)
     advice.push_back(
         text("precision book: a sphere is %.1g radii from the camera; the error of the quadratic's discriminant is "
-             "about %.1g of its maximum there, so hits are missed or invented; use exact",
+             "about %.1g of its maximum there, so hits are missed, or spurious hits appear; use exact",
              p.farthest, error));
   if (p.smallest < 20 * kernel::kBookShortestDistance)
     advice.push_back(

@@ -8,7 +8,8 @@
 
 namespace orrery::app {
 
-/// Warnings about visible errors of the chosen precision, from the scene's ratios of distance and radius.
+/// Returns warnings about visible errors of the chosen precision, estimated from the scene's ratios of distance to
+/// radius.
 ///
 /// Result     one sentence per error with its size; empty for precision exact
 /// Precision  orders of magnitude, from the error terms of docs/numerics.md

@@ -36,7 +36,7 @@ constexpr ChunkColumns kOptional[] = {
 };
 constexpr const char* kDiameter = "particles/diameter";
 constexpr const char* kTypeId = "particles/typeid";
-/// Diameter of particles without one, by the schema.
+/// Default diameter of particles, as defined by the schema.
 constexpr float kDefaultDiameter = 1;
 
 class GsdReader final : public DataFile {
@@ -81,7 +81,7 @@ std::vector<double> GsdReader::setting(std::uint64_t frame, const char* name, st
   return out;
 }
 
-/// Returns the number of particles. It is backed by positions, so that memory can be allocated for it.
+/// Returns the number of particles. Positions for all of them exist, so that memory can be allocated safely.
 std::uint64_t GsdReader::rows_of(std::uint64_t frame) {
   const std::vector<double> count = setting(frame, "particles/N", 1);
   constexpr double kMaxRows = 1e15;

@@ -40,7 +40,7 @@ class GsdFile {
   const std::string& schema() const { return schema_; }
   std::uint64_t frame_count() const { return chunks_.empty() ? 0 : chunks_.back().frame + 1; }
 
-  /// Returns a chunk; null if the frame has none of this name.
+  /// Returns the chunk of this name; null if the frame has none.
   const GsdChunk* find(std::uint64_t frame, const std::string& name) const;
 
   /// Reads one component of all rows.

@@ -24,9 +24,9 @@ namespace {
 
 constexpr const char* kPositions = "Coordinates";
 constexpr const char* kIds = "ParticleIDs";
-/// Numbers of particle types are below this. Codes use up to 7.
+/// Upper bound of particle type numbers. Simulation codes use up to 7.
 constexpr int kMaxTypes = 16;
-/// Components of a quantity that become columns.
+/// Maximum number of components of a quantity that are read as columns.
 constexpr std::uint64_t kMaxComponents = 64;
 
 std::string group_name(int type) { return "PartType" + std::to_string(type); }
@@ -162,7 +162,7 @@ void SnapshotReader::choose_type(std::optional<int> wanted, const hdf5::Handle& 
     fail(file_, "the snapshot has several components", "select one with --component: " + list);
   type_ = wanted ? *wanted : filled.empty() ? present.front() : filled.front();
 
-  // What the header declares, over all files. Counts have 32 bits in older files, and a second word beside them.
+  // What the header declares, over all files. In older files, counts have 32 bits and an additional high word.
   info_.rows = rows_of(type_);
   const auto at = static_cast<std::size_t>(type_);
   const std::vector<double> low = header ? hdf5::attribute(header, "NumPart_Total") : std::vector<double>{};
@@ -243,7 +243,7 @@ Table SnapshotReader::read(int, const std::vector<std::string>& columns) {
 
 bool is_hdf5(const Signature& signature) {
   using namespace std::string_view_literals;
-  // The signature may come after a block of the user's.
+  // The signature may follow a user block.
   for (std::size_t at = 0; at < signature.head.size(); at = at == 0 ? 512 : 2 * at)
     if (std::string_view(signature.head).substr(at).starts_with("\x89HDF\r\n\x1a\n"sv)) return true;
   return false;

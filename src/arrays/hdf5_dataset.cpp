@@ -28,7 +28,7 @@ std::string last_error() {
   return text.empty() ? "unknown error" : text;
 }
 
-/// Column type and type in memory of stored numbers; the latter is negative if they are no numbers that we read.
+/// Column type and in-memory type of stored numbers; the latter is negative for unsupported types.
 struct Types {
   ColumnType column = ColumnType::kFloat64;
   hid_t memory = -1;

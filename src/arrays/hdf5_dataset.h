@@ -12,10 +12,10 @@
 #include "data/faults.h"
 #include "data/table.h"
 
-/// The part of the HDF5 library that the reader of snapshots uses, with its errors translated.
+/// Wrapper for the part of the HDF5 library that the snapshot reader uses; translates its errors.
 namespace orrery::arrays::hdf5 {
 
-/// Owns an identifier of the library.
+/// Owns an HDF5 identifier.
 class Handle {
  public:
   Handle() = default;
@@ -61,25 +61,25 @@ class Dataset {
   explicit operator bool() const { return static_cast<bool>(handle_); }
   std::uint64_t rows() const { return rows_; }
   std::uint64_t components() const { return components_; }
-  /// The column type of the values, without loss; int64 has the bits of uint64.
+  /// The column type that stores the values without loss. For uint64 it is int64, with the same bits.
   data::ColumnType type() const { return type_; }
 
   /// Checks that the rows are backed by data before memory is allocated for them.
   ///
   /// `limit`    maximum size after decompression, bytes
-  /// Errors     base::Error(kBadData) by `faults`
+  /// Errors     base::Error(kBadData), thrown through `faults`
   void require_data(std::uint64_t file_size, std::uint64_t limit, data::Faults& faults) const;
 
   /// Appends some components of all rows to columns of the dataset's type.
   ///
-  /// Errors     base::Error(kBadData) by `faults`: damaged data
+  /// Errors     base::Error(kBadData), thrown through `faults`: damaged data
   /// Cost       one pass over the dataset, however many components are read
   void append(const std::vector<std::pair<std::uint64_t, data::Values*>>& columns, data::Faults& faults) const;
 
  private:
   template <typename T>
   void append_as(const std::vector<std::pair<std::uint64_t, data::Values*>>& columns, data::Faults& faults) const;
-  /// Number of rows to read at once: whole chunks, so that each is decompressed once.
+  /// Number of rows to read at a time: whole chunks, so that each is decompressed only once.
   std::uint64_t block_rows() const;
 
   std::string name_;

@@ -27,12 +27,12 @@ constexpr std::string_view kLasSignature = "LASF"sv;
 constexpr std::size_t kShortestHeader = 227;    ///< versions 1.0 to 1.2
 constexpr std::size_t kHeader14 = 375;          ///< version 1.4, with a count of 64 bits
 constexpr std::size_t kVariableRecord = 54;     ///< header of a variable-length record
-constexpr std::uint8_t kCompressedBits = 0xC0;  ///< of the point format
+constexpr std::uint8_t kCompressedBits = 0xC0;  ///< bits of the point format that indicate compression
 
 /// A column that is a number of the record, some bits of it, or a number times a scale plus an offset.
 struct LasColumn {
   RecordField field;
-  std::uint8_t shift = 0, mask = 0xFF;  ///< of numbers of 8 bits
+  std::uint8_t shift = 0, mask = 0xFF;  ///< bits of an 8-bit number
   bool is_scaled = false;
   double scale = 1, offset = 0;
 

@@ -20,7 +20,7 @@ using namespace data;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
-/// Appends a character in UTF-8; false if it is none.
+/// Appends a character in UTF-8; false if the code point is invalid.
 bool append_utf8(std::string& out, std::uint32_t c) {
   const auto add = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
   if (c < 0x80) {
@@ -44,7 +44,7 @@ bool append_utf8(std::string& out, std::uint32_t c) {
   return true;
 }
 
-/// Decodes a text, which is padded by zeros; false if a character is invalid.
+/// Decodes a zero-padded string; false if a character is invalid.
 bool decode_text(const NpyField& field, const char* from, std::string& out) {
   out.clear();
   if (field.kind == NpyField::Kind::kBytes) {
@@ -108,7 +108,7 @@ std::vector<NpyColumn> npy_columns(const NpyHeader& header, const std::string& n
 }
 
 std::uint64_t npy_data_bytes(const NpyHeader& header) {
-  // Any number of items without bytes would fit into any file.
+  // Any number of zero-size items would fit into any file.
   std::uint64_t bytes = header.item_size > 0 ? header.item_size : std::numeric_limits<std::uint64_t>::max();
   for (const std::uint64_t length : header.shape) {
     if (length == 0) return 0;

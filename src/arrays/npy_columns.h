@@ -16,7 +16,7 @@ struct NpyColumn {
   std::string name;
   NpyField field;
   std::uint64_t begin = 0;   ///< offset of the first record that contains it
-  std::uint64_t offset = 0;  ///< in the record
+  std::uint64_t offset = 0;  ///< offset in the record
   std::uint64_t stride = 0;  ///< size of a record
 
   data::ColumnType type() const {
@@ -24,17 +24,17 @@ struct NpyColumn {
   }
 };
 
-/// Returns the columns of an array whose first dimension counts the rows: of a structured array its fields, otherwise
-/// the columns of the second dimension.
+/// Returns the columns of an array whose first dimension counts the rows: the fields of a structured array, else the
+/// columns of the second dimension.
 ///
-/// `name`     of a plain array
-/// `so_far`   columns of the file; the new ones are appended
+/// `name`     name of a plain array
+/// `so_far`   columns of the file so far; the new ones are appended
 /// Domain     one dimension, or two for a plain array
 std::vector<NpyColumn> npy_columns(const NpyHeader& header, const std::string& name,
                                    std::vector<data::ColumnInfo>& so_far);
 
-/// Returns the size of an array's data, bytes; the largest number if it is larger than any file, or if items without
-/// bytes are declared.
+/// Returns the size of an array's data, bytes; the maximum integer if it is larger than any file, or if the header
+/// declares items of size zero.
 std::uint64_t npy_data_bytes(const NpyHeader& header);
 
 /// Returns the shape for messages: "(100, 3)", "(100,)".

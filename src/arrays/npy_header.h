@@ -16,10 +16,10 @@ struct NpyField {
 
   std::string name;  ///< empty for a plain array
   Kind kind = Kind::kNumber;
-  data::NumberType type = data::NumberType::kFloat64;  ///< of a kNumber
-  std::uint64_t size = 0;                              ///< of a component, bytes
+  data::NumberType type = data::NumberType::kFloat64;  ///< type of a kNumber
+  std::uint64_t size = 0;                              ///< size of a component, bytes
   std::uint64_t components = 1;
-  std::uint64_t offset = 0;  ///< in the item, bytes
+  std::uint64_t offset = 0;  ///< offset in the item, bytes
   bool is_big_endian = false;
 };
 
@@ -38,10 +38,10 @@ struct NpyHeader {
 /// Maximum length of a header, bytes. NumPy itself refuses to read more than 10,000.
 inline constexpr std::uint64_t kLongestNpyHeader = std::uint64_t{1} << 20;
 
-/// Maximum length of a text, bytes or characters: more is a damaged header.
+/// Maximum length of a string, bytes or characters; a header that declares more is damaged.
 inline constexpr std::uint64_t kLongestNpyText = std::uint64_t{1} << 16;
 
-/// Returns whether bytes begin like a file of NumPy.
+/// Returns whether bytes begin with NumPy's signature.
 bool has_npy_signature(std::string_view head);
 
 /// Returns the offset of the data, according to the first 12 bytes; at most kLongestNpyHeader + 12 unless it is wrong.
@@ -50,7 +50,7 @@ bool has_npy_signature(std::string_view head);
 /// Result     0 if `head` is too short
 std::uint64_t npy_header_end(std::string_view head);
 
-/// Parses a header of version 1, 2 or 3. Items are numbers, texts, or records of them and of arrays of them.
+/// Parses a header of version 1, 2 or 3. Items are numbers, strings, or records of these and of arrays of these.
 ///
 /// `head`     the file up to npy_header_end(), or all of it
 /// Result     an empty string, or what is wrong and what to do

@@ -24,7 +24,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// More members than that are not a file of columns.
+/// Maximum number of members of an archive.
 constexpr std::size_t kMaxMembers = 10000;
 
 struct Member {
@@ -52,7 +52,7 @@ Member described(ZipReader& zip) {
   const bool is_table =
       header.shape.size() == 1 || (header.shape.size() == 2 && !header.is_structured && header.shape[1] <= kMaxColumns);
   if (member.fault.empty() && !is_table)
-    member.fault = fmt::format("the shape {} is not that of columns", shape_text(header));
+    member.fault = fmt::format("the shape {} is not that of one or more columns", shape_text(header));
   return member;
 }
 
@@ -112,7 +112,8 @@ class NpzFile final : public SingleFrame {
   }
 
  private:
-  /// Makes columns of an array of as many rows as there are positions. Others are no columns: times, boxes, images.
+  /// Makes columns from an array if it has as many rows as there are positions. Other arrays, such as times, boxes and
+  /// images, are not columns.
   void add_columns(Member& member) {
     if (!member.fault.empty() || member.header.rows() != info_.rows) return;
     const std::vector<ColumnInfo> before = info_.columns;
@@ -131,7 +132,7 @@ class NpzFile final : public SingleFrame {
     return listed(names);
   }
 
-  /// Decompresses an array, of which at most `limit` bytes, and subtracts its size from the limit.
+  /// Decompresses an array, at most `limit` bytes, and subtracts its size from the limit.
   static std::vector<char> array_bytes(ZipReader& zip, const Member& member, std::uint64_t& limit, Faults& faults) {
     const std::uint64_t data = npy_data_bytes(member.header), begin = member.header.begin;
     if (data > limit || begin > limit - data)

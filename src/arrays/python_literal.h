@@ -14,15 +14,15 @@ struct PythonLiteral {
 
   Kind kind = Kind::kText;
   std::string text;
-  std::uint64_t integer = 0;         ///< also 0 or 1 of a kBool
-  std::vector<PythonLiteral> items;  ///< of a list or tuple; keys and values of a dict in turn
+  std::uint64_t integer = 0;         ///< for a kBool, 0 or 1
+  std::vector<PythonLiteral> items;  ///< elements of a list or tuple; keys and values of a dict alternate
 
   bool is(Kind k) const { return kind == k; }
   /// Returns the value of a key of a dict; null if there is none.
   const PythonLiteral* find(std::string_view key) const;
 };
 
-/// Parses texts, non-negative integers, True, False, lists, tuples and dicts, up to 16 levels deep.
+/// Parses strings, non-negative integers, True, False, lists, tuples and dicts, up to 16 levels deep.
 ///
 /// Result     an empty string, or what is wrong
 std::string parse_python_literal(std::string_view source, PythonLiteral& out);

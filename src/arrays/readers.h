@@ -6,7 +6,7 @@
 #include "data/data_file.h"
 #include "data/forward.h"
 
-/// One function per format: recognises it by its signature, and opens it. Used only by particles::open().
+/// One function per format, which recognises a file by its signature and opens it. Used only by particles::open().
 namespace orrery::arrays {
 
 bool is_npy(const data::Signature& signature);

@@ -122,7 +122,7 @@ bool take_length(Stream& stream, const VtkStorage& storage, std::uint64_t& out) 
 /// Decompresses an array: number of blocks, size of a block, size of the last one if it is smaller, compressed sizes,
 /// blocks.
 std::string decompress(Stream& stream, const VtkStorage& storage, std::vector<char>& out) {
-  /// No zlib stream expands more than that.
+  /// Maximum expansion of a zlib stream.
   constexpr std::uint64_t kMaxExpansion = 1040;
   constexpr const char* kBadHeader = "the header of the compressed data is wrong";
   std::uint64_t blocks = 0, block_bytes = 0, last_bytes = 0;

@@ -16,7 +16,7 @@ namespace orrery::arrays {
 struct VtkStorage {
   bool is_big_endian = false;
   bool has_long_headers = false;  ///< header_type is UInt64
-  bool is_compressed = false;     ///< by zlib, in blocks
+  bool is_compressed = false;     ///< with zlib, in blocks
   std::uint64_t limit = 0;        ///< maximum size of the decompressed data of an array, bytes
 };
 
@@ -31,7 +31,8 @@ struct VtkBytes {
 /// Finds the raw array at an offset of a file, and decompresses it.
 ///
 /// Result     an empty string, or what is wrong
-/// Cost       memory for the bytes that exist, whatever the header of the array declares; none if it is not compressed
+/// Cost       memory for the bytes that exist, regardless of the size that the array's header declares; none if it is
+///            not compressed
 std::string find_vtk_raw(const std::shared_ptr<const data::ByteSource>& file, std::uint64_t offset,
                          const VtkStorage& storage, VtkBytes& out);
 

@@ -19,7 +19,7 @@ using namespace data;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
-/// Returns the offset of a text in a file; the size of the file if it does not occur.
+/// Returns the offset of a string in a file; the size of the file if it does not occur.
 std::uint64_t find(const ByteSource& bytes, std::string_view text) {
   constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
   for (std::uint64_t at = 0; at < bytes.size(); at += kBlockBytes) {

@@ -19,7 +19,7 @@ class VtkDocument {
   ///
   /// `limit`    maximum size of the decompressed data of an array, bytes
   /// Errors     base::Error(kBadData) for malformed XML, and with a remedy for other types and compressions
-  /// Cost       memory for the file without appended raw data
+  /// Cost       memory for the file, excluding appended raw data
   VtkDocument(std::shared_ptr<const data::ByteSource> bytes, std::uint64_t limit);
 
   /// Returns <PolyData> or <UnstructuredGrid>.
@@ -32,7 +32,7 @@ class VtkDocument {
 
   /// Returns an attribute that is a non-negative integer.
   ///
-  /// `standard` its text if it is missing
+  /// `standard` text to use if the attribute is missing
   /// Errors     base::Error(kBadData)
   std::uint64_t integer(pugi::xml_node node, const char* name, const char* standard = "") const;
 
@@ -43,7 +43,7 @@ class VtkDocument {
   void check_root();
 
   std::shared_ptr<const data::ByteSource> bytes_;
-  std::string text_;  ///< which document_ refers to
+  std::string text_;  ///< referenced by document_
   pugi::xml_document document_;
   pugi::xml_node root_;
   std::uint64_t raw_begin_ = 0;  ///< offset of appended raw data; 0: there are none

@@ -5,10 +5,10 @@
 
 namespace orrery::base {
 
-/// Returns the file that a symbolic link names, also if it does not exist; other paths as they are.
+/// Returns the target of a symbolic link, even if it does not exist; other paths unchanged.
 std::filesystem::path link_target(std::filesystem::path path);
 
-/// A file that appears under its name complete, or not at all.
+/// A file that appears under its final name only when it is complete.
 ///
 /// The caller writes to a temporary file in the same directory, which commit() syncs and renames. A file that is not
 /// committed is removed, even if an exception is thrown or a signal ends the process (remove_unfinished_files).

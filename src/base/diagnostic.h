@@ -12,7 +12,7 @@ enum class Severity { kError, kWarning };
 struct Diagnostic {
   Severity severity = Severity::kError;
   std::string file;         ///< path as given by the user, or command-line option: "--samples"
-  int line = 0;             ///< 1-based; 0: no line (a binary file, a whole file)
+  int line = 0;             ///< 1-based; 0: no line (a binary file, or the whole file)
   int column = 0;           ///< 1-based, in bytes of the line; 0: no source line
   int width = 1;            ///< bytes to underline from `column`
   std::string text;         ///< what is wrong: the key, the value and the allowed range
@@ -23,8 +23,8 @@ struct Diagnostic {
 /// A diagnostic about a whole file.
 Diagnostic file_diagnostic(Severity severity, std::string file, std::string text, std::string remedy = {});
 
-/// Formats a diagnostic for the user: `file:line:column: error: text; remedy`, the source line, a caret. Without a line
-/// the column is left out as well: `--samples: error: text`.
+/// Formats a diagnostic for the user: `file:line:column: error: text; remedy`, the source line, a caret. Without a
+/// line, the column is omitted as well: `--samples: error: text`.
 ///
 /// Result     one or more lines, each ended by a newline; control characters are replaced by question marks
 std::string formatted(const Diagnostic& diagnostic);

@@ -34,7 +34,7 @@ class HashFilter {
   bool has(std::uint64_t hash) const { return (words_[hash >> shift_] & bits(hash)) == bits(hash); }
 
  private:
-  /// Both bits are in one word: one cache miss per hash.
+  /// Both bits are in the same word, which costs one cache miss per hash.
   static std::uint64_t bits(std::uint64_t hash) {
     return std::uint64_t{1} << (hash >> 8 & 63) | std::uint64_t{1} << (hash >> 14 & 63);
   }
@@ -91,12 +91,12 @@ struct Duplicate {
   std::size_t index, first;
 };
 
-/// Finds all items of 0 .. count - 1 whose key equals that of an earlier item, by ascending index.
+/// Finds all items of 0 .. count - 1 whose key equals that of an earlier item, in ascending order.
 ///
 /// `key_of(i)` returns N numbers as a std::array; -0 equals 0, and a key with a NaN equals no other.
 /// Errors     base::Error(kStopped) in a StopScope
 /// Cost       on two busy cores 0.4 s for ten million items, 4 s for a hundred million; memory 1 to 3 bytes per item,
-///            and 40 bytes per repeated item
+///            plus 40 bytes per duplicate
 template <std::size_t N, class KeyOf>
 std::vector<Duplicate> find_duplicates(std::size_t count, KeyOf key_of) {
   // Sorting the hashes of a hundred million keys would take a quarter of the memory of their spheres. The filters drop
@@ -132,7 +132,8 @@ std::vector<Duplicate> find_duplicates(std::size_t count, KeyOf key_of) {
   });
   std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.hash != b.hash ? a.hash < b.hash : a.index < b.index; });
-  std::vector<std::size_t> firsts;  // of one hash; more than one only if different keys have the same hash
+  std::vector<std::size_t>
+      firsts;  // first items with one hash; more than one only if different keys have the same hash
   for (std::size_t e = 0; e < entries.size(); ++e) {
     if (e == 0 || entries[e].hash != entries[e - 1].hash) firsts.clear();
     const std::size_t i = entries[e].index;

@@ -34,7 +34,7 @@ std::vector<FileSet::Key> FileSet::keys_of(const fs::path& file) {
   } else {
     entry = link_target(file);
   }
-  // The name is a key of existing files, too: a file may be replaced, and get another inode, before the next lookup.
+  // Existing files are also registered by name: a file may be replaced, and get another inode, before the next lookup.
   const Folder& folder = folder_of(entry);
   std::error_code ignored;
   const std::string name =

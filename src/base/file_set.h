@@ -13,8 +13,8 @@ namespace orrery::base {
 /// The files that a run reads and writes. Every command adds all of its files here before it writes any, so that no
 /// input is overwritten and no two outputs are the same file.
 ///
-/// Files are compared by identity, not by path: by device and inode if they exist, else by folder and name. A symbolic
-/// link, a hard link and another spelling of a path are the same file.
+/// Files are compared by identity, not by path: by device and inode if they exist, else by folder and name. Symbolic
+/// links, hard links and different spellings of a path count as the same file.
 class FileSet {
  public:
   /// Adds an input file. Reading a file twice is not a conflict.

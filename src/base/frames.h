@@ -12,7 +12,7 @@ namespace orrery::base {
 /// Errors     base::Error(kUsage) for invalid ranges, numbers of more than seven digits and more than 100,000 frames
 std::vector<int> parse_frames(const std::string& text);
 
-/// Formats frames as the shortest such range: "1,3,7-9".
+/// Formats frames as the shortest range that parse_frames() accepts: "1,3,7-9".
 ///
 /// Domain     ascending frames
 std::string frames_text(const std::vector<int>& frames);

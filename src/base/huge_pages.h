@@ -10,13 +10,13 @@
 
 namespace orrery::base {
 
-/// Allocates large arrays in huge pages, where the system has them: rays reach a different page with nearly every step,
-/// and the processor keeps few addresses of small pages.
+/// Allocates large arrays in huge pages, where the system supports them: nearly every step of a ray touches a different
+/// page, and the TLB holds only a few small pages.
 template <class T>
 struct HugePageAllocator {
   using value_type = T;
 
-  /// Of a huge page; smaller arrays are allocated as usual.
+  /// Size of a huge page, bytes; smaller arrays are allocated as usual.
   static constexpr std::size_t kPage = std::size_t{1} << 21;
 
   HugePageAllocator() = default;

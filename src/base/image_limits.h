@@ -9,7 +9,7 @@ namespace orrery::base {
 inline constexpr int kLargestSide = 65536;
 
 /// Maximum number of light groups: in the layer `light_groups` each takes 384 bytes of memory per pixel (8 lobes, 3
-/// channels, sums of 16 bytes) and 27 channels of the file.
+/// channels, 16 bytes per sum) and 27 channels in the file.
 inline constexpr std::size_t kMaxLightGroups = 64;
 
 }  // namespace orrery::base

@@ -6,7 +6,7 @@
 
 namespace orrery::base {
 
-/// Sets the folder of the modules; by default that of the executable. Call before the first load_module().
+/// Sets the folder of the modules; the default is that of the executable. Call before the first load_module().
 void set_module_folder(std::filesystem::path folder);
 
 /// Loads the module of a room, `orrery-ROOM.so` in the folder of the modules, and returns the result of its function

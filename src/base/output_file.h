@@ -9,7 +9,7 @@
 
 namespace orrery::base {
 
-/// A buffered output file that appears under its name when it is complete.
+/// A buffered output file that appears under its final name only when it is complete.
 class OutputFile {
  public:
   /// Creates the temporary file.
@@ -21,7 +21,7 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// The bytes to append to; flush() writes them once there are enough.
+  /// The buffer to append to; flush() writes it once it is large enough.
   std::string& buffer() { return buffer_; }
   /// Writes the buffer if it is large enough.
   ///
@@ -29,7 +29,7 @@ class OutputFile {
   void flush();
   /// Writes the rest and commits the file.
   ///
-  /// `synced`   false: by AtomicFile::commit_unsynced
+  /// `synced`   false: commit with AtomicFile::commit_unsynced
   /// Errors     base::Error(kIo)
   void finish(bool synced = true);
 
@@ -42,7 +42,7 @@ class OutputFile {
   std::string buffer_;
 };
 
-/// Writes a text file, which appears under its name when it is complete.
+/// Writes a text file, which appears under its final name only when it is complete.
 ///
 /// `synced`   see OutputFile::finish
 /// Errors     those of OutputFile

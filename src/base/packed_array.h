@@ -9,11 +9,11 @@
 
 namespace orrery::base {
 
-/// Unsigned integers in one to four bytes each, as many as the largest needs.
+/// Unsigned integers in one to four bytes each, depending on the largest.
 class PackedArray {
  public:
   PackedArray() = default;
-  /// `size` elements, each `largest`, which is the maximum value.
+  /// Creates `size` elements with the value `largest`, which is the maximum of the array.
   PackedArray(std::size_t size, std::uint32_t largest) : size_(size) {
     while (width_ < 4 && largest >> (8 * width_) != 0) ++width_;
     mask_ = 0xFFFFFFFFu >> (32 - 8 * width_);
@@ -29,10 +29,10 @@ class PackedArray {
     std::memcpy(&value, address(i), sizeof(value));
     return value & mask_;
   }
-  /// Threads may set different elements at the same time.
+  /// Threads may set different elements concurrently.
   void set(std::size_t i, std::uint32_t value) noexcept { std::memcpy(&bytes_[i * width_], &value, width_); }
 
-  /// Where an element is, for prefetching.
+  /// The address of an element, for prefetching.
   const std::uint8_t* address(std::size_t i) const noexcept { return &bytes_[i * width_]; }
 
  private:

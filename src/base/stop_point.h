@@ -6,12 +6,12 @@
 
 namespace orrery::base {
 
-/// While it exists, a flag can stop long computations that this thread starts.
+/// During its lifetime, a flag can stop long computations that this thread starts.
 class StopScope {
  public:
   /// Sets the flag of this thread.
   ///
-  /// `flag`     true stops them; null: nothing does. Must outlive the scope
+  /// `flag`     true stops the computations; null: nothing stops them. Must outlive the scope
   explicit StopScope(const std::atomic<bool>* flag) noexcept;
   ~StopScope();
   StopScope(const StopScope&) = delete;
@@ -22,7 +22,7 @@ class StopScope {
 };
 
 /// A cancellation point of a long computation. Holds the flag of the innermost StopScope of the thread that created it,
-/// and can check it on any thread. Outside of a scope it never stops.
+/// and can check it on any thread. Outside any scope, it never stops.
 class StopPoint {
  public:
   StopPoint() noexcept;

@@ -14,15 +14,15 @@ namespace orrery::base {
 /// Formats a size in bytes: "49.4 MiB".
 std::string bytes_text(std::uint64_t bytes);
 
-/// Replaces control characters, which could control the terminal, by question marks; a tab stays.
+/// Replaces control characters, which could control the terminal, by question marks; keeps tabs.
 std::string printable(std::string_view text);
-/// The same for a text of several lines: ends of lines stay, too.
+/// The same for a text of several lines: also keeps newlines.
 std::string printable_lines(std::string_view text);
 
-/// Returns a text with ASCII letters in lower case.
+/// Converts ASCII letters to lower case.
 std::string lower(std::string_view text);
 
-/// Quotes a word for a POSIX shell; a word without special characters stays as it is.
+/// Quotes a word for a POSIX shell; a word without special characters is returned unchanged.
 std::string shell_quoted(const std::string& word);
 
 /// Returns the candidate closest to a misspelt word.
@@ -35,7 +35,7 @@ std::string closest(std::string_view wrong, const std::vector<std::string>& cand
 /// Returns "did you mean `samples`?", or an empty string if no candidate is close.
 std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& candidates);
 
-/// Returns whether a list has a name.
+/// Returns whether a list contains a name.
 bool contains(const std::vector<std::string>& names, std::string_view name);
 
 /// Joins names with commas: "a, b, c".

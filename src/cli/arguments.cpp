@@ -76,7 +76,7 @@ Command* Command::add_subcommand(const std::string& name, const std::string& des
 void Command::require_subcommand() { app_->require_subcommand(1); }
 
 Option* Command::added(CLI::Option& option) {
-  // --frames "$frames" with an unset variable would otherwise be the same as no option.
+  // Otherwise, --frames "$frames" with an unset variable would be equivalent to no option.
   option.check(validator([](const std::string& value) { return value.empty() ? "the value is empty" : ""; }));
   return &options_.emplace_back(option);
 }

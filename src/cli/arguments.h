@@ -31,18 +31,18 @@ class Option {
   Option* type_name(const std::string& name);
   /// Rejects values that fail `check`, and keeps the others as typed.
   Option* check(Check check);
-  /// Rejects values that fail `check`, and replaces the others by its output.
+  /// Rejects values that fail `check`, and replaces the others with its output.
   Option* transform(Check check);
   Option* excludes(const Option* other);
-  /// Takes all values up to the next option.
+  /// Makes the option take all values up to the next option.
   Option* take_all();
-  /// Can be given several times, with one value each time.
+  /// Allows the option to be given several times, with one value each.
   Option* repeatable();
-  /// Number of times that it was given.
+  /// Number of times that the option was given.
   std::size_t count() const;
-  /// Its arguments as typed: {"-o", "a.exr", "-o", "b.png"}.
+  /// The option's arguments as typed: {"-o", "a.exr", "-o", "b.png"}.
   std::vector<std::string> arguments() const;
-  /// Its heading in the help.
+  /// The option's heading in the help.
   std::string heading() const;
 
  private:
@@ -52,7 +52,7 @@ class Option {
 
 /// A command with its options, or the program with its commands. Its options and subcommands live as long as it does.
 ///
-/// Domain     variables of options outlive it
+/// Domain     the variables that options write to outlive the command
 class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}
@@ -75,12 +75,12 @@ class Command {
                      const std::string& description);
   Option* add_flag(const std::string& names, bool& variable, const std::string& description);
 
-  /// The arguments that gave the options under a heading of the help, as typed.
+  /// The arguments, as typed, of the options listed under a heading of the help.
   std::vector<std::string> arguments(const std::string& heading) const;
 
-  /// The heading of commands added from now on, in the program's help.
+  /// Sets the heading, in the program's help, of commands that are added from now on.
   void heading(const std::string& text);
-  /// Text below the options in the help.
+  /// Sets the text below the options in the help.
   void footer(const std::string& text);
   /// Calls the function after parsing, if the command line names this command.
   void callback(std::function<void()> function);
@@ -96,7 +96,7 @@ class Command {
   std::deque<Command> subcommands_;
 };
 
-/// While it exists, options added to a command are listed under its heading in the help.
+/// During its lifetime, options that are added to a command are listed under its heading in the help.
 class OptionGroup {
  public:
   OptionGroup(Command& command, const std::string& heading);

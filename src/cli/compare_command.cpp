@@ -98,7 +98,7 @@ int compare(const CompareOptions& options) {
 
 void add_compare(Command& program, Action& action) {
   const auto options = std::make_shared<CompareOptions>();
-  Command& command = *program.add_subcommand("compare", "Compare two images by error metrics");
+  Command& command = *program.add_subcommand("compare", "Compare two images with error metrics");
   command.add_option("A", options->picture, "Image to compare")->required()->type_name("FILE");
   command.add_option("B", options->reference, "Reference image")->required()->type_name("FILE");
   command

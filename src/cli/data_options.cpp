@@ -44,7 +44,7 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
     if (error == std::errc() && stop == end) {
       if (!(value > 0) || !std::isfinite(value)) base::refuse("--radius: must be above 0");
       if (points.radius.scale != 1)
-        base::refuse("--radius-scale is for radii of the data; multiply the number of --radius");
+        base::refuse("--radius-scale applies to radii of the data; scale the number in --radius instead");
       points.radius.value = value;
     } else {
       points.radius.column = arguments.radius;
@@ -116,7 +116,7 @@ void add_look_options(Command& command, DataArguments& arguments, plot::DataOpti
       ->type_name("X|COLUMN");
   command
       .add_option("--radius-scale", points.radius.scale,
-                  "Factor for radii of the data and for the default radius, e.g. 0.5 for a column of diameters")
+                  "Scale factor for radii of the data and for the default radius, e.g. 0.5 for a column of diameters")
       ->check(real_number(1e-30, 1e30))
       ->type_name("X");
   command

@@ -10,7 +10,7 @@ namespace orrery::cli {
 class Command;
 class Option;
 
-/// Texts of the data options that need further parsing.
+/// Arguments of the data options that need further parsing.
 struct DataArguments {
   std::string frame, frames, radius, range, slice, replicate, component;
   const Option* map = nullptr;
@@ -19,7 +19,7 @@ struct DataArguments {
 // The options that all commands on data files share. Values go to `data`, or to `arguments` and then to `data` by
 // read_data_options().
 //
-// Domain     called once; `arguments` and `data` do not move until the command line is parsed
+// Domain     called once; `arguments` and `data` must not move until the command line is parsed
 
 /// Adds FILE, the data file.
 void add_data_file(Command& command, plot::DataOptions& data);

@@ -34,12 +34,14 @@ std::string text_of(const app::Denoising& denoising, const app::DenoisedFile& do
                     denoising.input.string(), base::joined(report.missing),
                     report.has_guides ? "noise was estimated from the beauty" : "only the beauty guided the filter"));
   if (report.bad_pixels > 0)
-    out += base::warning_line(fmt::format(
-        "{} pixels have no samples, are not finite or too large; they were left as they are", report.bad_pixels));
+    out += base::warning_line(
+        fmt::format("{} pixels have no samples, or values that are not finite or too large; they were not changed",
+                    report.bad_pixels));
   if (!done.written.other_parts.empty())
-    out += base::warning_line(fmt::format(
-        "the parts {} have channels R, G and B of their own and were copied; denoise them as files of their own",
-        base::joined(done.written.other_parts)));
+    out +=
+        base::warning_line(fmt::format("the parts {} have separate channels R, G and B and were copied unchanged; to "
+                                       "denoise them, save them as separate files",
+                                       base::joined(done.written.other_parts)));
   if (done.written.clamped > 0)
     out += base::warning_line(fmt::format("{} values were clamped to the range of half", done.written.clamped));
   return out;

@@ -14,7 +14,7 @@ inline constexpr const char* kDisplayOptions = "Display options";
 /// Origin of the default display settings in the help.
 enum class DisplayDefaults { kOfScene, kOfConfig };
 
-/// Adds the options of a display transform. `Settings` is display::Settings.
+/// Adds the options of the display transform. `Settings` is display::Settings.
 template <class Settings>
 void add_view_options(Command& command, Settings& settings, DisplayDefaults defaults) {
   const std::string scene = defaults == DisplayDefaults::kOfScene ? "the scene's, or " : "";

@@ -51,8 +51,9 @@ void add_final(Command& generate, const std::shared_ptr<GenerateOptions>& option
       .add_option("--grid", options->final_scene.grid, "Grid cells from the centre to the edge, 0 to 1000; default: 11")
       ->transform(whole_number(0, generate::kLargestFinalGrid))
       ->type_name("N");
-  command.add_flag("--moving", options->final_scene.moving,
-                   "The variant in The Next Week: checkered ground, small spheres that move while the shutter is open");
+  command.add_flag(
+      "--moving", options->final_scene.moving,
+      "Generate the variant in The Next Week: checkered ground, small spheres that move while the shutter is open");
   command.footer(
       "Examples:\n"
       "  orrery generate final -o final.toml --seed 7\n"
@@ -158,7 +159,7 @@ void add_env(Command& generate, const std::shared_ptr<GenerateOptions>& options,
 }
 
 void add_planet(Command& generate, const std::shared_ptr<GenerateOptions>& options, Action& action) {
-  Command& command = *generate.add_subcommand("planet", "A map of a planet for textures: continents, ice and clouds");
+  Command& command = *generate.add_subcommand("planet", "A planet map for textures: continents, ice and clouds");
   command.add_option("-o,--output", options->output, "EXR file to write")->required()->type_name("FILE");
   add_quiet(command, *options);
   command.add_option("--seed", options->planet_seed, "Random seed; default: 1")

@@ -6,12 +6,12 @@
 
 namespace orrery::cli {
 
-/// Prints a message to stderr and to the log, if open.
+/// Prints a message to stderr, and to the log if it is open.
 ///
 /// Domain     whole lines
 void print_message(const std::string& text);
 
-/// Writes a message to the log only, if open.
+/// Writes a message to the log only, if it is open.
 void log_message(const std::string& text);
 
 /// Opens the log. Each message line is appended to it with UTC time and process id. Lines are appended atomically, so

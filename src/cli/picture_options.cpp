@@ -38,7 +38,7 @@ void PictureOptions::add_to(Command& command, job::Job& job, bool allows_deep) {
                   "Refuse to start if the estimated disk space exceeds SIZE, e.g. 8G; default: free space")
       ->transform(byte_size())
       ->type_name("SIZE");
-  command.add_flag("--denoise", job.denoise, "Denoise the images; shards keep what merge --denoise needs");
+  command.add_flag("--denoise", job.denoise, "Denoise the images; shards store the data for merge --denoise");
   command.add_flag("--reproducible", job.outputs.reproducible,
                    "Omit run-dependent metadata (date, render time, accelerator, instruction set) from EXR headers");
 }

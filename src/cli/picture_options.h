@@ -19,11 +19,11 @@ class PictureOptions {
  public:
   /// Adds the options to a command.
   ///
-  /// `allows_deep`  with --deep
+  /// `allows_deep`  adds --deep
   /// Domain         called once; neither this nor `job` moves until the command line is parsed
   void add_to(Command& command, job::Job& job, bool allows_deep = true);
 
-  /// Returns a warning for each kind of option that changes none of the files, one per line.
+  /// Returns a warning for each kind of option that affects none of the files, one per line.
   ///
   /// `shows_display`  a preview or a legend uses the display transform
   std::string unused_options(const job::Job& job, bool shows_display) const;

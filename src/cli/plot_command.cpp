@@ -53,7 +53,7 @@ void take_override(const std::vector<format::Override>& overrides, const std::st
     if (override.text.starts_with(key + "=")) value = std::max(1, integer_of(override.text.substr(key.size() + 1)));
 }
 
-/// The scene of a plot before there is one: what the overrides of tables that every scene has make of it, checked.
+/// A provisional scene with only the overrides of tables that every scene has, validated.
 ///
 /// `develops` see job::SceneRequest
 job::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments,
@@ -69,7 +69,7 @@ job::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments
   return job::load_scene(request);
 }
 
-/// The files that plot writes besides those of a render.
+/// The files that plot writes in addition to those of a render.
 std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
   std::vector<job::OutputFile> out;
   if (!arguments.save_scene.empty()) out.push_back({arguments.save_scene, "--save-scene"});
@@ -77,7 +77,8 @@ std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
   return out;
 }
 
-/// Refuses what would fail after all frames were read: names and formats of outputs, layers, colour names.
+/// Checks early what would otherwise fail after all frames have been read: names and formats of outputs, layers, colour
+/// names.
 void check_request(const PlotArguments& arguments, const std::vector<format::Override>& overrides,
                    const std::vector<int>& frames) {
   farm::Batch batch = arguments.render.batch;
@@ -93,14 +94,14 @@ void check_request(const PlotArguments& arguments, const std::vector<format::Ove
   job::check_layers(job, settings_of(job, arguments, overrides, job.outputs.has_display_format()).read.scene);
 }
 
-/// The choices that are not those of plot::make_plot().
+/// The choices that are not made by plot::make_plot().
 void add_choices(const job::Job& job, const plot::PlotOptions& plot, const std::vector<format::Override>& overrides,
                  plot::PlotScene& made) {
   if (plot.style == plot::Style::kFlat && !job.sampling.noise && !job.sampling.seconds &&
       !is_set(overrides, "render.samples"))
     made.choices.emplace_back("samples 100: without shading there is hardly any noise");
   if (job.outputs.has_display_format() && plot.display.view.empty() && made.view == plot::kPlainView)
-    made.choices.emplace_back(fmt::format("view transform {}: colours stay those of the map", made.view));
+    made.choices.emplace_back(fmt::format("view transform {}: colours match the colour map", made.view));
 }
 
 void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) {
@@ -111,10 +112,10 @@ void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) 
   print_message(text);
 }
 
-/// The scene with the settings of the command line, so that rendering it needs none of them again.
+/// The scene with the settings of the command line applied, so that rendering it does not need them again.
 std::string saved_text(const std::string& text, std::vector<format::Override> settings,
                        const display::Settings& display) {
-  // make_plot() has these two.
+  // make_plot() handles these two.
   std::erase_if(settings, [](const format::Override& setting) {
     return setting.text.starts_with("image.width=") || setting.text.starts_with("image.height=");
   });
@@ -142,7 +143,7 @@ std::string string_of(const std::vector<format::Override>& overrides, const std:
   return value;
 }
 
-/// The display transform of the images by the command line. Options have precedence over --set.
+/// The display transform that the command line selects. Options have precedence over --set.
 display::Settings display_of(const display::Settings& options, const std::vector<format::Override>& overrides,
                              const std::filesystem::path& scene_file) {
   display::Settings out = options;
@@ -158,7 +159,7 @@ display::Settings display_of(const display::Settings& options, const std::vector
   return out;
 }
 
-/// Checks the names that are known before the data is read, which may take long. run_render() checks all.
+/// Checks the names that are known before the data are read, which may take long. run_render() checks all names.
 void check_outputs(const PlotArguments& arguments) {
   const plot::PlotOptions& plot = arguments.plot;
   base::FileSet files;

@@ -29,7 +29,7 @@ class ProgressPrinter {
  public:
   /// Starts the heartbeat.
   ///
-  /// `display`  prints in place of `to`, if not null
+  /// `display`  prints instead of `to`, if not null
   /// Domain     `to` and `display` outlive this
   ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat = kHeartbeat,
                   BarDisplay* display = nullptr);

@@ -77,7 +77,7 @@ std::string progress_bar(const ProgressState& state, int columns) {
   std::string text = fmt::format("{:3} %  {}", state.percent(), rate_text(state.samples_per_second()));
   if (state.seconds_left() >= 0) text += fmt::format("  {} left", time_text(state.seconds_left()));
   if (!state.goal.empty()) text += "  " + state.goal;
-  // Room for brackets, a space, and the last column, after which some terminals wrap.
+  // Leaves room for brackets, a space, and the last column, after which some terminals wrap.
   const int cells = std::min(kMaxCells, columns - static_cast<int>(text.size()) - 4);
   if (cells < kMinCells) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
   std::string bar(static_cast<std::size_t>(state.fraction() * cells), '#');

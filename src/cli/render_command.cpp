@@ -104,7 +104,7 @@ int print_summary(const farm::BatchReport& report, bool quiet) {
   return report.failures.empty() ? 0 : base::exit_status(report.failures.front().error.kind());
 }
 
-/// Refuses data files by their extension: as a scene, one has errors that say nothing.
+/// Refuses data files by their extension; parsed as a scene, they would cause meaningless errors.
 void refuse_data_files(const std::vector<std::filesystem::path>& scenes) {
   constexpr const char* kExtensions[] = {".csv", ".tsv", ".xyz",  ".extxyz", ".dump", ".lammpstrj", ".pdb",
                                          ".ent", ".cif", ".ply",  ".npy",    ".npz",  ".las",       ".laz",
@@ -171,7 +171,7 @@ int run_render(RenderOptions& options) {
   };
   batch.on_failure = [&](const job::Job&, const base::Error& error) { printer.note(error_text(error)); };
   const std::vector<job::Job> jobs = farm::jobs_of(batch);
-  // Only now are outputs known not to be inputs.
+  // Only now is it known that no output is an input.
   if (options.before_files) options.before_files();
   if (!batch.log.empty()) open_log(batch.log);
   const farm::BatchReport report = farm::run_batch(batch, jobs);

@@ -7,10 +7,10 @@
 
 namespace orrery::cli {
 
-/// What the summary of a render has beside the files, the samples and the seconds of rendering.
+/// Optional contents of the summary of a render, in addition to files, samples and render time.
 struct ReportDetail {
-  bool is_verbose = false;  ///< seconds of each phase, accelerator, display
-  bool has_total = false;   ///< seconds of the whole job
+  bool is_verbose = false;  ///< time of each phase, accelerator, display
+  bool has_total = false;   ///< time of the whole job
 };
 
 /// Warnings about an image and a summary of its render, as whole lines.

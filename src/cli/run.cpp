@@ -76,7 +76,7 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error, con
 int parse_and_act(int argc, const char* const* argv) {
   const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
   if (const std::string option = option_without_value(words); !option.empty())
-    base::refuse(fmt::format("{} needs a value; `{}=` is followed by none", option, option));
+    base::refuse(fmt::format("{} needs a value; none follows `{}=`", option, option));
   CLI::App program("orrery is a path tracer for scenes made of spheres.", "orrery");
   configure(program);
   Command commands(program);

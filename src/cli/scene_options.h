@@ -17,7 +17,7 @@ class SceneOptions {
   /// Adds the options to a command.
   ///
   /// `allows_range`  --samples may be A:B
-  /// Domain     called once; this does not move, and `command` exists, until the last call of overrides()
+  /// Domain     called once; this must not move, and `command` must exist, until the last call of overrides()
   void add_to(Command& command, bool allows_range = false);
 
   /// The value of --samples if it is a range A:B of the scene's samples, which overrides no key.

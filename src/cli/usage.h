@@ -15,7 +15,7 @@ const CLI::App& innermost(const CLI::App& program);
 std::string full_name(const CLI::App& command);
 
 /// The first option that is written as `--name=`, without a value, as happens with an unset variable; empty if there is
-/// none. The parser would take the next word for its value.
+/// none. The parser would take the next word as its value.
 ///
 /// `words`    argv without the program's name
 std::string option_without_value(const std::vector<std::string>& words);

@@ -46,10 +46,10 @@ double power(double x, double exponent) {
   return static_cast<double>(std::pow(static_cast<long double>(x), static_cast<long double>(exponent)));
 }
 
-// Limits of the amounts along rays, m: an amount that changes nothing, and the length of the longest ray.
+// Limits of the amounts along rays, m: a negligible amount, and the length of the longest ray.
 constexpr double kTrace = 1e-30, kLargest = 3e6;
 
-/// A Gaussian whose inverse width is different to the left and to the right of its maximum.
+/// A Gaussian with different inverse widths to the left and to the right of its maximum.
 double lobe(double x, double maximum, double left, double right) {
   const double t = (x - maximum) * (x < maximum ? left : right);
   return math::exp_nonpositive(-t * t / 2);
@@ -83,7 +83,7 @@ std::array<Vec3d, kBands> solar_rgb() {
   return out;
 }
 
-/// Adds the amounts along a part of a ray, which starts where the ray is horizontal or climbs. Nodes are densest at
+/// Adds the amounts along a part of a ray, which starts where the ray is horizontal or ascending. Nodes are densest at
 /// the start.
 void add_densities(Densities& sum, double altitude, double sine, double length, int steps) {
   const double radius = kGroundRadius + altitude;
@@ -169,8 +169,8 @@ ColumnTable::ColumnTable(int refinement) : altitudes_(48 * refinement), directio
     const double altitude = node(i), radius = kGroundRadius + altitude, shortest = kAtmosphereThickness - altitude;
     const double longest = distance_to_space(radius, horizon_sine(radius));
     for (int j = 0; j < directions_; ++j) {
-      // From the distance, the sine by the law of cosines. At the upper edge of the atmosphere, distances of rays that
-      // climb are 0.
+      // The sine follows from the distance by the law of cosines. At the upper edge of the atmosphere, distances of
+      // ascending rays are 0.
       const double d = std::max(shortest + (longest - shortest) * j / (directions_ - 1), 1.0);
       const double sine = (shortest * (2 * kGroundRadius + kAtmosphereThickness + altitude) - d * d) / (2 * radius * d);
       const Densities a = integrate(altitude, std::clamp(sine, -1.0, 1.0), 64 * refinement);

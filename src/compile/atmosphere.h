@@ -37,7 +37,7 @@ struct Densities {
 Densities densities(double altitude);
 
 /// Returns the distance to the upper edge of the atmosphere in metres, from `radius` metres from the Earth's centre.
-/// `sine` is that of the direction's elevation.
+/// `sine` is the sine of the direction's elevation.
 double distance_to_space(double radius, double sine);
 
 /// Phase functions: probability densities over the sphere, of the cosine between the directions before and after.
@@ -46,8 +46,8 @@ double aerosol_phase(double cosine);
 
 /// Optical properties by band, per metre at densities of 1.
 ///
-/// Aerosol scatters mostly forward. For light that is scattered again, the fraction `kForward` of its scattering is
-/// ignored (delta scaling); the rest is nearly isotropic.
+/// Aerosol scatters mostly forward. For multiple scattering, the fraction `kForward` of its scattering is ignored
+/// (delta scaling); the rest is nearly isotropic.
 ///
 /// Reference  joseph1976, nakajima1988
 struct Atmosphere {
@@ -55,7 +55,7 @@ struct Atmosphere {
   ///
   /// `turbidity`  ratio of the vertical optical depth of molecules and aerosol to that of molecules alone, at 550 nm;
   ///              1: no aerosol
-  /// `density`    factor of all densities; 0: vacuum
+  /// `density`    multiplies all densities; 0: vacuum
   explicit Atmosphere(double turbidity, double density = 1);
 
   Spectrum molecules;  ///< scattering
@@ -88,11 +88,11 @@ class ColumnTable {
   double node(int i) const;  ///< altitude
 
   int altitudes_, directions_;
-  std::vector<Densities> table_;  ///< by altitude and direction; of molecules and aerosol, the logarithm
+  std::vector<Densities> table_;  ///< by altitude and direction; molecules and aerosol as logarithms
 };
 
-/// Returns the part of the sun's disc above the horizon of a point, 0..1. `sine` is that of the elevation of its
-/// centre.
+/// Returns the fraction of the sun's disc that is above the horizon of a point, 0..1. `sine` is the sine of the
+/// elevation of the disc's centre.
 double visible_sun(double radius, double sine);
 
 /// Returns scene-linear Rec.709 for radiances relative to the irradiance of the sun above the atmosphere, by band. The
@@ -103,7 +103,7 @@ math::Vec3d rgb_of(const Spectrum& relative);
 /// Returns the luminance of a Rec.709 color.
 double luminance(math::Vec3d rgb);
 
-/// Returns a spectrum for the reflectance of a surface: constant for grey ones.
+/// Returns a spectrum for the reflectance of a surface; constant for grey surfaces.
 Spectrum reflectance_of(math::Vec3d rgb);
 
 }  // namespace orrery::compile

@@ -15,7 +15,7 @@ struct CameraAxes {
 };
 CameraAxes camera_axes(const scene::Camera& camera);
 
-/// Returns the distance from look_from to the plane of focus, scene units.
+/// Returns the distance from look_from to the focus plane, scene units.
 double focus_distance(const scene::Camera& camera);
 
 /// Returns the power of two by which the view vectors of a camera are scaled: 1, unless their squares could overflow or
@@ -24,7 +24,7 @@ double view_scale(const scene::Camera& camera);
 
 /// Returns the camera in the form in which the kernel generates rays.
 ///
-/// `view_scale`  of the view vectors, the same at both ends of the shutter; 1 with a lens
+/// `view_scale`  scale of the view vectors, the same at shutter open and close; 1 with a lens
 /// Precision  tangents are rounded from long double, so that they do not depend on the processor
 kernel::Camera compile_camera(const scene::Camera& camera, const scene::Image& image, double view_scale);
 

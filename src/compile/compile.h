@@ -9,11 +9,11 @@ namespace orrery::compile {
 /// Compiles the authored scene into flat arrays and determines the features that it requires.
 ///
 /// A negative radius becomes a positive one with the material turned inside out, angles become vectors, and unused
-/// materials are left out.
+/// materials are dropped.
 ///
-/// A sky that is not baked yet is baked, in linear Rec.709; job::load_scene bakes it for other working spaces.
+/// A sky that is not yet baked is baked in linear Rec.709; job::load_scene bakes it for other working spaces.
 ///
-/// `closing`  the scene at shutter close, without points; null: no motion blur. What does not move costs nothing.
+/// `closing`  the scene at shutter close, without points; null: no motion blur. Static objects cost nothing.
 /// Domain     scenes in which scene::validate finds no error
 CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = nullptr);
 
@@ -23,7 +23,7 @@ CompiledScene compile(const scene::Scene& scene, const scene::Scene* closing = n
 /// Cost       that of build_light_tree; none if the tree would be the same
 void update_lights(CompiledScene& scene);
 
-/// Returns the number of index bits that count a pixel's samples when blue noise shares a sequence among neighbours.
+/// Returns the number of index bits that count a pixel's samples when neighbouring pixels share a blue-noise sequence.
 int blue_noise_bits(int samples) noexcept;
 
 }  // namespace orrery::compile

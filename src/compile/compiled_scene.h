@@ -41,10 +41,11 @@ struct CompiledScene {
   std::vector<kernel::Material> materials;
   std::vector<kernel::Emission> emission;  ///< one per material; empty if none emits
   TextureStore textures;
-  LightTree light_tree;  ///< of the emitting spheres; empty if lights are not sampled
+  LightTree light_tree;  ///< light tree of the emitting spheres; empty if lights are not sampled
   kernel::DirectLighting direct_lighting = kernel::DirectLighting::kMis;
-  std::vector<std::string> light_groups;  ///< names, by Emission::group; the first is the default group's, ""
-  std::vector<kernel::Sphere> motion;  ///< of the first motion.size() spheres, see kernel::SceneView; empty: none moves
+  std::vector<std::string> light_groups;  ///< names, indexed by Emission::group; the first is "", the default group
+  std::vector<kernel::Sphere>
+      motion;  ///< motion of the first motion.size() spheres, see kernel::SceneView; empty: none moves
   kernel::Camera camera;
   kernel::Camera camera_motion;
   kernel::Background background;

@@ -36,7 +36,7 @@ Vec3d inside_gamut(Vec3d c) {
 /// into horizontal strips, because the transmittance changes within it near the horizon.
 struct Disc {
   Spectrum radiance{};    ///< mean over the disc, times the disc's solid angle
-  Spectrum irradiance{};  ///< of the ground
+  Spectrum irradiance{};  ///< irradiance of the ground
 };
 
 Disc disc_of(const Atmosphere& air, const ColumnTable& columns, double elevation) {
@@ -131,7 +131,7 @@ scene::EnvironmentImage bake_sky(const scene::Background& background, const SkyQ
   scene::EnvironmentImage sky(width, height);
   const std::vector<ColumnAngle> angles = column_angles(width, azimuth);
   const double texel = kPi / height;
-  Vec3d irradiance;  // of the ground by the sky
+  Vec3d irradiance;  // irradiance of the ground from the sky
   SkyRow light(24 * quality.refinement);
   for (int y = 0; y < height / 2; ++y) {
     const double up = kPi / 2 - (y + 0.5) * texel;

@@ -9,8 +9,8 @@
 
 namespace orrery::compile {
 
-/// Removes spheres that coincide with an earlier sphere of the scene, whether that emits or not. The accelerators leave
-/// them out (see accel::duplicates), so they are no lights.
+/// Removes spheres that coincide with an earlier sphere of the scene, whether that emits or not. The accelerators skip
+/// them (see accel::duplicates), so they emit no light.
 ///
 /// `ids`      ascending
 /// Result     ascending

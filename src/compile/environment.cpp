@@ -17,8 +17,8 @@ using math::set;
 
 using scene::EnvironmentImage;
 
-/// Below this fraction of the map's power there is nothing to gain from sampling what exceeds the mean: it is mostly
-/// the rounding of texels to float.
+/// Below this fraction of the map's power, sampling radiance above the mean does not help: the excess is mostly
+/// rounding of texels to float.
 constexpr double kMinExcess = 1e-6;
 
 constexpr double kFullSphere = 4 * std::numbers::pi;
@@ -54,7 +54,7 @@ std::vector<kernel::EnvironmentRow> cell_rows(int height) {
 /// The weights of a map's texels before the mean is subtracted, in total.
 struct Totals {
   double brightest = 0;  ///< r + g + b
-  double integral = 0;   ///< of r + g + b, over all directions
+  double integral = 0;   ///< integral of r + g + b over all directions
 };
 
 double sum_of(const float* rgb) {
@@ -72,7 +72,7 @@ Totals totals_of(const EnvironmentImage& image, const std::vector<kernel::Enviro
       sum += texel;
       out.brightest = std::max(out.brightest, texel);
     }
-    // A texel has half of the cell rows above and below it, and the cells at a pole wholly.
+    // A texel owns half of each adjacent cell row, and all of the cells at a pole.
     const auto at = static_cast<std::size_t>(y);
     const double above = std::abs(rows[at].width), below = std::abs(rows[at + 1].width);
     const double height = (y == 0 ? above : above / 2) + (y + 1 == image.height() ? below : below / 2);

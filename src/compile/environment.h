@@ -14,22 +14,22 @@ namespace orrery::compile {
 /// How directions of an environment are sampled for direct lighting.
 enum class EnvironmentSampling {
   kNone,
-  kCompensated,  ///< together with BSDF sampling: only what is brighter than the mean
-  kComplete,     ///< alone: wherever there is radiance
+  kCompensated,  ///< in combination with BSDF sampling: only radiance above the mean
+  kComplete,     ///< light sampling alone: all non-zero radiance
 };
 
-/// How an environment is sampled with a scene's direct lighting.
+/// Returns how an environment is sampled for a scene's direct lighting.
 EnvironmentSampling environment_sampling(kernel::DirectLighting lighting) noexcept;
 
 struct EnvironmentSettings {
   double rotation = 0;  ///< degrees about +y, of map and sun
-  double scale = 1;     ///< factor of all radiance
+  double scale = 1;     ///< multiplies all radiance
   EnvironmentSampling sampling = EnvironmentSampling::kCompensated;
   std::uint16_t light_group = 0;
   bool visible = true;
 };
 
-/// Returns the memory of a map of this size and of the tables of its distribution, in bytes.
+/// Returns the memory use of a map of this size and of the tables of its distribution, in bytes.
 std::uint64_t environment_bytes(int width, int height, EnvironmentSampling sampling);
 
 /// An image background ready for rendering: shares the texels of the scene and owns the tables of their distribution.
@@ -44,10 +44,10 @@ class EnvironmentMap {
   EnvironmentMap(const EnvironmentMap&) = delete;
   EnvironmentMap& operator=(const EnvironmentMap&) = delete;
 
-  /// The same background with tables for another sampling.
+  /// The same background with tables for another sampling mode.
   std::shared_ptr<const EnvironmentMap> with_sampling(EnvironmentSampling sampling) const;
 
-  /// The view for the kernel; valid as long as this object.
+  /// The view for the kernel; valid during the lifetime of this object.
   const kernel::Environment& view() const noexcept { return view_; }
 
   /// The memory of texels and tables.
@@ -56,7 +56,7 @@ class EnvironmentMap {
  private:
   std::shared_ptr<const scene::EnvironmentImage> image_;
   EnvironmentSettings settings_;
-  std::vector<float> sums_;  ///< all levels
+  std::vector<float> sums_;  ///< sums of all levels
   std::vector<kernel::EnvironmentRow> rows_;
   kernel::Environment view_;
 };

@@ -18,7 +18,7 @@ using kernel::LightNode;
 using kernel::LightRange;
 using kernel::Lights;
 
-/// Rounding may make a bounding sphere this much too small, relative to its radius.
+/// Maximum relative error by which rounding makes a bounding sphere too small.
 constexpr double kRounding = 1 + 0x1p-45;
 
 /// A leaf while the tree is built.
@@ -27,8 +27,8 @@ struct Leaf {
   std::uint32_t sphere;
 };
 
-/// A table of all ids from the first to the last emitter may have this many entries per emitter. Otherwise a leaf is
-/// found by a binary search.
+/// Maximum number of entries per emitter in a table of all ids from the first to the last emitter. For larger ranges,
+/// leaves are found by binary search.
 constexpr std::uint32_t kMaxEntries = 2;
 
 /// Sorts leaves so that halves of every range are separated along its longest axis, and computes the nodes.

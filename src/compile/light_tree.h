@@ -12,21 +12,22 @@
 namespace orrery::compile {
 
 /// The emitters of a scene, and the tree with which light sampling chooses among them; see kernel::Lights. Ranges of
-/// leaves are split at the median of their longest axis, ties by id.
+/// leaves are split at the median of their longest axis; ties are broken by id.
 struct LightTree {
   std::vector<std::uint32_t> spheres;    ///< sphere id of each leaf
-  std::vector<kernel::LightNode> nodes;  ///< one per leaf; the first is unused unless there are few
+  std::vector<kernel::LightNode> nodes;  ///< one per leaf; the first is unused unless there are at most Lights::kFew
   std::vector<std::uint32_t> leaves;     ///< see kernel::Lights
   std::uint32_t first_sphere = 0;
   std::uint32_t end_sphere = 0;
-  bool scattered = false;                      ///< see kernel::Lights
-  std::optional<kernel::Precision> precision;  ///< in which its spheres do not coincide; empty: there is no tree
+  bool scattered = false;  ///< see kernel::Lights
+  std::optional<kernel::Precision>
+      precision;  ///< precision in which its spheres do not coincide; empty: there is no tree
 
   /// Valid until the tree is modified or destroyed.
   kernel::Lights view() const noexcept;
-  /// At most 52 per emitter, 48 if the ids of the emitters are consecutive.
+  /// Memory use: at most 52 bytes per emitter, 48 if the ids of the emitters are consecutive.
   std::size_t bytes() const noexcept;
-  /// With what build_light_tree allocated in addition.
+  /// Peak memory of build_light_tree, including the tree.
   std::size_t bytes_of_build() const noexcept;
 };
 

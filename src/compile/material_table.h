@@ -20,7 +20,7 @@ namespace orrery::compile {
 /// Precision  rounded from long double, so that it does not depend on the math library
 double stops_to_factor(double stops);
 
-/// Returns the number of a light group, and adds the group if it is new.
+/// Returns the index of a light group; adds the group if it is new.
 std::uint16_t light_group(CompiledScene& compiled, const std::string& name);
 
 /// Compiles materials on first use, so that unused ones are left out.
@@ -36,7 +36,7 @@ class MaterialTable {
 
   /// Returns the index of a material whose colour is replaced by one of a palette.
   ///
-  /// `points`   index of the points table that the palette belongs to; the spheres of a table follow each other
+  /// `points`   index of the points table that the palette belongs to; the spheres of a table are consecutive
   std::uint32_t colored_index(std::uint32_t authored, bool inside_out, std::size_t points, std::uint16_t color,
                               math::Vec3d rgb);
 
@@ -47,7 +47,8 @@ class MaterialTable {
   CompiledScene& out_;
   std::vector<std::array<std::uint32_t, 2>> compiled_;
   std::size_t points_ = 0;
-  std::unordered_map<std::uint64_t, std::uint32_t> colored_;  ///< of one points table, by plain material and colour
+  std::unordered_map<std::uint64_t, std::uint32_t>
+      colored_;  ///< indices for one points table, by base material and colour
 };
 
 }  // namespace orrery::compile

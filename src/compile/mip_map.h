@@ -9,10 +9,10 @@ namespace orrery::compile {
 
 /// Adds the levels of a mip map to an image texture: each has half the width and height of the one before, rounded
 /// down. A texel is the mean of those that it covers, by solid angle, so that all levels have the same mean over the
-/// sphere, and a level of a constant image has its bits.
+/// sphere, and those of a constant image equal it bit for bit.
 ///
-/// The last level has at least 16 rows and 32 columns: a coarser one would mix the sphere's visible side with the
-/// other.
+/// The last level has at least 16 rows and 32 columns: a coarser one would mix the sphere's visible side with its far
+/// side.
 ///
 /// Precision  sums in double, rounded to float
 void add_mip_map(scene::EnvironmentImage& image);

@@ -9,7 +9,7 @@
 
 namespace orrery::compile {
 
-/// Unsigned integers, each stored in as few bytes as the largest needs; in none if all are equal.
+/// Unsigned integers, each stored in as few bytes as the largest needs; in zero bytes if all are equal.
 class PackedIndices {
  public:
   std::size_t size() const noexcept { return size_; }
@@ -19,7 +19,7 @@ class PackedIndices {
   void reserve(std::size_t count) { reserved_ = count; }
   void push_back(std::uint32_t index);
 
-  /// Valid until this is modified.
+  /// Returns a view that is valid until this is modified.
   kernel::IndexArray view() const noexcept { return {bytes_.data(), width_}; }
 
  private:

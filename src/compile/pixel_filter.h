@@ -23,7 +23,7 @@ struct FilterTables {
 /// Reference  mitchell1988; harris1978 for the Blackman-Harris window
 FilterTables compile_filter(const scene::Render& render);
 
-/// Returns the full width of the filter in pixels: the one that is set, or the default of its type.
+/// Returns the full width of the filter in pixels: as set in the scene, or the default of its type.
 double filter_width(const scene::Render& render);
 
 }  // namespace orrery::compile

@@ -39,12 +39,12 @@ double mean_transmittance(double depth) {
   return depth > 1e-8 ? (1 - math::exp_nonpositive(-depth)) / depth : 1 - depth / 2;
 }
 
-/// Where the segments of a ray end, for u in 0..1: they grow with the distance from the ground, or are short at both
-/// ends.
+/// End points of the segments of a ray, for u in 0..1: segments grow with the distance from the ground, or are short at
+/// both ends.
 double from_ground(double u) { return u * u; }
 double smoothstep(double u) { return u * u * (3 - 2 * u); }
 
-/// Returns a ray from an altitude to a distance `length`, in a direction of whose elevation the sine is given.
+/// Returns a ray from an altitude to a distance `length`. `sine` is the sine of its elevation.
 Ray march(const Atmosphere& air, double altitude, double sine, double length, int steps, double (*end_of)(double)) {
   Ray ray;
   ray.length = length;
@@ -78,7 +78,7 @@ Ray march(const Atmosphere& air, double altitude, double sine, double length, in
   return ray;
 }
 
-/// Far below the light of a moonless night sky.
+/// Negligible radiance, far below that of a moonless night sky.
 constexpr double kDarkest = 1e-20;
 
 }  // namespace
@@ -144,8 +144,8 @@ Spectrum Scattering::multiple_scattering(double radius, double local_sine) const
 }
 
 // Reference  hillaire2020, section 5.5. `returned` is f_ms: the radiance at a point if the radiance in its surroundings
-// is 1. The ground, which is not uniform light in all directions, is not part of that series but of another one, whose
-// terms are reflected by the ground again and again.
+//            is 1. Light from the ground is not isotropic; it belongs to a second series, whose terms are repeated
+//            reflections by the ground.
 void Scattering::tabulate(const Spectrum& ground_albedo) {
   // In twilight, only air towards the sun is illuminated.
   const int azimuths = (sun_sine_ < 0 ? 4 : 2) * refinement_, steps = 24 * refinement_;
@@ -197,7 +197,7 @@ void Scattering::tabulate(const Spectrum& ground_albedo) {
     }
   }
 
-  // Irradiance of the ground: by the light above black ground, and by the part of its own light that comes back.
+  // Irradiance of the ground: from the light above black ground, and from the fraction of its own light that returns.
   std::vector<Spectrum> irradiance(suns);
   Spectrum back{};
   for (const Node& node : gauss(0, 1)) {

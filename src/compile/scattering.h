@@ -10,24 +10,24 @@ namespace orrery::compile {
 /// A ray through the atmosphere, to space or to the ground, in segments.
 struct Ray {
   struct Segment {
-    double distance;  ///< m, of its middle from the start of the ray
-    double radius;    ///< m, of its middle from the Earth's centre
-    Densities here;   ///< densities in the middle
-    /// Fractions of the light at the segment's middle that are scattered within the segment and reach the start of the
-    /// ray, without the phase function: by molecules, by aerosol, and by both without forward scattering.
+    double distance;  ///< m, from the start of the ray to the segment's midpoint
+    double radius;    ///< m, from the Earth's centre to the segment's midpoint
+    Densities here;   ///< densities at the midpoint
+    /// Fractions of the light at the segment's midpoint that are scattered within the segment and reach the start of
+    /// the ray, excluding the phase function: by molecules, by aerosol, and by both without forward scattering.
     Spectrum molecules, aerosol, diffuse;
   };
 
   std::vector<Segment> segments;
   double length = 0;       ///< m
-  Spectrum transmittance;  ///< of the whole ray, for light that may also be scattered forward
+  Spectrum transmittance;  ///< transmittance of the whole ray, for light that may also be scattered forward
 };
 
 /// Sunlight that the atmosphere scatters.
 ///
 /// Single scattering is integrated along rays with the exact phase functions. The light of all higher orders is assumed
-/// to be isotropic; its infinite series has a closed form if it is about the same in the surroundings of a point as at
-/// the point.
+/// to be isotropic; its infinite series has a closed form if the light around a point is about the same as at the
+/// point.
 ///
 /// Units      all light is relative to the irradiance of the sun above the atmosphere
 /// Precision  docs/decisions/0024-daylight-model.md
@@ -37,20 +37,20 @@ class Scattering {
   /// Tabulates multiple scattering.
   ///
   /// `sun_elevation`  radians, at the ground point from which the sky is seen
-  /// `refinement`     factor of all numbers of nodes
+  /// `refinement`     multiplies the numbers of quadrature nodes
   Scattering(const Atmosphere& air, const ColumnTable& columns, double sun_elevation, const Spectrum& ground_albedo,
              int refinement);
 
   double sun_sine() const { return sun_sine_; }
   double sun_cosine() const { return sun_cosine_; }
 
-  /// Returns the ray from the ground point in a direction above the horizon, of whose elevation the sine is given.
+  /// Returns the ray from the ground point in a direction above the horizon. `sine` is the sine of its elevation.
   Ray ray_from_ground(double sine, int steps) const;
 
   /// Light that reaches the ground point along a ray.
   struct Light {
     Spectrum molecules{}, aerosol{};  ///< scattered once, without phase function
-    Spectrum multiple{};              ///< scattered more often
+    Spectrum multiple{};              ///< scattered more than once
   };
   /// Returns the light that a ray brings to the ground point.
   ///

@@ -13,8 +13,8 @@
 namespace orrery::compile {
 namespace {
 
-/// Different radii of sets that store few; empty if a set stores many, or there are more than indices of one byte tell
-/// apart.
+/// Distinct radii of all sets if each stores a palette; empty if one does not, or if there are more radii than a
+/// one-byte index allows.
 std::vector<double> common_palette(std::span<const scene::Points> sets) {
   constexpr std::size_t kMax = 256;
   std::vector<double> out;

@@ -19,14 +19,14 @@ class SphereStore {
   bool empty() const noexcept { return size() == 0; }
   kernel::Sphere operator[](std::size_t id) const noexcept { return view()[id]; }
 
-  /// Appends a sphere as it is. Not after spheres that are compact.
+  /// Appends a sphere in full precision. Must not be called after compact spheres have been appended.
   void push_back(const kernel::Sphere& sphere) { plain_.push_back(sphere); }
 
   /// Appends the spheres of points files, the last ones: compact if their centres are exact in single precision, and
-  /// their radii are, too, or are few different ones.
+  /// their radii are exact as well or have few distinct values.
   void append(std::span<const scene::Points> points);
 
-  /// Valid until this is modified.
+  /// Returns a view that is valid until this is modified.
   kernel::SphereArray view() const noexcept {
     kernel::SphereArray v(plain_.data());
     if (centers_.empty()) return v;
@@ -45,7 +45,7 @@ class SphereStore {
 
  private:
   base::HugeVector<kernel::Sphere> plain_;
-  base::HugeVector<float> centers_;  ///< and one more: see kernel::SphereArray
+  base::HugeVector<float> centers_;  ///< plus one element of padding: see kernel::SphereArray
   base::HugeVector<float> radii_;
   std::vector<std::uint8_t> radius_indices_;
   std::vector<double> radius_palette_;

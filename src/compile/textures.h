@@ -13,11 +13,11 @@
 
 namespace orrery::compile {
 
-/// Width of the ray cones by which image textures are filtered, as a fraction of the ranges from which rays are
-/// sampled: pixel, lens and lobe.
+/// Width of the ray cones that filter image textures, as a fraction of the ranges from which rays are sampled: pixel,
+/// lens and lobe.
 ///
-/// The samples of a pixel average the texture over these ranges; cones of their width would blur the image. Cones of a
-/// sixteenth change a pixel beside a hard edge by 1 % of the contrast at most.
+/// The samples of a pixel average the texture over these ranges; cones as wide as these ranges would blur the image.
+/// Cones of a sixteenth of that width change a pixel next to a hard edge by at most 1 % of the contrast.
 ///
 /// Reference  docs/decisions/0031
 inline constexpr double kConeWidth = 0.0625;
@@ -40,10 +40,10 @@ class TextureStore {
   /// One entry per material.
   const std::vector<kernel::MaterialTextures>& materials() const noexcept { return materials_; }
 
-  /// Whether an image has more than one level, so that paths need ray cones.
+  /// True if an image has more than one level, so that paths need ray cones.
   bool has_levels() const noexcept;
 
-  /// The memory of the images and their levels.
+  /// Memory use of the images and their levels, in bytes.
   std::uint64_t bytes() const noexcept;
 
  private:
@@ -58,7 +58,7 @@ class TextureStore {
   std::vector<std::shared_ptr<const Image>> images_;
 };
 
-/// Mean value of a texture, for sampling its material: of an image, the mean over the sphere; of other textures, the
+/// Mean value of a texture, for sampling its material: for an image, the mean over the sphere; for other textures, the
 /// midpoint of their two values.
 math::Vec3d mean_of(const scene::Texture& texture);
 

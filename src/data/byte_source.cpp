@@ -41,8 +41,7 @@ class PlainFile final : public ByteSource {
       if (got < 0 && errno == EINTR) continue;
       if (got < 0)
         throw base::Error(base::ErrorKind::kIo, fmt::format("cannot read {}: {}", file().string(), reason()));
-      if (got == 0)
-        throw base::Error(base::ErrorKind::kIo, file().string() + " has become shorter while it was being read");
+      if (got == 0) throw base::Error(base::ErrorKind::kIo, file().string() + " was truncated while it was being read");
       done += static_cast<std::size_t>(got);
     }
   }

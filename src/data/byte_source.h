@@ -21,7 +21,7 @@ class ByteSource {
   /// Errors     base::Error: kMissingInput, kIo; kBadData for damaged compressed data, and beyond the limit
   static std::shared_ptr<const ByteSource> open(const std::filesystem::path& file, std::uint64_t limit);
 
-  /// Bytes that are in memory, from `file`.
+  /// Returns bytes in memory as a source. `file` is for messages.
   static std::shared_ptr<const ByteSource> of_memory(const std::filesystem::path& file, std::vector<char> bytes);
 
   virtual ~ByteSource() = default;
@@ -33,7 +33,7 @@ class ByteSource {
   /// Reads exactly `count` bytes.
   ///
   /// Domain     offset + count <= size()
-  /// Errors     base::Error(kIo), also if the file has become shorter
+  /// Errors     base::Error(kIo), also if the file has been truncated meanwhile
   virtual void read(std::uint64_t offset, std::size_t count, char* out) const = 0;
 
   /// Returns bytes from `offset`, fewer than `count` at the end of the file.

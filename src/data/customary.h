@@ -15,10 +15,10 @@
 
 namespace orrery::data {
 
-/// Maximum number of columns of a file: more is a damaged header.
+/// Maximum number of columns of a file; a header that declares more is damaged.
 inline constexpr std::uint64_t kMaxColumns = 4096;
 
-/// Returns the roles of columns by their customary names, regardless of case. For formats that define no names.
+/// Assigns roles to columns by their customary names, ignoring case. For formats that define no names.
 ///
 /// - position: x, y, z; also pos_x, position_x, points:0, points_0
 /// - radius: radius, scalar_radius, r unless there are g and b, diameter with scale 0.5
@@ -28,16 +28,16 @@ inline constexpr std::uint64_t kMaxColumns = 4096;
 /// - rgb: red green blue, r g b, diffuse_red ..; rgb, rgba, color, colors, colour, colours with three or four
 ///   components. Full intensity is 255 for uint8 and signed integers, 65535 for uint16, 1 for floating point.
 ///
-/// Result     a role that no column has is empty, also the position
+/// Result     roles without a column are empty, even the position
 Roles customary_roles(const std::vector<ColumnInfo>& columns);
 
-/// customary_roles(), with a position.
+/// Like customary_roles(), but requires a position.
 ///
-/// Errors     base::Error(kBadData) by `faults`, which lists the columns
+/// Errors     base::Error(kBadData), thrown through `faults`; lists the columns
 Roles required_roles(const std::vector<ColumnInfo>& columns, Faults& faults);
 
-/// Returns the column of numbers with one of the names, of which earlier ones have priority, regardless of case; empty
-/// if there is none.
+/// Returns the first numeric column with one of the names, in order of priority and ignoring case; empty if there is
+/// none.
 std::string number_column(const std::vector<ColumnInfo>& columns, std::initializer_list<const char*> names);
 
 /// Returns whether an array of three components with this name contains positions: pos, position, positions, coords,
@@ -47,7 +47,7 @@ bool is_position_name(std::string_view name);
 /// Returns the names of the components of an array: its name if there is one, `x`, `y`, `z` for the first array of
 /// positions, otherwise `name[1]`, `name[2]` ...
 ///
-/// `columns`  columns so far
+/// `columns`  existing columns
 std::vector<std::string> component_names(const std::string& name, std::size_t components,
                                          const std::vector<ColumnInfo>& columns);
 
@@ -55,17 +55,17 @@ std::vector<std::string> component_names(const std::string& name, std::size_t co
 class UniqueNames {
  public:
   UniqueNames() = default;
-  /// The names of these columns are taken.
+  /// Reserves the names of these columns.
   explicit UniqueNames(const std::vector<ColumnInfo>& columns) {
     for (const ColumnInfo& column : columns) names_.insert(column.name);
   }
 
-  /// Returns the name, or with an underscore and a number from 2 on if a column has this name.
+  /// Returns the name; if it is taken, appends an underscore and a number from 2.
   std::string add(const std::string& name);
 
  private:
   std::unordered_set<std::string> names_;
-  std::unordered_map<std::string, int> numbers_;  ///< the last one that was tried
+  std::unordered_map<std::string, int> numbers_;  ///< the last number that was tried, by name
 };
 
 /// Returns whether a column exists.

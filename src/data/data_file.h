@@ -25,10 +25,10 @@ constexpr const char* format_name(Format format) {
 
 struct OpenOptions {
   std::optional<int> component = {};  ///< HDF5: particle type, N of /PartTypeN; default: the only one that is not empty
-  /// Maximum size of decompressed data, bytes. They are in memory while they are read.
+  /// Maximum size of decompressed data, bytes. They are kept in memory while they are read.
   std::uint64_t decompressed_limit = std::uint64_t{16} << 30;
 
-  /// PDB, mmCIF: what parsing the atoms may take, bytes; 0: no limit.
+  /// PDB, mmCIF: maximum memory for parsing the atoms, bytes; 0: no limit.
   std::uint64_t memory_limit = 0;
 
   /// Limits decompressed and parsed data to the memory that may be used, bytes; 0: no further limit.
@@ -59,14 +59,14 @@ class DataFile {
 
   /// Reads columns of a frame, each listed by describe(). Columns that are not requested cost no memory.
   ///
-  /// Numbers may be NaN or infinite if the file has them.
+  /// Numbers may be NaN or infinite if the file contains such values.
   ///
   /// Errors     base::Error(kBadData) with diagnostics for truncated or malformed data; kIo
-  /// Cost       memory in proportion to the rows in the file, never to a count that its header merely declares
+  /// Cost       memory in proportion to the rows in the file, not to a count that its header declares
   virtual Table read(int frame, const std::vector<std::string>& columns) = 0;
 };
 
-/// The first bytes of a file and its extension, by which formats are recognised.
+/// The first bytes of a file and its extension, used to recognise formats.
 struct Signature {
   std::string head;       ///< up to 64 KiB, decompressed
   std::string extension;  ///< lower case, without ".gz", ".zst": ".xyz"; may be empty

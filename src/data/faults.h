@@ -10,7 +10,7 @@
 
 namespace orrery::data {
 
-/// Collects the errors in a data file. Only the first ten of many equal ones are kept.
+/// Collects the errors in a data file. Only the first ten of many similar ones are kept.
 class Faults {
  public:
   explicit Faults(const std::filesystem::path& file) : file_(file.string()) {}
@@ -21,10 +21,10 @@ class Faults {
   void add(std::uint64_t line, const std::string& text, const std::string& remedy = {});
   /// Adds one of possibly millions of errors.
   void add_of_many(std::uint64_t line, const std::string& text);
-  /// Adds an error and raises it with all that were added before.
+  /// Adds an error and throws it together with the earlier ones.
   [[noreturn]] void fail(std::uint64_t line, const std::string& text, const std::string& remedy = {});
   bool has_any() const { return many_ > 0 || !diagnostics_.empty(); }
-  /// Raises base::Error(kBadData), "cannot use FILE", if there are errors.
+  /// Throws base::Error(kBadData), "cannot use FILE", if there are errors.
   void raise_if_any();
 
  private:

@@ -18,7 +18,7 @@ struct OpenOptions;
 struct Signature;
 struct Table;
 
-/// The bytes of a file, shared by those who read it.
+/// The bytes of a file, shared by its readers.
 using Bytes = std::shared_ptr<const ByteSource>;
 
 }  // namespace orrery::data

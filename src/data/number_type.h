@@ -38,8 +38,8 @@ constexpr std::size_t size_of(NumberType type) {
   return with_type(type, [](auto number) { return sizeof(number); });
 }
 
-/// Returns the type of the column that stores such numbers: the same, or the next larger one that represents all of
-/// them. Unsigned integers of 64 bits become int64.
+/// Returns the column type that stores such numbers: the same type, or the next larger one that represents all of them.
+/// Unsigned 64-bit integers become int64.
 constexpr ColumnType column_type(NumberType type) {
   switch (type) {
     case NumberType::kUint8: return ColumnType::kUint8;
@@ -56,7 +56,7 @@ constexpr ColumnType column_type(NumberType type) {
   return ColumnType::kFloat64;
 }
 
-/// Returns a column of a type without rows.
+/// Returns an empty column of a type.
 inline Values empty_values(ColumnType type) {
   switch (type) {
     case ColumnType::kFloat64: break;

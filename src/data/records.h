@@ -27,7 +27,7 @@ struct RecordLayout {
   std::uint64_t rows = 0;
 };
 
-/// Adds an error for each value that was an unsigned integer beyond the largest int64, and is therefore negative.
+/// Adds an error for each unsigned integer that exceeded int64 and has therefore become negative.
 void check_unsigned(const std::string& column, const std::vector<std::int64_t>& values, Faults& faults);
 
 /// Returns whether a file of `size` bytes contains all records.
@@ -38,7 +38,7 @@ bool contains(std::uint64_t size, const RecordLayout& layout);
 /// Domain     contains(bytes.size(), layout); each field is inside the record
 /// Result     one column per field, of type column_type(field.type)
 /// Errors     unsigned integers that an int64 cannot represent are added to `faults`
-/// Cost       one pass over the records; 1 MiB per thread beside the columns
+/// Cost       one pass over the records; 1 MiB per thread in addition to the columns
 std::vector<Values> read_records(const ByteSource& bytes, const RecordLayout& layout,
                                  const std::vector<RecordField>& fields, Faults& faults);
 

@@ -14,19 +14,19 @@
 
 #include "math/vec3.h"
 
-/// Particle data files as tables of named columns. The readers decide nothing that a scene decides: no radius is
-/// guessed, nothing is filtered or coloured.
+/// Particle data files as tables of named columns. Readers leave all choices to the scene: they guess no radii, and
+/// filter and colour nothing.
 namespace orrery::data {
 
 using math::Vec3d;
 
-/// A text column. Each distinct text is stored once.
+/// A text column. Each distinct string is stored once.
 struct Words {
   std::vector<std::string> words;    ///< distinct, in order of first appearance
   std::vector<std::uint32_t> index;  ///< one per row, into `words`
 };
 
-/// A column of an array in memory, which the caller owns and keeps.
+/// A column that views an array in memory. The caller owns the array and keeps it alive.
 template <class T>
 class ArrayView {
  public:
@@ -51,12 +51,12 @@ class ArrayView {
 };
 
 /// The values of a column, one per row, in the type in which the file stores them. Numbers of text files are float64,
-/// or int64 if the format declares the column an integer. Files give no views; only tables in memory have them.
+/// or int64 if the format declares the column an integer. Only tables in memory have views.
 using Values =
     std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>, std::vector<std::int32_t>,
                  std::vector<std::uint16_t>, std::vector<std::uint8_t>, Words, ArrayView<double>, ArrayView<float>>;
 
-/// The types of the alternatives of Values, in its order up to Words.
+/// The alternatives of Values, in order up to Words.
 enum class ColumnType { kFloat64, kFloat32, kInt64, kInt32, kUint16, kUint8, kText };
 
 /// "float64", "int32", "text"
@@ -65,7 +65,7 @@ constexpr const char* type_name(ColumnType type) {
   return kNames[static_cast<std::size_t>(type)];
 }
 
-/// Bytes of a value in a table; of a text, those of its index.
+/// Size of a value in a table, bytes; for a string, that of its index.
 constexpr std::uint64_t bytes_per_value(ColumnType type) {
   constexpr std::uint64_t kBytes[] = {8, 4, 8, 4, 2, 1, 4};
   return kBytes[static_cast<std::size_t>(type)];
@@ -74,7 +74,7 @@ constexpr std::uint64_t bytes_per_value(ColumnType type) {
 struct ColumnInfo {
   std::string name;
   ColumnType type = ColumnType::kFloat64;
-  bool is_derived = false;  ///< not in the file, but computed from other columns by room `points`
+  bool is_derived = false;  ///< not in the file, but computed from other columns by the room `points`
 };
 
 struct Column {
@@ -109,17 +109,17 @@ struct Column {
   }
 };
 
-/// Names of the columns whose meaning is known, from the format or from customary names; empty: there is none.
+/// Names of the columns whose meaning is known from the format or from customary names; empty: no such column.
 struct Roles {
   std::array<std::string, 3> position;  ///< x, y, z, in the file's unit of length; always set
   std::string radius;                   ///< radius, or diameter
   double radius_scale = 1;              ///< 0.5 if `radius` is a diameter
   std::string element;                  ///< text: chemical symbol
-  std::string type;                     ///< particle type or class, a number or a text
+  std::string type;                     ///< particle type or class, a number or a string
   std::string id;                       ///< identifies a particle in all frames
   std::string chain;                    ///< text: chain name, for assemblies
   std::array<std::string, 3> rgb;       ///< red, green, blue, display-referred sRGB
-  double rgb_maximum = 255;             ///< value of full intensity
+  double rgb_maximum = 255;             ///< value that means full intensity
   std::array<std::string, 3> image;     ///< periodic image flags, for unwrapping
 };
 
@@ -153,9 +153,9 @@ struct FrameInfo {
   Roles roles;
   std::optional<Box> box;
   std::vector<Assembly> assemblies;
-  std::optional<double> step;  ///< time step, or the number that the file gives the frame
+  std::optional<double> step;  ///< time step, or the frame number in the file
   std::string title;           ///< comment or title of the file; may be empty
-  bool z_up = true;            ///< customary for the format
+  bool z_up = true;            ///< convention of the format
 };
 
 /// Columns of a frame. Rows are in file order.

@@ -42,7 +42,8 @@ bool TextCursor::next(std::string& text) {
     begin_ += taken;
     place_.offset += taken;
     if (text.size() > kMaxLineBytes)
-      Faults(bytes_->file()).fail(place_.line, "a line is longer than 1 MiB", "the file is damaged, or no text file");
+      Faults(bytes_->file())
+          .fail(place_.line, "a line is longer than 1 MiB", "the file is damaged, or not a text file");
   }
   if (place_.offset == start) return false;
   ++place_.line;

@@ -11,7 +11,7 @@
 
 namespace orrery::data {
 
-/// Reads a text line by line, and skips lines fast.
+/// Reads a text file line by line, and skips lines fast.
 class TextCursor {
  public:
   struct Place {
@@ -21,23 +21,23 @@ class TextCursor {
 
   explicit TextCursor(const ByteSource& bytes, Place place = {0, 1}) : bytes_(&bytes), place_(place) {}
 
-  /// The next line.
+  /// The position of the next line.
   Place place() const { return place_; }
   std::uint64_t offset() const { return place_.offset; }
   std::uint64_t line() const { return place_.line; }
   bool at_end() const { return place_.offset >= bytes_->size(); }
 
-  /// Reads a line, without its end.
+  /// Reads a line, without its line ending.
   ///
   /// Result     false at the end of the file
   /// Errors     base::Error: kIo; kBadData for a line that is too long
   bool next(std::string& text);
-  /// As next(), after skipping lines of white space.
+  /// Like next(), but skips blank lines.
   bool next_filled(std::string& text);
 
   /// Skips lines.
   ///
-  /// Result     how many there were, up to `count`
+  /// Result     number of lines skipped, at most `count`
   std::uint64_t skip(std::uint64_t count);
 
  private:
@@ -46,18 +46,18 @@ class TextCursor {
   const ByteSource* bytes_;
   Place place_;
   std::vector<char> buffer_;
-  std::size_t begin_ = 0;  ///< of the unread bytes in the buffer
+  std::size_t begin_ = 0;  ///< start of the unread bytes in the buffer
 };
 
-/// A text without white space at its ends.
+/// Removes white space at both ends of a string.
 std::string_view trimmed(std::string_view text);
 
-/// The words of a text, which are separated by blanks and tabs.
+/// Splits a string into words separated by spaces and tabs.
 std::vector<std::string_view> words_of(std::string_view text);
 
-/// Reads an integer that is the whole word.
+/// Parses a word as an integer.
 ///
-/// Result     false unless it is one
+/// Result     false unless the whole word is an integer
 bool parse_integer(std::string_view word, std::int64_t& value);
 
 }  // namespace orrery::data

@@ -28,7 +28,7 @@ class TextFrames : public DataFile {
   /// Errors     base::Error(kBadData) for a malformed header up to that frame
   TextCursor frame(int number);
 
-  /// Checks that a frame, or nothing, follows the rows of a frame.
+  /// Checks that the rows of a frame are followed by another frame or by the end of the file.
   ///
   /// `rows_end`   place after the rows `count_line` the line that declares their number
   void require_end(TextCursor rows_end, std::uint64_t count_line) const;
@@ -41,8 +41,8 @@ class TextFrames : public DataFile {
   bool add_frame();
 
   Bytes bytes_;
-  std::vector<TextCursor::Place> frames_;  ///< those found so far
-  TextCursor end_;                         ///< after them
+  std::vector<TextCursor::Place> frames_;  ///< frames found so far
+  TextCursor end_;                         ///< position after the last of them
 };
 
 }  // namespace orrery::data

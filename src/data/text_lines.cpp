@@ -49,7 +49,7 @@ void TextLines::reserve(std::size_t count) {
 void TextLines::read(const ByteSource& bytes, std::uint64_t first, std::uint64_t last, bool is_line_start) {
   last = std::min(last, bytes.size());
   first = std::min(first, last);
-  // The byte in front of the range tells whether a line begins with the range.
+  // The byte before the range determines whether a line begins at its start.
   offset_ = is_line_start || first == 0 ? first : first - 1;
   auto count = static_cast<std::size_t>(last - offset_);
   constexpr std::size_t kStep = std::size_t{4} << 10;  // the rest of a line is read in steps
@@ -68,7 +68,7 @@ void TextLines::read(const ByteSource& bytes, std::uint64_t first, std::uint64_t
       break;
     }
     if (count - static_cast<std::size_t>(last - offset_) > kMaxLineBytes)
-      Faults(bytes.file()).fail(0, "a line is longer than 1 MiB", "the file is damaged, or no text file");
+      Faults(bytes.file()).fail(0, "a line is longer than 1 MiB", "the file is damaged, or not a text file");
     reserve(count + more + kStep + kTextPadding);
     bytes.read(offset_ + count, more, buffer_.get() + count);
     const char* const newline = find_newline(buffer_.get() + count, buffer_.get() + count + more);

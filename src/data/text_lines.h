@@ -11,7 +11,7 @@
 
 namespace orrery::data {
 
-/// Maximum length of a line, bytes. A file with longer lines is not a text table.
+/// Maximum length of a line, bytes; a file with longer lines is not a text table.
 inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
 /// Number of newlines in [begin, end).
@@ -32,12 +32,12 @@ class TextLines {
 
   const char* begin() const { return buffer_.get() + begin_; }
   const char* end() const { return buffer_.get() + end_; }
-  /// Offset of a byte of these lines in the file.
+  /// File offset of a byte of these lines.
   std::uint64_t offset_of(const char* at) const { return offset_ + static_cast<std::uint64_t>(at - buffer_.get()); }
 
   /// Number of lines.
   std::uint64_t count() const { return newline_count(begin(), end()); }
-  /// Number of lines that contain more than white space.
+  /// Number of lines that are not blank.
   ///
   /// `skips_comments`  comments do not count
   std::uint64_t filled_count(bool skips_comments) const;
@@ -49,7 +49,7 @@ class TextLines {
   std::size_t capacity_ = 0;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
-  std::uint64_t offset_ = 0;  ///< of the buffer
+  std::uint64_t offset_ = 0;  ///< file offset of the buffer
 };
 
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -59,8 +59,8 @@ inline const char* skip_blanks(const char* at) {
   return at;
 }
 
-/// Returns whether a line is a comment: # or %, followed by a blank, by the same sign or by nothing. A row may begin
-/// with #ff0000.
+/// Returns whether a line is a comment: # or %, followed by a space, the same character or the end of the line. A row
+/// may begin with #ff0000.
 ///
 /// `line`     ends in a newline or a null character
 inline bool is_comment(const char* line) {
@@ -69,7 +69,7 @@ inline bool is_comment(const char* line) {
   return (*sign == '#' || *sign == '%') && may_follow(sign[1]);
 }
 
-/// Returns whether a line has no row: it is blank, or a comment and those are skipped.
+/// Returns whether a line contains no row: it is blank, or a comment if comments are skipped.
 inline bool has_no_row(const char* line, bool skips_comments) {
   return *skip_blanks(line) == '\n' || (skips_comments && is_comment(line));
 }

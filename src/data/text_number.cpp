@@ -28,7 +28,7 @@ double out_of_range(std::string_view word) {
   const std::string_view mantissa = word.substr(0, letter);
   const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
   const auto digit = static_cast<std::int64_t>(mantissa.find_first_of("123456789"));
-  // Power of ten of the first digit that counts.
+  // Power of ten of the first significant digit.
   std::int64_t power = static_cast<std::int64_t>(point) - digit;
   if (letter < word.size()) {
     const std::string_view exponent = word.substr(letter + 1 + (word[letter + 1] == '+' ? 1 : 0));
@@ -41,9 +41,9 @@ double out_of_range(std::string_view word) {
   return power > 0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
-/// Reads a number that is the whole word, without its sign.
+/// Parses a whole word, without its sign, as a number.
 bool parse_magnitude(std::string word, double& value) {
-  // from_chars() reads a sign, too, and no exponent of Fortran's.
+  // from_chars() also accepts a sign, and does not accept Fortran exponents.
   if (word.empty() || !(is_digit(word[0]) || word[0] == '.' || std::isalpha(static_cast<unsigned char>(word[0])) != 0))
     return false;
   if (is_digit(word[0]) || word[0] == '.')
@@ -70,7 +70,7 @@ const char* scan_with_library(const char* at, double& value) {
 }  // namespace
 
 const char* scan_any_number(const char* at, double& value) {
-  constexpr std::ptrdiff_t kMaxDigits = 19;  // any so many fit into 64 bits
+  constexpr std::ptrdiff_t kMaxDigits = 19;  // any number with this many digits fits into 64 bits
   constexpr std::uint64_t kMaxExact = std::uint64_t{1} << 53;
   constexpr std::int64_t kMaxPower = std::size(kPowers) - 1;  // the largest power of ten that is a double
   const bool is_negative = *at == '-';

@@ -7,23 +7,23 @@
 #include <cstring>
 
 /// Fast parsing of numbers in text. The text must be followed by kTextPadding bytes that belong to no number, because
-/// nothing checks for its end.
+/// the parser does not check for its end.
 namespace orrery::data {
 
 inline constexpr std::size_t kTextPadding = 24;
 
-// Powers of ten. Not in the functions, which would copy them to the stack.
+// Powers of ten. At namespace scope, because functions would copy them to the stack.
 inline constexpr std::uint64_t kIntegerPowers[] = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000};
 inline constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                      1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-/// Eight characters in one word. A loop over digits would mispredict its end.
+/// Eight characters in one word. The branch at the end of a loop over digits would be mispredicted.
 class CharacterBlock {
  public:
   explicit CharacterBlock(const char* at) {
     static_assert(std::endian::native == std::endian::little);
     std::memcpy(&word_, at, sizeof word_);
-    word_ ^= 0x3030303030303030;  // digits become their values
+    word_ ^= 0x3030303030303030;  // maps digits to their values
   }
 
   /// Returns a mask with the top bit of each character that is not a digit.
@@ -43,7 +43,7 @@ class CharacterBlock {
     return word & 0xffffffff;
   }
 
-  /// Removes a character and appends `next`, the one after the eight.
+  /// Removes a character and appends `next`, the ninth character.
   void remove(unsigned index, char next) {
     const std::uint64_t before = (std::uint64_t{1} << (8 * index)) - 1;
     const auto last = static_cast<std::uint64_t>(static_cast<unsigned char>(next ^ 0x30)) << 56;
@@ -75,9 +75,9 @@ inline const char* scan_digits(const char* at, std::uint64_t& value) {
 /// Result     the end of the number; null if there is none
 const char* scan_any_number(const char* at, double& value);
 
-/// As scan_any_number(), but fast for numbers of up to eight digits with a decimal point.
+/// Like scan_any_number(), but fast for numbers of up to eight digits with a decimal point.
 inline const char* scan_number(const char* at, double& value) {
-  // The end of a number is where the next one is looked for: it should depend on as few operations as possible.
+  // Parsing continues at the end of a number, so computing this end should take as few operations as possible.
   const unsigned sign = *at == '-' ? 1 : 0;
   const CharacterBlock characters(at);
   const std::uint64_t others = characters.others() & ~(std::uint64_t{sign} << 7);
@@ -94,7 +94,7 @@ inline const char* scan_number(const char* at, double& value) {
   // Both numbers are exact, hence the quotient is correctly rounded.
   const double magnitude =
       static_cast<double>(static_cast<std::int64_t>(digits.value(count))) / kPowers[end - point - 1];
-  // Without a branch: signs are random.
+  // Branchless, because signs are unpredictable.
   value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) | std::uint64_t{sign} << 63);
   return at + end;
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr bool ends_word(char c) { return is_blank(c) || c == '\n'; }
 
-/// The first blank or control character. Eight characters at once, as in text_number.h.
+/// The first space or control character. Processes eight characters at a time, as in text_number.h.
 const char* word_end(const char* at) {
   for (;; at += 8) {
     std::uint64_t word = 0;
@@ -152,7 +152,7 @@ const char* RowParser::parse_separated(const char* at) {
   return nullptr;
 }
 
-/// Result     behind the closing quote; null if there is none
+/// Result     position after the closing quote; null if there is none
 const char* RowParser::quoted_value(const char* at, std::string_view& value) {
   const char* const begin = ++at;
   bool has_quotes = false;

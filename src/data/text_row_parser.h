@@ -51,7 +51,7 @@ class RowParser {
   const std::vector<std::string_view>& words(std::size_t column) const { return words_[column].words(); }
   /// Surveys of the columns, if the layout requests them.
   const std::vector<ColumnSurvey>& surveys() const { return surveys_; }
-  /// The first faulty lines, by line.
+  /// The first faulty lines, in order.
   const std::vector<Fault>& faults() const { return faults_; }
   std::uint64_t fault_count() const { return fault_count_; }
 
@@ -69,7 +69,7 @@ class RowParser {
   std::uint64_t row_ = 0;
   std::uint64_t line_ = 0;
   std::vector<WordList> words_;
-  std::deque<std::string> unescaped_;  ///< words that contain quotes
+  std::deque<std::string> unescaped_;  ///< storage for words with escaped quotes
   std::vector<ColumnSurvey> surveys_;
   std::vector<Fault> faults_;
   std::uint64_t fault_count_ = 0;

@@ -54,7 +54,7 @@ void prefer_huge_pages(std::vector<T>& values) {
   constexpr std::uintptr_t kHugePage = std::uintptr_t{2} << 20;
   const auto begin = (reinterpret_cast<std::uintptr_t>(values.data()) + kHugePage - 1) / kHugePage * kHugePage;
   const auto end = reinterpret_cast<std::uintptr_t>(values.data() + values.capacity()) / kHugePage * kHugePage;
-  // It is only advice: the result does not matter.
+  // Only a hint: the result does not matter.
   if (begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
 #endif
 }
@@ -72,7 +72,7 @@ Values reserved_column(const TextColumn& column, std::uint64_t rows) {
   }
 }
 
-/// Makes a column longer, within its reserved memory: other threads are writing to its rows.
+/// Extends a column within its reserved memory, while other threads are writing to its rows.
 void* resized(Values& column, std::uint64_t rows) {
   return std::visit(
       [rows](auto& v) -> void* {
@@ -83,7 +83,7 @@ void* resized(Values& column, std::uint64_t rows) {
           v.resize(rows);
           return v.data();
         } else {
-          return nullptr;  // readers make no views
+          return nullptr;  // readers never create views
         }
       },
       column);
@@ -136,8 +136,8 @@ class TableReader {
     lines.read(bytes_, first, first + layout_.chunk_bytes, chunk == 0);
   }
 
-  /// An upper bound, by which declared numbers of rows are checked before memory is reserved. It has room for some
-  /// malformed rows, so that those are reported.
+  /// Upper bound of the number of rows, used to check declared counts before memory is reserved. Allows some malformed
+  /// rows, so that these are reported.
   std::uint64_t possible_rows() const {
     constexpr std::uint64_t kMargin = 1000;
     const std::uint64_t bytes_per_value = layout_.separator == ' ' ? 2 : 1;

@@ -21,8 +21,8 @@
 namespace orrery::denoise {
 namespace {
 
-/// Squared differences of patches of the beauty, in variances, from which on they have nothing in common: of filtered
-/// halves, and without halves.
+/// Squared differences of patches of the beauty, in units of the variance, at which their similarity becomes 0: for
+/// filtered halves, and without halves.
 constexpr float kTolerance = 12, kToleranceOfImage = 2.5F;
 
 /// The weights' source for the beauty.
@@ -42,7 +42,7 @@ WeightSource beauty_source(const SourcePlanes& planes, const FilteredHalves& hal
   return source;
 }
 
-/// What is known of a channel before it is filtered.
+/// Properties of a channel before filtering.
 struct ChannelLight {
   bool is_positive;  ///< no value is negative; NaN counts as none
   bool is_complete;  ///< the cells add up to the beauty
@@ -127,7 +127,7 @@ Report filter(film::Picture& picture) {
         scale_pixel(cells.back().back(), frame, outlier.pixel, outlier.factors[c]);
     }
   }
-  // Colours are premultiplied: where they spread, so must alpha.
+  // Colours are premultiplied, so alpha must be filtered with the same weights.
   const std::optional<std::size_t> alpha = partial_alpha(picture);
   const PaddedPlane noisy_alpha = alpha ? padded(picture.planes[*alpha].values, frame) : PaddedPlane();
   tiles.each([&](Worker& worker, int x, int y) {

@@ -15,16 +15,16 @@ inline constexpr const char* kAttribute = "orrery/denoised";
 /// Report of denoise().
 struct Report {
   std::vector<std::string> layers;   ///< light layers that were filtered with the beauty
-  std::vector<std::string> missing;  ///< layers that the image lacks; each would improve the result
-  bool has_guides = false;           ///< albedo and normal guided the filter
+  std::vector<std::string> missing;  ///< layers that would improve the result, but that the image lacks
+  bool has_guides = false;           ///< the filter used albedo and normal as guides
   /// Pixels without samples, or whose beauty is not finite or too large. They remain unchanged.
   std::uint64_t bad_pixels = 0;
 };
 
 /// Filters the noise of an image's beauty, and applies the same weights to its light layers (lobe AOVs, light groups
-/// and the lobes of the groups). If they added up to the beauty, they do so again, bit for bit in single precision.
-/// Alpha is filtered with the same weights if part of the image is transparent, since colours are premultiplied. Other
-/// planes are unchanged. The sum over the image is preserved, within the limits of LightBalance.
+/// and the lobes of the groups). If they added up to the beauty, they still do, bit for bit in single precision. Alpha
+/// is filtered with the same weights if part of the image is transparent, since colours are premultiplied. Other planes
+/// are unchanged. The sum over the image is preserved, within the limits of LightBalance.
 ///
 /// The weights come from the layer `halves`, or, if the image lacks it, from the guides `denoise.albedo`,
 /// `denoise.normal` and `depth`, from `variance` and from the beauty itself.

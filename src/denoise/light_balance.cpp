@@ -10,9 +10,9 @@
 namespace orrery::denoise {
 namespace {
 
-/// The light of a few very bright pixels, spread over a dark part, would be visible.
+/// Limited, because the light of a few very bright pixels would be visible if spread over a dark part.
 constexpr double kLargestLift = 0.05;
-/// The same for the light of a single outlier. It would flicker from frame to frame.
+/// The same limit for the light of a single outlier, which would flicker from frame to frame.
 constexpr double kLargestLiftOfOutlier = 0.02;
 
 /// Position of a pixel between two parts: the first of them, and the weight of the second.
@@ -22,7 +22,7 @@ struct GridPosition {
 };
 GridPosition grid_position(int pixel) { return {pixel / kPartSpacing, (pixel % kPartSpacing + 0.5) / kPartSpacing}; }
 
-/// Light that a pixel gained, at most all that it has.
+/// Light that a pixel gained, at most all of its light.
 double gain(float before, float after) {
   return std::max(static_cast<double>(after) - static_cast<double>(std::max(before, 0.0F)), 0.0);
 }
@@ -34,7 +34,7 @@ struct Light {
 
   /// Fraction of the light by which a part is brightened for what it lost to the filter.
   double lift_of_loss() const { return loss > 0 && after > 0 ? std::min(loss / after, kLargestLift) : 0; }
-  /// The same for the light of outliers. Where there are more of them, their number is better known.
+  /// The same for the light of outliers. The limit grows with their number, which is then statistically more certain.
   double lift_of_removed() const {
     if (!(removed > 0 && after > 0)) return 0;
     return std::min(removed / after, kLargestLiftOfOutlier * std::max(removed / std::sqrt(removed_squares), 1.0));

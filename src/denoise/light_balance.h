@@ -10,35 +10,36 @@ namespace orrery::denoise {
 /// Distance between the centres of neighbouring parts, px.
 inline constexpr int kPartSpacing = 64;
 
-/// Light that was taken from a pixel.
+/// Light that was removed from a pixel.
 struct RemovedLight {
   std::size_t pixel;  ///< index
   double light;       ///< not negative
 };
 
 /// Factors that restore the light of each part of a filtered plane to its value before filtering. The filter does not
-/// preserve it: what a pixel receives from others can differ from what it contributes to them.
+/// preserve energy: what a pixel receives from others can differ from what it contributes to them.
 ///
 /// Parts are overlapping tents, 2 * kPartSpacing wide, that add up to 1 in each pixel, so that factors interpolated
 /// between parts preserve the sum over the image. A part that lost light is multiplied by a factor of up to 1.05. In a
 /// part that gained light, the pixels that are brighter than before give back the same fraction of their gain.
 ///
-/// The light of outliers, which was taken from the image before filtering, counts as lost. Where a part has N of them,
-/// its factor may be larger by the square root of N, since their number is then as well known. Light beyond the limits
-/// is spread over the whole image; what would change that too much is returned to the outliers.
+/// The light of outliers, which was removed from the image before filtering, counts as lost. In a part with N outliers,
+/// the limit of the factor is larger by the square root of N, which reflects the statistical certainty of their number.
+/// Light beyond the limits is spread over the whole image; if that would change the image too much, the excess is
+/// returned to the outliers.
 class LightBalance {
  public:
   /// Computes the factors of a plane.
   ///
   /// `before`, `after`   plane before and after filtering
   /// `valid`             1, or 0 for pixels to ignore, whose values may be anything
-  /// `removed`           light that was taken from the plane before `before`
+  /// `removed`           light that was removed from the plane before `before` was taken
   LightBalance(const PaddedPlane& before, const Values& after, const PaddedPlane& valid, Frame frame,
                const std::vector<RemovedLight>& removed = {});
 
   /// The factor for a valid pixel; not negative.
   ///
-  /// `before`, `after`   its values
+  /// `before`, `after`   the pixel's values
   double at(int x, int y, float before, float after) const;
 
  private:
@@ -48,7 +49,7 @@ class LightBalance {
   };
 
   int columns_;
-  double lift_ = 0;  ///< of the whole image
+  double lift_ = 0;  ///< lift of the whole image
   std::vector<Part> parts_;
 };
 

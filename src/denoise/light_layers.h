@@ -9,7 +9,7 @@
 
 namespace orrery::denoise {
 
-/// The planes of one colour channel, as its light is divided into layers. Members are indices of planes.
+/// The planes of one colour channel: how its light is divided into layers. Members are indices of planes.
 struct LightChannel {
   std::size_t beauty = 0;
   std::vector<std::size_t> cells;  ///< layers that are not sums of others, in the order of their rounding
@@ -21,16 +21,16 @@ struct LightChannel {
   std::vector<Sum> sums;
 };
 
-/// The light layers of an image by their names: lobe AOVs, light groups and the lobes of the groups.
+/// The light layers of an image, identified by name: lobe AOVs, light groups and the lobes of the groups.
 struct LightLayers {
   std::vector<LightChannel> channels;  ///< R, G, B
-  std::vector<std::string> names;      ///< of the layers
+  std::vector<std::string> names;      ///< names of the layers
 };
 
 /// Finds the light layers of an image that has R, G and B.
 LightLayers find_light_layers(const film::Picture& picture);
 
-/// Whether the cells add up to the beauty in all pixels with finite values, as far as half precision allows.
+/// Returns whether the cells add up to the beauty in all pixels with finite values, within half precision.
 bool are_complete(const film::Picture& picture, const LightLayers& layers);
 
 /// Rounds the filtered cells of a pixel so that they add up bit for bit in single precision, in any order, as

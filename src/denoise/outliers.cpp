@@ -11,28 +11,29 @@
 namespace orrery::denoise {
 namespace {
 
-/// Noise of a pixel from which on it is an outlier: times the mean light and the mean noise of its window. A pixel
-/// whose light is averaged over the window changes it by 1 / kOffsets of its own: at most by 1 / 60 of the light where
-/// there is little noise, and less than the rest of the noise does where there is much.
+/// Noise thresholds of outliers, as multiples of the mean light and of the mean noise of the window. A pixel that is
+/// averaged over the window changes it by 1 / kOffsets of the pixel's light: by at most 1 / 60 of the window's light if
+/// there is little noise, and by less than the rest of the noise if there is much.
 constexpr float kOfLight = 2, kOfNoise = 12;
-/// The same, times the light of the pixel's own darker half: that much both halves saw.
+/// The same as a multiple of the pixel's darker half, the light that both halves contain.
 constexpr float kOfDarkerHalf = 2;
 
-/// Number of times that the means are computed. Each time a pixel counts up to its limit before, so that a pixel has
-/// little effect on its own limit.
+/// Number of iterations of the means. In each, a pixel contributes at most its previous limit, so that it has little
+/// effect on its own limit.
 constexpr int kRounds = 4;
-/// In the second round a pixel counts up to that many times the limit of a window beside it, however bright it is.
+/// In the second iteration, a pixel contributes at most this multiple of the limit of an adjacent window, however
+/// bright it is.
 constexpr float kOfWindowBeside = 8;
 
-/// Noise, in limits, up to which an outlier is reduced to its limit, so that nothing of note is lost where there are
-/// many. From twice that on it is reduced to its darker half, since the limit would still show as a dot.
+/// Noise, in units of the limit, up to which an outlier is reduced to its limit, so that little is lost if there are
+/// many. From twice this value, it is reduced to its darker half, since the limit would still be visible as a dot.
 constexpr float kFading = 8;
 
-/// An outlier keeps at least this fraction of its light, so that it can be computed from what is left.
+/// Minimum fraction of its light that an outlier keeps, so that the original can be recovered from the rest.
 constexpr float kMinFactor = 0x1p-40F;
 
-/// Largest standard deviation of the image's mean, as a fraction of it, by light of outliers that is spread over the
-/// image. It would flicker from frame to frame.
+/// Maximum relative standard deviation of the image's mean caused by spreading the light of outliers over the image;
+/// more would flicker from frame to frame.
 constexpr double kLargestFlicker = 0.02;
 
 /// A colour of a half.
@@ -55,8 +56,8 @@ float darker(const std::array<float, 3>& a, const std::array<float, 3>& b) {
   return std::max(std::min(sum(a), sum(b)), 0.0F) / std::sqrt(3.0F);
 }
 
-/// Means over the windows of pixels, moved to be within the image: the mean of a repeated edge would be that of few
-/// pixels.
+/// Means over the windows of pixels, shifted to lie within the image: with repeated edge pixels, they would average few
+/// distinct pixels.
 Values means_inside(const Values& in, Frame frame) {
   const Values means = window_means(in, frame, kWindowRadius);
   const auto inside = [](int at, int length) {
@@ -66,7 +67,7 @@ Values means_inside(const Values& in, Frame frame) {
   return frame.each([&](int x, int y) { return means[frame.at(inside(x, frame.width), inside(y, frame.height))]; });
 }
 
-/// Limits of the noise of each pixel by that and by the light of its window.
+/// Limits of the noise of each pixel, from the noise and the light of its window.
 Values noise_limits(const Values& noises, const Values& darker_halves, Frame frame) {
   Values limits = noises;
   for (int round = 0; round < kRounds; ++round) {
@@ -81,7 +82,7 @@ Values noise_limits(const Values& noises, const Values& darker_halves, Frame fra
   return limits;
 }
 
-/// `limit`    that its noise exceeds
+/// `limit`    limit that the pixel's noise exceeds
 Outlier outlier_of(std::size_t pixel, const std::array<float, 3>& a, const std::array<float, 3>& b, float limit) {
   const float limits = noise(a, b) / limit;
   Outlier out{pixel, sum(a) > sum(b), true, std::clamp(2 - limits / kFading, 0.0F, 1.0F) / limits, {}};

@@ -32,12 +32,12 @@ class PaddedPlane {
   PaddedPlane(int width_px, int height_px) : stride_(whole(width_px, kTileWidth) + 2 * kBorder + kMaxLanes) {
     const std::ptrdiff_t rows = whole(height_px, kTileHeight) + 2 * kBorder;
     values_ = std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(stride_ * rows));
-    // In parallel, since most of the time goes to the memory's first use.
+    // In parallel, since most of the time is spent on page faults.
     tbb::parallel_for(std::ptrdiff_t{0}, rows,
                       [&](std::ptrdiff_t y) { std::fill_n(&values_[y * stride_], stride_, 0.0F); });
   }
 
-  /// Pointer to a pixel; x and y can be up to kBorder outside of the tiles that cover the image.
+  /// Pointer to a pixel; x and y can be up to kBorder outside the tiles that cover the image.
   float* at(int x, int y) { return values_.get() + (y + kBorder) * stride_ + x + kBorder; }
   const float* at(int x, int y) const { return values_.get() + (y + kBorder) * stride_ + x + kBorder; }
 

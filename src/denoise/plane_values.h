@@ -15,7 +15,7 @@ namespace orrery::denoise {
 /// A plane's values in rows from the top.
 using Values = std::vector<float>;
 
-/// Larger values would overflow when squared.
+/// Maximum usable value: larger values would overflow when squared.
 inline constexpr float kLargest = 0x1p40F;
 
 inline bool is_usable(float v) { return std::abs(v) <= kLargest; }
@@ -27,7 +27,7 @@ struct Frame {
   int width, height;
 
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
-  /// Index of the pixel nearest to (x, y), which may be outside of the image.
+  /// Index of the pixel nearest to (x, y), which may be outside the image.
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(std::clamp(x, 0, width - 1));
@@ -57,14 +57,14 @@ struct Frame {
 /// Means over square windows. Edge pixels are repeated beyond the image.
 Values window_means(const Values& in, Frame frame, int radius_px);
 
-/// The least value of each pixel and of the four at a distance from it to the left, to the right, above and below.
+/// Minimum over each pixel and the four pixels at a distance to the left, right, above and below.
 Values least_around(const Values& in, Frame frame, int distance_px);
 
 /// The same plane of two independent halves of the samples.
 struct HalfPair {
   const Values* a;
   const Values* b;
-  float scale = 1;  ///< of the values
+  float scale = 1;  ///< scale of the values
 };
 
 /// Variance of the mean of two halves, averaged over square windows; sum over the planes.
@@ -72,7 +72,7 @@ struct HalfPair {
 /// `limits`   largest standard deviation of each pixel, if any
 Values variance_of(const std::vector<HalfPair>& planes, Frame frame, int radius_px, const Values* limits = nullptr);
 
-/// Multiplies the value of a pixel, and its repetitions in the border.
+/// Multiplies the value of a pixel and its copies in the border.
 void scale_pixel(PaddedPlane& plane, Frame frame, std::size_t pixel, float factor);
 
 /// Copies values into a padded plane, whose border repeats the edge pixels. Values that are not finite or too large

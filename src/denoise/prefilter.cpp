@@ -7,21 +7,21 @@
 namespace orrery::denoise {
 namespace {
 
-/// Squared differences of patches, in variances, from which on they have nothing in common.
+/// Squared differences of patches, in units of the variance, at which their similarity becomes 0.
 constexpr float kGuideTolerance = 4, kVarianceTolerance = 5;
 
 /// Radius of the windows, px. Guides are less noisy than the beauty. A larger window for the halves would blur shadows
-/// before the final weights can tell them apart.
+/// before the final weights can distinguish them.
 constexpr int kGuideRadius = 2, kRadius = 1;
 
 /// Radius of the windows over which the variance of the filtered halves is averaged, px: they differ over larger areas
 /// than the noisy ones.
 constexpr int kNoiseRadius = 3;
-/// Distance of the windows of which the one with the smallest variance counts, px. At an edge between light with much
-/// noise and with little, it is on the side of the pixel, or on the one with less.
+/// Distance of the windows among which the smallest variance is taken, px. At an edge between noisy and clean light,
+/// that window is on the pixel's side or on the cleaner one.
 constexpr int kNoiseStep = 2;
 
-/// Fraction of the noisy variance that filtered halves keep at least. They can be equal by chance.
+/// Minimum variance of filtered halves, as a fraction of the unfiltered variance: halves can be equal by chance.
 constexpr float kMinVariance = 0.06F;
 
 /// Filters planes with the same weights.

@@ -11,7 +11,8 @@ namespace orrery::denoise {
 class Tiles;
 struct SourcePlanes;
 
-/// Filters the guides by their own similarity. They are noisy where defocus or motion blurs them, and behind glass.
+/// Filters the guides with weights from their own similarity. Guides are noisy under defocus and motion blur, and
+/// behind glass.
 ///
 /// Result     kGuides planes
 std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, Frame frame, Tiles& tiles);
@@ -19,10 +20,10 @@ std::vector<PaddedPlane> filtered_guides(const SourcePlanes& planes, Frame frame
 /// The prefiltered halves of the beauty, which determine the final weights.
 struct FilteredHalves {
   std::array<PaddedPlane, 3> a, b;
-  PaddedPlane variance;  ///< of their mean, sum over the channels
+  PaddedPlane variance;  ///< variance of their mean, summed over the channels
 };
 
-/// Filters both halves of the beauty with the same weights, of a small window.
+/// Filters both halves of the beauty with the same weights, over a small window.
 ///
 /// `guides`   filtered
 /// Reference  rousselle2012

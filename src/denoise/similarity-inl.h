@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much alike the patches around the pixels of a tile are. Compiled once per instruction set.
+// Similarity of the patches around the pixels of a tile. Compiled once per instruction set.
 #if defined(ORRERY_DENOISE_SIMILARITY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_DENOISE_SIMILARITY_INL_H_
 #undef ORRERY_DENOISE_SIMILARITY_INL_H_
@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
 
-// Products and sums are separate operations: with fused ones, SSE4 would give other bits than AVX2.
+// Products and sums are not fused: otherwise, SSE4 would give different bits than AVX2.
 HWY_INLINE V add_product(V sum, V a, V b) { return hn::Add(sum, hn::Mul(a, b)); }
 
 /// (1 - x)^4 for x in 0..1, and 0 beyond: like exp(-4 x), with compact support.
@@ -34,11 +34,11 @@ inline constexpr std::size_t kDistanceStride = kHaloWidth + kMaxLanes;
 /// Squared difference of each pixel of the tile, and of its halo, to the pixel at an offset, in units of the variance.
 ///
 /// The product of the differences in two independent halves is an unbiased estimate of the squared difference. Without
-/// halves, the part that noise explains is subtracted. The variance is twice the smaller of the two pixels', so that a
-/// pixel with little noise, for instance in a shadow, takes no light from a different, noisy neighbour.
+/// halves, the expected contribution of noise is subtracted. The variance is twice the smaller of the two pixels', so
+/// that a pixel with little noise, for instance in a shadow, takes no light from a different, noisy neighbour.
 ///
-/// Negative products are limited: a single one, in which noise has no part that both halves agree on, would make up for
-/// the differences of the whole patch.
+/// Negative products, which are pure noise, are clamped: a single large one would cancel the differences of the whole
+/// patch.
 template <bool kHalves>
 HWY_INLINE void pixel_distances(const WeightSource& source, int x0, int y0, int dx, int dy, float* out) {
   const D d;
@@ -85,7 +85,7 @@ HWY_INLINE void patch_sums(const float* distances, float* columns, TilePixels& o
   }
 }
 
-/// Turns the summed distances of each pixel of the tile to its neighbour at an offset into their similarity.
+/// Converts the summed distances between each pixel of the tile and its neighbour at an offset to similarities.
 HWY_INLINE void similarities(const WeightSource& source, int x0, int y0, int dx, int dy, TilePixels& sums) {
   const D d;
   constexpr float kPatchPixels = (2 * kPatchRadius + 1) * (2 * kPatchRadius + 1);

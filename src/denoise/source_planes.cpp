@@ -14,7 +14,7 @@ namespace {
 /// Radius of the windows over which variances are averaged, px: a single difference of two halves is a poor estimate.
 constexpr int kBeautyNoiseRadius = 2, kGuideNoiseRadius = 1;
 
-// Scale of the guides: pixels whose guides differ by 1 in total have nothing in common.
+// Scale of the guides: the similarity of pixels whose guides differ by 1 in total is 0.
 constexpr float kAlbedoScale = 2, kNormalScale = 1, kDepthScale = 0.5F;
 
 /// Variance estimated from the image alone: the mean square of a second difference in x and y, which vanishes for
@@ -79,12 +79,12 @@ float relative_scale(const Values& inverse_depth, float scale) {
   return sum > 0 ? static_cast<float>(scale * static_cast<double>(inverse_depth.size()) / sum) : 0.0F;
 }
 
-/// Pixels by the halves that have samples in them. A half without samples is NaN.
+/// Pixels classified by which halves have samples. A half without samples is NaN.
 struct HalfCounts {
   std::size_t with_one = 0, with_none = 0;
 };
 
-/// Fraction of pixels with one half from which on the halves as a whole tell too little about the noise.
+/// Maximum fraction of pixels with a single half: with more, the halves do not describe the noise reliably.
 constexpr double kMaxLonePixels = 1.0 / 16;
 
 HalfCounts count_halves(const Planes& planes, Frame frame) {
@@ -102,7 +102,7 @@ class HalfPlanes {
  public:
   HalfPlanes(const Planes& planes, HalfCounts counts, Frame frame) : planes_(planes), counts_(counts), frame_(frame) {}
 
-  /// `end`      of the names, such as ".albedo.R"
+  /// `end`      suffix of the names, such as ".albedo.R"
   /// Result     valid as long as this
   HalfPair of(const std::string& end, float scale = 1) {
     const Values &a = planes_.at("half_a" + end), &b = planes_.at("half_b" + end);
@@ -162,7 +162,7 @@ Values variance_without_halves(const Planes& planes, bool has_variance, Frame fr
   return sum;
 }
 
-/// Reduces an outlier to what its halves have in common.
+/// Reduces an outlier to the light that both halves contain.
 void reduce(SourcePlanes& planes, const std::vector<HalfPair>& halves, Frame frame, const Outlier& outlier) {
   for (std::size_t c = 0; c < 3; ++c) {
     scale_pixel(planes.beauty[c], frame, outlier.pixel, outlier.factors[c]);

@@ -17,17 +17,17 @@ struct SourcePlanes {
   bool has_halves = false;                  ///< `a` and `b` are independent
   std::array<PaddedPlane, 3> beauty, a, b;  ///< the beauty, and that of two halves of the samples
   Outliers outliers;                        ///< already reduced in `beauty`, `a` and `b`
-  PaddedPlane variance;                     ///< of the beauty, sum over the channels
+  PaddedPlane variance;                     ///< variance of the beauty, summed over the channels
   std::vector<PaddedPlane> guides;          ///< kGuides, or empty
   PaddedPlane guide_variance;               ///< sum over the guides
-  PaddedPlane valid;                        ///< 1; 0 outside of the image and where the beauty is not finite
+  PaddedPlane valid;                        ///< 1; 0 outside the image and where the beauty is not finite
   std::vector<std::string> missing;         ///< layers that the image lacks
 
   std::array<const PaddedPlane*, 3> target() const { return {&beauty[0], &beauty[1], &beauty[2]}; }
 };
 
-/// Prepares the planes of an image with a beauty R, G, B: halves, guides and variance as far as the image has them.
-/// Values that are not finite are replaced by 0.
+/// Prepares the planes of an image with a beauty R, G, B: halves, guides and variance, if present. Values that are not
+/// finite are replaced by 0.
 SourcePlanes source_planes(const film::Picture& picture);
 
 }  // namespace orrery::denoise

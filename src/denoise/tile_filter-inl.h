@@ -57,7 +57,7 @@ HWY_INLINE void solve_first(D d, V (&m)[kEntries], V (&z)[kUnknowns]) {
   }
 }
 
-/// Scales the similarities of a vector of pixels so that they add up to 1.
+/// Normalizes the similarities of a vector of pixels to a sum of 1.
 HWY_INLINE void normalize(int radius, std::size_t at, TileWeights& weights) {
   const D d;
   V sum = hn::Zero(d);
@@ -119,7 +119,7 @@ HWY_INLINE void regress(const WeightSource& source, int x, int y, std::size_t at
       mean[c] = add_product(mean[c], of_mean, value);
     }
   });
-  // The largest fraction of the regression, between it and the weighted mean, that makes no channel negative.
+  // The largest blend factor from the weighted mean to the regression at which no channel is negative.
   const V one = hn::Set(d, 1.0F);
   V fraction = one;
   for (std::size_t c = 0; c < 3; ++c) {

@@ -12,8 +12,8 @@ namespace orrery::denoise {
 /// Number of guides: albedo, normal, inverse depth.
 inline constexpr std::size_t kGuides = 7;
 
-/// A channel by which patches are compared: two independent estimates of it. Without independent estimates `a` and `b`
-/// are the same plane.
+/// Two independent estimates of a channel by which patches are compared. Without independent estimates, `a` and `b` are
+/// the same plane.
 struct ComparedChannel {
   const PaddedPlane* a = nullptr;
   const PaddedPlane* b = nullptr;
@@ -22,15 +22,15 @@ struct ComparedChannel {
 /// The data from which the weights of a tile are computed.
 struct WeightSource {
   std::vector<ComparedChannel> compared;
-  const PaddedPlane* variance = nullptr;  ///< of the mean of `a` and `b`, sum over the channels
-  int radius = kWindowRadius;             ///< of the window of neighbours, at most kWindowRadius, px
+  const PaddedPlane* variance = nullptr;  ///< variance of the mean of `a` and `b`, summed over the channels
+  int radius = kWindowRadius;             ///< radius of the window of neighbours, at most kWindowRadius, px
   float tolerance = 1;                 ///< squared difference of patches, in variances, at which the weight becomes 0
-  const PaddedPlane* valid = nullptr;  ///< 1, or 0 for pixels to ignore; 0 outside of the image
-  /// kGuides planes, scaled so that the weight becomes 0 at a difference of 1; or empty.
+  const PaddedPlane* valid = nullptr;  ///< 1, or 0 for pixels to ignore; 0 outside the image
+  /// kGuides planes, scaled so that the weight becomes 0 at a difference of 1; empty: no guides.
   std::vector<const PaddedPlane*> guides;
   const PaddedPlane* guide_variance = nullptr;  ///< sum of the variances of all guides
-  bool has_regression = false;                  ///< on the guides; otherwise the weights are those of a weighted mean
-  /// Image that the weights are for. A regression that would make it negative is blended with the weighted mean.
+  bool has_regression = false;                  ///< regression on the guides; otherwise a weighted mean
+  /// The image to be filtered. Where regression would make it negative, it is blended with the weighted mean.
   std::array<const PaddedPlane*, 3> target = {};
 };
 

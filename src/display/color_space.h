@@ -16,10 +16,10 @@ namespace orrery::display {
 void convert_colors(const std::string& config_file, const std::string& from, const std::string& to,
                     std::vector<std::array<double, 3>>& colors);
 
-/// Converts RGB pixels in place. Threads may call it at the same time.
+/// Converts RGB pixels in place. Thread-safe.
 using PixelConversion = std::function<void(float* rgb, std::size_t pixels)>;
 
-/// Returns the conversion of an image from its colour space, of any encoding, to a scene-linear space. Empty if both
+/// Returns the conversion of an image from its colour space, linear or encoded, to a scene-linear space. Empty if both
 /// are the same, in which case no config is loaded.
 ///
 /// Domain     `config_file` as Settings::config
@@ -32,12 +32,12 @@ struct KnownSpace {
   std::array<float, 8> chromaticities;  ///< x, y of red, green, blue, white
 };
 
-/// The space that orrery knows by a name or alias; null if unknown.
+/// Looks up a scene-linear space by its name or alias. Null if orrery does not know it.
 ///
 /// Reference  color-interop-forum
 const KnownSpace* known_space(const std::string& name);
 
-/// The space that orrery knows by its primaries and white point; null if unknown.
+/// Looks up a scene-linear space by its primaries and white point. Null if orrery does not know it.
 const KnownSpace* known_space(const std::array<float, 8>& chromaticities);
 
 }  // namespace orrery::display

@@ -39,7 +39,7 @@ class LogCapture {
   std::lock_guard<std::mutex> lock_;
 };
 
-/// Whether a name denotes a config built into newer versions of OCIO, which is not a file.
+/// Returns whether a name denotes a config built into newer versions of OCIO, which is not a file.
 bool is_library_config(const std::string& name) { return name.rfind("ocio://", 0) == 0; }
 
 ocio::ConstConfigRcPtr load(const std::string& file) {

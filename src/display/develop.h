@@ -14,7 +14,7 @@ struct Settings;
 
 /// Treatment of an image's alpha.
 enum class Alpha {
-  kOverBlack,  ///< dropped: the image is shown over black
+  kOverBlack,  ///< dropped: the image is composited over black
   kStraight,   ///< kept as a fourth channel; colours are divided by it before the view is applied
 };
 
@@ -30,8 +30,8 @@ enum class Alpha {
 film::EncodedPicture develop(const film::Picture& picture, const Settings& settings, int bits, bool dither = false,
                              Alpha alpha = Alpha::kOverBlack);
 
-/// A display transform that is set up once and develops pixels in small groups, to 8 bits and without dither. The
-/// values are those of develop().
+/// A display transform that is set up once and develops pixels in small groups, to 8 bits and without dither. Gives the
+/// same values as develop().
 class PixelDeveloper {
  public:
   /// Sets up the display transform.

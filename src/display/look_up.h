@@ -34,7 +34,7 @@ LookUp look_up(const Settings& settings, const std::string& space);
 
 /// Returns `preferred` if the display has a view of this name, else the display's default view.
 ///
-/// Domain     the settings' own view is not used
+/// Domain     the view of the settings is ignored
 /// Result     `preferred` also if the config or the display is not found, which look_up() reports
 std::string view_or_default(const Settings& settings, const std::string& preferred);
 

@@ -20,7 +20,7 @@ Names names(int count, Get get) {
   return out;
 }
 
-/// Throws the error for a name that is not in a config, with the known names.
+/// Throws the error for a name that a config does not define; lists the defined names.
 [[noreturn]] inline void unknown(const Config& config, const std::string& what, const std::string& name,
                                  const Names& known, const std::string& tried = {}) {
   const std::string near = base::did_you_mean(name, known);

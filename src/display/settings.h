@@ -22,11 +22,11 @@ struct Settings {
 /// The resolved display transform.
 struct Choice {
   std::string config;        ///< "built-in", or the config file
-  std::string config_id;     ///< OCIO's digest of the config; it changes with the text of the config
-  std::string transform_id;  ///< OCIO's digest of the display transform; it changes with the contents of LUT files
+  std::string config_id;     ///< OCIO's digest of the text of the config
+  std::string transform_id;  ///< OCIO's digest of the display transform, including the contents of LUT files
   std::string display, view;
   std::string working_space;  ///< canonical name in the config
-  bool is_hdr = false;        ///< the result is for a high dynamic range display
+  bool is_hdr = false;        ///< the display is high dynamic range
 
   /// Default bits per channel. With 8 bits, banding is visible on high dynamic range displays.
   int default_bits() const { return is_hdr ? 16 : 8; }

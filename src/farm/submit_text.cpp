@@ -79,8 +79,9 @@ std::string slurm_text(const Submission& s, const Commands& c) {
       base::shell_quoted(c.folder.string()));
   out += slurm_array(c, "render", render_tasks(s, c));
   if (render_tasks(s, c) > kSlurmArray)
-    out += fmt::format("# More than {} tasks need a larger MaxArraySize than Slurm's default; or submit parts.\n",
-                       kSlurmArray);
+    out +=
+        fmt::format("# More than {} tasks need a larger MaxArraySize than Slurm's default; or a submission in parts.\n",
+                    kSlurmArray);
   out +=
       "#SBATCH --requeue\n"
       "# One minute before the time limit, a signal stops the render, which writes its checkpoint.\n"

@@ -5,8 +5,8 @@
 
 namespace orrery::film {
 
-/// Lower bound of the radiance in the denominator of relative errors: 1/64 of display white, which a display shows as
-/// 1/8 of white. Errors are less visible below it.
+/// Lower bound of the radiance in the denominator of relative errors: 1/64 of display white, which is encoded as about
+/// 1/8. Errors are less visible below it.
 inline constexpr double kDarkestLight = 1.0 / 64;
 
 /// The squared relative error of a pixel's display value.

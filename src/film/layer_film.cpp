@@ -120,7 +120,8 @@ double mean_guide(std::int64_t sum, std::int64_t weight) {
 }
 
 /// Calls `f(layer, channel, kind, value)` for every channel of the two halves. They are data, so that they are stored
-/// in single precision: their difference is what matters. A half without weight is NaN: 0 would be a measurement.
+/// in single precision: their difference is what matters. A half without weight is NaN, because 0 would be a valid
+/// measurement.
 template <class F>
 void each_half_channel(const Halves& halves, F f) {
   struct Names {

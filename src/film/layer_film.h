@@ -21,7 +21,7 @@ class LayerFilm {
   ///
   /// Domain     request and view outlive this
   LayerFilm(const LayerRequest& request, const kernel::SceneView& view, int width_px, int height_px);
-  LayerFilm(const LayerRequest&, const kernel::SceneView&&, int, int) = delete;  // it would not outlive this
+  LayerFilm(const LayerRequest&, const kernel::SceneView&&, int, int) = delete;  // a temporary would not outlive this
 
   /// Sets all layers of a pixel from its sums. Threads may set different pixels concurrently.
   ///

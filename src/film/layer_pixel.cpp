@@ -43,9 +43,9 @@ SphereCoverage& share_of(std::vector<SphereCoverage>& shares, std::uint32_t sphe
 
 /// Position of a path's first hit.
 struct Hit {
-  double distance;  ///< from the camera, with an orthographic one from its plane, scene units
+  double distance;  ///< distance from the camera, or from the plane of an orthographic camera, scene units
   double z;         ///< distance along the view axis, scene units
-  double exit_z;    ///< the same of the point where the ray leaves the sphere
+  double exit_z;    ///< distance along the view axis of the point where the ray leaves the sphere
 };
 
 Vec3d fma(Vec3d a, double s, Vec3d b) { return {std::fma(a.x, s, b.x), std::fma(a.y, s, b.y), std::fma(a.z, s, b.z)}; }
@@ -62,7 +62,7 @@ std::pair<Vec3d, Vec3d> camera_at(const kernel::SceneView& scene, double time) {
   return {origin, forward};
 }
 
-/// False if a path's first hit is certainly not nearer than this, which is less work than to locate it.
+/// False if a path's first hit is certainly not closer than this; cheaper than locating the hit.
 bool may_be_nearer(const kernel::SceneView& scene, const PathRecord& path, double than) {
   if (scene.camera.is_orthographic || scene.features.motion) return true;
   const Vec3d from_camera = center_of(scene.spheres[path.sphere]) - vector_of(scene.camera.origin) + path.offset;

@@ -19,7 +19,7 @@ struct LayerRequest;
 struct SphereCoverage {
   std::uint32_t sphere = kernel::kNoSphere;
   std::int64_t weight = 0;
-  // The members below are filled for deep images only.
+  // Only for deep images:
   kernel::Int128 light[3] = {0, 0, 0};
   double front = std::numeric_limits<double>::infinity();  ///< nearest entry of a path along the view axis
   double back = 0;                                         ///< farthest exit of a path along the view axis
@@ -39,7 +39,7 @@ struct LayerPixel {
   void add(const LayerRequest& request, const kernel::PathRecord& path, const kernel::LightEvent& event,
            std::int64_t weight);
 
-  /// Adds further paths of the same pixel. If both nearest hits are equally distant, the first is kept.
+  /// Adds further paths of the same pixel. If the nearest hits are at equal distances, that of this object is kept.
   void add(const LayerPixel& other);
 
   using Int128 = kernel::Int128;
@@ -57,7 +57,7 @@ struct LayerPixel {
   double depth = std::numeric_limits<double>::infinity(), z = 0;
   double position[3] = {0, 0, 0};
   std::uint32_t sphere = kernel::kNoSphere;
-  std::vector<SphereCoverage> shares;  ///< by ascending sphere, the background last; only for mattes and deep images
+  std::vector<SphereCoverage> shares;  ///< ascending by sphere, the background last; only for mattes and deep images
 };
 
 /// Sums over half of a pixel's paths.
@@ -75,7 +75,7 @@ struct HalfSums {
 /// Both halves of a pixel.
 using Halves = std::array<HalfSums, 2>;
 
-/// Upper bound to which squared radiance is clamped. The radiance itself already reveals a variance that large.
+/// Upper bound to which squared radiance is clamped. A variance that large is evident from the radiance itself.
 inline constexpr double kLargestSquare = 0x1p48;
 inline constexpr double kSquareUnit = 0x1p-48;
 

@@ -13,20 +13,20 @@
 
 namespace orrery::film {
 
-/// The layer of each lobe, by kernel::Lobe.
+/// The name of each lobe's layer, indexed by kernel::Lobe.
 inline constexpr const char* kLobeNames[kernel::kLobes] = {
     "background",        "diffuse_direct",      "diffuse_indirect",      "specular_direct",
     "specular_indirect", "transmission_direct", "transmission_indirect", "emission"};
 
-/// A light group of the scene. The members describe its sources, not its light, so that all frames of a sequence have
-/// the same layers even if a light is black in some of them.
+/// A light group of the scene. The members describe its sources, not their radiance, so that all frames of a sequence
+/// have the same layers even if a light is black in some of them.
 struct LightGroup {
-  std::string name;             ///< of its layers
+  std::string name;             ///< prefix of the names of its layers
   bool has_emitters = false;    ///< spheres emit its light
   bool has_background = false;  ///< the background emits its light
 
   bool has_sources() const { return has_emitters || has_background; }
-  /// Whether the group has a layer for this lobe.
+  /// Returns whether the group has a layer for this lobe.
   bool has(kernel::Lobe lobe) const {
     if (lobe == kernel::Lobe::kEmission) return has_emitters;
     if (lobe == kernel::Lobe::kBackground) return has_background;
@@ -52,24 +52,24 @@ struct LayerRequest {
   bool deep = false;                            ///< also render a deep image
   int matte_ranks = 6;                          ///< maximum number of ids per pixel in a matte
   std::vector<std::uint32_t> material_numbers;  ///< material_id of each material of the compiled scene
-  std::vector<LightGroup> groups;               ///< of the scene, by kernel::LightEvent::group; for light_groups
+  std::vector<LightGroup> groups;               ///< light groups of the scene, indexed by kernel::LightEvent::group
   std::vector<Matte> mattes;
 
-  bool lights() const;   ///< radiance by lobe or light group, from light events
-  bool hits() const;     ///< first hits of single paths
-  bool nearest() const;  ///< a property of the nearest hit
-  bool paths() const;    ///< number and radiance of the paths
+  bool lights() const;   ///< true if a layer needs radiance by lobe or light group, from light events
+  bool hits() const;     ///< true if a layer needs the first hits of individual paths
+  bool nearest() const;  ///< true if a layer needs a property of the nearest hit
+  bool paths() const;    ///< true if a layer needs the number or radiance of the paths
   bool paths_light() const { return lights() || paths() || deep; }  ///< the radiance of single paths
   bool path_records() const { return hits() || paths(); }           ///< sums over records of single paths
   bool records() const { return lights() || path_records(); }       ///< layers made from records or light events
   bool guides() const;                                              ///< sums of guides for denoising
   bool any() const { return records() || guides(); }
 
-  /// Number of sums that a pixel's light is divided into: a lobe each, or a lobe of a light group.
+  /// Number of sums that a pixel's light is divided into: one per lobe, or one per lobe and light group.
   std::size_t light_cells() const;
-  /// The sum that a light event belongs to.
+  /// Index of the sum that a light event belongs to.
   ///
-  /// `group`    of a kernel::LightEvent
+  /// `group`    kernel::LightEvent::group
   std::size_t light_cell(std::size_t group, kernel::Lobe lobe) const {
     return (light_groups ? group : std::size_t{0}) * kernel::kLobes + static_cast<std::size_t>(lobe);
   }
@@ -116,7 +116,7 @@ inline constexpr LayerType kLayerTypes[] = {
 
 namespace detail {
 
-/// Whether layers of a source are requested. Called per path; the table is evaluated at compile time.
+/// Returns whether layers of a source are requested. Called per path; the table is evaluated at compile time.
 template <LayerSource kSource, std::size_t... kIndices>
 constexpr bool requests(const LayerRequest& request, std::index_sequence<kIndices...>) {
   return ((kLayerTypes[kIndices].source == kSource && request.*kLayerTypes[kIndices].requested) || ...);

@@ -13,13 +13,13 @@ struct LayerPixel;
 struct LayerRequest;
 
 /// The mean radiance of a pixel by light group and lobe. The lobes, the groups, and the lobes of the groups each sum to
-/// the beauty, the lobes of a group to the group, and the groups' parts of a lobe to that lobe: bit for bit in single
-/// precision, in any order.
+/// the beauty, the lobes of a group to the group, and a lobe's cells over all groups to that lobe: bit for bit in
+/// single precision, in any order.
 ///
 /// Each cell is a multiple of the beauty's last bit, and no partial sum exceeds the beauty, so that all sums are exact.
-/// With a filter that has negative lobes a partial sum can exceed it.
+/// With a filter that has negative lobes, a partial sum can exceed the beauty.
 ///
-/// Precision  a cell or lobe is off by less than the last bit of the beauty, a group by less than kLobes of it
+/// Precision  the error of a cell or lobe is less than one ulp of the beauty, that of a group less than kLobes ulps
 class LightCells {
  public:
   /// Divides the mean radiance of a pixel.

@@ -36,7 +36,7 @@ struct Partial {
   /// Domain     without adaptive sampling
   void add(const Partial& other);
 
-  /// Whether the layers name spheres below `count` only. A damaged file may name others.
+  /// Returns whether all sphere ids in the layers are below `count`. A damaged file may contain others.
   bool has_known_spheres(std::size_t count) const;
 
   /// The sum of a pixel's samples, of both halves if there are two.
@@ -51,7 +51,7 @@ struct Partial {
 
   Film film;                          ///< sample sums; those of the first half in adaptive sampling
   Film second{0, 0};                  ///< sample sums of the second half in adaptive sampling; else without pixels
-  std::vector<std::uint32_t> counts;  ///< samples per pixel, row by row; with two halves, samples in each
+  std::vector<std::uint32_t> counts;  ///< samples per pixel, row by row; with two halves, samples per half
   /// Target sample count of each pixel in the current pass; empty if it is the same for all.
   std::vector<std::uint32_t> goals;
   std::vector<LayerPixel> layers;  ///< empty unless LayerRequest::records()

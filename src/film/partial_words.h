@@ -8,8 +8,8 @@ namespace orrery::film {
 
 struct Partial;
 
-/// Serializes a partial render to 32-bit words: a header, then for each word of each per-pixel number a plane over all
-/// pixels, or a single value if all pixels have the same.
+/// Serializes a partial render to 32-bit words: a header, then a plane over all pixels for each word of each per-pixel
+/// number, or a single value if it is the same for all pixels.
 std::vector<std::uint32_t> to_words(const Partial& partial);
 
 /// Deserializes the result of to_words(). Words after the end are ignored as padding.

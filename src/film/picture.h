@@ -8,7 +8,7 @@
 
 namespace orrery::film {
 
-/// Kind of values of a plane, which decides its storage type and which values are invalid.
+/// Kind of values in a plane; determines the storage type and which values are invalid.
 enum class PlaneKind : std::uint8_t {
   kLight,   ///< colours: half precision, negative values are invalid
   kVector,  ///< vectors: half precision, any sign

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxErrors = 100;
 /// Collects the diagnostics of a scene: warnings, the first kMaxErrors errors by location, and the number of errors.
 class Diagnostics {
  public:
-  /// Adds a diagnostic. `make` returns it, and is called only if it is kept.
+  /// Adds a diagnostic. `make` creates it, and is called only if it is kept.
   template <class Make>
   void add(base::Severity severity, const Place& place, base::ErrorKind kind, Make make) {
     if (severity == base::Severity::kWarning) {

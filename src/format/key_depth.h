@@ -7,8 +7,8 @@
 
 namespace orrery::format {
 
-/// Maximum number of parts in a dotted key: a scene needs three. The TOML library creates a table per part and destroys
-/// tables recursively, so that a key of some ten thousand parts would overflow the stack.
+/// Maximum number of parts in a dotted key; scenes need three. The TOML library creates a table per part and destroys
+/// tables recursively, so that a key of ten thousand parts would overflow the stack.
 inline constexpr int kDeepestKey = 8;
 
 /// Finds the first key with more than kDeepestKey parts in a TOML text.

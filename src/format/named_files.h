@@ -21,7 +21,7 @@ struct NamedFiles {
 /// Finds the files that a scene names, without reading its spheres or those files. Values of the wrong type are
 /// skipped: read_scene reports them.
 ///
-/// `text`     of the scene; null: read the file
+/// `text`     text of the scene; null: read the file
 /// Errors     base::Error(kBadData) for invalid TOML; kMissingInput, kIo
 /// Cost       parses the whole file
 NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<Override>& overrides,

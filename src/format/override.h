@@ -30,7 +30,7 @@ struct Override {
   }
 
   std::string text;              ///< "camera.vfov=30"
-  std::string option = "--set";  ///< as typed by the user
+  std::string option = "--set";  ///< option name as the user typed it
   std::string typed;             ///< the option's value
 };
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kExample = "write KEY=VALUE, e.g. camera.vfov=30 or sphere[0].radius=2";
 
-/// A fault of an override as a whole, and its remedy.
+/// An error of an override as a whole, and its remedy.
 struct Fault {
   std::string text, remedy = kExample;
 };
@@ -27,8 +27,8 @@ struct Fault {
 /// The parts of "sphere[2].radius=0.5".
 struct Parts {
   std::string_view list;      ///< "sphere[2]"; empty if the key names no list element
-  std::size_t key_begin = 0;  ///< of "radius"
-  std::size_t equals = 0;     ///< of "="
+  std::size_t key_begin = 0;  ///< offset of "radius"
+  std::size_t equals = 0;     ///< offset of "="
 };
 
 /// Finds the "=" between key and value and the last "]" of the key, both outside quotes.
@@ -84,7 +84,7 @@ bool looks_like_toml(std::string_view value) {
   return begin != std::string_view::npos && std::string_view("[{\"'").find(value[begin]) != std::string_view::npos;
 }
 
-/// A text with inserted bytes, which columns in messages must not count.
+/// A string with inserted bytes, which must not be counted in columns of messages.
 struct Quoted {
   std::string text;
   std::vector<std::size_t> inserted;

@@ -14,7 +14,7 @@
 
 namespace orrery::format {
 
-/// State while a tree is read: its texts and the diagnostics so far.
+/// State while a tree is read: its source text and the diagnostics so far.
 struct ReadState {
   SourceText source;
   Diagnostics diagnostics;
@@ -49,7 +49,7 @@ void report_unknown_keys(ReadState& state, const toml::table& table, const std::
 void report_unknown_key(ReadState& state, const toml::key& key, const std::string& table_name,
                         const std::vector<std::string>& known, const std::string& hint = {});
 
-/// Whether a key can be a table: whether `known` has dotted names that begin with it.
+/// Returns whether a key can be a table, because `known` contains dotted names that begin with it.
 bool has_subkeys(const std::vector<std::string>& known, const std::string& name);
 
 /// Reads a table into a target according to its keys. Keys in `also` are valid, but read by the caller.

@@ -17,7 +17,7 @@ struct Setting {
   std::string origin;  ///< "default", "scene.toml:12", "--set", "--samples"
 };
 
-/// A scene that was read.
+/// Result of reading a scene.
 struct ReadResult {
   scene::Scene scene;
   std::vector<base::Diagnostic> warnings;

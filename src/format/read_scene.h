@@ -19,14 +19,14 @@ struct ReadResult;
 /// The frame that is read by default.
 inline constexpr int kFirstFrame = 1;
 
-/// A further check of a scene, such as for names that are not in the OCIO config.
+/// An additional check of a scene, such as for names that the OCIO config does not define.
 using SceneCheck = std::function<std::vector<scene::SceneDiagnostic>(const scene::Scene&)>;
 
 struct ReadOptions {
-  std::shared_ptr<const std::string> text = {};  ///< of the scene; null: read the file
+  std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
   int frame = kFirstFrame;          ///< selects the values of animated keys, and the files and frames of data
   SceneCheck also = {};             ///< called if [color] has no errors
-  std::uint64_t memory_limit = 0;   ///< bytes that the spheres of a data file may take while they are read; 0: no limit
+  std::uint64_t memory_limit = 0;   ///< maximum memory for reading the spheres of a data file, bytes; 0: no limit
   points::OpenData open_data = {};  ///< see points::LoadRequest
   bool is_generated = false;        ///< `text` was written by a program: diagnostics omit its lines
 };

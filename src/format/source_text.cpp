@@ -18,11 +18,10 @@ namespace orrery::format {
 
 namespace {
 
-/// Lines per stored offset: in a file of line ends only, an offset per line would take eight times the size of the
-/// file.
+/// Lines per stored offset: in a file of empty lines, an offset per line would take eight times the size of the file.
 constexpr std::size_t kStride = 64;
 
-/// Maximum length of a quoted line, bytes: a line that wraps ten times does not help.
+/// Maximum length of a quoted line, bytes: a line that wraps ten times is not helpful.
 constexpr std::size_t kLongestShown = 400;
 
 /// Returns the 0-based byte index of the `index`-th character; beyond the end if the line has fewer characters.

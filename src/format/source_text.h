@@ -26,7 +26,7 @@ struct Place {
   int width = 1;
 };
 
-/// The texts from which a scene is read, the file and the overrides, to quote their lines in diagnostics.
+/// The sources of a scene, the text of the file and the overrides, for quoting lines in diagnostics.
 class SourceText {
  public:
   /// Adds a text.
@@ -36,8 +36,8 @@ class SourceText {
 
   /// Adds the next line of kOverrideName.
   ///
-  /// `parsed`   the text as passed to the TOML library
-  /// `inserted` indices of the bytes in `parsed` that were not typed, ascending
+  /// `parsed`   the text as passed to the TOML library `inserted` ascending indices of the bytes in `parsed` that the
+  /// user did not type
   void add_override(const Override& override, std::string parsed, std::vector<std::size_t> inserted);
 
   /// Returns the option of a line of kOverrideName: "--set", "--samples".
@@ -51,7 +51,7 @@ class SourceText {
   struct Text {
     std::string bytes;
     bool is_generated;
-    mutable std::vector<std::size_t> begins;  ///< of every kStride-th line; filled on first use
+    mutable std::vector<std::size_t> begins;  ///< offset of every kStride-th line; filled on first use
   };
   struct ShownOverride {
     std::string option, shown, parsed;

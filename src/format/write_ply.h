@@ -25,8 +25,8 @@ inline constexpr const char* kPlyWriter = "orrery generate";
 /// Reference  turk1994
 void write_ply(const scene::Points& points, const std::filesystem::path& file, PlyReal real = PlyReal::kDouble);
 
-/// True if the header of a PLY file says that `writer` made it. A command that names a file itself replaces only its
-/// own: others, such as those of `orrery convert`, are the user's.
+/// True if the header of a PLY file names `writer` as its writer. A command that derives the name of a file replaces
+/// only files that it wrote; others, such as those of `orrery convert`, belong to the user.
 bool is_ply_of(std::string_view writer, const std::filesystem::path& file);
 
 }  // namespace orrery::format

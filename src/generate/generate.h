@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kFinalPaletteSize = 1024;
 /// The random final scene of *Ray Tracing in One Weekend*: small spheres on a grid around three large ones.
 struct FinalScene {
   std::uint64_t seed = 1;
-  int grid = 11;  ///< cells from the centre to the edge: (2 grid)^2 small spheres, less those near the large metal one
+  int grid = 11;  ///< cells from the centre to the edge: (2 grid)^2 small spheres, minus those near the large metal one
   /// As in *The Next Week*: the ground is a checker, and the small diffuse spheres rise while the shutter is open.
   bool moving = false;
 };
@@ -37,7 +37,7 @@ struct FinalScene {
 /// Reference  shirley2024, "A Final Render"
 scene::Scene make_final_scene(const FinalScene& options, const std::filesystem::path& points_file = "final.ply");
 
-/// Maximum Cloud::count; its points file has 3.6 GB.
+/// Maximum Cloud::count; the points file is then 3.6 GB large.
 inline constexpr std::uint64_t kLargestCloud = 100'000'000;
 
 /// Maximum Cloud::radius, scene units: above it, the cloud is a single ball that contains the camera.
@@ -68,7 +68,7 @@ inline constexpr int kSmallestEnvironment = 16, kLargestEnvironment = 8192;
 inline constexpr int kEnvironmentWidth = 1024;
 
 /// Returns a latitude-longitude image of a photo studio, for tests of materials: a dark room with a grey floor, three
-/// soft boxes and an overhead one. What the boxes illuminate is computed, for the floor, the walls and the ceiling. The
+/// soft boxes and an overhead one. The light that they cast on the floor, the walls and the ceiling is computed. The
 /// camera is expected at +z.
 ///
 /// Space      metres: the ball is at the origin, the floor at y = -1.2; orientation as for scene::EnvironmentImage
@@ -82,7 +82,7 @@ film::Picture make_studio(int width = kEnvironmentWidth);
 /// the mean over their area, so that the irradiance does not depend on the width.
 ///
 /// `sky`      the members that type = "sky" uses
-/// Errors     base::Error(kUsage) for a width as for make_studio, and for members out of range
+/// Errors     base::Error(kUsage) for widths that make_studio rejects, and for members out of range
 film::Picture make_sky(const scene::Background& sky, int width = kEnvironmentWidth);
 
 /// Returns a latitude-longitude map of a planet's reflectance, with continents, ice and clouds, for use as a texture:
@@ -90,7 +90,7 @@ film::Picture make_sky(const scene::Background& sky, int width = kEnvironmentWid
 ///
 /// Units      lin_rec709, 0..1
 /// Result     planes R, G, B; the same seed gives the same bits on every machine
-/// Errors     base::Error(kUsage) for a width as for make_studio
+/// Errors     base::Error(kUsage) for widths that make_studio rejects
 film::Picture make_planet(std::uint64_t seed = 1, int width = kEnvironmentWidth);
 
 }  // namespace orrery::generate

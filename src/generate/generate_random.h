@@ -12,7 +12,7 @@ namespace orrery::generate {
 /// Random numbers for the scene generators: one seed gives the same scene on every machine.
 ///
 /// The C++ standard specifies the bits of the engine, but not those of its distributions. The conversion from bits to
-/// numbers therefore is ours, and uses only IEEE arithmetic.
+/// numbers is therefore implemented here, and uses only IEEE arithmetic.
 ///
 /// Reference  matsumoto1998
 class GenerateRandom {

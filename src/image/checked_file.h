@@ -11,8 +11,8 @@ namespace orrery::image {
 
 /// An OpenImageIO output proxy that records the first failed write.
 ///
-/// Some libraries behind OpenImageIO ignore the result of a write, and lose their buffered data silently if the disk is
-/// full at the end.
+/// Some libraries behind OpenImageIO ignore the results of writes, and silently lose buffered data if the disk is full
+/// at the end.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
  public:
   /// Opens a file for writing.

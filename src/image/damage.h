@@ -12,8 +12,8 @@ namespace orrery::image {
 /// whose checksums do not match, and truncated JPEG files, whose missing rows libjpeg fills with grey. Pixels are not
 /// decoded.
 ///
-/// Result     what is wrong; empty if nothing was found, for other formats, and for a file that is of another format
-///            than its name says
+/// Result     what is wrong; empty if nothing was found, for other formats, and for a file whose format does not match
+///            its name
 std::string damage_of(const std::filesystem::path& file, Format format);
 
 }  // namespace orrery::image

@@ -6,7 +6,7 @@
 namespace orrery::image {
 
 /// Appends a digest of all bytes of a file, after the end of the image data. It detects any changed bit, including bits
-/// that no decoder reads. It protects against accidents, not against forgery.
+/// that no decoder reads. It protects against accidental damage, not against tampering.
 ///
 /// Errors     base::Error(kIo); the message uses `name` for the file
 /// Reference  SHA-1, FIPS 180-4

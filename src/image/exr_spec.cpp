@@ -27,7 +27,7 @@ std::vector<float> interleaved(const film::Picture& picture, const std::vector<c
     for (std::size_t i = 0; i < pixels; ++i) {
       float v = planes[c]->values[i];
       if (may_be_nan && std::isnan(v)) {
-        // Stays: 0 would be a measurement.
+        // NaN is kept, because 0 would be a valid measurement.
       } else if (!std::isfinite(v)) {
         v = 0;
         ++report.not_finite;

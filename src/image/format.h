@@ -17,7 +17,7 @@ enum class Format {
   kPpm,   ///< display, 8 bit
 };
 
-/// What the program knows about a format.
+/// Properties of an image file format.
 struct FormatInfo {
   Format format;
   std::vector<const char*> extensions;  ///< lower case, without the dot
@@ -31,10 +31,10 @@ struct FormatInfo {
   double bytes_per_pixel, bytes_per_pixel_16;
 };
 
-/// Properties of a format.
+/// Returns the properties of a format.
 const FormatInfo& info_of(Format format);
 
-/// The format of a file by its extension, regardless of case.
+/// Returns the format that a file's extension selects, ignoring case.
 ///
 /// Errors     base::Error(kUsage) listing the known extensions
 Format format_of(const std::filesystem::path& file);

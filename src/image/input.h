@@ -9,13 +9,13 @@
 
 namespace orrery::image {
 
-/// Throws the error of an image that cannot be read: base::Error(kBadData).
+/// Throws base::Error(kBadData) for an image that cannot be read.
 [[noreturn]] void fail_to_read(const std::filesystem::path& file, const std::string& reason);
 
-/// Throws the error of an image whose pixels do not fit into memory: base::Error(kNoMemory).
+/// Throws base::Error(kNoMemory) for an image whose pixels do not fit into memory.
 [[noreturn]] void fail_for_memory(const std::filesystem::path& file);
 
-/// The first of OpenImageIO's messages about an image, one per line. It names the cause; the others are consequences.
+/// Returns the first line of OpenImageIO's messages about an image. It names the cause; the others are consequences.
 std::string first_message(const std::string& text);
 
 /// Checks the size in the header of an image or part.
@@ -23,7 +23,7 @@ std::string first_message(const std::string& text);
 /// Errors     base::Error(kBadData) if it is out of range or the pixels are deep
 void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec);
 
-/// Rows to decode at a time.
+/// Number of rows to decode at a time.
 int row_step(const OIIO::ImageSpec& spec);
 
 /// An open image file, and one part of it.

@@ -10,7 +10,7 @@ namespace orrery::image {
 
 struct Header;
 
-/// Prefix of the attributes by which shards and checkpoints differ from images.
+/// Prefix of the attributes that distinguish shards and checkpoints from images.
 inline constexpr const char* kPartialPrefix = "orrery/partial/";
 
 /// Writes a checkpoint or shard as a two-part EXR with a digest: a preview image that any program opens, and the exact

@@ -20,7 +20,7 @@ namespace {
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-/// The line in orrery/settings by which A is coverage.
+/// The line in orrery/settings that marks A as coverage.
 constexpr const char* kTransparent = "background.alpha = 0\n";
 
 /// Decodes rows begin..end of all channels, pixel by pixel.

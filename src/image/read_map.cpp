@@ -33,7 +33,7 @@ Channels channels_of(const std::filesystem::path& file, const OIIO::ImageSpec& s
   fail_to_read(file, "it has no channels R, G and B; it has " + base::joined(names));
 }
 
-/// The format by the file's extension; none if that is unknown.
+/// The format that the file's extension selects; empty if unknown.
 std::optional<Format> known_format(const std::filesystem::path& file) {
   try {
     return format_of(file);
@@ -51,7 +51,7 @@ Input open_map(const std::filesystem::path& file, MapFormats formats) {
   return open_input(file, Alpha::kAsInFile);
 }
 
-/// The names by which OpenImageIO says that it assumes a scene-linear file, which declares nothing.
+/// The names with which OpenImageIO reports a file as scene-linear by assumption, without a declaration in the file.
 bool is_assumed(const std::string& color_space) {
   static const std::vector<std::string> names = {"Linear",   "linear",     "scene_linear",
                                                  "lin_srgb", "lin_rec709", "lin_rec709_scene"};
@@ -70,7 +70,7 @@ MapHeader read_map_header(const std::filesystem::path& file, MapFormats formats)
   out.color_interop_id = std::string(spec.get_string_attribute("colorInteropID"));
   out.color_space = std::string(spec.get_string_attribute("oiio:ColorSpace"));
   out.is_encoded = is_display_format(*known_format(file)) && spec.format != TypeDesc::FLOAT;
-  // For integers OpenImageIO's name is that of an assumption, too.
+  // For integers, the name that OpenImageIO reports is an assumption as well.
   if (out.is_encoded || is_assumed(out.color_space)) out.color_space.clear();
   std::array<float, 8> chromaticities;
   if (spec.getattribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), chromaticities.data()))

@@ -115,7 +115,7 @@ bool have_same_window(const ImageSpec& a, const ImageSpec& b) {
   return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
 }
 
-/// Parts that have colours of their own beside the beauty: views, or images of another data window.
+/// Parts with other colours than the beauty: views, or images with another data window.
 std::vector<std::string> parts_with_own_colors(const std::vector<NativePart>& parts) {
   std::vector<std::string> out;
   bool is_first = true;

@@ -13,7 +13,7 @@
 
 namespace orrery::image {
 
-/// Changes the values of planes, whose number, names and sizes stay as they are.
+/// Changes the values of planes. Must not change their number, names or sizes.
 ///
 /// Result     attributes to add to the file
 using EditPlanes = std::function<std::vector<Attribute>(film::Picture& planes)>;
@@ -29,7 +29,7 @@ struct RewriteReport {
 /// except the stamp, which no longer describes the pixels. Integer channels are copied.
 ///
 /// The planes are the floating-point channels of all parts that have the data window of the first, by name. A channel
-/// whose name an earlier part has is named PART.CHANNEL.
+/// whose name occurs in an earlier part is named PART.CHANNEL.
 ///
 /// Errors     base::Error: kUsage if a file is not an EXR, kMissingInput, kBadData if the input is damaged, deep, or a
 ///            shard or checkpoint, kCannotCreate, kIo; those of `edit`. An existing output is then unchanged

@@ -66,7 +66,7 @@ bool read_end(OIIO::ImageInput& in, int part, const OIIO::ImageSpec& spec) {
   return in.read_scanlines(part, 0, end - 1, end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data());
 }
 
-/// Opens the file again and decodes the last row of every part.
+/// Reopens the file and decodes the last row of every part.
 ///
 /// Result     what is wrong, or empty
 std::string read_back(const std::string& name, const std::string& format, const std::vector<WholePart>& parts) {

@@ -35,7 +35,7 @@ WriteReport write_exr(const std::filesystem::path& file, const film::Picture& pi
 void write_deep(const std::filesystem::path& file, const film::DeepPicture& deep, const film::Picture& flat,
                 const Header& header);
 
-/// Writes planes R, G, B as Radiance HDR, which has no negative values and one shared exponent per pixel.
+/// Writes planes R, G, B as Radiance HDR, a format without negative values and with a shared exponent per pixel.
 ///
 /// Result     as for write_exr
 /// Errors     base::Error: kBadData if a plane is missing, kCannotCreate, kIo

@@ -38,7 +38,7 @@ void check_request(const Job& job) {
     throw base::Error(base::ErrorKind::kUsage, job.outputs.deep.string() + " cannot hold deep samples; use EXR");
   if (!job.outputs.deep.empty() && job.denoise)
     throw base::Error(base::ErrorKind::kUsage,
-                      "--denoise does not filter deep samples; render --deep without --denoise, in a run of its own");
+                      "--denoise does not filter deep samples; render --deep without --denoise, in a separate run");
   for (const OutputFile& output : outputs_of(job)) base::check_creatable(output.path);
   image::check_compression(job.outputs.exr.compression);
   choose_isa(job.resources.isa);

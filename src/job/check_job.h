@@ -14,7 +14,7 @@ struct Job;
 /// Errors     base::Error: kUsage, kCannotCreate
 void check_request(const Job& job);
 
-/// Checks that an output holds layers that the command line requests.
+/// Checks that at least one output can hold the layers that the command line requests.
 ///
 /// Errors     base::Error(kUsage)
 void check_layers(const Job& job, const scene::Scene& scene);
@@ -24,7 +24,7 @@ void check_layers(const Job& job, const scene::Scene& scene);
 /// Errors     base::Error(kUsage)
 void check_samples(const Job& job, const compile::CompiledScene& compiled);
 
-/// Checks that the formats of the image files hold an image of this size.
+/// Checks that the formats of the image files support an image of this size.
 ///
 /// Errors     base::Error(kUsage)
 void check_sizes(const Job& job, const compile::CompiledScene& compiled);

@@ -13,8 +13,8 @@ namespace orrery::job {
 
 struct Hooks;
 
-/// The checkpoint file of a job with this first output: shot.0007.checkpoint.exr for shot.0007.exr. A name that would
-/// be too long is shortened.
+/// The checkpoint file of a job, named after its first output: shot.0007.checkpoint.exr for shot.0007.exr. Names that
+/// would be too long are shortened.
 std::filesystem::path checkpoint_file(const std::filesystem::path& first_output);
 
 /// When checkpoints are written and read.
@@ -43,7 +43,7 @@ class Checkpoint {
   /// Errors     base::Error(kBadData) if it is damaged or from another scene, setting or version
   std::optional<film::Partial> load(int width_px, int height_px);
 
-  /// True once per interval, and if a signal requests a checkpoint. Thread-safe.
+  /// True once per interval, and when a signal requests a checkpoint. Thread-safe.
   bool is_due() const;
 
   /// Writes a checkpoint during rendering. A failure is only a warning, since the render can still succeed.

@@ -187,7 +187,7 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
   }
   report.checkpoint = checkpoint.file();
   throw base::Error(error.kind(),
-                    fmt::format("{}; {} holds the samples; when the cause is removed, continue with --resume",
+                    fmt::format("{}; {} holds the samples; when the problem is fixed, continue with --resume",
                                 error.what(), checkpoint.file().string()));
 }
 

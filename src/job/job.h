@@ -50,14 +50,14 @@ struct Job {
   MergeSettings merge;
   Hooks hooks;
   bool as_shard = false;       ///< write a shard even if it has all samples of all pixels
-  bool denoise = false;        ///< filter the images; a shard instead keeps the halves of its samples for that
+  bool denoise = false;        ///< denoise the images; a shard instead keeps the halves of its samples for denoising
   bool skip_existing = false;  ///< do nothing if all files exist, are intact, and come from this job
-  /// Files of the batch that this job belongs to; null: the job stands alone.
+  /// Files of the batch that this job belongs to; null: the job is not part of a batch.
   std::shared_ptr<base::FileSet> files = nullptr;
   std::shared_ptr<BackgroundCache> background_cache = nullptr;  ///< shared by the jobs of a batch
   Rendering* keep = nullptr;  ///< receives the image and all layers of the scene; no file is written
   std::shared_ptr<TextureCache> texture_cache = nullptr;  ///< shared by the jobs of a batch
-  double prepare_s = 0;                                   ///< seconds that it took to make the scene, for the report
+  double prepare_s = 0;                                   ///< time taken to create the scene, for the report
 };
 
 /// True if the scene's sample count limits adaptive sampling, because an override sets it.
@@ -75,7 +75,7 @@ inline bool is_shard(const Job& job) { return job.as_shard || job.sampling.is_pa
 /// view exist. The statistics file is also written if the job is stopped or fails after these checks.
 ///
 /// Domain     at least one output, or `keep` and none: no deep image, no checkpoint, no shard
-/// Errors     base::Error of every kind; kStopped if `cancel` stopped the job, in which case no image was written
+/// Errors     base::Error of any kind; kStopped if `cancel` stopped the job, in which case no image was written
 JobReport run_job(const Job& job);
 
 }  // namespace orrery::job

@@ -19,7 +19,7 @@ struct Phases {
   double prepare_s = 0;  ///< Job::prepare_s: before the job, once for all jobs of a batch
   double read_s = 0, compile_s = 0, build_s = 0, render_s = 0;
   double denoise_s = 0;  ///< with Job::denoise
-  double finish_s = 0;   ///< from sums to the finished image and its layers; of a merge also reading the shards
+  double finish_s = 0;   ///< from sums to the finished image and its layers; for a merge, includes reading the shards
   double write_s = 0;
 
   /// Of the job.
@@ -30,8 +30,8 @@ struct Phases {
 struct JobReport {
   render::Statistics render;
   Phases phases;
-  film::BadValues bad_values;                                       ///< of the image, before any display transform
-  std::vector<std::pair<std::string, film::BadValues>> bad_layers;  ///< of each layer that has any
+  film::BadValues bad_values;  ///< bad values of the image, before any display transform
+  std::vector<std::pair<std::string, film::BadValues>> bad_layers;  ///< layers with bad values
   image::WriteReport written;                                       ///< values changed to fit the files
   int width = 0, height = 0;                                        ///< px
   std::string target_missed;  ///< "noise 0.013 instead of 0.01: the time budget ended"; empty: the target was met

@@ -20,7 +20,7 @@ struct Layers {
   std::vector<MatteNames> mattes;  ///< one for each matte of the request
 };
 
-/// The layer request and the mattes for the names in [output]. CryptoGroup is empty for a scene without groups.
+/// Returns the layer request and the mattes for the names in [output]. CryptoGroup is empty for a scene without groups.
 ///
 /// Domain     the scene is valid; `compiled` was compiled from it and outlives the result
 Layers choose_layers(const scene::Scene& scene, const compile::CompiledScene& compiled);

@@ -13,7 +13,7 @@ namespace orrery::job {
 
 /// The last background that was read, for the frames of a sequence. A file that has changed since is read again.
 struct BackgroundCache {
-  std::string key;  ///< of the file, its time and the conversion
+  std::string key;  ///< identifies the file, its modification time and the conversion
   LoadedBackground loaded;
 };
 

@@ -20,14 +20,14 @@ struct MapRequest {
   std::filesystem::path file;
   std::string file_key, space_key;  ///< keys of the scene, for diagnostics
   image::MapFormats formats = image::MapFormats::kSceneLinear;
-  std::string color_space;                                     ///< that the scene gives the file; empty: none
-  std::string default_space;                                   ///< of scene-linear files
-  std::string working_space;                                   ///< of the result
-  bool is_color = true;                                        ///< false: data, which are not converted
+  std::string color_space;    ///< colour space that the scene assigns to the file; empty: none
+  std::string default_space;  ///< default colour space of scene-linear files
+  std::string working_space;  ///< colour space of the result
+  bool is_color = true;       ///< false: data, which are not converted
   float largest = static_cast<float>(scene::kBrightestLight);  ///< values above are clamped
   std::string ocio_config;                                     ///< in the form of display::Settings
-  compile::EnvironmentSampling sampling = {};  ///< of the background for direct lighting; default: kNone
-  bool has_mip_map = false;                    ///< adds one
+  compile::EnvironmentSampling sampling = {};  ///< sampling of the background for direct lighting; default: kNone
+  bool has_mip_map = false;                    ///< add a mip map
   std::uint64_t memory_limit = 0;              ///< bytes; 0: the free memory
   bool skips_large = false;                    ///< an image that does not fit into memory is a warning and is not read
 };

@@ -20,7 +20,7 @@ struct SceneRequest {
   display::Settings display;            ///< from the command line; the scene's [color] replaces empty values
   bool develops = false;                ///< true if display formats will be written
   std::uint64_t memory_limit = 0;       ///< bytes that an image may take; 0: the free memory
-  bool skips_large_background = false;  ///< see BackgroundRequest::skips_large; holds for textures, too
+  bool skips_large_background = false;  ///< see BackgroundRequest::skips_large; also applies to textures
   std::shared_ptr<BackgroundCache> background_cache = nullptr;
   std::shared_ptr<TextureCache> texture_cache = nullptr;
 };

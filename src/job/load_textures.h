@@ -22,11 +22,11 @@ struct LoadedTexture {
 /// The images of the last scene that was loaded, for the frames of a sequence. A file that has changed since is read
 /// again.
 struct TextureCache {
-  std::map<std::string, LoadedMap> maps;  ///< by file, its time, and the conversion
+  std::map<std::string, LoadedMap> maps;  ///< by file, its modification time and the conversion
 };
 
 /// Reads the files of all image textures, each once, and converts them to the working space. Reflectances and numbers
-/// are clamped to 0..1. The memory limit holds for all of them together.
+/// are clamped to 0..1. The memory limit applies to all of them together.
 ///
 /// `scene_file`   names of textures are relative to its folder
 /// `ocio_config`  in the form of display::Settings
@@ -37,7 +37,7 @@ std::vector<LoadedTexture> load_textures(const std::filesystem::path& scene_file
                                          std::uint64_t memory_limit, bool skips_large, TextureCache* cache,
                                          const scene::Scene& scene);
 
-/// Gives the textures of a scene the images that load_textures has read.
+/// Assigns the images that load_textures() has read to the textures of a scene.
 void set_textures(const std::vector<LoadedTexture>& loaded, scene::Scene& scene);
 
 }  // namespace orrery::job

@@ -14,10 +14,10 @@ namespace orrery::job {
 /// A map that was read, and the properties of its file.
 struct LoadedMap {
   int width = 0, height = 0;  ///< texels
-  std::string color_space;    ///< of the file; empty for data
-  std::uint64_t bytes = 0;    ///< estimated memory of the texels, and of their mip map or the tables to sample them
+  std::string color_space;    ///< colour space of the file; empty for data
+  std::uint64_t bytes = 0;    ///< estimated memory of the texels, and of their mip map or sampling tables
   std::shared_ptr<const scene::EnvironmentImage> image;  ///< in the working space; null if it was not read
-  float brightest = 0;                                   ///< largest value of `image`, a sun included
+  float brightest = 0;                                   ///< largest value of `image`, including the sun
   std::vector<scene::SceneDiagnostic> diagnostics;       ///< errors and warnings, by key of the scene
 };
 

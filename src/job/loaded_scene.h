@@ -12,13 +12,13 @@
 
 namespace orrery::job {
 
-/// A scene that is ready to be compiled, and what was found while it was loaded.
+/// A scene that is ready to be compiled, and what was determined while loading it.
 struct LoadedScene {
   format::ReadResult read;                     ///< colours are in the working space
   display::Settings display;                   ///< from the command line and the scene
   std::optional<display::Choice> choice;       ///< if `develops`, or if a colour name is set
-  std::optional<LoadedBackground> background;  ///< of an image background or sky; the scene has its image
-  std::vector<LoadedTexture> textures;         ///< image textures; the scene has their images
+  std::optional<LoadedBackground> background;  ///< image background or sky; the scene refers to its image
+  std::vector<LoadedTexture> textures;         ///< image textures; the scene refers to their images
   std::vector<base::Diagnostic> warnings;
 };
 

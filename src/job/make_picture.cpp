@@ -36,7 +36,7 @@ render::SamplingLimits limits_of(const Job& job, double seconds_so_far) {
   return out;
 }
 
-/// Whether a render with these settings can continue from these sums, also if their file is damaged.
+/// Returns whether a render with these settings can continue from these sums, even if their file is damaged.
 bool is_of_this_render(const film::Partial& from, const compile::CompiledScene& compiled,
                        const render::Settings& settings) {
   return from.is_adaptive() == settings.sampling.is_adaptive() && from.layers.empty() != settings.layers.records() &&
@@ -129,9 +129,10 @@ render::Result render_job(const Job& job, const compile::CompiledScene& compiled
   std::optional<film::Partial> from = checkpoint.load(compiled.width, compiled.height);
   report.was_resumed = from.has_value();
   if (from && !is_of_this_render(*from, compiled, settings))
-    throw base::Error(base::ErrorKind::kBadData, checkpoint.file().string() +
-                                                     " holds other sums than its header says; delete it, or render "
-                                                     "without --resume to start again");
+    throw base::Error(base::ErrorKind::kBadData,
+                      checkpoint.file().string() +
+                          " contains sums that do not match its header; delete it, or render "
+                          "without --resume to start again");
   render::Result result = render::render(compiled, settings, std::move(from));
   report.render = result.statistics;
   report.phases.build_s = result.statistics.build_s;

@@ -14,7 +14,7 @@ class Checkpoint;
 struct Job;
 struct JobReport;
 
-/// Renders, from the checkpoint if there is one, and writes a checkpoint if stopped.
+/// Renders, resuming from the checkpoint if there is one, and writes a checkpoint if stopped.
 ///
 /// `settings` threads, traversal, layers and callbacks; the job's sampling limits are added
 /// Errors     base::Error: kStopped; those of Checkpoint::load and write
@@ -31,7 +31,7 @@ render::Result merge_job(const Job& job, const compile::CompiledScene& compiled,
 /// The beauty image of a partial render.
 film::Picture preview(const compile::CompiledScene& compiled, const film::Partial& partial);
 
-/// True if all files of a job exist, are intact, and are what it would write again.
+/// True if all files of a job exist, are intact, and equal those that it would write.
 bool is_up_to_date(const Job& job, const compile::CompiledScene& compiled, const image::Provenance& provenance,
                    const std::string& stamp);
 

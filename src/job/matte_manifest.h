@@ -12,8 +12,8 @@ namespace orrery::job {
 
 struct Outputs;
 
-/// A manifest of more names than this is written to a separate file next to the image, since every reader loads the
-/// whole header.
+/// Maximum number of names in a manifest in the header. A larger manifest is written to a separate file next to the
+/// image, since every reader loads the whole header.
 inline constexpr std::size_t kMaxNamesInHeader = 10000;
 
 /// The header attributes of Cryptomattes: layer name, hash, conversion, and the manifest or the name of its file.
@@ -29,7 +29,7 @@ std::vector<std::filesystem::path> manifest_files(const std::vector<MatteNames>&
 /// The files that write_manifests may write for the EXR files among the outputs, whatever the scene requests.
 std::vector<std::filesystem::path> possible_manifest_files(const Outputs& outputs);
 
-/// Writes the manifest files that the header names, IMAGE.CryptoObject.json. Small manifests have no file.
+/// Writes the manifest files that the header names, IMAGE.CryptoObject.json. Small manifests have no such file.
 ///
 /// Errors     base::Error: kCannotCreate, kIo
 void write_manifests(const std::vector<MatteNames>& mattes, const std::filesystem::path& picture);

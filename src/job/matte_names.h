@@ -8,7 +8,7 @@
 
 namespace orrery::job {
 
-/// A Cryptomatte's names, as in its EXR header.
+/// The names in a Cryptomatte, as stored in its EXR header.
 struct MatteNames {
   std::string layer;                                          ///< "CryptoObject"
   std::vector<std::pair<std::string, std::uint32_t>> things;  ///< unique names and their ids

@@ -24,8 +24,8 @@ namespace {
 /// clouds of one and three million spheres: peak_memory_bytes of --stats with embree minus that with list.
 constexpr std::uint64_t kAcceleratorBytesPerSphere = 130;
 
-/// A SphereBvh while it is built: 16 bytes that are sorted, up to 3 of the finished tree, which otherwise takes their
-/// place, and up to 2 of what has not been released yet.
+/// A SphereBvh under construction, bytes per sphere: 16 for the items being sorted, up to 3 for the part of the
+/// finished tree that does not yet replace them, and up to 2 for memory that has not been released yet.
 constexpr std::uint64_t kBvhBytesPerSphere = 21;
 
 /// A pixel's sum and the four floats of the finished image.
@@ -34,7 +34,7 @@ constexpr std::uint64_t kFilmBytesPerPixel = sizeof(kernel::PixelSum) + 4 * size
 /// A layer's value and its copy for the encoder.
 constexpr std::uint64_t kBytesPerLayerPlane = 2 * sizeof(float);
 
-/// A pixel's layer sums, and those of its light, with what the heap adds to an allocation.
+/// A pixel's layer sums, and those of its light, including heap overhead.
 std::uint64_t bytes_of_sums(const MemoryNeeds& needs) {
   constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
   return (needs.records ? sizeof(film::LayerPixel) : 0) + (needs.guides ? sizeof(film::Halves) : 0) +
@@ -56,7 +56,7 @@ std::optional<std::uint64_t> number_in(const std::filesystem::path& file, const 
 
 /// Bytes that a control group still allows; empty if it has no limit.
 std::optional<std::uint64_t> group_allowance(const std::filesystem::path& group) {
-  const auto limit = number_in(group / "memory.max", "");  // "max" is no number
+  const auto limit = number_in(group / "memory.max", "");  // "max" is not a number
   const auto used = number_in(group / "memory.current", "");
   if (!limit || !used) return {};
   // The page cache counts as used, but is evicted when memory is needed.

@@ -23,7 +23,7 @@ struct MemoryNeeds {
   int width = 0, height = 0;         ///< px
   std::uint64_t spheres = 0;         ///< from tables and points files
   std::uint64_t spheres_in_bvh = 0;  ///< accel::spheres_in_bvh()
-  std::uint64_t sphere_bytes = 0;    ///< of the compiled spheres and their material indices
+  std::uint64_t sphere_bytes = 0;    ///< bytes of the compiled spheres and their material indices
   std::uint64_t background = 0;      ///< bytes of an image background
   std::uint64_t textures = 0;        ///< bytes of image textures
   std::uint64_t lights = 0;          ///< compile::LightTree::bytes_of_build()
@@ -42,7 +42,7 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs);
 MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
                          bool is_adaptive = false);
 
-/// Bytes that this process may still allocate: the machine's available memory, limited by the process's control groups.
+/// Bytes that this process can still allocate: the machine's available memory, limited by the process's control groups.
 /// Empty if neither is known.
 ///
 /// Domain     `root` is "/", or a folder in its place in tests
@@ -55,7 +55,7 @@ std::string text_of(const MemoryEstimate& estimate);
 /// Checks that a render fits into memory.
 ///
 /// `limit`    bytes; 0: available_memory()
-/// `held`     bytes of `needed` that are allocated already and thus not available any more
+/// `held`     bytes of `needed` that are already allocated, and therefore no longer available
 /// Errors     base::Error(kNoMemory) with the needed and the allowed size
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held = 0);
 

@@ -130,9 +130,9 @@ std::vector<ShardFile> read_shards(const std::vector<std::filesystem::path>& fil
     if (!wrong.empty()) {
       wrong = fmt::format("has {} as {}", wrong, shards.front().file.string());
     } else if (range.begin >= range.end || pixels.count < 1 || pixels.index < 0 || pixels.index >= pixels.count) {
-      wrong = "does not name its samples";
+      wrong = "does not state its range of samples";
     } else if (!shard.provenance.count("noise") || !shard.provenance.count("time")) {
-      wrong = "does not name how its samples were chosen";
+      wrong = "does not state its sampling method";
     } else if (shard.provenance.at("noise") != "0" || shard.provenance.at("time") != "no") {
       wrong = "is a checkpoint of a render with --noise or --time, which has no shards";
     }
@@ -196,7 +196,7 @@ MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int heigh
     }
     const std::uint32_t most = *std::max_element(shard.counts.begin(), shard.counts.end());
     if (most > range.end - range.begin) {
-      wrong("has more samples than its header says");
+      wrong("has more samples than its header declares");
       continue;
     }
     if (!allow_missing && !is_finished(file)) {

@@ -17,7 +17,7 @@ struct Job;
 
 /// Reads the provenance of shards and checks that they belong to one image.
 ///
-/// `on_left_out`  called for each missing or damaged file, which is then skipped; null: these are errors
+/// `on_left_out`  called for each missing or damaged file, which is then skipped; null: such files are errors
 /// Errors     base::Error with a diagnostic for each file that is missing, damaged, or of another image than the first:
 ///            kMissingInput if files are missing and nothing else is wrong, kBadData otherwise; kUsage for a file that
 ///            is given twice
@@ -36,11 +36,11 @@ struct MergedShards {
   std::vector<base::Diagnostic> left_out;  ///< damaged shards
 };
 
-/// Adds shards, one at a time in memory. In any order of the files, the sums are those of a single render.
+/// Adds shards, one at a time in memory. The sums equal those of a single render, whatever the order of the files.
 ///
 /// `samples`  per pixel of the whole image
 /// `spheres`  in the scene
-/// `allow_missing`  accept missing samples, and skip shards with unreadable sums
+/// `allow_missing`  accepts missing samples and skips shards with unreadable sums
 /// Domain     `shards` is a result of read_shards
 /// Errors     base::Error(kBadData) naming files that overlap, are unfinished or of another size, and missing samples
 MergedShards merge_shards(std::vector<ShardFile> shards, int width_px, int height_px, std::uint32_t samples,

@@ -28,7 +28,7 @@ struct ImageFile {
 /// Errors     those of ImageFile
 std::vector<ImageFile> image_files(const std::vector<std::filesystem::path>& files);
 
-/// Checks that every display format among these holds `bits` per channel; 0 always passes.
+/// Checks that every display format among these supports `bits` per channel; 0 always passes.
 ///
 /// Errors     base::Error(kUsage)
 void check_bits(const std::vector<ImageFile>& images, int bits);
@@ -41,7 +41,7 @@ struct Outputs {
   display::Settings display;         ///< for display formats; the working space is the scene's
   int bits = 0;                      ///< per channel of display formats; 0: the display's default
   image::ExrOptions exr;
-  bool reproducible = false;  ///< omit everything that varies between runs from headers
+  bool reproducible = false;  ///< omit everything from headers that varies between runs
 
   /// True if an image is an EXR, the only format that holds layers.
   bool has_exr() const;

@@ -23,7 +23,7 @@
 namespace orrery::job {
 namespace {
 
-/// Channels of all layers, and what they depend on besides the scene hash.
+/// Channels of all layers, and everything that they depend on in addition to the scene hash.
 std::string layers_text(const Layers& layers) {
   std::string out;
   for (const film::Plane& plane : film::planes_of(layers.request)) out += (out.empty() ? "" : " ") + plane.name;
@@ -125,7 +125,7 @@ render::PixelShard pixel_shard(const image::Provenance& provenance) {
   const auto found = provenance.find("shard");
   if (found != provenance.end() && std::sscanf(found->second.c_str(), "%d/%d", &out.index, &out.count) == 2)
     --out.index;
-  if (out.count > kMaxShards) out.count = 0;  // no program wrote this
+  if (out.count > kMaxShards) out.count = 0;  // not written by orrery
   return out;
 }
 

@@ -26,7 +26,7 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
 std::string stamp_of(const Job& job, const image::Provenance& provenance, const display::Settings& display,
                      const display::Choice& choice);
 
-/// The first difference of two provenances, as text: "scene hash 1234, not 5678"; empty: none.
+/// Describes the first difference between two provenances: "scene hash 1234, not 5678"; empty: none.
 ///
 /// `keys`     the keys to compare
 std::string difference(const image::Provenance& a, const image::Provenance& b, const std::vector<std::string>& keys);
@@ -44,10 +44,10 @@ struct SampleRange {
 };
 SampleRange sample_range(const image::Provenance& provenance);
 
-/// More shards than are worth a process each.
+/// Maximum number of shards: more than is worth a process each.
 inline constexpr int kMaxShards = 65536;
 
-/// The shard of pixels that a file holds; a count of 0 if the file names none that exists.
+/// The pixel shard that a file contains; the count is 0 if its provenance is invalid.
 render::PixelShard pixel_shard(const image::Provenance& provenance);
 
 }  // namespace orrery::job

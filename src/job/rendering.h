@@ -15,20 +15,20 @@
 
 namespace orrery::job {
 
-/// A rendered image in memory, and the other data that its files need.
+/// A rendered image in memory, and the other data that are needed to write its files.
 struct Rendering {
   Job job;                ///< the request, without hooks and data in memory
   film::Picture picture;  ///< R, G, B, A, then the layers of the scene
   image::Header header, reproducible_header;
   std::vector<MatteNames> mattes;
   display::Settings display;     ///< from the request and the scene
-  image::Provenance provenance;  ///< what the image depends on
+  image::Provenance provenance;  ///< everything that the image depends on
   JobReport report;
-  base::FileSet files;  ///< inputs of the job
+  base::FileSet files;  ///< input files of the job
 };
 
-/// Writes files of a rendering, the same files that a job with these outputs writes. Only the stamps of display formats
-/// differ if the scene has layers, which such a job does not compute.
+/// Writes the same files of a rendering that a job with these outputs would write, except that the stamps of display
+/// formats differ if the scene has layers, which such a job does not compute.
 ///
 /// `outputs`  images and how to write them; empty names of the display transform are those of the rendering
 /// Domain     no deep image and no statistics

@@ -40,7 +40,7 @@ void add_all(Hash& hash, const math::Vec3d& v) {
   for (const double x : {v.x, v.y, v.z}) hash.add(x);
 }
 
-/// `texels`   as of kernel::Environment
+/// `texels`   see kernel::Environment
 void add_texels(Hash& hash, const float* texels, std::uint32_t width, std::uint32_t height) {
   // Two values per word.
   const std::size_t count = 3 * std::size_t{width} * height;

@@ -16,7 +16,7 @@ struct SceneSource {
   std::filesystem::path file;
   std::vector<format::Override> overrides;  ///< "camera.vfov=30"
   int frame = 1;
-  std::shared_ptr<const std::string> text = {};  ///< of the scene; null: read the file
+  std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
   bool has_file = true;                          ///< false: `file` is only a name
   points::OpenData open_data = {};               ///< see format::ReadOptions
   bool is_generated = false;                     ///< see format::ReadOptions

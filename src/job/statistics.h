@@ -11,7 +11,7 @@ struct JobReport;
 /// Outcome of a job.
 struct Outcome {
   std::string reason = "completed";  ///< "completed", "stopped", "failed"
-  int exit_status = 0;               ///< of the program
+  int exit_status = 0;               ///< exit status of the program
   std::string error;                 ///< message; empty: none
 };
 

@@ -17,9 +17,9 @@ struct Outputs;
 /// Errors     base::Error(kUsage)
 void require_bits(const display::Choice& display, const Outputs& outputs);
 
-/// Writes the image files of a picture, and the manifests of its mattes.
+/// Writes the files of an image, and the manifests of its mattes.
 ///
-/// `bits`     per channel of display formats
+/// `bits`     bits per channel of display formats
 /// Errors     base::Error: kCannotCreate, kIo; those of display::develop
 image::WriteReport write_outputs(const Outputs& outputs, const display::Settings& display, int bits,
                                  const film::Picture& picture, const image::Header& header,

@@ -22,7 +22,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// A ray from the camera's origin plus `offset`.
 template <class V>
 struct CameraRay {
-  Vec3<V> offset;     ///< on the lens, with an orthographic camera on the film; zero for a pinhole
+  Vec3<V> offset;     ///< offset on the lens, plus that on the film of an orthographic camera; zero for a pinhole
   Vec3<V> direction;  ///< unit
 };
 

@@ -14,7 +14,7 @@ struct SceneView;
 bool is_distinct(const SceneView& scene, Precision precision) noexcept;
 
 /// Centre and radius of a sphere and, if N is 8, their change until the shutter closes, in the number type of this
-/// precision. Spheres coincide if these are equal.
+/// precision. Spheres coincide if all of these numbers are equal.
 ///
 /// Domain     N is 4 or 8, and 8 if a sphere of the scene moves
 template <std::size_t N>

@@ -26,10 +26,10 @@ HWY_INLINE void each_lane(D d, hn::Mask<D> lanes, Do what) {
     what(static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
 }
 
-/// Stores selected lanes of vectors contiguously. May overwrite a whole vector from the destination on.
+/// Stores selected lanes of vectors contiguously. May overwrite a whole vector's length from the destination.
 ///
-/// The permutation is looked up once for all vectors. Highway's CompressStore looks it up each time, and GCC copies its
-/// table to the stack to do so, which took a quarter of the time.
+/// The permutation is looked up once for all vectors. Highway's CompressStore looks it up each time, for which GCC
+/// copies the table to the stack; that took a quarter of the time.
 template <class D>
 class Compactor {
  public:

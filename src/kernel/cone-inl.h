@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray cones, by which textures are filtered. Compiled once per instruction set.
+// Ray cones for texture filtering. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_CONE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_CONE_INL_H_
 #undef ORRERY_KERNEL_CONE_INL_H_
@@ -18,7 +18,8 @@ namespace orrery::kernel::HWY_NAMESPACE {
 /// The cone of rays around a path's ray, one per lane: second moments of the rays' distance x from it, scene units, and
 /// of their slope s to it.
 ///
-/// Moments of independent causes (pixel, lens, rough surfaces) add, and both ends of a focus are described.
+/// Moments of independent causes (pixel, lens, rough surfaces) add up, and the moments are valid on both sides of a
+/// focus.
 ///
 /// Reference  docs/decisions/0031
 template <class V>
@@ -37,9 +38,9 @@ struct RayCone {
   }
 };
 
-/// Cones of camera rays. Where pixel or lens are seen at an angle, the smaller axis is their width.
+/// Cones of camera rays. Where the ray is oblique to pixel or lens, the smaller axis of the footprint is the width.
 ///
-/// `direction`  of the rays, unit
+/// `direction`  directions of the rays, unit
 /// `width`      as a fraction of pixel and lens
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE RayCone<V> camera_cone(D d, const SceneView& scene, const CameraVectors<V>& camera, const Vec3<V>& direction,
@@ -50,9 +51,9 @@ HWY_INLINE RayCone<V> camera_cone(D d, const SceneView& scene, const CameraVecto
   const V cosine2 = along * along / forward2;
   const V pixel2 = hn::Min(dot(camera.right, camera.right), dot(camera.down, camera.down)) * fraction2 * cosine2;
   RayCone<V> cone{zero, zero, zero};
-  const V inverse_distance = along / forward2;  // to the plane of focus
+  const V inverse_distance = along / forward2;  // to the focus plane
   if (scene.features.lens) {
-    // Rays through different points of the lens intersect in the plane of focus.
+    // Rays through different points of the lens intersect in the focus plane.
     cone.width2 = dot(camera.lens_u, camera.lens_u) * hn::Set(d, T(4)) * fraction2 * cosine2;
     cone.mixed = hn::Neg(cone.width2 * inverse_distance);
     cone.slope2 = cone.width2 * (inverse_distance * inverse_distance);
@@ -84,9 +85,9 @@ HWY_INLINE V lobe_slope2(D d, const Surface<D>& at, double width) {
 /// normal that differs by x / radius, and the same b to first order. Within the plane, the slope grows faster; the
 /// smaller axis is the cone's. The slope after a diffuse surface is that of its lobe.
 ///
-/// `cone`       of the arriving rays, at the surface
-/// `direction`  of the leaving rays, unit
-/// `width`      as of lobe_slope2
+/// `cone`       cones of the arriving rays, at the surface
+/// `direction`  directions of the scattered rays, unit
+/// `width`      as in lobe_slope2
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE RayCone<V> scattered_cone(D d, const RayCone<V>& cone, const Surface<D>& at, V radius,
                                      const Vec3<V>& direction, double width) {

@@ -32,7 +32,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 // nothing is divided by a density. With the heuristic's weights, no sample exceeds albedo * radiance.
 // Reference: veach1995.
 
-/// The factor of albedo and radiance for light samples: x / (1 + x^2), and x if only lights are sampled.
+/// The weight of albedo times radiance for light samples: x / (1 + x^2), and x if only lights are sampled.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V light_sample_factor(D d, DirectLighting mode, V x) {
   const V one = hn::Set(d, hn::TFromD<D>(1));
@@ -88,7 +88,7 @@ HWY_INLINE Emitted<D> emitted(D d, const SceneView& scene, hn::Vec<IdTag<D>> hit
   return {{rgb[0], rgb[1], rgb[2]}, hn::Load(du, group)};
 }
 
-/// Whether vertices send shadow rays.
+/// True if vertices send shadow rays.
 inline bool samples_lights(const SceneView& scene) {
   return scene.direct_lighting != DirectLighting::kBsdf &&
          (scene.lights.count > 0 || (scene.environment != nullptr && scene.environment->is_sampled));
@@ -96,13 +96,13 @@ inline bool samples_lights(const SceneView& scene) {
 
 /// The probability that light sampling chooses the environment instead of an emitter.
 ///
-/// Which of the two matters at a vertex is unknown without tracing shadow rays, so both are equally likely.
+/// Which of the two contributes more at a vertex is unknown without shadow rays, so both are equally likely.
 inline double environment_share(const SceneView& scene) {
   if (scene.environment == nullptr || !scene.environment->is_sampled) return 0;
   return scene.lights.count > 0 ? 0.5 : 1;
 }
 
-/// Whether vertices choose between several lights.
+/// True if vertices choose between several lights.
 inline bool chooses_light(const SceneView& scene) {
   return scene.lights.count > 1 || (scene.lights.count == 1 && environment_share(scene) > 0);
 }
@@ -148,16 +148,16 @@ template <class D>
 struct LightSample {
   using V = hn::Vec<D>;
   Vec3<V> direction;  ///< unit
-  Vec3<V> reach;      ///< to the sampled point; of any length for an environment
+  Vec3<V> reach;      ///< vector to the sampled point; any length for an environment
   V distance;         ///< maximum distance of an occluder, as a multiple of the length of `reach`
-  V inverse_pdf;      ///< steradians, without the choice of the light
-  V probability;      ///< of the choice; 0: no light can be sampled
+  V inverse_pdf;      ///< steradians, excluding the probability of choosing the light
+  V probability;      ///< probability of choosing the light; 0: no light can be sampled
   Vec3<V> radiance;
   hn::Vec<IdTag<D>> target;  ///< sphere id, or kNoSphere
   hn::Vec<IdTag<D>> group;   ///< light group
 };
 
-/// Cones of light samples in loops without textures, which need none.
+/// Stands in for the cones of light samples in loops without textures.
 struct NoCone {};
 template <class D, bool kExtended>
 using LightCone = std::conditional_t<kExtended, RayCone<hn::Vec<D>>, NoCone>;
@@ -192,7 +192,7 @@ HWY_INLINE LightSample<D> sample_emitter(D d, const SceneView& scene, const Vert
           source.group};
 }
 
-/// Samples a direction to the environment.
+/// Samples a direction towards the environment.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment, V u, V v) {
   using T = hn::TFromD<D>;
@@ -211,9 +211,9 @@ HWY_INLINE LightSample<D> sample_background(D d, const Environment& environment,
 
 /// Samples the environment or an emitter at each vertex.
 ///
-/// `cone`     of the rays to the light
+/// `cone`     cones of the rays to the light
 ///
-/// Not inlined, like the other large functions of lit loops: all loops of a lane type share one copy.
+/// Not inlined, like the other large functions of lit loops, so that all loops of a lane type share one copy.
 template <class D, bool kMoves, bool kExtended, class V = hn::Vec<D>>
 HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vertex<D>& at, LightCone<D, kExtended> cone,
                                          const Four<V>& random, const hn::TFromD<D>* times) {
@@ -242,9 +242,9 @@ HWY_NOINLINE LightSample<D> sample_light(D d, const SceneView& scene, const Vert
 
 /// Next-event estimation: samples a light at each vertex and appends shadow rays to the shadow stream.
 ///
-/// `center`   of the spheres that the vertices lie on
+/// `center`   centres of the spheres on which the vertices lie
 /// `tinted`   throughput times albedo
-/// `cone`     of the rays to the light
+/// `cone`     cones of the rays to the light
 /// `lanes`    vertices whose material is neither delta nor an emitter
 /// Domain     samples_lights(scene)
 template <class D, Loop kLoop, class Lit, class V = hn::Vec<D>>
@@ -283,7 +283,7 @@ HWY_INLINE void connect(D d, const SceneView& scene, const Surface<D>& surface, 
   shadow.count += compactor.count();
 }
 
-/// Traces the last packet of shadow rays in the stream and adds the light that is not occluded to its paths.
+/// Traces the last packet of shadow rays in the stream and adds the unoccluded light to its paths.
 template <class D, Loop kLoop, class Lit>
 HWY_INLINE void trace_shadow_packet(D d, const SceneView& scene, const Tracer& tracer, const Tile& tile, Lit& lit,
                                     TileCounts& counts) {

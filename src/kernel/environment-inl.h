@@ -37,8 +37,8 @@ struct EnvironmentFootprint : TexelQuad<D> {
   hn::Mask<D> is_in_sun;
 };
 
-/// Whether directions are inside the sun's cone. The distance of the two unit vectors decides, since their cosine would
-/// round to 1.
+/// Returns whether directions are inside the sun's cone. Compares the distance of the two unit vectors, because their
+/// cosine would round to 1.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> is_in_sun(D d, const Environment& env, const Vec3<V>& direction) {
   using T = hn::TFromD<D>;
@@ -49,7 +49,7 @@ HWY_INLINE hn::Mask<D> is_in_sun(D d, const Environment& env, const Vec3<V>& dir
 /// Loads the texels around directions.
 ///
 /// Space      world; unit
-/// Result     of a direction that is NaN: some texels of the map
+/// Result     arbitrary texels of the map for a NaN direction
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE EnvironmentFootprint<D> environment_footprint(D d, const Environment& env, const Vec3<V>& direction) {
   using T = hn::TFromD<D>;
@@ -75,7 +75,7 @@ HWY_INLINE EnvironmentFootprint<D> environment_footprint(D d, const Environment&
     }
     const V extent = hn::Load(d, row_width);
     const V tall = one + hn::Abs(direction.y);
-    // To the pole of the row's half of the map.
+    // Relative to the pole of the row's half of the map.
     const V from_pole = hn::IfThenElse(extent * direction.y > zero, position.radius2 / tall, tall);
     const V t = (from_pole - hn::Load(d, versine)) / extent;
     out.cosine_down = hn::Min(hn::Max(t, zero), one);
@@ -107,7 +107,7 @@ HWY_INLINE V pdf_of(D d, const Environment& env, const EnvironmentFootprint<D>& 
   return pdf;
 }
 
-/// The radiance that arrives from directions: the map's and the sun's.
+/// The radiance from directions, of map and sun.
 ///
 /// Space      direction world, unit
 template <class D, class V = hn::Vec<D>>
@@ -124,7 +124,8 @@ HWY_INLINE V environment_pdf(D d, const Environment& env, const Vec3<V>& directi
   return pdf_of(d, env, environment_footprint(d, env, direction));
 }
 
-/// One of two parts, chosen with probabilities proportional to their weights. `rest` is uniform in 0..1 again.
+/// One of two parts, chosen with probabilities proportional to their weights. `rest` is the rescaled random number,
+/// again uniform in 0..1.
 template <class D>
 struct Split {
   hn::Mask<D> second;
@@ -135,7 +136,7 @@ HWY_INLINE Split<D> split(D d, V first, V second, V u) {
   using T = hn::TFromD<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, T(1));
   const V at = u * (first + second);
-  // A part of weight zero is never chosen, whatever the rounding.
+  // A part with zero weight is never chosen, even with rounding errors.
   const auto beyond = hn::And(at >= first, second > zero);
   const V chosen = hn::IfThenElse(beyond, second, first);
   const V rest = hn::IfThenElse(beyond, at - first, at) / hn::IfThenElse(chosen > zero, chosen, one);
@@ -144,7 +145,7 @@ HWY_INLINE Split<D> split(D d, V first, V second, V u) {
 
 /// Samples 0..1 with a density that is linear from `a` at 0 to `b` at 1.
 ///
-/// Precision  the stable form of the inverse, which does not cancel
+/// Precision  uses the numerically stable form of the inverse
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V sample_linear(D d, V a, V b, V u) {
   using T = hn::TFromD<D>;
@@ -152,8 +153,8 @@ HWY_INLINE V sample_linear(D d, V a, V b, V u) {
   return hn::IfThenElse(divisor > hn::Zero(d), hn::Min(u * (a + b) / divisor, hn::Set(d, T(1))), u);
 }
 
-/// Samples the map: a cell by descending the sums, where every step splits first the rows and then the columns, and a
-/// point in the cell.
+/// Samples the map: selects a cell by descending the sums, where each step splits the rows and then the columns, and
+/// samples a point in the cell.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> sample_map(D d, const Environment& env, V u, V v) {
   using T = hn::TFromD<D>;
@@ -255,14 +256,14 @@ HWY_INLINE Vec3<V> sample_sun(D d, const Environment& env, V u, V v) {
 template <class V>
 struct EnvironmentSample {
   Vec3<V> direction;  ///< world, unit
-  Vec3<V> radiance;   ///< as of environment_radiance
-  V inverse_pdf;      ///< steradians; 0: nothing was sampled, which only rounding causes
+  Vec3<V> radiance;   ///< as returned by environment_radiance
+  V inverse_pdf;      ///< steradians; 0: rounding errors prevented a sample
 };
 
 /// Samples a direction with the density environment_pdf.
 ///
-/// `u`, `v`   0..1. Nearby numbers give nearby directions except across the boundary between sun and map, so stratified
-///            points stay stratified.
+/// `u`, `v`   0..1. Nearby numbers give nearby directions, except across the boundary between sun and map, so
+///            stratification is preserved.
 /// Domain     env.is_sampled
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE EnvironmentSample<V> sample_environment(D d, const Environment& env, V u, V v) {

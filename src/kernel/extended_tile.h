@@ -6,8 +6,8 @@
 
 namespace orrery::kernel {
 
-/// The lit loop with textures and rough glass for the best enabled instruction set, with records or without. Camera and
-/// spheres may move.
+/// Returns the lit loop with textures and rough glass for the best enabled instruction set, with or without records.
+/// Camera and spheres may move.
 RenderTile extended_tile_function(bool records, Precision precision);
 RenderTileFast extended_tile_fast_function(bool records);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of memory fetched lane by lane. Compiled once per instruction set.
+// Gathers of rows of memory. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_GATHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_GATHER_INL_H_
 #undef ORRERY_KERNEL_GATHER_INL_H_
@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_MAX_BYTES >= 32
 
-/// Four consecutive doubles or floats as four of T.
+/// Loads four consecutive doubles or floats as four numbers of type T.
 template <class T, class From>
 HWY_INLINE hn::Vec<hn::FixedTag<T, 4>> load_row(const From* row) {
   const hn::FixedTag<T, 4> d;
@@ -33,7 +33,7 @@ HWY_INLINE hn::Vec<hn::FixedTag<T, 4>> load_row(const From* row) {
   }
 }
 
-/// Rows stay in registers: loading a vector from rows that have just been stored would wait for the stores.
+/// Keeps rows in registers: loading a vector from rows that have just been stored would stall on store forwarding.
 template <class D, class RowOfLane>
 HWY_INLINE void transpose_rows(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
   using T = hn::TFromD<D>;
@@ -78,7 +78,7 @@ template <class D, class RowOfLane>
 HWY_INLINE void transpose_rows(D d, RowOfLane row_of_lane, hn::Vec<D> (&out)[4]) {
   using T = hn::TFromD<D>;
   using From = std::remove_cv_t<std::remove_reference_t<decltype(*row_of_lane(0))>>;
-  // As many lanes as the wider type has.
+  // The number of lanes of the wider type.
   using Wide = std::conditional_t<sizeof(T) >= sizeof(From), T, From>;
   const hn::CappedTag<Wide, 4> wide_tag;
   const hn::Rebind<From, decltype(wide_tag)> row_tag;

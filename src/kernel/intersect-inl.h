@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): one room's lanes in another's text
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 /// Unsigned lanes as wide as D's, for ids and random bits.
 template <class D>
@@ -119,7 +119,7 @@ HWY_INLINE Chord<D> chord(const Rays<D>& ray, const Spheres<D>& sphere) {
   return plain;
 }
 
-/// Conservative test of the uncompensated discriminant: other lanes miss even after compensation.
+/// Conservative test of the uncompensated discriminant: lanes that fail it miss even after compensation.
 ///
 /// With centre c and rounded origin o, the error of to_center has two parts: the subtraction, with the rounding error
 /// of the origin, contributes at most 2^-53 (|c-o| + |o|), where |o| <= |c-o| + |c|; the projection about 2^-51 |c-o|.
@@ -143,8 +143,9 @@ struct Distances {
 
 /// The closest intersection of each ray with its sphere beyond the ray's origin.
 ///
-/// A ray that starts on the sphere can hit it again only at the other end of the chord: its own start is divided out of
-/// the quadratic and cannot return as a rounding error. For every other sphere the distance is strictly positive.
+/// A ray that starts on the sphere can hit it again only at the other end of the chord: the root at its origin is
+/// divided out of the quadratic, so that rounding errors cannot produce a self-intersection. For all other spheres the
+/// distance is strictly positive.
 template <class D, Precision kPrecision>
 HWY_INLINE Distances<D> closest_distance(D d, const Rays<D>& ray, const Spheres<D>& sphere, hn::Mask<D> is_self) {
   using T = hn::TFromD<D>;
@@ -158,7 +159,7 @@ HWY_INLINE Distances<D> closest_distance(D d, const Rays<D>& ray, const Spheres<
     const auto hits = discriminant >= zero;
     if (hn::MaxLanes(D()) == 1 && hn::AllFalse(d, hits)) return {zero, hits};
     const auto root = hn::Sqrt(hn::Max(discriminant, zero));
-    // In lengths of the direction, which is a unit vector except in shadow rays.
+    // In multiples of the direction's length, which is 1 except for shadow rays.
     const auto t_min = hn::Set(d, static_cast<T>(kBookShortestDistance)) * hn::Sqrt(ray.inverse_square);
     const auto entry = (hn::Neg(half_b) - root) / a;
     const auto exit = (root - half_b) / a;
@@ -187,12 +188,12 @@ HWY_INLINE Distances<D> closest_distance(D d, const Rays<D>& ray, const Spheres<
 /// A hit point relative to the sphere's centre.
 template <class V>
 struct HitPoint {
-  Vec3<V> offset;   ///< from the centre to the point; one radius long, to rounding
-  Vec3<V> outward;  ///< the same as a unit vector
+  Vec3<V> offset;   ///< from the centre to the point; its length is the radius, to rounding
+  Vec3<V> outward;  ///< the offset as a unit vector
 };
 
-/// Refines the distance to the other end of a ray's own chord: projects out the component along the ray of the chord's
-/// midpoint, as `compensated` does for other spheres.
+/// Refines the distance to the other end of the chord for a ray that starts on the sphere: removes the component of
+/// to_center along the ray, as `compensated` does for other spheres.
 template <class D, Precision kPrecision>
 HWY_INLINE hn::Vec<D> own_distance(D d, const Rays<D>& ray, hn::Vec<D> distance) {
   if constexpr (kPrecision != Precision::kExact) return distance;

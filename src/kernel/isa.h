@@ -8,7 +8,7 @@
 
 namespace orrery::kernel {
 
-/// The instruction set of kernel and tracer instances chosen from now on: "sse4", "avx2" or "avx512".
+/// The instruction set of kernel and tracer instances that are selected from now on: "sse4", "avx2" or "avx512".
 ///
 /// Result     what the chosen instance was compiled for, not what was requested
 std::string isa_name();
@@ -19,8 +19,8 @@ std::string isa_name(std::int64_t target);
 /// The instruction sets that the program was compiled for and the processor supports, best first, ignoring the limit.
 std::vector<std::string> available_isas();
 
-/// Limits kernel and tracer functions chosen from now on to this instruction set; empty removes the limit. Not
-/// thread-safe.
+/// Limits kernel and tracer functions that are selected from now on to this instruction set; an empty name removes the
+/// limit. Not thread-safe.
 ///
 /// Result     false, with nothing changed, if `name` is not among available_isas()
 bool limit_isa(std::string_view name);

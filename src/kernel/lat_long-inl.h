@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Latitude-longitude maps, of backgrounds and of textures: positions, and texels between which a value is interpolated.
-// Compiled once per instruction set.
+// Latitude-longitude maps of backgrounds and textures: positions, and interpolation between texels. Compiled once per
+// instruction set.
 #if defined(ORRERY_KERNEL_LAT_LONG_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_LAT_LONG_INL_H_
 #undef ORRERY_KERNEL_LAT_LONG_INL_H_
@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): one room's lanes in another's text
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 /// Returns a + (b - a) s, which is not negative if a and b are not.
 template <class D, class V = hn::Vec<D>>
@@ -59,15 +59,15 @@ template <class D>
 struct TexelQuad {
   using V = hn::Vec<D>;
   V texel[4][4];  ///< upper left, upper right, lower left, lower right; red, green, blue, unused
-  V right, down;  ///< 0..1
-  V lower_row;    ///< of the lower texels, not limited to the map
+  V right, down;  ///< interpolation weights of the right and the lower texels, 0..1
+  V lower_row;    ///< row of the lower texels, not clamped to the map
 };
 
 /// Loads the texels around positions. Columns wrap around, rows end at the poles.
 ///
 /// `width`, `height`   of each lane's map, texels
 /// `texel_at`          returns the address of a texel, given its lane, row and column
-/// Result     of a position that is NaN: some texels of the map
+/// Result     arbitrary texels of the map for a NaN position
 template <class D, class TexelAt, class V = hn::Vec<D>>
 HWY_INLINE TexelQuad<D> load_texels(D d, const MapPosition<V>& at, V width, V height, TexelAt texel_at) {
   using T = hn::TFromD<D>;

@@ -29,7 +29,7 @@ struct Vertex {
   Vec3<V> normal;              ///< unit, on the side that is lit
 };
 
-/// The normal at the origin of rays that leave spheres, on the side to which they leave.
+/// The normal at the origin of rays that leave spheres, on the side on which they leave.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> normal_along(D d, const Vec3<V>& offset, const Vec3<V>& direction) {
   const auto unit = normalized(d, offset);
@@ -42,8 +42,8 @@ HWY_INLINE Vec3<hn::Vec<D>> to_center(const Vertex<D>& at, const Vec3<hn::Vec<D>
   return (center - at.origin) - at.origin_low;
 }
 
-/// A node's power in the lanes' precision. The powers of giant emitters exceed a float's range; choosing between them
-/// as if they were equal is not biased.
+/// A node's power in the lanes' precision. The powers of giant emitters exceed a float's range; treating them as equal
+/// introduces no bias.
 template <class T>
 HWY_INLINE T power_of(const LightNode& node) {
   return static_cast<T>(std::fmin(node.power, static_cast<double>(std::numeric_limits<T>::max())));
@@ -61,11 +61,11 @@ class LightNodes {
       node_[lane] = &leaf_[lane];
     }
   }
-  /// A lane whose importance does not matter.
+  /// Initializes a lane whose importance is not used.
   void set_any(std::size_t lane, const SceneView& scene) { node_[lane] = scene.lights.nodes; }
 
   /// An estimate of the irradiance at the vertices: power / distance^2 times the largest cosine to the normal that a
-  /// point of the bounding sphere can have. Zero only if the whole sphere is below the horizon, or dark.
+  /// point of the bounding sphere can have. Zero only if the whole sphere is below the horizon or emits nothing.
   HWY_INLINE hn::Vec<D> importance(D d, const Vertex<D>& at) const {
     using T = hn::TFromD<D>;
     using V = hn::Vec<D>;
@@ -99,13 +99,13 @@ class LightNodes {
 template <class D>
 struct ChosenLights {
   hn::Vec<IdTag<D>> spheres;  ///< ids
-  hn::Vec<D> probability;     ///< of the choice; 0: none was chosen
+  hn::Vec<D> probability;     ///< probability of the choice; 0: none was chosen
 };
 
 /// Descends the light tree at each vertex, to the leaf that `next` leads to.
 ///
-/// `next`     called as next(share, inner, ranges, level): returns whether each lane continues to the left child, which
-///            has this share of the importance. `inner`: lanes that have not reached a leaf
+/// `next`     called as next(share, inner, ranges, level): returns whether each lane continues to the left child, whose
+///            fraction of the importance is `share`. `inner`: lanes that have not reached a leaf
 /// Result     the probability of the path to the leaf
 template <class D, class Next>
 HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, LightRange (&range)[hn::MaxLanes(D())],
@@ -140,7 +140,7 @@ HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, 
     const V whole = of_left + right.importance(d, at);
     const V share = hn::IfThenElseZero(whole > zero, of_left / whole);
     const auto go_left = next(share, inner, range, level);
-    // Where nothing has any importance both probabilities are 0.
+    // If nothing is important, both probabilities are 0.
     const V other = hn::IfThenElseZero(whole > zero, one - share);
     probability = hn::IfThenElse(inner, probability * hn::IfThenElse(go_left, share, other), probability);
     hn::Store(hn::IfThenElseZero(go_left, one), d, goes_left);
@@ -152,9 +152,10 @@ HWY_INLINE hn::Vec<D> descend(D d, const SceneView& scene, const Vertex<D>& at, 
   }
 }
 
-/// Calls visit(i, importance) for each of a few emitters. The importance is the irradiance at the vertices without
-/// occlusion, divided by pi: power / distance^2 times the cosine to the normal. Where the horizon cuts the emitter, a
-/// parabola with the same value and slope leads to zero, where all of it is below. From inside, the cosine is 1.
+/// Calls visit(i, importance) for each emitter of a short list. The importance is the unoccluded irradiance at the
+/// vertices divided by pi: power / distance^2 times the cosine to the normal. If the emitter is partly below the
+/// horizon, a parabola with continuous value and slope falls to zero at the point where all of it is below. Inside an
+/// emitter, the cosine is 1.
 template <class D, class Visit>
 HWY_INLINE void for_each_light(D d, const SceneView& scene, const Vertex<D>& at, Visit visit) {
   using T = hn::TFromD<D>;
@@ -167,7 +168,8 @@ HWY_INLINE void for_each_light(D d, const SceneView& scene, const Vertex<D>& at,
     const V distance2 = dot(to, to);
     const V inverse2 = one / hn::Max(distance2, radius2);
     const V inverse = hn::Sqrt(inverse2);
-    const V cosine = dot(to, at.normal) * inverse, sin = radius * inverse;  // of the centre; of half the apex angle
+    const V cosine = dot(to, at.normal) * inverse,
+            sin = radius * inverse;  // cosine to the centre; sine of half the apex angle
     const V above = hn::Max(cosine + sin, zero);
     const V cut = above * above * (distance2 * inverse) * hn::Set(d, static_cast<T>(0.25 / node.radius));
     const V visible = hn::IfThenElse(cosine < sin, cut, cosine);
@@ -175,7 +177,7 @@ HWY_INLINE void for_each_light(D d, const SceneView& scene, const Vertex<D>& at,
   }
 }
 
-/// Chooses between few emitters, by their importance.
+/// Chooses from a short list of emitters by importance.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE ChosenLights<D> choose_from_few(D d, const SceneView& scene, const Vertex<D>& at, V u) {
   using Id = hn::TFromD<IdTag<D>>;
@@ -187,7 +189,7 @@ HWY_INLINE ChosenLights<D> choose_from_few(D d, const SceneView& scene, const Ve
     of_light[i] = value;
     whole = whole + value;
   });
-  // The last emitter of any importance at which the sum of those before has not passed u.
+  // The last emitter with non-zero importance for which the sum of the preceding ones does not exceed u.
   const V target = u * whole;
   V before = zero, chosen = zero;
   auto spheres = hn::Set(du, static_cast<Id>(scene.lights.spheres[0]));
@@ -201,10 +203,10 @@ HWY_INLINE ChosenLights<D> choose_from_few(D d, const SceneView& scene, const Ve
   return {spheres, hn::IfThenElseZero(whole > zero, chosen / whole)};
 }
 
-/// After this many levels of the light tree a second random number is used, since a choice uses up bits of the first.
+/// Number of levels of the light tree per random number, since each choice consumes bits.
 inline constexpr int kLevelsPerNumber = 8;
 
-/// Chooses an emitter for each vertex: a few by their importance, more by that of the tree's nodes.
+/// Chooses an emitter for each vertex by importance: directly if there are few emitters, else through the light tree.
 ///
 /// `u`, `fresh`  uniform in 0..1; `fresh` is used after kLevelsPerNumber levels
 /// Domain        scene.lights.count > 0
@@ -229,8 +231,8 @@ HWY_INLINE ChosenLights<D> choose_light(D d, const SceneView& scene, const Verte
   return {hn::Load(IdTag<D>(), ids), probability};
 }
 
-/// The probability with which choose_light chooses given emitters. Meaningless in lanes whose sphere is not a leaf of
-/// the tree.
+/// The probability with which choose_light chooses given emitters. Undefined in lanes whose sphere is not a leaf of the
+/// tree.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V choice_probability(D d, const SceneView& scene, const Vertex<D>& at, hn::Vec<IdTag<D>> spheres) {
   using T = hn::TFromD<D>;

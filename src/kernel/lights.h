@@ -14,7 +14,7 @@ enum class DirectLighting : std::uint8_t {
   kLight,  ///< light sampling only, wherever the light can be sampled
 };
 
-/// A bounding sphere of emitters and their power. Centre and radius are fetched as four doubles.
+/// A bounding sphere of emitters and their power. Centre and radius are loaded as four doubles.
 struct LightNode {
   double center[3];
   double radius;
@@ -27,14 +27,14 @@ struct LightRange {
 };
 
 /// The emitting spheres, as leaves of an implicit balanced tree: a range of leaves is split in the middle, down to
-/// single leaves. A few are no tree, but a list. Owns nothing.
+/// single leaves. Up to kFew emitters form a list instead. Non-owning.
 struct Lights {
   static constexpr std::uint32_t kNoLeaf = 0xffffffffu;
-  /// Up to this many emitters are chosen from a list. Measured: docs/decisions/0022-direct-lighting.md.
+  /// Maximum number of emitters that are sampled from a list (measured: docs/decisions/0022-direct-lighting.md).
   static constexpr std::uint32_t kFew = 64;
 
   const std::uint32_t* spheres = nullptr;  ///< sphere id of each leaf
-  /// Of each range of two leaves or more, at its `middle`; of each leaf if there are few.
+  /// Nodes of the tree: that of a range of two or more leaves is at its `middle`. For a list, one node per leaf.
   const LightNode* nodes = nullptr;
   /// Leaf of each sphere from `first_sphere` to `end_sphere`, or kNoLeaf. If the emitters' ids are `scattered`: the
   /// leaves by ascending sphere id.

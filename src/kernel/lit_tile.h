@@ -6,8 +6,8 @@
 
 namespace orrery::kernel {
 
-/// The lit loop for the best enabled instruction set, with records or without, in `exact` or `fast`. Camera and spheres
-/// may move.
+/// Returns the lit loop for the best enabled instruction set, with or without records, in `exact` or `fast`. Camera and
+/// spheres may move.
 RenderTile lit_tile_function(bool records);
 RenderTileFast lit_tile_fast_function(bool records);
 

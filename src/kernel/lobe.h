@@ -5,8 +5,9 @@
 
 namespace orrery::kernel {
 
-/// The light path by its first scattering event, and by whether the light came to that surface straight from its source
-/// (direct) or from another surface (indirect). Light that only passes through glass counts as direct.
+/// Classification of light paths by the first scattering event seen from the camera, and by whether the light reached
+/// that surface straight from its source (direct) or from another surface (indirect). Light that only passes through
+/// glass counts as direct.
 enum class Lobe : std::uint8_t {
   kBackground,  ///< no surface: the camera sees the source itself
   kDiffuseDirect,

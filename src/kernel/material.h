@@ -9,7 +9,7 @@ namespace orrery::kernel {
 enum class MaterialKind : std::uint32_t { kLambertian, kHemisphere, kMetal, kDielectric, kEmitter };
 enum class FresnelKind : std::uint32_t { kSchlick, kExact, kNone };
 
-/// A compiled material, with everything that does not depend on the ray. `kind` decides which members are used.
+/// A compiled material: everything that does not depend on the ray. `kind` determines which members are used.
 struct Material {
   double albedo[3] = {1, 1, 1};  ///< scene-linear reflectance; 1 for a dielectric
   double fuzz = 0;               ///< metal, dielectric: radius of the sphere around the tip of the unit direction

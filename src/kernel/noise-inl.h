@@ -22,21 +22,21 @@ HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): one room's lanes in another's text
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
-/// The lattice repeats after this many cells along each axis.
+/// Period of the lattice along each axis, cells.
 inline constexpr std::uint32_t kLatticePeriod = 0x80000000u;
 
-/// A position in the noise's lattice, by axis. Doubling it is exact, so every octave is as accurate as the first.
+/// A position in the noise lattice, per axis. Doubling it is exact, so every octave is as accurate as the first.
 template <class D>
 struct LatticePoint {
   hn::Vec<hn::RebindToUnsigned<D>> cell[3];  ///< modulo kLatticePeriod
   hn::Vec<D> part[3];                        ///< 0..1 within the cell
 };
 
-/// A whole number modulo kLatticePeriod.
+/// Returns an integer modulo kLatticePeriod.
 ///
-/// Result     some cell for NaN and infinity
+/// Result     an arbitrary cell for NaN and infinity
 template <class D>
 HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> lattice_cell(D d, hn::Vec<D> whole) {
   using T = hn::TFromD<D>;

@@ -9,12 +9,12 @@
 
 namespace orrery::kernel {
 
-/// Data of one path for the layers besides the beauty and the denoiser guides. Computed only for tiles that request
-/// records. Of a path without a first hit only the sphere and the light are set.
+/// Data of one path for all layers except the beauty and the denoiser guides. Computed only for tiles that request
+/// records. For a path without a first hit, only `sphere` and `light` are set.
 struct PathRecord {
   double light[3] = {0, 0, 0};       ///< total radiance of the path, the sum of its light events; indexed by channel
   math::Vec3d offset;                ///< first hit: from the sphere's centre to the point, scene units
-  math::Vec3d direction;             ///< of the camera ray that hit it, unit
+  math::Vec3d direction;             ///< direction of the camera ray that hit it, unit
   std::uint32_t sphere = kNoSphere;  ///< first hit; kNoSphere: the background
   float albedo[3] = {0, 0, 0};       ///< at the first hit; only in scenes with features.extended
   double time = 0;                   ///< 0..1 within the shutter
@@ -28,7 +28,7 @@ struct LightEvent {
   Lobe lobe = Lobe::kBackground;
 };
 
-/// The buffer for a tile's light events, which come in no particular order.
+/// The buffer for a tile's light events, in no particular order.
 struct LightEvents {
   LightEvent* next = nullptr;
   LightEvent* end = nullptr;

@@ -10,14 +10,14 @@ namespace orrery::kernel {
 /// Number of paths in a stream: enough to fill packets at deep bounces, few enough to stay in the cache.
 inline constexpr int kStreamSize = 1024;
 
-/// Shadow rays that wait until they fill a packet, and the light that arrives if they are not occluded.
+/// Shadow rays that wait until they fill a packet, and the light that they carry if they are not occluded.
 ///
-/// The end of the arrays is written in whole vectors.
+/// The arrays are padded, because whole vectors are stored at their ends.
 template <class T, class Id>
 struct alignas(64) ShadowStreamOf {
   static constexpr int kCapacity = 3 * kPacketSize;
   T base[3][kCapacity];       ///< centre of the sphere that the ray leaves
-  T offset[3][kCapacity];     ///< from there to the ray's origin
+  T offset[3][kCapacity];     ///< from that centre to the ray's origin
   T direction[3][kCapacity];  ///< to the light; of any length
   T distance[kCapacity];      ///< maximum distance of an occluder, as a multiple of the direction's length
   T time[kCapacity];          ///< 0..1 within the shutter; only if the scene moves
@@ -33,13 +33,13 @@ struct alignas(64) ShadowStreamOf {
 
 /// State of paths that gain radiance at their vertices.
 ///
-/// A path's radiance stays in the place of the path within the batch and is deposited when all paths of the batch have
-/// ended, so that a bad value costs the path its weight once.
+/// A path's radiance is stored at its index within the batch and deposited when all paths of the batch have ended, so
+/// that a bad value removes the path's weight only once.
 template <class T, class Id>
 struct alignas(64) LitPathsOf {
   static constexpr int kCapacity = kStreamSize + kPacketSize;
-  Id path[kCapacity];        ///< of the stream's paths: their index within the batch
-  T pdf[kCapacity];          ///< of the stream's paths: density of the direction, per steradian; infinite: delta
+  Id path[kCapacity];        ///< index within the batch of each path of the stream
+  T pdf[kCapacity];          ///< density of the direction of each path of the stream, per steradian; infinite: delta
   T radiance[3][kCapacity];  ///< by index within the batch
   Id pixel[kCapacity];       ///< by index within the batch
   Id sample[kCapacity];      ///< by index within the batch
@@ -48,12 +48,12 @@ struct alignas(64) LitPathsOf {
 
 /// The state of a tile's paths between two vertices, as a structure of arrays.
 ///
-/// The end of the arrays is read and written in whole vectors, hence the capacity for one more packet.
+/// Whole vectors are read and written at the ends of the arrays, hence the capacity for one more packet.
 template <class T, class Id>
 struct alignas(64) PathStreamOf {
   static constexpr int kCapacity = kStreamSize + kPacketSize;
   T base[3][kCapacity];        ///< centre of the sphere that the ray leaves
-  T offset[3][kCapacity];      ///< from there to the ray's origin
+  T offset[3][kCapacity];      ///< from that centre to the ray's origin
   T direction[3][kCapacity];   ///< unit
   T throughput[3][kCapacity];  ///< product of reflectances so far
   Id self[kCapacity];          ///< sphere that the ray leaves

@@ -9,7 +9,7 @@ namespace orrery::kernel {
 /// -1 and pixels stay independent.
 ///
 /// A filter with negative lobes gives the weight -1 to a fixed fraction of the samples, evenly spaced in sample number,
-/// and draws those from its negative part. The sum of the weights is then not random, and flat areas stay flat.
+/// and draws these samples from its negative part. The sum of the weights is then not random, and flat areas stay flat.
 struct PixelFilter {
   static constexpr int kSteps = 1024;
 

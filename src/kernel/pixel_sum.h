@@ -11,13 +11,14 @@ __extension__ using Int128 = __int128;
 /// The sum of a pixel's samples in fixed point (units of 2^-60), so that the order of addition changes no bit.
 ///
 /// A floating-point sum depends on the order, and with it on threads, tiles, shards and resumption; an integer sum does
-/// not. A sum is less than 2^67; 2^31 samples of kLargestSample are 2^66, in each of two halves.
+/// not. A sum is less than 2^67: each of two halves has up to 2^31 samples of at most kLargestSample, which add up to
+/// 2^66.
 struct PixelSum {
   /// Aligned to eight bytes, so that no pixel is padded.
   typedef Int128 Sum __attribute__((aligned(8)));
 
   Sum rgb[3] = {0, 0, 0};
-  std::int64_t weight = 0;  ///< of all samples but bad ones: 1 each, or -1 in a PixelFilter's negative lobes
+  std::int64_t weight = 0;  ///< total weight of the valid samples: 1 each, or -1 in a PixelFilter's negative lobes
 
   PixelSum& operator+=(const PixelSum& other) noexcept {
     for (int c = 0; c < 3; ++c) rgb[c] += other.rgb[c];
@@ -26,10 +27,10 @@ struct PixelSum {
   }
 };
 
-/// Samples above this count as bad: 2^31 of them would overflow the sum.
+/// Maximum valid sample: 2^31 larger ones could overflow the sum.
 inline constexpr double kLargestSample = 0x1p35;
 
-/// Whether a sample is finite and small enough for the sums.
+/// True if a sample is finite and small enough for the sums.
 inline bool is_valid_sample(double r, double g, double b) noexcept {
   return std::abs(r) <= kLargestSample && std::abs(g) <= kLargestSample && std::abs(b) <= kLargestSample;
 }

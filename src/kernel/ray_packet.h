@@ -15,7 +15,7 @@ inline constexpr int kPacketSize = 16;
 /// Up to sixteen rays in structure-of-arrays form.
 ///
 /// A ray that leaves a sphere starts at the sphere's centre plus `offset`. `origin` holds the rounded sum and
-/// `origin_low` its rounding error, so a sphere far from the world's origin loses no precision. `self` identifies the
+/// `origin_low` its rounding error, so a sphere far from the world origin loses no precision. `self` identifies the
 /// sphere that the ray leaves, which makes an epsilon unnecessary.
 ///
 /// T is double (exact, book) or float (fast); ids are as wide as T so that masks fit both.
@@ -29,7 +29,7 @@ struct alignas(64) RaysOf {
   Id self[kPacketSize];           ///< sphere that the ray leaves, or kNoSphere
   T distance[kPacketSize];        ///< maximum distance of a hit, as a multiple of the direction's length
   T time[kPacketSize];            ///< 0..1 within the shutter; only if the scene moves
-  int count = 0;                  ///< rays in use, the first ones
+  int count = 0;                  ///< number of rays in use, from the first
 };
 
 /// Rays and their closest hits. Directions are unit; `distance` becomes that of the closest hit.
@@ -38,8 +38,7 @@ struct RayPacketOf : RaysOf<T, Id> {
   alignas(64) Id hit[kPacketSize];  ///< in: kNoSphere; out: the sphere of the closest hit, or kNoSphere
 };
 
-/// Rays and whether anything lies along them. Directions may have any length whose square and its reciprocal are
-/// finite.
+/// Rays and whether they are occluded. Directions may have any length whose square and its reciprocal are finite.
 template <class T, class Id>
 struct ShadowPacketOf : RaysOf<T, Id> {
   alignas(64) Id target[kPacketSize];  ///< sphere that does not occlude: the light that the ray goes to, or kNoSphere
@@ -59,7 +58,7 @@ struct Tracer {
   void (*occlude)(const void* self, ShadowPacket& packet) = nullptr;
   void (*occlude_fast)(const void* self, ShadowPacketFast& packet) = nullptr;
   const void* self = nullptr;
-  std::int64_t target = 0;  ///< instruction set that it was compiled for, HWY_AVX2 etc.; 0: none of ours
+  std::int64_t target = 0;  ///< instruction set that the functions were compiled for, HWY_AVX2 etc.; 0: unknown
 };
 
 /// Finds the closest hits of a packet.

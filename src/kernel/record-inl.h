@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recording of paths, for layers beside the beauty. Compiled once per instruction set.
+// Recording of paths, for layers other than the beauty. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_RECORD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_RECORD_INL_H_
 #undef ORRERY_KERNEL_RECORD_INL_H_
@@ -24,7 +24,7 @@ namespace orrery::kernel::HWY_NAMESPACE {
 // The bits of a path's `history`.
 inline constexpr unsigned kLobeBits = 3;      ///< a FirstLobe, or 0 before the first surface
 inline constexpr unsigned kOnlyDeltaBit = 4;  ///< only delta materials so far
-inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, other than by passing through glass
+inline constexpr unsigned kIndirectBit = 8;   ///< scattered again, not counting transmission through glass
 enum FirstLobe : unsigned { kDiffuse = 1, kSpecular = 2, kTransmission = 3 };
 
 /// Writes the records and guides of one vector of paths.
@@ -49,7 +49,7 @@ class Recorder {
 
   /// Records the first hits.
   ///
-  /// `times`    of the rays; null if nothing moves
+  /// `times`    times of the rays; null if nothing moves
   HWY_INLINE void first_hit(D d, hn::Mask<D> hit, Ids spheres, const Vec3<V>& offset, const Vec3<V>& direction,
                             const hn::TFromD<D>* times) {
     if (!tile_.record_hits) return;
@@ -77,7 +77,7 @@ class Recorder {
   /// Writes light events for radiance that paths gained.
   ///
   /// `groups`   light groups of the sources
-  /// `unscattered`  the lobe of light that no surface has scattered
+  /// `unscattered`  lobe of light that no surface has scattered
   HWY_INLINE void event(D d, hn::Mask<D> lanes, const Vec3<V>& light, Ids history, Ids groups, Lobe unscattered) {
     if (tile_.events == nullptr) return;
     const IdTag<D> du;
@@ -135,7 +135,7 @@ class Recorder {
     const auto set = [d](double x) { return hn::Set(d, static_cast<hn::TFromD<D>>(x)); };
     const V inverse = hn::Min(set(1) / distance, set(kLargestInverseDepth));
     if (GuideSum* const sum = common_sum(d, hit)) {
-      // The digits of the fixed-point number in two parts, so that sums over the lanes are exact.
+      // Splits the fixed-point number into two parts, so that sums over the lanes are exact.
       const V scaled = inverse * set(0x1p20), high = hn::Trunc(scaled), low = hn::Trunc((scaled - high) * set(0x1p40));
       sum->inverse_depth += static_cast<Int128>(total(d, hit, high)) * (std::int64_t{1} << 40) + total(d, hit, low);
       return;
@@ -169,7 +169,7 @@ class Recorder {
       return {static_cast<double>(v[0][i]), static_cast<double>(v[1][i]), static_cast<double>(v[2][i])};
     }
   };
-  /// Guides in units of kGuideUnit, limited to what 32 bits hold: integers.
+  /// Converts guides to integers in units of kGuideUnit, clamped to 32 bits.
   static HWY_INLINE Vec3<V> in_guide_units(D d, const Vec3<V>& v) {
     const auto limit = hn::Set(d, static_cast<hn::TFromD<D>>(1.75));
     const auto units = hn::Set(d, static_cast<hn::TFromD<D>>(1 / kGuideUnit));
@@ -190,7 +190,7 @@ class Recorder {
       return static_cast<std::int64_t>(hn::GetLane(hn::SumOfLanes(dd, sums)));
     }
   }
-  /// The sum that all lanes belong to with the weight 1; null if they belong to several.
+  /// The sum that all lanes belong to with weight 1; null if they belong to several.
   HWY_INLINE GuideSum* common_sum(D d, hn::Mask<D> lanes) const {
     if (scene_.filter.negative_share != 0) return nullptr;
     const Id first = hn::GetLane(pixels_);
@@ -238,7 +238,7 @@ HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
 
 /// Updates the history of paths that a surface has scattered.
 ///
-/// `has_lobes`  the lobe and the indirect bit are needed
+/// `has_lobes`  true if the lobe and the indirect bit are needed
 template <class D>
 HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Surface<D>& at,
                                        const Vec3<hn::Vec<D>>& direction, std::uint32_t depth, bool has_lobes) {

@@ -55,7 +55,7 @@ HWY_INLINE void load_camera_rays(D d, const SceneView& scene, PathCounter& count
   using Id = IdFor<T>;
   const IdTag<D> du;
   for (int i = 0; i < count; ++i) counter.take(carried.pixel[i], carried.sample[i]);
-  for (int i = count; i < kPacketSize; ++i) {  // whole vectors are computed
+  for (int i = count; i < kPacketSize; ++i) {  // pads the packet, since whole vectors are computed
     carried.pixel[i] = carried.pixel[0];
     carried.sample[i] = carried.sample[0];
   }
@@ -164,7 +164,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
         trace_shadow_packet<D, kLoop>(d, scene, tracer, tile, stream.lit, counts);
     return alive;
   };
-  // At the end of each depth, so that a path adds up its light in the same order in every batch.
+  // At the end of each depth, so that a path's light is summed in the same order in every batch.
   const auto trace_remaining_shadows = [&] {
     if constexpr (kLoop.lit)
       if (stream.lit.shadow.count > 0) trace_shadow_packet<D, kLoop>(d, scene, tracer, tile, stream.lit, counts);
@@ -181,7 +181,7 @@ TileCounts render_tile(const SceneView& scene, const Tracer& tracer, const Tile&
     }
     trace_remaining_shadows();
     for (std::uint32_t depth = 1; alive > 0; ++depth) {
-      // Survivors overwrite paths that have been read: a packet never grows.
+      // Survivors overwrite paths that have already been read, because a packet never grows.
       int survivors = 0;
       for (int i = 0; i < alive; i += kPacketSize) {
         load_secondary_rays<D, kLoop>(d, scene, stream, i, std::min(kPacketSize, alive - i), carried);

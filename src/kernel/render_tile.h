@@ -14,14 +14,14 @@ struct Tile {
   int x = 0, y = 0;  ///< px, upper left corner, within the rendered window
   int width = 0, height = 0;
   std::uint32_t sample_begin = 0, sample_end = 0;
-  PixelSum* sums = nullptr;            ///< of the upper left pixel
-  std::int64_t row_stride = 0;         ///< from a pixel's sums to those of the pixel below
+  PixelSum* sums = nullptr;            ///< sum of the upper left pixel
+  std::int64_t row_stride = 0;         ///< distance from a pixel's sum to that of the pixel below, elements
   const PixelPlace* chosen = nullptr;  ///< the pixels to render, relative to the upper left one; null: all
   int chosen_count = 0;
   /// One record per path: the samples of a pixel, then the next pixel of the row. Null: not needed.
   PathRecord* records = nullptr;
-  GuideSum* guides = nullptr;     ///< of the upper left pixel, in rows as the sums; null: not needed
-  LightEvents* events = nullptr;  ///< where the paths' light events go; null: not needed
+  GuideSum* guides = nullptr;     ///< guides of the upper left pixel, laid out like the sums; null: not needed
+  LightEvents* events = nullptr;  ///< receives the paths' light events; null: not needed
   bool record_light = true;       ///< false: the records' light and light events are not needed
   bool record_hits = true;  ///< false: only the records' light is needed, and only that of paths with light events
 
@@ -50,15 +50,15 @@ using RenderTileFast = TileCounts (*)(const SceneView& scene, const Tracer& trac
 /// only, as the reference for those with all lanes.
 enum class Lanes : std::uint8_t { kOne, kAll };
 
-/// The path loop for the best enabled instruction set, specialized to scenes with these features.
+/// Returns the path loop for the best enabled instruction set, specialized for scenes with these features.
 ///
 /// Domain     the scene has these features
-/// Result     bit-identical images for any number of lanes, with records or without, and on every instruction
-///            set with fused multiply-add
+/// Result     bit-identical images for any number of lanes, with or without records, and on every instruction set with
+///            fused multiply-add
 RenderTile render_tile_function(const Features& features, Precision precision);
 RenderTileFast render_tile_fast_function(const Features& features);
 
-/// The same loop, which also fills the tile's records, events and guides.
+/// Returns the variant of this loop that also fills the tile's records, events and guides.
 ///
 /// Domain     tiles with events have records
 RenderTile record_tile_function(const Features& features, Precision precision);

@@ -16,14 +16,14 @@ HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): one room's lanes in another's text
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): SIMD vectors of another room
 
 /// A point on the unit sphere, uniform by area.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> sample_unit_sphere(D d, V u, V v) {
   using T = hn::TFromD<D>;
   const V one = hn::Set(d, T(1));
-  const V radius = hn::Sqrt(u * (one - u)) * hn::Set(d, T(2));  // of the circle at height 1 - 2u
+  const V radius = hn::Sqrt(u * (one - u)) * hn::Set(d, T(2));  // radius of the circle at height 1 - 2u
   const auto turn = sin_cos_turn(d, v);
   return {radius * turn.cos, radius * turn.sin, one - (u + u)};
 }
@@ -58,17 +58,17 @@ HWY_INLINE Frame<V> frame_around(D d, const Vec3<V>& axis) {
           {b, hn::MulAdd(axis.y, axis.y * a, sign), hn::Neg(axis.y)}};
 }
 
-/// The solid angle of a sphere from outside, and what sampling it needs.
+/// The cone that a sphere subtends from a point outside.
 template <class V>
 struct SubtendedCone {
   V distance;       ///< to the centre
-  V sin, cos;       ///< of half the apex angle
-  V one_minus_cos;  ///< does not cancel, at any distance
+  V sin, cos;       ///< sine and cosine of half the apex angle
+  V one_minus_cos;  ///< computed without cancellation at any distance
 };
 
-/// The cone that a sphere subtends from a point outside. Meaningless from inside (distance <= radius),
-/// which callers exclude.
+/// Computes the cone that a sphere subtends.
 ///
+/// Domain     distance > radius
 /// Precision  1 - cos from sin^2 / (1 + cos), and cos from the difference (distance - radius) (distance + radius)
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE SubtendedCone<V> subtended_cone(D d, const Vec3<V>& to_center, V radius) {

@@ -36,7 +36,7 @@ HWY_INLINE V spread_bits(DU du, V v) {
 /// `order`    index into kSobolOrders
 ///
 /// With blue noise one sequence runs through neighbouring pixels along the Morton curve, so that their errors cancel
-/// rather than add.
+/// rather than add up.
 ///
 /// Reference  burley2020, ahmed2020 (pixels in hierarchical order)
 template <class DU, class V = hn::Vec<DU>>
@@ -47,19 +47,19 @@ HWY_INLINE Four<V> sobol_at_vertex(DU du, const Sampler& sampler, V pixel, V sam
   constexpr Id kMask = (Id{1} << kSobolBits) - 1;
   const V low_bits = hn::Set(du, kMask);
   V index = hn::And(sample, low_bits);
-  V beyond = hn::ShiftRight<kSobolBits>(sample);  // includes the half; each value has another sequence
+  V beyond = hn::ShiftRight<kSobolBits>(sample);  // includes the half; each value selects another sequence
   V place = pixel;
   if (sampler.kind == SamplerKind::kBlueNoise) {
     const V curve =
         hn::Or(spread_bits(du, pixel), hn::ShiftLeft<1>(spread_bits(du, hn::template ShiftRight<16>(pixel))));
-    // A pixel's samples beyond its part of the sequence come from another one.
+    // A pixel's samples beyond its part of the sequence come from another sequence.
     const int bits = sampler.blue_noise_bits;
     index = hn::And(sample, hn::Set(du, (Id{1} << bits) - 1));
     index = hn::And(hn::Or(hn::ShiftLeftSame(curve, bits), index), low_bits);
     beyond = hn::ShiftRightSame(sample, bits);
     place = hn::ShiftRightSame(curve, kSobolBits - bits);
   }
-  // Odd factors are bijective, so different places get different names; names of different vertices coincide only by
+  // Odd factors are bijective, so different pixels get different names; names of different vertices coincide only by
   // chance.
   const auto times = [&](V v, std::uint32_t factor) {
     return hn::BitCast(du, hn::BitCast(d32, v) * hn::BitCast(d32, hn::Set(du, Id{factor})));
@@ -81,7 +81,7 @@ HWY_INLINE Four<hn::Vec<D>> random_of_sequence(D d, const Sampler& sampler, hn::
   return {{to_unit(d, bits.v[0]), to_unit(d, bits.v[1]), to_unit(d, bits.v[2]), to_unit(d, bits.v[3])}};
 }
 
-/// True if a vertex uses independent random numbers. Deep in a path well distributed points have no advantage, since
+/// True if a vertex uses independent random numbers. Deep in a path, low-discrepancy points have no advantage, since
 /// the numbers of earlier vertices determine most of the result.
 inline bool is_independent_at(const Sampler& sampler, std::uint32_t vertex) {
   return sampler.kind == SamplerKind::kIndependent || vertex >= kSobolVertices;
@@ -89,7 +89,7 @@ inline bool is_independent_at(const Sampler& sampler, std::uint32_t vertex) {
 
 /// The four numbers in 0..1 that one path takes at one of its vertices.
 ///
-/// `last_two` false: the last two are not used and may have any value
+/// `last_two` false: the last two numbers are not used and may have any value
 template <class D>
 HWY_INLINE Four<hn::Vec<D>> random_at_vertex(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,
                                              hn::Vec<hn::RebindToUnsigned<D>> sample, std::uint32_t vertex,
@@ -97,10 +97,10 @@ HWY_INLINE Four<hn::Vec<D>> random_at_vertex(D d, const Sampler& sampler, hn::Ve
   return random_of_sequence(d, sampler, pixel, sample, is_independent_at(sampler, vertex), vertex, vertex, last_two);
 }
 
-/// Four more numbers in 0..1 at the same vertex, in dimensions of their own: for sampling lights, while those of
-/// random_at_vertex sample the BSDF.
+/// Four more numbers in 0..1 at the same vertex, in separate dimensions. They sample lights; those of random_at_vertex
+/// sample the BSDF.
 ///
-/// `last_two` as in random_at_vertex
+/// `last_two` see random_at_vertex
 /// Domain     vertex < 2^30
 template <class D>
 HWY_INLINE Four<hn::Vec<D>> second_random_at_vertex(D d, const Sampler& sampler, hn::Vec<hn::RebindToUnsigned<D>> pixel,

@@ -7,8 +7,8 @@ namespace orrery::kernel {
 
 enum class SamplerKind : std::uint8_t {
   kIndependent,  ///< independent random numbers
-  kSobol,        ///< well distributed over a pixel's samples
-  kBlueNoise,    ///< also well distributed over neighbouring pixels, so that their errors cancel
+  kSobol,        ///< low discrepancy over a pixel's samples
+  kBlueNoise,    ///< also low discrepancy over neighbouring pixels, so that their errors cancel
 };
 
 /// The source of a path's random numbers.

@@ -22,9 +22,9 @@ namespace orrery::kernel::HWY_NAMESPACE {
 template <class D>
 struct Surface {
   using V = hn::Vec<D>;
-  Vec3<V> direction;  ///< of the arriving ray, unit
+  Vec3<V> direction;  ///< direction of the arriving ray, unit
   Vec3<V> offset;     ///< from the sphere's centre to the point
-  Vec3<V> normal;     ///< unit, against the arriving ray
+  Vec3<V> normal;     ///< unit, facing the arriving ray
   hn::Mask<D> from_outside;
   V fuzz;
   V eta;  ///< dielectric: index on the ray's side / index beyond
@@ -63,7 +63,7 @@ HWY_INLINE hn::Mask<D> is_kind(D d, hn::Vec<IdTag<D>> kinds, E kind) {
 template <class D>
 HWY_INLINE Vec3<hn::Vec<D>> sample_lambertian(D d, const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {
   const auto w = normalized(d, at.normal + on_sphere);
-  // Where the two cancel no direction is left; any one will do.
+  // If the two cancel, any direction will do.
   return select(at.same_side(d, w), w, at.normal);
 }
 
@@ -85,7 +85,7 @@ HWY_INLINE Vec3<hn::Vec<D>> reflected(D d, const Surface<D>& at) {
 /// Samples fuzzy reflection: the direction to a point on the sphere of radius `fuzz` around the tip of the unit mirror
 /// direction. Directions below the surface are absorbed.
 ///
-/// If fuzz is 1 the sum may vanish. The direction is then NaN, which is on neither side, so the path is absorbed.
+/// If fuzz is 1, the sum may vanish. The direction is then NaN, which is on neither side, so the path is absorbed.
 ///
 /// Reference  shirley2024, "Fuzzy Reflection"
 template <class D, class V = hn::Vec<D>>
@@ -101,7 +101,7 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leaving) {
   using T = hn::TFromD<D>;
   const V one = hn::Set(d, T(1));
-  // As in the book, Schlick's approximation takes the cosine of the arriving ray on both sides.
+  // As in the book, Schlick's approximation uses the cosine of the arriving ray on both sides.
   const V x = one - cos_arriving;
   const V x2 = x * x;
   const V schlick = hn::MulAdd(one - at.r0, x2 * x2 * x, at.r0);
@@ -116,11 +116,11 @@ HWY_INLINE V reflectance(D d, const Surface<D>& at, V cos_arriving, V cos_leavin
 template <class D>
 struct Refraction {
   Vec3<hn::Vec<D>> direction;  ///< unit
-  hn::Vec<D> reflectance;      ///< where reflection is not total
+  hn::Vec<D> reflectance;      ///< undefined under total internal reflection
   hn::Mask<D> is_total;
 };
 
-/// Snell's law is in the form with cos^2, which does not cancel near an index ratio of one.
+/// Uses the form of Snell's law with cos^2, which does not cancel near an index ratio of one.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Refraction<D> refraction(D d, const Surface<D>& at) {
   using T = hn::TFromD<D>;
@@ -142,7 +142,7 @@ HWY_INLINE Vec3<V> sample_dielectric(D d, const Surface<D>& at, V u) {
   return select(reflects, reflected(d, at), glass.direction);
 }
 
-/// Samples a rough dielectric: the direction of a smooth one, perturbed as that of a fuzzy metal. Directions on the
+/// Samples a rough dielectric: the direction of a smooth one, perturbed like that of a fuzzy metal. Directions on the
 /// wrong side of the surface are absorbed.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE BsdfSample<D> sample_rough_dielectric(D d, const Surface<D>& at, V u, V v) {
@@ -151,7 +151,7 @@ HWY_INLINE BsdfSample<D> sample_rough_dielectric(D d, const Surface<D>& at, V u,
   const auto glass = refraction(d, at);
   const V share = hn::IfThenElse(glass.is_total, one, glass.reflectance);
   const auto reflects = u < share;
-  // The part of u that has not been used, uniform in 0..1 again.
+  // Rescales u to be uniform in 0..1 again.
   const V rest = hn::IfThenElse(reflects, u, u - share) / hn::IfThenElse(reflects, share, one - share);
   const auto axis = select(reflects, reflected(d, at), glass.direction);
   const auto w = normalized(d, mul_add(sample_unit_sphere(d, hn::Min(rest, one), v), at.fuzz, axis));
@@ -212,9 +212,9 @@ HWY_INLINE V pdf_metal(D d, const Surface<D>& at, const Vec3<V>& w) {
   return hn::IfThenElseZero(inside, density);
 }
 
-/// The density with which sample_bsdf chooses a direction, per steradian. The directions of delta materials (sharp
-/// metal, dielectric) have none: zero. A rough dielectric counts as delta, so it is sampled by its BSDF alone. A fuzzy
-/// metal's density integrates to the fraction that is not absorbed.
+/// The density with which sample_bsdf chooses a direction, per steradian. Zero for delta materials (metal without fuzz,
+/// smooth dielectric). A rough dielectric counts as delta, so it is sampled by its BSDF alone. A fuzzy metal's density
+/// integrates to the fraction that is not absorbed.
 ///
 /// Space      w unit
 template <class D, class V = hn::Vec<D>>

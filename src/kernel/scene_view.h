@@ -25,7 +25,8 @@ struct Background {
   math::Vec3d top{1, 1, 1};
 };
 
-/// Radiance that a material emits in all directions. An array, since lanes gather its members as four doubles.
+/// Radiance that a material emits in all directions. An array, so that the kernel can gather the members as four
+/// doubles.
 struct Emission {
   double radiance[3] = {0, 0, 0};  ///< scene-linear
   double group = 0;                ///< light group, an integer; 0: the default group
@@ -34,7 +35,7 @@ struct Emission {
 enum class Shading : std::uint8_t { kPath, kNormal, kFlat };
 
 /// Features that the scene uses; the kernel skips those that are false. Only features whose absence saves time have a
-/// bit. Materials need none: one that no lane of a vector has hit is never computed
+/// bit. Materials need none: the kernel skips a material that no lane of a vector has hit
 /// (docs/decisions/0012-few-feature-bits.md).
 struct Features {
   bool lens = false;        ///< the camera has an aperture
@@ -46,13 +47,13 @@ struct Features {
 };
 
 /// Reciprocal of the throughput below which Russian roulette may end a path. Ending paths of higher throughput would
-/// save less time than the added noise costs.
+/// add more noise than the saved time is worth.
 inline constexpr double kRouletteGain = 8;
 
 /// A roulette depth that no path reaches.
 inline constexpr std::uint32_t kNoRoulette = 0xffffffffu;
 
-/// The compiled scene as the inner loops see it. Owns nothing.
+/// Non-owning view of the compiled scene for the kernel.
 struct SceneView {
   SphereArray spheres;
   IndexArray sphere_materials;  ///< one per sphere, index into `materials`
@@ -61,7 +62,8 @@ struct SceneView {
   /// No two spheres coincide in double, or in single precision. False: not known.
   bool distinct = false, distinct_in_single = false;
   const Emission* emission = nullptr;  ///< one per material; null if nothing emits
-  /// Textures, and one entry per material; null if there are none. The constants that textures replace are their means.
+  /// Textures, and one entry per material; null if there are none. The constants that they replace are set to the
+  /// textures' means.
   const Texture* textures = nullptr;
   const MaterialTextures* material_textures = nullptr;
   /// Width of ray cones as a fraction of pixel, lens and lobe; 0: no texture has levels, so that paths have no cones.
@@ -73,7 +75,7 @@ struct SceneView {
   const Sphere* motion = nullptr;
   std::size_t moving_count = 0;
   Camera camera;
-  Camera camera_motion;  ///< change of its vectors until the shutter closes, if features.motion
+  Camera camera_motion;  ///< change of the camera's vectors until the shutter closes, if features.motion
   Background background;
   const Environment* environment = nullptr;  ///< an image background, which replaces `background`; null: none
   Features features;
@@ -89,7 +91,7 @@ struct SceneView {
   bool background_visible = true;  ///< false: camera rays that leave the scene carry no radiance
 };
 
-/// A sphere at a time between 0 (shutter opens) and 1 (shutter closes), with the arithmetic of the inner loops.
+/// A sphere at a time between 0 (shutter opens) and 1 (shutter closes), computed like in the kernel's loops.
 inline Sphere sphere_at(const SceneView& scene, std::size_t id, double time) noexcept {
   Sphere s = scene.spheres[id];
   if (id >= scene.moving_count) return s;
@@ -101,13 +103,14 @@ inline Sphere sphere_at(const SceneView& scene, std::size_t id, double time) noe
   return s;
 }
 
-/// A pixel's place from its number y << 16 | x within the frame. No side of an image exceeds 65536.
+/// Converts a pixel id, y << 16 | x within the frame, to coordinates within the rendered window. No side of an image
+/// exceeds 65536.
 inline PixelPlace place_of(std::uint64_t name, const SceneView& scene) noexcept {
   return {static_cast<int>((name - scene.window_x) & 0xffff),
           static_cast<int>(((name >> 16) - scene.window_y) & 0xffff)};
 }
 
-/// The bounding sphere and power of a single emitter; if it moves, of its whole motion.
+/// The bounding sphere and power of a single emitter. The bounding sphere encloses its whole motion.
 inline LightNode light_leaf(const SceneView& scene, std::uint32_t id) noexcept {
   const Sphere s = scene.spheres[id];
   const double* const rgb = scene.emission[scene.sphere_materials[id]].radiance;

@@ -25,7 +25,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// Path state of a packet's rays besides their geometry, in the packet's lane order.
+/// Path state of a packet's rays other than their geometry, in the packet's lane order.
 template <class T, class Id>
 struct alignas(64) PathPayload {
   T throughput[3][kPacketSize];
@@ -105,7 +105,7 @@ HWY_INLINE hn::Mask<D> survives_roulette(D d, V u, Vec3<V>& throughput) {
   return survives;
 }
 
-/// Begins the batch's paths first .. first + count in a lit loop.
+/// Initializes the batch's paths first .. first + count in a lit loop.
 template <class D, class Carried, class Lit>
 HWY_INLINE void begin_lit(D d, int first, Carried& carried, Lit& lit) {
   using Id = hn::TFromD<IdTag<D>>;
@@ -135,9 +135,9 @@ HWY_INLINE void deposit_batch(D d, int count, const SceneView& scene, const Tile
 }
 
 /// Shades a traced packet: adds the radiance that reaches the camera along its paths to their pixels (to their sums in
-/// `stream.lit` in lit loops) and appends the paths that go on to the stream.
+/// `stream.lit` in lit loops) and appends the surviving paths to the stream.
 ///
-/// Result     number of paths in the stream, `alive` before the call
+/// Result     number of paths in the stream; `alive` is their number before the call
 template <class D, Loop kLoop, class Stream, class Carried>
 HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_t depth, const Carried& carried,
                      Stream& stream, int alive, TileCounts& counts) {
@@ -168,7 +168,7 @@ HWY_INLINE int shade(D d, const SceneView& scene, const Tile& tile, std::uint32_
       guided = hn::RebindMask(d, hn::And(history, only_delta) == only_delta);
       if (depth == 0) record.begin(d, active, missed);
     }
-    // Radiance that arrives along the path, from a source of these light groups. Unless the loop is lit, the path ends.
+    // Radiance that arrives along the path, and the light group of its source. The path ends unless the loop is lit.
     const auto add_radiance = [&](hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light,
                                   [[maybe_unused]] hn::Vec<IdTag<D>> groups, [[maybe_unused]] Lobe unscattered) {
       if constexpr (kRecords)

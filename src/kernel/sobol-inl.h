@@ -84,13 +84,12 @@ HWY_INLINE V ordered(D32 d32, const SobolOrder& order, V v) {
 
 /// Point `index`, in the given order, of the sequence `name`: four coordinates as 32-bit fractions.
 ///
-/// `name` seeds the scrambling; points of different names are independent. In the camera's order points
-/// 2^k n .. 2^k (n + 1) are a (0, k, 2)-net in base 2 in the first two coordinates, and nearly a net in all four, for
-/// every n and k; in the other orders from k = kSobolFreeBits on. If names are those of a sample's pixel and vertex,
-/// coordinates of different vertices form a net together, too.
+/// `name` seeds the scrambling; points of different names are independent. In the camera's order points 2^k n .. 2^k (n
+/// + 1) are a (0, k, 2)-net in base 2 in the first two coordinates, and nearly a net in all four, for every n and k; in
+/// the other orders from k = kSobolFreeBits on. If names are those of a sample's pixel and vertex, coordinates of
+/// different vertices also form a net together.
 ///
-/// `order`    index into kSobolOrders
-/// `last_two` false: these are 0, and are not computed
+/// `order`    index into kSobolOrders `last_two` false: the last two are 0 and not computed
 ///
 /// Domain     index < 2^kSobolBits; in 64-bit lanes both in the low halves, the high ones 0
 /// Result     in 64-bit lanes in the low halves, with the high ones 0
@@ -127,7 +126,7 @@ HWY_INLINE Four<V> sobol(DU du, V index, V name, std::uint32_t order, bool last_
   expand(std::integral_constant<int, 4>(), 0xf0f0f0f0u);
   expand(std::integral_constant<int, 8>(), 0xff00ff00u);
   static_assert(kSobolBits <= 16, "one more step");
-  // Four arbitrary, different numbers.
+  // Four arbitrary, distinct numbers.
   constexpr std::uint32_t kSeeds[4] = {0x9e3779b1u, 0x7feb352du, 0xb5297a4du, 0x68e31da5u};
   const auto scrambled = [&](V32 v, int low, int high) {
     // Hashed twice, since one hash leaves correlations that the first points show.

@@ -7,12 +7,11 @@
 
 namespace orrery::kernel {
 
-/// Number of bits of a point's index within one scrambled sequence. Samples with larger indices use sequences of other
-/// names.
+/// Number of bits of a point's index within one scrambled sequence. Samples with larger indices use other sequences.
 inline constexpr int kSobolBits = 16;
 
-/// Generator matrices by columns: what each bit of a point's index adds (XOR) to the bit-reversed coordinate, in which
-/// bit 0 is worth a half. The first two dimensions need no table.
+/// Columns of the generator matrices: column i is XORed into the bit-reversed coordinate if bit i of the point's index
+/// is set. Bit 0 of that coordinate has the value 1/2. The first two dimensions need no table.
 struct SobolColumns {
   std::array<std::uint32_t, kSobolBits> third{}, fourth{};
 };
@@ -23,7 +22,7 @@ struct SobolColumns {
 constexpr std::array<std::uint32_t, kSobolBits> sobol_columns(int degree, std::uint32_t inner,
                                                               std::array<std::uint32_t, 3> m) {
   std::array<std::uint32_t, kSobolBits> out{};
-  std::array<std::uint32_t, kSobolBits> direction{};  // k + 1 bits, the highest worth a half
+  std::array<std::uint32_t, kSobolBits> direction{};  // k + 1 bits, the highest of which has the value 1/2
   for (int k = 0; k < kSobolBits; ++k) {
     auto& d = direction[static_cast<std::size_t>(k)];
     if (k < degree) {
@@ -42,7 +41,8 @@ constexpr std::array<std::uint32_t, kSobolBits> sobol_columns(int degree, std::u
 
 inline constexpr SobolColumns kSobolColumns{sobol_columns(2, 1, {1, 3, 0}), sobol_columns(3, 1, {1, 3, 1})};
 
-/// A matrix over GF(2) by columns: what each bit of a sample's index adds (XOR) to the index of its point.
+/// Columns of a matrix over GF(2) that maps a sample's index to the index of its point: column i is XORed in if bit i
+/// is set.
 using SobolOrder = std::array<std::uint32_t, kSobolBits>;
 
 /// Number of path vertices, from the camera on, that share one sequence. Later vertices use independent random numbers.

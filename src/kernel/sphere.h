@@ -5,7 +5,7 @@
 
 namespace orrery::kernel {
 
-/// A sphere as the inner loops read it: four doubles, half a cache line.
+/// A sphere in the kernel's layout: four doubles, half a cache line.
 ///
 /// The radius is positive: `compile` turns an authored negative radius into a material with its sides swapped.
 struct alignas(32) Sphere {
@@ -13,7 +13,7 @@ struct alignas(32) Sphere {
   double radius = 1;           ///< scene units, > 0
 };
 
-/// The id of no sphere: for camera rays and for rays that hit nothing.
+/// Id that denotes no sphere, for camera rays and for rays that hit nothing.
 inline constexpr std::uint32_t kNoSphere = 0xffffffffu;
 
 }  // namespace orrery::kernel

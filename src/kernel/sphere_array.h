@@ -9,20 +9,22 @@
 
 namespace orrery::kernel {
 
-/// The spheres of a scene. Owns nothing.
+/// Non-owning view of the spheres of a scene.
 ///
-/// The first ones are stored as they are. The rest may be compact, if that loses nothing: centres in single precision,
-/// and a radius for all, one each, or one each from a palette. A vector of four floats is read from each centre.
+/// The first spheres are stored in full. The others may be compact if that is lossless: centres in single precision,
+/// and a single radius for all, one per sphere, or one per sphere from a palette. The kernel reads each centre as a
+/// vector of four floats.
 struct SphereArray {
   const Sphere* plain = nullptr;
-  std::size_t plain_count = std::numeric_limits<std::size_t>::max();  ///< of the spheres in `plain`, the first ones
-  const float* centers = nullptr;                                     ///< of the others: x, y, z; and one more number
-  const float* radii = nullptr;                                       ///< of the others; null: from the palette
-  const std::uint8_t* radius_indices = nullptr;                       ///< of the others; null: the first radius for all
+  std::size_t plain_count = std::numeric_limits<std::size_t>::max();  ///< number of spheres in `plain`, the first ones
+  const float* centers = nullptr;                ///< x, y, z of the others, plus one element of padding
+  const float* radii = nullptr;                  ///< radii of the others; null: from the palette
+  const std::uint8_t* radius_indices = nullptr;  ///< palette indices of the others; null: the first radius for all
   const double* radius_palette = nullptr;
 
   SphereArray() = default;
-  SphereArray(const Sphere* spheres) : plain(spheres) {}  // NOLINT(google-explicit-constructor): an array is this view
+  SphereArray(const Sphere* spheres)
+      : plain(spheres) {}  // NOLINT(google-explicit-constructor): implicit view of an array
 
   Sphere operator[](std::size_t id) const noexcept {
     if (id < plain_count) return plain[id];

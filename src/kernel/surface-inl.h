@@ -31,14 +31,14 @@ struct Loop {
 template <class D>
 struct Lookup {
   Spheres<D> sphere;
-  Surface<D> surface;  ///< offset, normal and side are set by reach_surface
+  Surface<D> surface;  ///< offset, normal and side are set later by reach_surface
   Vec3<hn::Vec<D>> albedo;
   hn::Vec<D> eta_outside, eta_inside, r0_outside, r0_inside;
 };
 
 /// Loads the spheres with these ids, one per lane.
 ///
-/// `times`    of the rays; read only where kMoves
+/// `times`    times of the rays; read only if kMoves
 template <class D, bool kMoves>
 HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD<IdTag<D>>* id,
                                    const hn::TFromD<D>* times) {
@@ -56,7 +56,8 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, const hn::TFromD
           hn::MulAdd(change[3], time, at_opening.radius)};
 }
 
-/// The ids of hits, for loading; lanes without a hit get the last sphere, which is compact if any is.
+/// Stores ids from which spheres can be loaded: those of the hits, and the last sphere, which is compact if any is, in
+/// lanes without a hit.
 template <class D>
 HWY_INLINE void store_loadable(D, const SceneView& scene, hn::Vec<IdTag<D>> hits, hn::TFromD<IdTag<D>>* id) {
   const IdTag<D> du;
@@ -74,7 +75,7 @@ HWY_INLINE Spheres<D> load_spheres(D d, const SceneView& scene, hn::Vec<IdTag<D>
 
 /// Loads spheres and materials of the hits; lanes without a hit get those of the last sphere.
 ///
-/// `times`    of the rays; read only where kMoves
+/// `times`    times of the rays; read only if kMoves
 template <class D, bool kMoves>
 HWY_INLINE Lookup<D> look_up(D d, const SceneView& scene, hn::Vec<IdTag<D>> hits, const hn::TFromD<D>* times) {
   using Id = hn::TFromD<IdTag<D>>;

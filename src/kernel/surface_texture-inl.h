@@ -50,7 +50,7 @@ struct TextureIndices {
 /// Replaces albedo and fuzz at hits by the values of their textures.
 ///
 /// `hit`      lanes with a hit
-/// `width2`   squared width of the ray cones there
+/// `width2`   squared width of the ray cones at the hits
 template <class D, Precision kPrecision, class V = hn::Vec<D>>
 HWY_NOINLINE void apply_textures(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
                                  hn::Mask<D> hit, V distance, V width2, Lookup<D>& at) {
@@ -78,8 +78,8 @@ HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, hn::Vec<IdTa
 /// Emitted radiance at hits of emitters: the value of the texture, or `radiance` without one.
 ///
 /// `lanes`    hits of emitters
-/// `width2`   squared width of the ray cones there
-/// `times`    of the rays; read only where kMoves
+/// `width2`   squared width of the ray cones at the hits
+/// `times`    times of the rays; read only if kMoves
 template <class D, Precision kPrecision, bool kMoves, class V = hn::Vec<D>>
 HWY_NOINLINE Vec3<V> textured_radiance(D d, const SceneView& scene, const Rays<D>& ray, hn::Vec<IdTag<D>> hits,
                                        hn::Mask<D> lanes, V distance, V width2, const hn::TFromD<D>* times,

@@ -20,10 +20,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace orrery::kernel::HWY_NAMESPACE {
 
-/// Whether points are in odd cells of a checker whose cells are cubes with a corner at the world's origin.
+/// Returns whether points are in odd cells of a checker whose cells are cubes with a corner at the world origin.
 ///
-/// Precision  exact up to the rounding of base + rest within a cell. Where a cell is smaller than the spacing of
-///            numbers at the point, rounding decides the cell; quotients of 2^53 and more (double) count as even
+/// Precision  exact up to the rounding of base + rest within a cell. If cells are smaller than the spacing of
+///            floating-point numbers at the point, rounding determines the cell; quotients of 2^53 and more (double)
+///            count as even
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> is_odd_cell(D d, const TexturePoint<D>& at, V size) {
   using T = hn::TFromD<D>;
@@ -55,9 +56,9 @@ HWY_INLINE V marble(D d, const Texture& texture, const TexturePoint<D>& at) {
   return hn::MulAdd(sin_cos_turn(d, turns - hn::Floor(turns)).sin, half, half);
 }
 
-/// The level at which the texels of an image are as wide as footprints: 0 is the image, and levels in between are
-/// interpolated. The smaller of the two axes of a texel decides, so that no level is coarser than the footprint along
-/// either; near the poles, texels are narrow.
+/// The mip level at which the texels of an image are as wide as the footprints: 0 is the image, and fractional levels
+/// are interpolated. The longer axis of a texel determines the level, so that texels are not larger than the footprint
+/// along either axis; near the poles, texels are narrow.
 ///
 /// Precision  the logarithm is linear between powers of two, which is at most 0.05 levels too low
 template <class D, class V = hn::Vec<D>>
@@ -76,7 +77,7 @@ HWY_INLINE V image_level(D d, const TextureImage& image, V footprint2, V radius2
   const V exponent = to_real(d, hn::ShiftRight<kMantissaBits>(bits)) - to_real(d, hn::Set(du, kOne >> kMantissaBits));
   const V mantissa = hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(du, (U{1} << kMantissaBits) - 1)), hn::Set(du, kOne)));
   const V level = (exponent + (mantissa - one)) * hn::Set(d, static_cast<T>(0.5));
-  // False for NaN: a footprint that is not known selects the image.
+  // False for NaN: an unknown footprint selects the full image.
   return hn::IfThenElseZero(texels2 > one, hn::Min(level, hn::Set(d, static_cast<T>(image.level_count - 1))));
 }
 
@@ -99,7 +100,7 @@ HWY_INLINE Vec3<V> color_at_level(D d, const TextureImage& image, V level, const
                                      }));
 }
 
-/// The colour of an image at points: trilinear, with the bits of bilinear interpolation where the image is magnified.
+/// The colour of an image at points: trilinear interpolation; bit-identical to bilinear where the image is magnified.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vec3<V> image_color(D d, const TextureImage& image, const TexturePoint<D>& point) {
   using T = hn::TFromD<D>;
@@ -133,7 +134,7 @@ HWY_NOINLINE Vec3<V> texture_color(D d, const Texture& texture, const TexturePoi
   return mul_add(high - low, t, low);
 }
 
-/// Replaces colours by the values of textures.
+/// Replaces colours with the values of textures.
 ///
 /// `index`    of each lane's texture; MaterialTextures::kNone: the lane keeps its colour
 /// Cost       one evaluation for each texture in the vector

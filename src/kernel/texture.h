@@ -21,16 +21,17 @@ struct TextureLevel {
   std::uint32_t height = 0;       ///< texels
 };
 
-/// An image texture as the inner loops see it. Owns nothing.
+/// Non-owning view of an image texture for the kernel.
 struct TextureImage {
   static constexpr std::size_t kMaxLevels = 13;
 
-  TextureLevel levels[kMaxLevels];  ///< the image, then each about half as wide and high as the one before
+  TextureLevel
+      levels[kMaxLevels];  ///< the mip map: the image, then each level about half as wide and high as the one before
   std::uint32_t level_count = 0;
   double turn = 0;  ///< rotation about +y, turns, 0..1
 };
 
-/// A compiled texture. Owns nothing.
+/// Non-owning view of a compiled texture.
 ///
 /// Solid textures (all but images) are functions of the point in world space with values t in 0..1, and their colour is
 /// low + (high - low) t. An image is a function of the direction from the sphere's centre, and its colour is the
@@ -39,12 +40,12 @@ struct TextureImage {
 /// Reference  shirley2024b
 struct Texture {
   TextureKind kind = TextureKind::kChecker;
-  std::uint32_t seed = 0;               ///< of the noise
+  std::uint32_t seed = 0;               ///< seed of the noise
   double scale = 1;                     ///< checker: edge of a cell, scene units; noise: lattice cells per scene unit
   double low[3] = {0, 0, 0};            ///< checker: colour of even cells
   double high[3] = {1, 1, 1};           ///< checker: colour of odd cells
   const double* gradients = nullptr;    ///< noise: kGradients unit vectors of four doubles, the last one unused
-  const TextureImage* image = nullptr;  ///< seen from the centre mirrored
+  const TextureImage* image = nullptr;  ///< appears mirrored from the sphere's centre
 };
 
 /// The textures that replace constants of a material: indices into SceneView::textures.
@@ -52,8 +53,8 @@ struct MaterialTextures {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   std::uint32_t albedo = kNone;
-  std::uint32_t fuzz = kNone;      ///< its red channel
-  std::uint32_t radiance = kNone;  ///< of an emitter, exposure included
+  std::uint32_t fuzz = kNone;      ///< texture whose red channel is the fuzz
+  std::uint32_t radiance = kNone;  ///< texture of an emitter's radiance, including exposure
 };
 
 }  // namespace orrery::kernel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where textures are evaluated. Compiled once per instruction set.
+// Points at which textures are evaluated. Compiled once per instruction set.
 #if defined(ORRERY_KERNEL_TEXTURE_POINT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_KERNEL_TEXTURE_POINT_INL_H_
 #undef ORRERY_KERNEL_TEXTURE_POINT_INL_H_
@@ -24,8 +24,8 @@ struct TexturePoint {
   hn::Vec<D> footprint2;        ///< squared width of the ray cone, seen from the sphere's centre, radians^2
 };
 
-/// The distance to the nearer of the two points where a ray's line intersects a sphere whose surface is close to the
-/// ray's origin, in comparison with its radius.
+/// The distance to the nearer intersection of a ray's line with a sphere whose surface is close to the ray's origin
+/// compared with its radius.
 ///
 /// |o - c|^2 - r^2 is summed with its rounding errors, and the quadratic's root is divided into it, so that the error
 /// is relative to the distance, not to the radius.
@@ -61,12 +61,12 @@ HWY_INLINE V refined_distance(D d, const Rays<D>& ray, const Spheres<D>& sphere,
 
 /// The points at which textures are evaluated for hits.
 ///
-/// A point on a sphere that is small or far from the ray's origin is its centre plus an offset. On one that is large in
-/// comparison with its distance it is the ray's origin plus a vector: rounding of the offset would be visible where a
-/// ground touches a face of a checker's cells.
+/// On a sphere that is small or far from the ray's origin, the point is the centre plus an offset. On a sphere that is
+/// large compared with its distance, it is the ray's origin plus a vector: rounding errors of the offset would be
+/// visible where a ground coincides with faces of checker cells.
 ///
-/// `offset`, `outward`  as of HitPoint
-/// `footprint2`         as of TexturePoint
+/// `offset`, `outward`  see HitPoint
+/// `footprint2`         see TexturePoint
 /// Precision  docs/numerics.md, test KernelTexture.CellsOfCheckersAtAllRadii
 template <class D, Precision kPrecision, class V = hn::Vec<D>>
 HWY_INLINE TexturePoint<D> texture_point(D d, const Rays<D>& ray, const Spheres<D>& sphere, const Vec3<V>& offset,

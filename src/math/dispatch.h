@@ -41,7 +41,7 @@ inline TargetChoice& target_choice() {
 
 }  // namespace orrery::math
 
-/// A pointer to the instance of an HWY_EXPORTed function for the best target that may be used.
+/// Pointer to the instance of an HWY_EXPORTed function for the best enabled target.
 #define ORRERY_BEST(function)                                                                              \
   (HWY_DISPATCH_TABLE(function)[orrery::math::target_choice().index(sizeof(HWY_DISPATCH_TABLE(function)) / \
                                                                     sizeof(HWY_DISPATCH_TABLE(function)[0]))])

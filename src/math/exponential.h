@@ -7,8 +7,8 @@
 
 namespace orrery::math {
 
-/// Returns e^x from IEEE arithmetic alone, for results that must not depend on the math library. Compilers vectorise
-/// loops over it.
+/// Returns e^x, computed with IEEE arithmetic only, for results that must not depend on the math library. Compilers can
+/// vectorise loops over it.
 ///
 /// Domain     x <= 0; below -700, e^-700
 /// Precision  1e-15 relative; test MathExponential.MatchesTheLongDoubleFunction

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions without libm, whose results depend on the processor. Compiled once per instruction set.
+// Elementary functions that do not use libm, whose results depend on the processor. Compiled once per instruction set.
 #if defined(ORRERY_MATH_FUNCTIONS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORRERY_MATH_FUNCTIONS_INL_H_
 #undef ORRERY_MATH_FUNCTIONS_INL_H_
@@ -45,7 +45,7 @@ inline constexpr std::array<double, 9> kSinQuarter = detail::quarter_series(1);
 inline constexpr std::array<double, 9> kCosQuarter = detail::quarter_series(0);
 inline constexpr std::array<double, 11> kAtanTurn = detail::atan_turn_series();
 
-/// Returns the rounding error of a b rounded to `product`.
+/// Returns the rounding error of the product of a and b, which was rounded to `product`.
 ///
 /// Reference  dekker1971
 template <class D, class V = hn::Vec<D>>
@@ -68,7 +68,7 @@ struct SinCos {
   V sin, cos;
 };
 
-/// Returns sine and cosine of 2 pi u.
+/// Returns the sine and cosine of 2 pi u.
 ///
 /// Domain     0 <= u <= 1
 /// Precision  double: 2.3e-16 absolute, float: 1.2e-7; test MathFunctions.SineAndCosineOfATurn

@@ -34,7 +34,7 @@ template <class V>
 HWY_INLINE Vec3<V> operator*(const Vec3<V>& a, V s) {
   return {a.x * s, a.y * s, a.z * s};
 }
-/// Returns the product by components.
+/// Returns the component-wise product.
 template <class V>
 HWY_INLINE Vec3<V> operator*(const Vec3<V>& a, const Vec3<V>& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -66,8 +66,7 @@ template <class M, class V>
 HWY_INLINE Vec3<V> select(M mask, const Vec3<V>& yes, const Vec3<V>& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
-/// Returns unit vectors; NaN in lanes whose vector is zero: callers compare afterwards, and comparisons with NaN are
-/// false.
+/// Returns unit vectors; NaN in lanes whose vector is zero. Callers rely on comparisons with NaN being false.
 template <class D, class V>
 HWY_INLINE Vec3<V> normalized(D d, const Vec3<V>& a) {
   return a * (hn::Set(d, static_cast<hn::TFromD<D>>(1)) / hn::Sqrt(dot(a, a)));

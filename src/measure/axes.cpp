@@ -56,7 +56,7 @@ class Planner {
     return choice;
   }
 
-  /// Whether a shortcut has a bias is judged by pixels with random numbers of their own, unlike those of blue noise.
+  /// The bias test of shortcuts requires pixels with independent random numbers, unlike those of blue noise.
   static void take_sobol(Choice& choice) {
     choice.flags += " --set render.sampler=sobol";
     choice.apply = [apply = choice.apply](CompiledScene& w) {

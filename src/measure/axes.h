@@ -24,7 +24,7 @@ struct Choice {
   std::optional<accel::Traversal> traversal;           ///< see render::Settings
 };
 
-/// The choices of a study, and the axes without effect on the scene.
+/// The choices to measure, and the axes that have no effect on the scene.
 struct AxisPlan {
   std::vector<Choice> choices;
   std::vector<std::string> left_out;  ///< "no glass: no Fresnel axis"

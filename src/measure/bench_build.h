@@ -19,12 +19,12 @@ struct AlternativeAccelerator {
 };
 AlternativeAccelerator alternative_accelerator(const kernel::SceneView& view);
 
-/// Benchmark of building, on all threads: the accelerator that renders the scene in `exact`, the other kind, and
-/// Embree's own sphere points. Rounds alternate between them.
+/// Benchmarks accelerator builds on all threads: the accelerator that renders the scene in `exact`, the alternative
+/// one, and Embree's built-in sphere points. Rounds alternate between them.
 ///
-/// `rounds`   maximum number of rounds; there are fewer if they take seconds
+/// `rounds`   maximum number of rounds; fewer are run if they take seconds
 /// Domain     at least one sphere
-/// Result     sphere points are the last
+/// Result     sphere points are last
 std::vector<BenchBuild> bench_builds(const kernel::SceneView& view, int rounds);
 
 }  // namespace orrery::measure

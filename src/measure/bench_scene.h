@@ -46,7 +46,7 @@ struct BenchBuild {
   std::string name;  ///< "sphere points"
   Quartiles spheres_per_s;
   Quartiles ratio;              ///< time relative to Embree's sphere points in the same round
-  double bytes_per_sphere = 0;  ///< of the accelerator, without the spheres
+  double bytes_per_sphere = 0;  ///< memory of the accelerator, excluding the spheres
 };
 
 /// Results of a benchmark whose rounds alternate between all cases.

@@ -14,11 +14,11 @@ namespace orrery::measure {
 struct BenchTracing;
 
 /// Benchmark of closest-hit queries on the same rays: packets and single rays with the accelerator that renders the
-/// scene, then with the other kind (one Embree primitive per sphere, or a SphereBvh); single rays with Embree's own
-/// sphere points; and a SIMD list.
+/// scene, then with the alternative one (one Embree primitive per sphere, or a SphereBvh); single rays with Embree's
+/// built-in sphere points; and a SIMD list.
 class TracingBench {
  public:
-  /// Builds the other accelerators.
+  /// Builds the remaining accelerators.
   ///
   /// Domain     `fast` is built for precision fast; it, the view and the rays outlive this; at least one sphere
   TracingBench(const kernel::SceneView& view, accel::Accel& fast, render::RecordedRays<kernel::RayPacketFast>& rays,

@@ -29,14 +29,14 @@ struct Errors {
 
 /// Estimates noise and bias of a choice against the reference.
 ///
-/// With x, y the choice and r, s the reference, the mean over pixels of (x - r)(y - s) estimates the squared bias
-/// without any contribution of noise, since the four images are independent. Without bias its terms are symmetric
-/// around zero or skewed to the right. Their sum divided by the root of the sum of their squares then exceeds t with a
-/// probability of at most exp(-t^2 / 2), however much the noise varies between pixels.
+/// With x, y the images of the choice and r, s those of the reference, the mean over pixels of (x - r)(y - s) estimates
+/// the squared bias without any contribution of noise, since the four images are independent. Without bias its terms
+/// are symmetric around zero or skewed to the right. Their sum divided by the root of the sum of their squares then
+/// exceeds t with a probability of at most exp(-t^2 / 2), however much the noise varies between pixels.
 ///
-/// Light that a handful of paths have found breaks that: it is missing in most pixels of both renders. So bias_chance
-/// is 1 unless the terms that dominate the sum are kMinEffectiveCount or more: n terms of equal size count as n, rarer
-/// and larger ones as few. A bias confined to fewer pixels is not detected.
+/// Light that only a handful of paths have found violates this assumption: it is missing in most pixels of both
+/// renders. Therefore, bias_chance is 1 unless the effective number of terms is at least kMinEffectiveCount: n terms of
+/// equal size count as n, a few dominant terms as few. A bias confined to fewer pixels is not detected.
 ///
 /// Domain     images of one size with planes R, G, B; pixels do not share random numbers
 /// Reference  efron1969

@@ -11,10 +11,10 @@ struct Slope;
 /// Family-wise error rate: the probability that a study of unbiased choices reports a bias in any of them.
 inline constexpr double kFamilyWiseError = 0.01;
 
-/// Tests all points for an error that both renders have in common, and sets bias, error and efficiency of every point.
+/// Tests all points for an error common to both renders, and sets bias, error and efficiency of every point.
 ///
-/// Only shortcuts have a bias. Other choices converge to the same image as the reference: what both of their renders
-/// lack is light that neither has found yet, and counts as error only.
+/// Only shortcuts have a bias. Other choices converge to the same image as the reference: light that both of their
+/// renders lack has not been found yet, and counts as error only.
 ///
 /// Reference  holm1979
 void test_bias(std::vector<Point>& points);

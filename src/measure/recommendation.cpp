@@ -65,7 +65,8 @@ class Recommender {
     r.baseline_seconds = baseline.seconds;
     const bool is_faster = baseline.seconds > r.seconds;
     if (baseline.seconds > 0 && !is_faster) {
-      // --noise needs more samples than this. Sobol points have no larger error than as many independent ones.
+      // --noise needs more samples than this. The error of Sobol points is not larger than that of the same number of
+      // independent ones.
       flags = fmt::format("--samples {}{}", baseline.samples, sampler_flag);
       r.noise = request_.noise;
       r.bias = 0;

@@ -37,7 +37,7 @@ struct Point {
   std::string flags;         ///< command-line options that select it
   double samples = 0;        ///< mean samples per pixel
   double seconds = 0;        ///< time to render one image of the study's size
-  double error = 0;          ///< of noise, and what both renders have in common if that is significant
+  double error = 0;          ///< total error: noise, plus the error common to both renders if that is significant
   double bias = 0;           ///< error of a shortcut that more samples do not reduce; 0 if not significant
   double noise = 0;          ///< error that more samples reduce
   double bias_squared = 0;   ///< unbiased estimate of the squared bias; can be negative

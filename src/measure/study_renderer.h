@@ -74,7 +74,7 @@ class StudyRenderer {
   /// Measures paths per second, with `pilot` as the scene to render.
   double measure_speed(compile::CompiledScene pilot);
 
-  /// Time to build the slowest accelerator so far, s.
+  /// Longest accelerator build so far, s.
   double build_s() const { return build_s_; }
   /// True if the accelerator that a scene needs is built.
   bool has_accelerator(const compile::CompiledScene& scene) const {

@@ -11,7 +11,7 @@ namespace orrery::metrics {
 /// Pixels per degree of visual angle for a display 3840 pixels and 0.7 m wide, viewed from 0.7 m.
 inline constexpr double kPixelsPerDegree = 67.0206433;
 
-/// Calls work(i) for i = 0 .. count - 1 in any order, from any threads, and rethrows its exceptions.
+/// Calls work(i) for i = 0 .. count - 1 in any order, on any thread, and rethrows its exceptions.
 using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t i)>& work)>;
 
 /// The FLIP error map: the difference per pixel that a viewer perceives when alternating between two images.

@@ -54,8 +54,8 @@ std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance,
         }
         differences += sum;
         variances += expected;
-        // Without variance, a difference of all pixels in the same direction is certain. Others may be those of pixels
-        // whose variance is not known: with one sample, or where no path has found light yet.
+        // Without variance, a difference of all pixels in the same direction is certain. Other differences may be due
+        // to pixels whose variance is unknown: pixels with one sample, or where no path has found light yet.
         const bool is_certain =
             (is_above || is_below) && light_of_picture > 0 && std::abs(sum) > kHalfPrecision * magnitude;
         if (!(expected > 0) && !is_certain) continue;

@@ -29,18 +29,18 @@ struct ZTest {
   bool differ() const { return rejected > 0; }
 };
 
-/// z of a block without variance whose means differ: no noise explains it.
+/// z of a block without variance whose means differ: the difference cannot be noise.
 inline constexpr double kCertainZ = 1e6;
 
 /// Compares the means of blocks of kTestedSide px in each channel. A block without variance differs if all of its
-/// pixels do so in the same direction, by more than the precision of half, and it is not black.
+/// pixels differ in the same direction by more than the precision of half, and it is not black.
 ///
 /// Domain     views of the same size; variances are those of the pixel means; a reference without variance is exact
 /// Result     empty if the image has no variance
 std::optional<ZTest> z_test(const ColorView& picture, const ColorView& variance, const ColorView& reference,
                             const ColorView& reference_variance);
 
-/// The z whose absolute value a standard normal variable exceeds with probability `chance`.
+/// Returns the z such that |Z| > z with probability `chance` for a standard normal variable Z.
 double two_sided_quantile(double chance);
 
 }  // namespace orrery::metrics

@@ -32,14 +32,14 @@ std::string identity(const Atom& atom) {
 }  // namespace
 
 std::uint32_t AtomTable::Texts::index_of(const std::string& text) {
-  // Neighbouring atoms mostly share the text.
+  // Neighbouring atoms mostly share the string.
   if (!words.index.empty() && words.words[words.index.back()] == text) return words.index.back();
   const auto [it, is_new] = known.try_emplace(text, static_cast<std::uint32_t>(words.words.size()));
   if (is_new) words.words.push_back(text);
   return it->second;
 }
 
-/// Drops texts of replaced atoms and restores the order of first appearance.
+/// Drops strings of replaced atoms and restores the order of first appearance.
 Words AtomTable::Texts::compacted() const {
   constexpr auto kUnused = static_cast<std::uint32_t>(-1);
   std::vector<std::uint32_t> renumbered(words.words.size(), kUnused);

@@ -17,18 +17,18 @@ struct Atom {
   double b_factor = 0;
   double occupancy = 1;
   std::int32_t residue_number = 0;
-  std::string insertion;  ///< tells residues of the same number apart
+  std::string insertion;  ///< insertion code: distinguishes residues with the same number
   std::string element;    ///< "C", "Zn"; "X": unknown
   std::string chain;
   std::string subchain;  ///< mmCIF: label_asym_id, to which assemblies refer
   std::string name;      ///< "CA"
   std::string residue;   ///< "ALA"
-  std::string altloc;    ///< name of an alternate location; empty: the atom has only one
+  std::string altloc;    ///< identifier of the alternate location; empty: the atom has only one
   std::string record;    ///< "ATOM", "HETATM"
 };
 
 /// The table of atoms that PDB and mmCIF share. Of the alternate locations of an atom, which would be overlapping
-/// spheres, only the one with the highest occupancy is kept, of equal ones the first.
+/// spheres, only the one with the highest occupancy is kept; of equal ones, the first.
 class AtomTable {
  public:
   /// Adds an atom, or replaces an alternate location of the same atom.
@@ -44,7 +44,7 @@ class AtomTable {
   data::Table table(const std::vector<std::string>& columns) const;
 
  private:
-  /// A text column that is being filled.
+  /// A text column under construction.
   struct Texts {
     data::Words words;
     std::unordered_map<std::string, std::uint32_t> known;

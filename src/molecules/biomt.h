@@ -11,8 +11,8 @@
 
 namespace orrery::molecules {
 
-/// Reads the biological assemblies in REMARK 350 of a PDB file. Values are separated by blanks: the serial numbers of
-/// transforms beyond 999 overflow their columns and shift those to the right.
+/// Reads the biological assemblies in REMARK 350 of a PDB file. Values are separated by spaces, not by column: serial
+/// numbers of transforms above 999 overflow their columns and shift those to the right.
 ///
 /// Reference  pdb-format
 class BiomtReader {
@@ -30,7 +30,7 @@ class BiomtReader {
 
   std::vector<data::Assembly> assemblies_;
   data::Transform transform_;
-  int row_ = 0;  ///< rows of `transform_` that have been read
+  int row_ = 0;  ///< number of rows of `transform_` that have been read
   std::string serial_;
 };
 

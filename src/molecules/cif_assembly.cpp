@@ -15,7 +15,7 @@ using namespace data;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
-/// Transforms of all parts of a file. The largest viruses need some thousands.
+/// Maximum number of transforms in a file. The largest viruses need a few thousand.
 constexpr std::size_t kMaxTransforms = 1'000'000;
 
 std::vector<std::string> split(const std::string& text) {
@@ -85,7 +85,7 @@ std::vector<Transform> CifAssemblies::transforms_of(const Part& part, Faults& fa
       int first = 0, last = 0;
       if (dash != std::string::npos && is_integer(word.substr(0, dash), first) &&
           is_integer(word.substr(dash + 1), last)) {
-        // Ends at the first undefined number, however large the range.
+        // Stops at the first undefined number, however large the range.
         for (std::int64_t id = first; id <= last; ++id) add(std::to_string(id), factors);
       } else {
         add(word, factors);

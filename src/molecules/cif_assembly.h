@@ -27,7 +27,7 @@ class CifAssemblies {
 
   /// Returns the assemblies in the order of the file; none if the file defines no operators.
   ///
-  /// Errors     base::Error(kBadData): undefined operators, malformed expressions, absurdly many transforms
+  /// Errors     base::Error(kBadData): undefined operators, malformed expressions, too many transforms
   std::vector<data::Assembly> finish(data::Faults& faults) const;
 
  private:

@@ -77,13 +77,13 @@ class MmcifReader final : public DataFile {
   Faults faults_;
   std::vector<Model> models_;
   std::unordered_map<std::string, std::size_t> model_of_;  ///< index into `models_` by number
-  std::size_t model_ = 0;                                  ///< of the latest atom
+  std::size_t model_ = 0;                                  ///< index of the latest atom's model
   std::vector<Assembly> assemblies_;
   std::string title_;
   Atom atom_;
 };
 
-/// The author's value, by which users know the atom, else the one assigned by the PDB.
+/// The author's value, which users know, else the one assigned by the PDB.
 const std::string& preferred(const Row& row, AtomItem author, AtomItem label) {
   return row[author].empty() ? row[label] : row[author];
 }

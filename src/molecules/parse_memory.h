@@ -9,10 +9,10 @@
 
 namespace orrery::molecules {
 
-/// Checks the memory that a text takes whose atoms are all parsed at once.
+/// Checks whether there is enough memory to parse all atoms of a text file at once.
 ///
-/// `bytes`    of the text
-/// `factor`   measured: bytes of memory for each byte of text
+/// `bytes`    size of the text
+/// `factor`   bytes of memory per byte of text, as measured
 /// `limit`    bytes; 0: none
 /// Errors     base::Error(kNoMemory) with the needed size
 inline void require_parse_memory(const std::filesystem::path& file, std::uint64_t bytes, double factor,

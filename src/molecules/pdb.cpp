@@ -93,7 +93,7 @@ std::string PdbReader::text_of(const PdbModel& model) {
   return text;
 }
 
-/// The cell is a simulation box only without crystal symmetry: otherwise it holds more than the atoms of the file.
+/// The cell is a simulation box only without crystal symmetry; otherwise, it contains more than the atoms of the file.
 void PdbReader::set_box(const gemmi::Structure& structure) {
   box_.reset();
   const bool has_symmetry = structure.spacegroup_hm != "P 1" && !structure.spacegroup_hm.empty();
@@ -160,7 +160,7 @@ bool is_pdb(const Signature& signature) {
   const std::string_view text = signature.head;
   if (signature.extension == ".pdb" || signature.extension == ".ent")
     return is_record(text) || text.find("\nATOM  ") != text.npos || text.find("\nHETATM") != text.npos;
-  // One word may begin a text of any kind: the first two lines must be records.
+  // Any text file may begin with one such word, so the first two lines must be records.
   const std::string_view second = text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
   return is_record(text) && (second.empty() || is_record(second) || second.starts_with("TER") ||
                              second.starts_with("END") || second.starts_with("ANISOU"));

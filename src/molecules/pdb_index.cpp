@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMaxLine = 120;
 constexpr std::size_t kMaxTitle = 1000;
 
-/// The text of a record's columns, 1-based and inclusive, without blanks around it.
+/// The text in a range of a record's columns, 1-based and inclusive, without surrounding spaces.
 std::string columns(std::string_view line, std::size_t first, std::size_t last) {
   const std::string_view field = line.substr(std::min(first - 1, line.size()), last - first + 1);
   const std::size_t begin = field.find_first_not_of(' ');
@@ -66,7 +66,7 @@ class Indexer {
     const bool has_all_atoms = declared_atoms_ && *declared_atoms_ == static_cast<double>(atoms_);
     if (has_header_ && !has_end_ && !has_all_atoms)
       faults_.fail(line_, "truncated: the file has HEADER, but not the record END",
-                   "get the whole file again; if it is complete, add a line END");
+                   "download the file again; if it is complete, add a line END");
     finish(size, line_);
     if (index_.models.empty()) index_.models.push_back({0, 0, 1, std::nullopt, {}});
     index_.assemblies = biomt_.finish(faults_);

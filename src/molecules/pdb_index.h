@@ -17,7 +17,7 @@ namespace orrery::molecules {
 struct PdbModel {
   std::uint64_t begin = 0, end = 0;  ///< offsets
   std::uint64_t first_line = 1;
-  std::optional<double> number;  ///< by its MODEL record
+  std::optional<double> number;  ///< from its MODEL record
   std::string cell;              ///< the CRYST1 record that applies to it; may be empty
 };
 
@@ -31,13 +31,13 @@ struct PdbIndex {
 /// Finds the models of a PDB file, which end at ENDMDL or END, and its assemblies.
 ///
 /// Errors     base::Error(kBadData): malformed REMARK 350; a file that begins with HEADER, as those of the Protein Data
-///            Bank do, but has neither END nor as many atoms as MASTER declares: it is truncated. Simulation programs
-///            write neither
+///            Bank do, but has neither END nor as many atoms as MASTER declares, so it is truncated. Simulation
+///            programs write neither record
 /// Cost       one pass over the file
 PdbIndex index_pdb(const data::ByteSource& bytes);
 
-/// Calls `take` for each line in a range of the file with the line's offset, without line end. Lines are cut at 120
-/// bytes, more than a PDB record can have.
+/// Calls `take` with each line in a range of the file, without line ending, and the line's offset. Lines are truncated
+/// to 120 bytes, more than a PDB record can have.
 void for_each_pdb_line(const data::ByteSource& bytes, std::uint64_t begin, std::uint64_t end,
                        const std::function<void(std::string_view line, std::uint64_t offset)>& take);
 

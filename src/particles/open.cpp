@@ -29,7 +29,7 @@ std::string extension_of(const std::filesystem::path& file) {
   return is_compressed ? base::lower(file.stem().extension().string()) : last;
 }
 
-/// Whether a file begins as an EXR, PNG, JPEG, TIFF or Radiance image.
+/// Returns whether a file begins like an EXR, PNG, JPEG, TIFF or Radiance image.
 bool is_image(std::string_view head) {
   using namespace std::string_view_literals;
   constexpr std::string_view kBegins[] = {"\x76\x2f\x31\x01"sv, "\x89PNG"sv, "\xff\xd8\xff"sv, "II*\0"sv, "MM\0*"sv,
@@ -44,13 +44,13 @@ bool is_image(std::string_view head) {
 
 bool is_adios(const std::string& extension) { return extension == ".bp" || extension == ".bp4" || extension == ".bp5"; }
 
-/// ADIOS2 data are folders, of which no byte can be read.
+/// ADIOS2 data are folders, which cannot be read as files.
 void refuse_folder(const std::filesystem::path& file) {
   std::error_code ignored;
   if (is_adios(extension_of(file)) && std::filesystem::is_directory(file, ignored)) refuse_adios(file);
 }
 
-/// Formats that end users meet, but that no reader supports; what to do about each.
+/// Common formats without a reader, and what to do about each.
 [[noreturn]] void refuse(const ByteSource& bytes, const Signature& signature) {
   std::string text = "unknown file format";
   std::string remedy =

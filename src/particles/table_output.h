@@ -10,10 +10,10 @@
 
 namespace orrery::particles {
 
-/// Raises base::Error(kUsage): "cannot write FILE: TEXT".
+/// Throws base::Error(kUsage): "cannot write FILE: TEXT".
 [[noreturn]] void refuse_to_write(const std::filesystem::path& file, const std::string& text);
 
-/// The writers of the formats. They return the names of columns that they omit.
+/// One writer per format. Returns the names of the columns that it omits.
 std::vector<std::string> write_ply_table(base::OutputFile& out, const data::Table& table, const std::string& writer);
 void write_npy_table(base::OutputFile& out, const data::Table& table);
 void write_csv_table(base::OutputFile& out, const data::Table& table);

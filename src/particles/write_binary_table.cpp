@@ -29,7 +29,7 @@ void append_little_endian(std::string& out, T value) {
 
 const Words* words_in(const Column& column) { return std::get_if<Words>(&column.values); }
 
-/// Appends the numbers of a row of a column in the column's type; `append_text(words, row)` appends a text.
+/// Appends the numbers of a row of a column in the column's type; `append_text(words, row)` appends a string.
 template <class AppendText>
 void append_bytes(std::string& out, const Column& column, std::size_t row, AppendText append_text) {
   std::visit(
@@ -43,7 +43,7 @@ void append_bytes(std::string& out, const Column& column, std::size_t row, Appen
       column.values);
 }
 
-/// Types of PLY, which has no integers of 64 bits.
+/// PLY types; there are no 64-bit integers.
 enum class PlyOutput { kSame, kInt32, kUint32, kFloat64, kNone };
 
 PlyOutput ply_output(const base::OutputFile& out, const Column& column) {
@@ -57,9 +57,10 @@ PlyOutput ply_output(const base::OutputFile& out, const Column& column) {
   if (*least >= Int::min() && *most <= Int::max()) return PlyOutput::kInt32;
   if (*least >= 0 && *most <= std::numeric_limits<std::uint32_t>::max()) return PlyOutput::kUint32;
   if (*least >= -kExact && *most <= kExact) return PlyOutput::kFloat64;
-  refuse_to_write(out.path(),
-                  fmt::format("PLY has no integers as large as those of column {}; write .npy, or leave the column out",
-                              quoted_word(column.name)));
+  refuse_to_write(
+      out.path(),
+      fmt::format("PLY has no integer type that is large enough for column {}; write .npy, or leave the column out",
+                  quoted_word(column.name)));
 }
 
 const char* ply_type(PlyOutput output, ColumnType type) {
@@ -78,7 +79,7 @@ const char* ply_type(PlyOutput output, ColumnType type) {
   return "double";
 }
 
-/// Returns the name of a property: without blanks, and different from those before.
+/// Returns the name of a property: without spaces, and different from the previous ones.
 std::string ply_name(std::string name, std::set<std::string>& used) {
   if (name.empty()) name = "_";
   for (char& c : name)
@@ -87,7 +88,7 @@ std::string ply_name(std::string name, std::set<std::string>& used) {
   return name;
 }
 
-/// The type of a text column in NumPy: Unicode, or bytes if a text is not ASCII.
+/// The type of a text column in NumPy: Unicode, or bytes if a string is not ASCII.
 struct NpyText {
   std::size_t length = 1;  ///< characters or bytes
   bool is_ascii = true;
@@ -123,7 +124,7 @@ std::string npy_type(const base::OutputFile& out, const Column& column) {
   return "<f8";
 }
 
-/// Quotes a text in Python's syntax.
+/// Quotes a string in Python's syntax.
 std::string python_text(const std::string& text) {
   std::string out = "'";
   for (const char c : text) {

@@ -9,7 +9,7 @@
 
 namespace orrery::particles {
 
-/// Formats that are written.
+/// Output formats.
 enum class TableFormat { kPly, kXyz, kNpy, kCsv };
 
 /// Returns the format that the extension of a file selects: .ply, .xyz, .npy, .csv.
@@ -17,20 +17,20 @@ enum class TableFormat { kPly, kXyz, kNpy, kCsv };
 /// Errors     base::Error(kUsage) for another extension
 TableFormat table_format(const std::filesystem::path& file);
 
-/// Writes a table; what open() reads from the file has the same values.
+/// Writes a table. Reading the file with open() gives the same values.
 ///
-/// - .ply: binary, little-endian. It has no texts.
-/// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`. It has no empty texts,
-///   blanks and quotes.
+/// - .ply: binary, little-endian. It cannot store strings.
+/// - .xyz: extended XYZ. Columns x, y, z are `pos`; name[1], name[2] .. are one property `name`. It cannot store empty
+///   strings, spaces or quotes.
 /// - .npy: a structured array.
-/// - .csv: a header row; texts are quoted, numbers have as many digits as needed.
+/// - .csv: a header row; strings are quoted, and numbers have as many digits as needed.
 ///
-/// Text formats have fewer types of numbers, and reading returns float64 or int64. An integer column of a CSV file
-/// is read as int64 only if float64 cannot represent all of its values.
+/// Text formats do not preserve number types: reading returns float64 or int64. An integer column of a CSV file is read
+/// as int64 only if float64 cannot represent all of its values.
 ///
-/// `writer`   named in a comment of .ply
-/// Domain     columns x, y, z of numbers; all columns have table.rows rows and different names
-/// Result     names of the columns that were omitted because the format cannot store their texts
+/// `writer`   program name for the header comment of .ply
+/// Domain     columns x, y, z of numbers; all columns have table.rows rows and distinct names
+/// Result     names of the columns that were omitted because the format cannot store their strings
 /// Errors     base::Error: kUsage for another extension, and for values that the format cannot store, with a remedy;
 ///            kCannotCreate; kIo
 [[nodiscard]] std::vector<std::string> write_table(const std::filesystem::path& file, const data::Table& table,

@@ -21,7 +21,7 @@ using namespace data;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
-/// Appends a number with as many digits as distinguish it from all others.
+/// Appends the shortest digits that read back to the same number.
 template <class T>
 void append_number(std::string& out, T value) {
   constexpr std::size_t kLongestNumber = 32;
@@ -31,14 +31,14 @@ void append_number(std::string& out, T value) {
       out += "nan";
       return;
     }
-    // A float32 is read as a float64: its own shortest digits would give another number.
+    // A float32 is read back as float64, so the shortest digits of the float32 would give a different number.
     out.append(text, std::to_chars(text, text + kLongestNumber, static_cast<double>(value)).ptr);
   } else {
     out.append(text, std::to_chars(text, text + kLongestNumber, +value).ptr);
   }
 }
 
-/// Appends a value; texts by `append_text(out, word)`.
+/// Appends a value; `append_text(out, word)` appends a string.
 template <class AppendText>
 void append_value(std::string& out, const Column& column, std::size_t row, AppendText append_text) {
   std::visit(
@@ -61,7 +61,7 @@ void append_quoted(std::string& out, std::string_view text) {
   out += '"';
 }
 
-/// Refuses texts with line ends.
+/// Refuses strings with line breaks.
 void check_csv_texts(const base::OutputFile& out, const Column& column, std::string_view line_ends) {
   const auto* const words = std::get_if<Words>(&column.values);
   if (words == nullptr) return;
@@ -72,7 +72,7 @@ void check_csv_texts(const base::OutputFile& out, const Column& column, std::str
                                   quoted_word(word), quoted_word(column.name)));
 }
 
-/// Returns whether XYZ, where blanks separate values, has the values of a column.
+/// Returns whether XYZ, in which spaces separate values, can store the values of a column.
 bool is_storable_in_xyz(const Column& column) {
   const auto* const words = std::get_if<Words>(&column.values);
   return words == nullptr || std::all_of(words->words.begin(), words->words.end(), [](const std::string& word) {
@@ -94,7 +94,7 @@ char xyz_type(const Column& column) {
   return type == ColumnType::kFloat64 || type == ColumnType::kFloat32 ? 'R' : 'I';
 }
 
-/// Returns a name without the characters that separate names, and different from those before.
+/// Returns a name without separator characters, and different from the previous ones.
 std::string xyz_name(std::string name, std::set<std::string>& used) {
   if (name.empty()) name = "_";
   for (char& c : name)
@@ -120,8 +120,8 @@ XyzOutput property_at(const Table& table, std::size_t first) {
   return out;
 }
 
-/// Returns the 8-bit colours at a column, as the property `color`, which other programs know; nothing if it is another
-/// column.
+/// Returns the 8-bit colours at a column, as the property `color`, which other programs understand; empty if it is
+/// another column.
 std::optional<XyzOutput> color_at(const Table& table, std::size_t first) {
   XyzOutput out{"color", {}, 'R', true};
   for (const char* name : {"red", "green", "blue"}) {

@@ -33,7 +33,7 @@ std::uint8_t byte_of(double srgb) {
   return std::isnan(srgb) ? 0 : static_cast<std::uint8_t>(std::clamp(srgb, 0.0, 1.0) * 255 + 0.5);
 }
 
-/// Red, green and blue of the spheres by their palette.
+/// Red, green and blue of the spheres, from their palette.
 std::array<Bytes, 3> palette_colors(const scene::Points& points) {
   std::vector<std::array<std::uint8_t, 3>> palette;
   for (const math::Vec3d& light : points.palette) {
@@ -60,7 +60,7 @@ std::array<Bytes, 3> file_colors(const points::SourceRows& source) {
   return out;
 }
 
-/// The texts in the given rows, without those of other rows, which the format of the output may not have.
+/// The strings in the given rows, excluding those of other rows, which the output format may not support.
 data::Words gathered(const data::Words& all, const std::vector<std::uint32_t>& rows) {
   constexpr auto kUnused = static_cast<std::uint32_t>(-1);
   std::vector<std::uint32_t> renumbered(all.words.size(), kUnused);
@@ -86,7 +86,7 @@ auto gathered(const Numbers& all, const std::vector<std::uint32_t>& rows) {
   return out;
 }
 
-/// Makes the table of an output. Takes the columns of the source one by one, to keep few of them twice.
+/// Makes the table of an output. Moves the columns of the source one by one, so that few of them exist twice.
 class OutputTable {
  public:
   OutputTable(scene::Points& points, points::SourceRows& source, bool has_radius) : source_(source) {
@@ -111,7 +111,7 @@ class OutputTable {
   }
 
   data::Table& table() { return table_; }
-  /// Columns of the file that have the name of another one in the output.
+  /// Columns of the file whose name another column of the output has.
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:
@@ -157,8 +157,9 @@ class OutputTable {
 
   points::SourceRows& source_;
   data::Table table_;
-  bool takes_all_ = false;             ///< the spheres are all rows, in their order
-  std::vector<std::string> replaced_;  ///< columns of the file whose values are in columns of the output's own
+  bool takes_all_ = false;  ///< the spheres are all rows, in their order
+  std::vector<std::string>
+      replaced_;  ///< columns of the file whose values are stored in columns that the output defines
   std::vector<std::string> left_out_;
 };
 
@@ -166,7 +167,7 @@ class Converter {
  public:
   explicit Converter(const ConvertOptions& options)
       : options_(options), data_(options, std::filesystem::path()), keys_(options.points) {
-    keys_.material_column = "";  // a column like any other
+    keys_.material_column = "";  // not treated specially
     const data::Roles& roles = data_.info().roles;
     scene::PointsRadius& radius = keys_.radius;
     has_radius_ = radius.value || !radius.column.empty() || !radius.element.empty() || !roles.radius.empty();
@@ -221,8 +222,7 @@ class Converter {
       out.notes.push_back(fmt::format("no column radius: the file has no radius; --radius{} sets it",
                                       source.info.roles.element.empty() ? "" : " or --element-radii"));
     if (!output.left_out().empty())
-      out.notes.push_back(
-          fmt::format("left out {}: the name is that of a column above", base::joined(output.left_out())));
+      out.notes.push_back(fmt::format("left out {}: an earlier column has this name", base::joined(output.left_out())));
     const std::vector<std::string> unwritten = particles::write_table(out.file, output.table());
     if (!unwritten.empty())
       out.notes.push_back(fmt::format("left out {}: the format cannot store these strings", base::joined(unwritten)));

@@ -16,17 +16,16 @@ struct ConvertOptions : DataOptions {
 
 /// Writes the spheres of a data file: x, y, z, radius, then red, green, blue, then the other columns of their rows.
 ///
-/// - Positions and radii are those of a plot: selected, unwrapped, copied and cut. A plane cuts as in a plot from the
-///   default view. Values of other columns are those of the file; copies of a particle have the same values.
-/// - The radius is omitted if neither the file nor the options define it: nothing is guessed.
+/// - Positions and radii are those of a plot: selected, unwrapped, replicated and sliced. A slice plane acts as in a
+///   plot from the default view. Other columns keep the values of the file; copies of a particle have the same values.
+/// - The radius is omitted if neither the file nor the options define it; it is not guessed.
 /// - Colours are those of `color_by`, or the file's own: display-referred sRGB, uint8.
 /// - The order is that of the particle ids, if the file has any.
 ///
 /// `written`  called for each file
 /// Errors     base::Error: those of points::load_points(), particles::open() and particles::write_table(); kUsage if an
-/// output
-///            would replace an input, and for the wrong number of outputs
-/// Cost       one read of all columns per frame; with a colour map without a range and several frames, one read before
+///            output would replace an input, and for the wrong number of outputs
+/// Cost       one read of all columns per frame; with several frames and a colour map without a range, two
 void convert(const ConvertOptions& options, const std::function<void(const ConvertedFile&)>& written);
 
 }  // namespace orrery::plot

@@ -59,7 +59,8 @@ DataFrames::DataFrames(const DataOptions& options, const std::filesystem::path& 
   require_frames();
   if (!options.all_frames) return;
   if (is_sequence_)
-    base::refuse("--frames: `all` are the frames of one file; for a sequence of files, write a range, e.g. 1-48");
+    base::refuse(
+        "--frames: `all` selects the frames of a single file; for a sequence of files, write a range, e.g. 1-48");
   numbers_.resize(static_cast<std::size_t>(file_->frame_count()));
   std::iota(numbers_.begin(), numbers_.end(), 1);
 }

@@ -23,32 +23,31 @@ class DataFrames {
  public:
   /// Opens the first frame.
   ///
-  /// `folder`   to which the file of a colour map is relative
+  /// `folder`   base folder of a colour-map file
   /// Domain     `options` outlive it
   /// Errors     base::Error: those of particles::open(); kUsage for all frames of a sequence of files; kBadData for
-  /// frames
-  ///            that the file does not have
+  ///            frames that the file does not contain
   DataFrames(const DataOptions& options, const std::filesystem::path& folder);
   ~DataFrames();
 
   data::Format format() const;
-  /// The first of the frames, with derived columns.
+  /// Description of the first frame, including derived columns.
   const data::FrameInfo& info() const { return info_; }
-  /// Its number in the file, from 1.
+  /// Number of that frame in the file, from 1.
   int described_frame() const { return described_; }
   bool is_sequence() const { return is_sequence_; }
-  /// The number of frames of the file; nothing if it is not known: the file is large and would have to be read, or ends
-  /// within a frame. 1 for a sequence of files.
+  /// The number of frames of the file; 1 for a sequence of files. Empty if unknown: the file is large and would have to
+  /// be read, or ends within a frame.
   std::optional<int> frame_count() const;
-  /// The frames to use; empty: one, without a number of its own.
+  /// The frames to use; empty: a single frame without a number.
   const std::vector<int>& numbers() const { return numbers_; }
-  /// The frames to use; { 1 } if they have no numbers.
+  /// The frames to use; { 1 } for a single frame without a number.
   std::vector<int> all() const { return numbers_.empty() ? std::vector<int>{1} : numbers_; }
   std::filesystem::path file_of(int frame) const;
 
   /// Reads the spheres of a frame.
   ///
-  /// `keys`     what to read, and how
+  /// `keys`     the scene's keys: what to read, and how
   /// `source`   see points::LoadRequest
   /// Errors     base::Error: those of points::load_points(); kBadData with its errors
   LoadedFrame load(int frame, const scene::Points& keys, points::SourceRows* source = nullptr) const;
@@ -66,14 +65,14 @@ class DataFrames {
   std::vector<int> numbers_;
 };
 
-/// Sets the keys of a colour by its name in DataOptions::color_by.
+/// Sets the colour keys that `color_by` selects, with the names of DataOptions::color_by.
 ///
-/// Result     true if the colour map was chosen here, because the user chose none
-/// Errors     base::Error(kUsage) if the user has set a map or a range that would have no effect
+/// Result     true if the user chose no colour map, so that this function chose one
+/// Errors     base::Error(kUsage) if the user set a map or a range that would have no effect
 bool set_color(const DataOptions& options, const std::string& color_by, const data::FrameInfo& info,
                scene::PointsColor& color);
 
-/// Widens the range of values that are coloured by a map by those of a frame, for one range in all frames.
+/// Extends a colour map's range of values by those of a frame, so that all frames can share one range.
 void widen(std::optional<scene::Interval>& range, const scene::Points& points);
 
 }  // namespace orrery::plot

@@ -19,8 +19,8 @@ struct DataOptions {
   bool all_frames = false;     ///< all frames of the file
   scene::Points points;        ///< keys that the user has set; `file` and the spheres are not used
   std::string color_by;        ///< "element", "type", "rgb", "none" or a column; empty: not set
-  bool has_map = false;        ///< `points.color.map` is the user's
-  /// Slice plane: axis 0, 1 or 2, and position. The spheres in front of it are removed.
+  bool has_map = false;        ///< the user set `points.color.map`
+  /// Slice plane: axis 0, 1 or 2, and position. Spheres in front of it are removed.
   std::optional<std::pair<int, double>> slice = {};
   std::uint64_t memory_limit = 0;  ///< bytes; 0: no limit
 };

@@ -43,7 +43,7 @@ class PlotMaker {
     const std::string which = data_.described_frame() > 1 ? " in frame " + std::to_string(data_.described_frame()) : "";
     chose(data::format_name(data_.format()), fmt::format("{} particles{}", info_.rows, which));
     choose_frame();
-    // The spacing that a radius may need takes a read; the options of the colour are checked before.
+    // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
     const std::vector<std::string> color_choices = choose_color();
     choose_radius();
     out_.choices.insert(out_.choices.end(), color_choices.begin(), color_choices.end());
@@ -55,7 +55,7 @@ class PlotMaker {
     if (options_.slice) slice(*options_.slice, axes, out_.points);
     ViewExtent extent(axes);
     visit_frames(extent, up);
-    if (extent.is_empty()) out_.warnings.push_back("there is nothing to see: " + empty_scene_reason());
+    if (extent.is_empty()) out_.warnings.push_back("nothing to render: " + empty_scene_reason());
     const double aspect = static_cast<double>(options_.width) / options_.height;
     const scene::Camera camera = extent.camera(aspect);
     chose(fmt::format("view {}, {} wide", options_.look_from, number_text(rounded(*camera.width))),
@@ -78,7 +78,7 @@ class PlotMaker {
   }
 
  private:
-  /// A number as it is worth printing.
+  /// Formats a number with a sensible number of digits.
   static double rounded(double x) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.4g", x);
@@ -100,7 +100,7 @@ class PlotMaker {
       chose("frame 1", "the first; --frame N selects another");
   }
 
-  /// What has no spheres, and what to do.
+  /// Describes what has no spheres, and what to do.
   std::string empty_scene_reason() const {
     if (out_.frames.size() > 1) return fmt::format("none of the {} frames has spheres", out_.frames.size());
     const std::optional<int> count = data_.frame_count();
@@ -163,7 +163,7 @@ class PlotMaker {
     return out;
   }
 
-  /// A view without tone mapping, which leaves the colours of the colour map as they are.
+  /// A view without tone mapping, which preserves the colours of the colour map.
   void choose_display_view() {
     out_.view = options_.display.view;
     if (!out_.view.empty()) return;
@@ -172,8 +172,7 @@ class PlotMaker {
       chose("display view " + out_.view, std::string("the default; the OCIO config has no view ") + kPlainView);
   }
 
-  /// Reads all frames once: the view contains all of them, and one range of the colour map holds for all, or an
-  /// animation would flicker.
+  /// Reads all frames once, so that the view contains all of them and a single range of the colour map avoids flicker.
   void visit_frames(ViewExtent& extent, const math::Vec3d& up) {
     const bool needs_range = !out_.points.color.column.empty() && !out_.points.color.range;
     std::optional<scene::Interval> range;
@@ -201,7 +200,8 @@ class PlotMaker {
   const PlotOptions& options_;
   DataFrames data_;
   const data::FrameInfo& info_;
-  double lowest_ = std::numeric_limits<double>::infinity();  ///< of all spheres along the up axis, scene units
+  double lowest_ =
+      std::numeric_limits<double>::infinity();  ///< lowest point of all spheres along the up axis, scene units
   PlotScene out_;
 };
 

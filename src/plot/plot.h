@@ -11,42 +11,41 @@
 #include "plot/write_legend.h"
 #include "scene/scene.h"
 
-/// A scene for a data file: what the user did not choose is chosen from the data, and every choice is reported.
+/// Makes a scene for a data file: settings that the user did not choose are chosen from the data, and reported.
 namespace orrery::plot {
 
 enum class Style { kStudio, kFlat, kNight };
 
 struct PlotOptions : DataOptions {
   std::string look_from = "iso";  ///< "iso", "+x" .. "-z", or "azimuth,elevation" in degrees
-  std::string up;                 ///< "x", "y" or "z"; empty: by the format
+  std::string up;                 ///< "x", "y" or "z"; empty: depends on the format
   Style style = Style::kStudio;
-  bool has_style = false;  ///< `style` is the user's
+  bool has_style = false;  ///< the user set `style`
   bool ground = false;
   int width = 1920, height = 1080;  ///< px
-  display::Settings display;        ///< of the images; an empty view is chosen
-  bool has_size = false;            ///< `width` or `height` is the user's
+  display::Settings display;        ///< display transform of the images; an empty view is chosen
+  bool has_size = false;            ///< the user set `width` or `height`
 };
 
-/// The view that leaves colours as the colour map has them, where the OCIO config has it.
+/// The view that reproduces the colours of the colour map, if the OCIO config defines it.
 inline constexpr const char* kPlainView = "Un-tone-mapped";
 
 struct PlotScene {
   std::string text;                  ///< the scene file
   std::vector<std::string> choices;  ///< "radius 0.53: half the median distance to the nearest neighbour"
   std::vector<std::string> warnings;
-  std::vector<int> frames;  ///< to render; empty: one still image
+  std::vector<int> frames;  ///< frames to render; empty: one still image
   scene::Points points;     ///< keys of the scene's points
   LegendColors legend;
-  std::string view;  ///< of the display
+  std::string view;  ///< view of the display
 };
 
 /// Reads the data and writes a scene for it.
 ///
-/// `folder`   of the scene file; paths in the scene are relative to it
-/// `check`    called with PlotScene::frames before any row is read: a request that cannot be met should fail early
+/// `folder`   folder of the scene file; paths in the scene are relative to it
+/// `check`    called with PlotScene::frames before any row is read, so that an invalid request fails early
 /// Errors     base::Error: those of points::load_points() and particles::open(); kBadData with its errors; kUsage for
-/// an
-///            invalid view, and for options without effect; those of `check`
+///            an invalid view, and for options without effect; those of `check`
 /// Cost       reads every frame once, to fit the camera and the colour map
 PlotScene make_plot(const PlotOptions& options, const std::filesystem::path& folder,
                     const std::function<void(const std::vector<int>& frames)>& check = {});

@@ -15,13 +15,13 @@ struct PlotParts {
   const PlotOptions& options;
   const scene::Points& points;
   const scene::Camera& camera;
-  const std::string& view;       ///< of the display
-  Vec3d center;                  ///< of the spheres
-  double radius = 1;             ///< of a sphere around `center` that contains all spheres
-  std::optional<Ground> ground;  ///< below the spheres
+  const std::string& view;       ///< view of the display
+  Vec3d center;                  ///< centre of the spheres
+  double radius = 1;             ///< radius of a sphere around `center` that contains all spheres
+  std::optional<Ground> ground;  ///< ground below the spheres
 };
 
-/// Returns the scene file of a plot.
+/// Returns the text of the scene file of a plot.
 std::string scene_text(const PlotParts& parts);
 
 }  // namespace orrery::plot

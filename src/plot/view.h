@@ -38,7 +38,7 @@ class ViewExtent {
   void add(Vec3d center, double radius);
   bool is_empty() const { return is_empty_; }
 
-  /// Returns the extent of spheres whose radii are larger by a length. An empty extent stays empty.
+  /// Returns the extent if all radii were larger by a length. An empty extent stays empty.
   ViewExtent grown(double length) const;
 
   /// Returns an orthographic camera that sees all spheres, with a margin of 5 % of the image on each side.
@@ -46,14 +46,14 @@ class ViewExtent {
   /// `aspect`   image width divided by its height, as displayed
   scene::Camera camera(double aspect) const;
 
-  /// Returns a perspective camera in the same direction, far enough away that all spheres are seen with this margin.
+  /// Returns a perspective camera in the same direction, far enough away to see all spheres with this margin.
   ///
   /// `aspect`     image width divided by its height, as displayed
   /// `vfov_deg`   vertical field of view, between 0 and 180 degrees
   scene::Camera perspective_camera(double aspect, double vfov_deg) const;
 
-  Vec3d center() const;   ///< of the box along the axes
-  double radius() const;  ///< of a sphere around center() that contains all spheres, scene units
+  Vec3d center() const;   ///< centre of the box along the axes
+  double radius() const;  ///< radius of a sphere around center() that contains all spheres, scene units
 
  private:
   ViewAxes axes_;
@@ -72,13 +72,13 @@ struct Ground {
 /// `lowest`   height of the spheres' lowest point along `up`, a unit vector
 Ground ground_below(double lowest, Vec3d up, const ViewExtent& extent);
 
-/// Whether a ground hides spheres, or a part of the background, from a camera of ViewExtent: rays of the image begin
-/// below it. If the camera looks from level or from below, some do.
+/// Returns whether a ground hides spheres or part of the background from a camera of ViewExtent, because camera rays
+/// start below it. That is the case if the camera looks horizontally or upwards.
 ///
 /// `aspect`   image width divided by its height
 bool hides_view(const Ground& ground, const scene::Camera& camera, double aspect);
 
-/// The unit vector of an axis name.
+/// The unit vector of the axis "x", "y" or "z".
 Vec3d axis_of(const std::string& name);
 
 }  // namespace orrery::plot

@@ -13,7 +13,7 @@
 
 namespace orrery::plot {
 
-/// Numbers by value, before other texts.
+/// Orders numbers by value, before other strings.
 struct LabelOrder {
   bool operator()(std::string_view a, std::string_view b) const;
 };
@@ -21,20 +21,20 @@ struct LabelOrder {
 /// The colours of a plot, collected over its frames. All are linear Rec.709.
 struct LegendColors {
   std::string title;                                      ///< the column, "type" or "element"
-  std::map<std::string, math::Vec3d, LabelOrder> labels;  ///< of types, elements and categories
-  std::vector<math::Vec3d> bar;                           ///< of a colour map; empty: there is none
+  std::map<std::string, math::Vec3d, LabelOrder> labels;  ///< colours of types, elements and categories
+  std::vector<math::Vec3d> bar;                           ///< colours of a colour map; empty: there is none
   std::optional<math::Vec3d> nan_color;                   ///< set if a value is NaN
-  std::optional<scene::Interval> range;                   ///< of the colour map
+  std::optional<scene::Interval> range;                   ///< range of the colour map
   bool has_conflict = false;                              ///< a label has different colours in different frames
 
   /// Adds the colours of a loaded frame.
   void add(const scene::Points& frame);
 };
 
-/// Writes the legend of a plot's colours as SVG or as an image. The display transform of the image is applied to
-/// the colours, so that they match it.
+/// Writes the legend of a plot's colours as SVG or as an image. Applies the display transform of the plot's images, so
+/// that the colours match.
 ///
-/// `display`  of the image; its working space is not used
+/// `display`  display transform of the images; its working space is not used
 /// Errors     base::Error: kUsage for another extension, and if there are neither labels nor a colour map with a range;
 ///            those of display::develop; kCannotCreate, kIo
 void write_legend(const std::filesystem::path& file, const LegendColors& colors, const display::Settings& display);

@@ -22,7 +22,7 @@ struct ColorMap {
 
   std::string name;
   bool is_categorical = false;
-  std::vector<Knot> knots;  ///< at least 2; of a categorical map its colours, at any t
+  std::vector<Knot> knots;  ///< at least 2; for a categorical map, its colours (t is ignored)
 };
 
 /// Returns the built-in colour map with a name; null if there is none.
@@ -34,13 +34,13 @@ const ColorMap* find_color_map(std::string_view name);
 /// Returns the names of the built-in colour maps, the categorical ones last.
 const std::vector<std::string>& color_map_names();
 
-/// Returns the colour at t in display-referred sRGB. Outside [0, 1] the first or last colour; of n categorical colours,
-/// the one at [t n].
+/// Returns the colour at t in display-referred sRGB. Outside [0, 1], the first or last colour; for n categorical
+/// colours, number floor(t n).
 ///
 /// Domain     t is not NaN
 Vec3d srgb_at(const ColorMap& map, double t);
 
-/// Returns the colours at i / (count - 1) as light. A categorical map repeats its colours.
+/// Returns the colours at t = i / (count - 1). A categorical map repeats its colours.
 ///
 /// Units      scene-linear Rec.709
 /// Domain     count >= 1
@@ -55,7 +55,7 @@ Vec3d linear_from_srgb(Vec3d srgb);
 Vec3d srgb_from_linear(Vec3d linear);
 
 /// Reads a colour map from a text file. Each line is a colour: `r g b`, or `t r g b` with ascending t, or `#rrggbb`.
-/// Numbers are separated by blanks or commas. If one of r, g, b is greater than 1, all are 0 to 255. Blank lines and
+/// Numbers are separated by spaces or commas. If any of r, g, b is greater than 1, all are in 0..255. Blank lines and
 /// lines that begin with `#`, except colours, are skipped.
 ///
 /// Result     a continuous map, named after the file

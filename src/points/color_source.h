@@ -13,7 +13,7 @@ namespace orrery::points {
 struct ColorSource {
   enum class Kind { kNone, kMap, kElement, kType, kRgb };
   Kind kind = Kind::kNone;
-  std::vector<std::string> columns;  ///< to read
+  std::vector<std::string> columns;  ///< columns to read
   double rgb_maximum = 255;
   std::optional<ColorMap> map;
 };

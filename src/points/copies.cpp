@@ -47,9 +47,9 @@ const data::Assembly* find_assembly(const data::FrameInfo& info, const std::stri
 struct CopiedSpheres {
   std::vector<std::vector<std::uint32_t>> subsets;  ///< spheres of a set of chains
   std::vector<std::size_t> subset_of_copy;          ///< subsets.size(): all spheres
-  std::size_t total = 0;                            ///< of all copies
+  std::size_t total = 0;                            ///< number of spheres in all copies
 
-  /// Replaces values of the spheres by those of the copies: `f(value, copy)`, one copy after the other.
+  /// Replaces values of the spheres with those of the copies, copy by copy: `f(value, copy)`.
   template <class Array, class F>
   void repeat(Array& values, F f) const {
     if (values.empty()) return;
@@ -91,7 +91,7 @@ CopiedSpheres spheres_of(const std::vector<Copy>& copies, const Labels& chains, 
   return out;
 }
 
-/// Multiplies radii by a factor. As an array of its own, since old and new radii together can be too many for a
+/// Multiplies radii by a factor. Creates a separate array, since old and new radii together can be too many for a
 /// palette.
 void scale(scene::NumberArray& radii, double factor) {
   scene::NumberArray scaled;

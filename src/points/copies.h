@@ -16,10 +16,10 @@ struct Labels;
 
 /// Unwraps the coordinates of particles: p + i a + j b + k c, with the periodic image flags i, j, k of the file.
 ///
-/// Domain     `centers` are those of the rows
+/// Domain     `centers` are the positions of the rows
 void unwrap(const data::Table& table, const Rows& rows, const data::FrameInfo& info, scene::PointArray& centers);
 
-/// The transform of a points table: scale, then turns about x, y and z, then translation.
+/// The transform of a points table: scale, then rotations about x, y and z, then translation.
 ///
 /// Precision  sines and cosines are rounded from long double, so that they do not depend on the math library
 data::Transform transform_of(const scene::PointsTransform& t);
@@ -33,29 +33,29 @@ struct Copy {
   const std::vector<std::string>* chains = nullptr;  ///< null: all
 };
 
-/// The copies of an assembly; without one, the identity. Reports an assembly that the file does not have, and a
-/// replication without a box.
+/// The copies of an assembly; without an assembly, a single identity copy. Reports an assembly that the file does not
+/// define, and replication without a box.
 std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& points, KeyFaults& faults);
 
-/// The copies in each periodic image of the box.
+/// Repeats the copies in each periodic image of the box.
 ///
 /// `counts`   number of images along each edge
-/// Cost       100 bytes per copy and image: check the memory first
+/// Cost       100 bytes per copy and image: callers check the memory first
 std::vector<Copy> replicated(const std::vector<Copy>& copies, const data::Box& box, data::Vec3d counts);
 
-/// The number of spheres that make_copies() makes of `count` spheres; an upper bound if a copy lists a chain twice.
+/// The number of spheres that make_copies() creates from `count` spheres; an upper bound if a copy lists a chain twice.
 std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
 
-/// Replaces the spheres by their copies, one copy after the other, and applies the transform of the points.
+/// Replaces the spheres with their copies, copy by copy, and applies the transform of the points table.
 ///
-/// `chains`   chain of each sphere, if a copy is limited to some; else ignored
-/// `rows`     a number for each sphere, which is copied with it; may be null
+/// `chains`   chain of each sphere; ignored unless a copy is limited to some chains
+/// `rows`     row number of each sphere, copied along with it; may be null
 void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::Points& points,
                  std::vector<std::uint32_t>* rows = nullptr);
 
 /// Removes the spheres whose centres are outside `points.clip`.
 ///
-/// `rows`     a number for each sphere, which is removed with it; may be null
+/// `rows`     row number of each sphere, removed along with it; may be null
 void clip(scene::Points& points, std::vector<std::uint32_t>* rows = nullptr);
 
 }  // namespace orrery::points

@@ -10,7 +10,7 @@ namespace orrery::points {
 /// A colour in display-referred sRGB, 8 bits per channel.
 using Srgb8 = std::array<std::uint8_t, 3>;
 
-/// Radii of ElementRadius::kBall in van der Waals radii. Viewers draw balls and sticks with 0.2 to 0.3.
+/// Ratio of the radii of ElementRadius::kBall to van der Waals radii. Viewers draw balls and sticks with 0.2 to 0.3.
 inline constexpr double kBallScale = 0.25;
 
 enum class ElementRadius {
@@ -26,18 +26,19 @@ struct Element {
   std::string_view symbol;  ///< "He"
   /// Van der Waals radius: Bondi's value if he gives one and the element is in the main group, else Mantina's in the
   /// main group, else Alvarez's. Bondi's radii of transition metals are not used: they are those of single crystals,
-  /// and half as large as those of their neighbours in the table. 2.00 if nothing is published (Pm and from Fm on).
+  /// and half as large as those of their neighbours in the table. 2.00 if there is no published value (Pm, and Fm and
+  /// heavier elements).
   ///
   /// Units      angstrom
   /// Reference  bondi1964, mantina2009, alvarez2013
   double van_der_waals;
-  /// Covalent radius of a single bond: carbon sp3; Mn, Fe and Co low spin. From Bk on those of Pyykkö.
+  /// Covalent radius of a single bond: carbon sp3; Mn, Fe and Co low spin. Pyykkö's values for Bk and heavier elements.
   ///
   /// Units      angstrom
   /// Reference  cordero2008, pyykko2009
   double covalent;
-  /// Reference jmol-colors; from Ds on that of Mt. Hydrogen is not white but has PyMOL's light grey: white atoms are
-  /// invisible before the white background of a plot.
+  /// Reference jmol-colors; from Ds on that of Mt. Hydrogen is PyMOL's light grey instead of white, because white atoms
+  /// are invisible against the white background of a plot.
   Srgb8 jmol;
   Srgb8 cpk;  ///< Reference rasmol-colors; deep pink for the elements without a colour
 
@@ -48,8 +49,8 @@ struct Element {
 /// Returns the element with an atomic number; null unless 1 <= number <= 118.
 const Element* find_element(int number);
 
-/// Returns the element with a symbol, in any case and between blanks, or with an atomic number as text: "Fe", " FE",
-/// "26". D is hydrogen.
+/// Returns the element with a symbol, ignoring case and surrounding spaces, or with an atomic number as text: "Fe", "
+/// FE", "26". D is hydrogen.
 ///
 /// Result     null if there is none
 const Element* find_element(std::string_view symbol);

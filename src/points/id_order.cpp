@@ -32,7 +32,7 @@ bool ascend(const Ids& ids) {
 
 template <class Ids>
 void sort(const Ids& ids, std::vector<std::uint32_t>& rows) {
-  // Ids are usually 1 to N in another order: each row has its place.
+  // Ids are usually a permutation of 1 to N, so each row's position is known.
   constexpr std::uint32_t kFree = 0xffffffff;
   std::vector<std::uint32_t> at(ids.size() + 1, kFree);
   bool is_permutation = true;
@@ -79,11 +79,11 @@ std::size_t count_repeated(const Ids& ids, const std::vector<std::uint32_t>& row
 Rows rows_by_id(const data::Column& ids, std::vector<std::uint32_t> selected, std::size_t& repeated) {
   repeated = 0;
   std::size_t count = 0;
-  // In the type in which the file stores them: a double cannot represent all ids of 64 bits.
+  // In the type in which the file stores them: a double cannot represent all 64-bit ids.
   std::visit(
       [&](const auto& values) {
         if constexpr (std::is_same_v<std::decay_t<decltype(values)>, data::Words>) {
-          count = values.index.size();  // has no order
+          count = values.index.size();  // unordered
         } else {
           count = values.size();
           order(values, selected);

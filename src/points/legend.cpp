@@ -40,7 +40,7 @@ std::size_t character_length(std::string_view text, std::size_t at) {
   return is_overlong || is_forbidden || code > 0x10FFFF ? 0 : length;
 }
 
-/// A text as XML, and its estimated width.
+/// A string as XML, and its estimated width.
 struct Label {
   std::string xml;
   double width = 0;

@@ -24,7 +24,7 @@ constexpr std::size_t kMaxTextBytes = 60;
 
 constexpr Srgb8 kWhite = {255, 255, 255}, kBlack = {0, 0, 0};
 
-/// Printable ASCII characters from the blank on: 7 rows of 5 pixels, from the top left, which is bit 34.
+/// Printable ASCII characters, starting with the space: 7 rows of 5 pixels, from the top left, which is bit 34.
 constexpr char kFirstGlyph = ' ';
 // clang-format off
 constexpr std::uint64_t kFont[] = {
@@ -43,7 +43,7 @@ constexpr std::uint64_t kFont[] = {
 };
 // clang-format on
 
-/// A text in characters of the font: one for each character of UTF-8.
+/// A string in characters of the font: one for each UTF-8 character.
 std::string in_font(const std::string& text) {
   const std::string_view prefix = base::utf8_prefix(text, kMaxTextBytes);
   constexpr char kLastGlyph = static_cast<char>(kFirstGlyph + std::size(kFont) - 1);
@@ -57,7 +57,7 @@ std::string in_font(const std::string& text) {
 
 int width_of(const std::string& text) { return static_cast<int>(text.size()) * kPitch; }
 
-/// A text beside the bar or a patch.
+/// A label next to the bar or a patch.
 struct Text {
   int x = 0, middle = 0;
   std::string text;
@@ -106,7 +106,7 @@ class Image {
 LegendImage legend_image(const Legend& legend) {
   std::vector<Legend::Patch> patches = legend.patches;
   if (legend.nan_color) patches.push_back({"no value", *legend.nan_color});
-  // First where all is, then how large the image must be.
+  // Computes the layout first, then the size of the image.
   std::vector<Text> texts;
   int y = kMargin;
   if (!legend.title.empty()) {

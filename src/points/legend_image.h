@@ -9,7 +9,7 @@
 
 namespace orrery::points {
 
-/// Patches that legend_image() can show; more would be an image that few programs open.
+/// Maximum number of patches in legend_image(): few programs could open a larger image.
 inline constexpr std::size_t kMaxImagePatches = 500;
 
 /// An image in display-referred sRGB.
@@ -18,8 +18,8 @@ struct LegendImage {
   std::vector<Srgb8> pixels;  ///< row by row from the top
 };
 
-/// Returns the legend of legend_svg() as pixels, with texts in a built-in font of ASCII characters. Others are shown as
-/// question marks, long texts are truncated.
+/// Returns the legend of legend_svg() as pixels, with text in a built-in ASCII font. Other characters are shown as
+/// question marks; long strings are truncated.
 ///
 /// Domain     at most kMaxImagePatches patches
 LegendImage legend_image(const Legend& legend);

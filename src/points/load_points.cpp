@@ -90,7 +90,7 @@ class Loader {
       columns_.push_back(column);
   }
 
-  /// Determines where everything comes from, and the columns to read.
+  /// Determines the sources of radii and colours, and the columns to read.
   void plan() {
     for (const std::string& column : info_.roles.position) need(column);
     radius_ = radius_source(info_, points_.radius, faults_);
@@ -138,7 +138,7 @@ class Loader {
     for (const std::string& column : info_.roles.image) need(column);
   }
 
-  /// `count`   of spheres in one image of the periodic box
+  /// `count`   number of spheres in one image of the periodic box
   void require_memory(std::uint64_t count) const {
     ReadMemory need;
     need.rows = info_.rows;
@@ -159,7 +159,7 @@ class Loader {
   }
 
   void load(int frame) {
-    // How many rows a selection leaves, and how many spheres are in some chains, is not known yet.
+    // The number of selected rows, and of spheres in the chains of an assembly, is not known yet.
     require_memory(points_.select.empty() ? copied_count(copies_, {}, info_.rows) : 0);
     data::Table table = file_->read(frame, columns_);
     if (!speed_sources_.empty()) compute_speed(speed_sources_, table);
@@ -236,7 +236,7 @@ class Loader {
   }
 
   /// A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
-  /// error that the image would not show.
+  /// error that would not be visible in the image.
   bool may_be_negative() const {
     return radius_.kind == RadiusSource::Kind::kValue || file_->format() == data::Format::kPly;
   }
@@ -267,7 +267,7 @@ class Loader {
     }
     report_rest(bad);
   }
-  /// Reports the number of similar faults of which only the first are reported.
+  /// Reports the total number of similar errors, of which only the first are listed.
   void report_rest(std::size_t faults) {
     if (faults > scene::kMaxReported)
       faults_.error(".file", fmt::format("and {} more ({} in all)", faults - scene::kMaxReported, faults));
@@ -317,7 +317,7 @@ class Loader {
     return Rows(std::move(list));
   }
 
-  /// Sets the material of each sphere by the file's column of indices into the scene's materials.
+  /// Sets the material of each sphere from the file's column of indices into the scene's materials.
   void set_materials(const data::Table& table, const Rows& rows) {
     std::size_t bad = 0;
     points_.materials.resize(rows.size());

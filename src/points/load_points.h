@@ -19,19 +19,19 @@ struct SourceRows;
 
 struct LoadRequest {
   std::filesystem::path file;      ///< the data file
-  std::filesystem::path folder;    ///< of the scene file, for the file of a colour map
+  std::filesystem::path folder;    ///< folder of the scene file, for the file of a colour map
   std::string key;                 ///< "points[0]", for diagnostics
   int frame = 1;                   ///< the rendered frame
-  bool is_sequence = false;        ///< the rendered frame has chosen the file
+  bool is_sequence = false;        ///< the file was selected by the rendered frame
   std::size_t materials = 0;       ///< number of materials of the scene
   SourceRows* source = nullptr;    ///< if not null, receives the rows of the spheres
-  std::uint64_t memory_limit = 0;  ///< bytes that the spheres may take; 0: no limit
+  std::uint64_t memory_limit = 0;  ///< maximum memory of the spheres, bytes; 0: no limit
   OpenData open = {};              ///< replaces particles::open(), except in a sequence of files
 };
 
-/// Reads the spheres of a data file into `points`, as its keys say: selects rows, determines radii and colours, copies
-/// and transforms. The spheres are in the order of the particle ids, if the file has any, so that all frames have the
-/// same order.
+/// Reads the spheres of a data file into `points` according to its keys: selects rows, determines radii and colours,
+/// copies and transforms. The spheres are ordered by particle id if the file has ids, so that all frames have the same
+/// order.
 ///
 /// Result     diagnostics about keys of the scene file: unknown columns, missing radii, selections that match nothing;
 ///            `points` has no spheres if one of them is an error

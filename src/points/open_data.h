@@ -12,10 +12,11 @@ namespace orrery::points {
 /// Opens a data file, as particles::open() does.
 using OpenData = std::function<std::unique_ptr<data::DataFile>(const std::filesystem::path&, const data::OpenOptions&)>;
 
-/// Opens data files for several frames. The files opened last stay open, so that a frame is found from where the
-/// previous one ended, and compressed data are decompressed only once. A file that has changed is opened again.
+/// Returns a function that opens data files for several frames. It keeps the most recent files open, so that each frame
+/// is searched from the end of the previous one and compressed data are decompressed only once. A file that has changed
+/// is reopened.
 ///
-/// Result     for one thread at a time; its copies share the open files
+/// Result     not thread-safe; copies share the open files
 /// Errors     those of particles::open()
 OpenData open_once();
 

@@ -19,9 +19,9 @@
 namespace orrery::points {
 namespace {
 
-/// Colours per map: as many as a display distinguishes.
+/// Number of colours sampled from a continuous map: as many as a display distinguishes.
 constexpr std::size_t kMapColors = 256;
-/// Distinct values of a column of types or elements.
+/// Maximum number of distinct values in a column of types or elements.
 constexpr std::size_t kMaxLabels = 4096;
 constexpr std::size_t kMaxPalette = 65536;
 
@@ -45,9 +45,10 @@ std::optional<Labels> labels_or_fault(const data::Table& table, const Rows& rows
 /// Gives each label the colour with its index.
 std::vector<std::uint16_t> indices_of(const Labels& labels) { return {labels.of_rows.begin(), labels.of_rows.end()}; }
 
-/// Returns for each label which colour of a categorical map it has, before it is reduced to their number. As far as
-/// possible it does not depend on which others occur, or colours would change from frame to frame and with selections:
-/// integers have the colour with their number, from 1; texts that with their place among all texts of the column.
+/// Returns the index of each label's colour in a categorical map, before it is reduced modulo the number of colours. If
+/// possible, the index does not depend on which labels occur, so that colours do not change between frames and
+/// selections: an integer selects the colour with its number, from 1; a string the one with its position among all
+/// strings of the column.
 std::vector<std::size_t> categories_of(const Labels& labels, const data::Column& column, std::size_t count) {
   std::vector<std::size_t> out(labels.names.size());
   std::iota(out.begin(), out.end(), 0U);
@@ -68,7 +69,7 @@ std::vector<std::size_t> categories_of(const Labels& labels, const data::Column&
   return out;
 }
 
-/// Distinct texts spread evenly over a continuous map, or the colours of a categorical one.
+/// Distributes distinct strings evenly over a continuous map, or assigns the colours of a categorical one.
 PointColors colors_by_label(const Labels& labels, const data::Column& column, const ColorMap& map, Vec3d nan_color) {
   PointColors out;
   const std::size_t n = labels.names.size();
@@ -110,7 +111,7 @@ PointColors colors_by_number(const data::Column& column, const Rows& rows, const
   out.range = color.range ? color.range : range_of(column, rows);
   const scene::Interval range = out.range.value_or(scene::Interval{});
   const double low = range.low, high = range.high;
-  const double unit = std::isfinite(high - low) ? 1 : 0.5;  // halved, the largest range does not overflow
+  const double unit = std::isfinite(high - low) ? 1 : 0.5;  // halving prevents overflow for the largest range
   const double span = high * unit - low * unit;
   out.indices.resize(rows.size());
   for_each_number(column, rows, [&](std::size_t i, double v) {
@@ -169,8 +170,8 @@ PointColors colors_by_type(const data::Table& table, const Rows& rows, const Col
   return out;
 }
 
-/// The value of full intensity. Colours of floating point are from 0 to 1, but some programs write 0 to 255: then most
-/// values that are not 0 exceed 1.
+/// The value of full intensity. Floating-point colours are from 0 to 1, but some programs write 0 to 255, in which case
+/// most non-zero values exceed 1.
 double full_intensity(const data::Table& table, const Rows& rows, const ColorSource& source, KeyFaults& faults) {
   if (source.rgb_maximum != 1) return source.rgb_maximum;
   std::uint64_t above = 0, positive = 0;

@@ -22,13 +22,13 @@ struct PointColors {
   std::vector<math::Vec3d> palette;
   std::size_t rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in the scene's colour space
   std::vector<std::uint16_t> indices;
-  std::vector<std::string> names;        ///< of the colours, if they stand for types, elements or texts
-  std::optional<scene::Interval> range;  ///< of a map of numbers; none if all are NaN
+  std::vector<std::string> names;        ///< names of the colours, if they represent types, elements or strings
+  std::optional<scene::Interval> range;  ///< range of a continuous colour map; empty if all values are NaN
 };
 
-/// Determines the source of the colours. Reports unknown columns and maps, and alternatives that exclude each other.
+/// Determines the source of the colours. Reports unknown columns and maps, and mutually exclusive keys.
 ///
-/// `folder`   of the scene file, for a map in a file
+/// `folder`   folder of the scene file, for a map in a file
 /// Errors     base::Error: those of read_color_map()
 ColorSource color_source(const data::FrameInfo& info, const scene::PointsColor& color,
                          const std::filesystem::path& folder, KeyFaults& faults);

@@ -16,7 +16,7 @@
 namespace orrery::points {
 namespace {
 
-/// Distinct types and elements; a column with more is not one of types.
+/// Maximum number of distinct types or elements; a column with more does not contain types.
 constexpr std::size_t kMaxTypes = 65536;
 
 ElementRadius kind_of(const std::string& name) {

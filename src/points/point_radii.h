@@ -16,12 +16,11 @@ class Rows;
 struct RadiusSource {
   enum class Kind { kValue, kColumn, kElement, kType };
   Kind kind = Kind::kValue;
-  std::string column;  ///< to read; empty: none
+  std::string column;  ///< column to read; empty: none
   double scale = 1;    ///< multiplies column and element radii
 };
 
-/// Determines the source of the radii. Reports a missing radius, unknown columns, and alternatives that exclude each
-/// other.
+/// Determines the source of the radii. Reports a missing radius, unknown columns, and mutually exclusive keys.
 RadiusSource radius_source(const data::FrameInfo& info, const scene::PointsRadius& radius, KeyFaults& faults);
 
 /// Returns the radii of the rows. Reports elements and types without a radius.

@@ -13,27 +13,27 @@ namespace orrery::points {
 
 struct RadiusSource;
 
-/// Memory that reading the spheres of a data file takes.
+/// Memory that is needed to read the spheres of a data file.
 struct ReadMemory {
-  std::uint64_t rows = 0;          ///< of the file
-  std::uint64_t row_bytes = 0;     ///< of the columns that are read
-  std::uint64_t sphere_bytes = 0;  ///< of scene data
-  double images = 1;               ///< of the periodic box; may exceed 64 bits
-  double spheres = 0;              ///< in all images; 0: not known yet
-  std::size_t copies = 0;          ///< of an assembly, in one image
+  std::uint64_t rows = 0;          ///< number of rows in the file
+  std::uint64_t row_bytes = 0;     ///< bytes per row of the columns that are read
+  std::uint64_t sphere_bytes = 0;  ///< bytes per sphere of scene data
+  double images = 1;               ///< number of periodic images of the box; may exceed 64 bits
+  double spheres = 0;              ///< number of spheres in all images; 0: not known yet
+  std::size_t copies = 0;          ///< copies of an assembly in one image
 };
 
 /// Returns the type of a column of a frame.
 data::ColumnType type_of(const data::FrameInfo& info, const std::string& column);
 
-/// Bytes of the centre and the radius of a sphere as scene data. An upper bound: numbers that need no double precision
-/// are stored as floats.
+/// Upper bound of the size of a sphere's centre and radius as scene data, bytes. Numbers that do not need double
+/// precision are stored as floats.
 ///
-/// `copies`   of an assembly; else 1
+/// `copies`   number of copies of an assembly; else 1
 std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
                                std::size_t copies);
 
-/// Checks that spheres fit into memory while they are read.
+/// Checks that there is enough memory to read the spheres.
 ///
 /// `limit`    bytes; 0: none
 /// Errors     base::Error(kNoMemory) with the needed size

@@ -58,7 +58,7 @@ Labels labels_of(const data::Column& column, const Rows& rows, std::size_t limit
     out.names.push_back(label_text(value));
     out.values.push_back(value);
   }
-  // NaN is a label of its own, the last.
+  // NaN is a separate label, the last.
   const auto none = static_cast<std::uint32_t>(out.names.size());
   bool has_nan = false;
   out.of_rows.resize(rows.size());

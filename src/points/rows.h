@@ -28,7 +28,7 @@ class Rows {
   std::size_t size() const { return count_; }
   /// All rows of the table, in its order.
   bool is_all() const { return !is_list_; }
-  /// The rows, each by its number.
+  /// The row numbers.
   std::vector<std::uint32_t> list() const {
     std::vector<std::uint32_t> out = rows_;
     for (std::size_t i = out.size(); i < count_; ++i) out.push_back(static_cast<std::uint32_t>(i));
@@ -42,7 +42,7 @@ class Rows {
   bool is_list_ = false;
 };
 
-/// Calls `f(i, value)` for each of the rows, with the value as double.
+/// Calls `f(i, value)` for each row, with the value as double.
 ///
 /// Domain     a column of numbers
 template <class F>
@@ -59,7 +59,7 @@ void for_each_number(const data::Column& column, const Rows& rows, F f) {
 
 /// A column with few distinct values: particle types, elements.
 struct Labels {
-  std::vector<std::string> names;      ///< distinct values as text, ascending: numbers by value, texts as texts
+  std::vector<std::string> names;      ///< distinct values as strings, sorted: numbers by value, strings alphabetically
   std::vector<double> values;          ///< numbers: the distinct values; NaN is the last
   std::vector<std::uint32_t> of_rows;  ///< one per row, index into `names`
 };
@@ -77,7 +77,7 @@ class KeyFaults {
 
   /// Adds an error about a key.
   ///
-  /// `part`     of the key: ".radius.column"; empty: the whole table
+  /// `part`     part of the key: ".radius.column"; empty: the whole table
   void error(const std::string& part, std::string text, base::ErrorKind kind = base::ErrorKind::kBadData) {
     diagnostics_.push_back({base::Severity::kError, key_ + part, std::move(text), kind});
     has_errors_ = true;
@@ -94,7 +94,7 @@ class KeyFaults {
   bool has_errors_ = false;
 };
 
-/// Checks that a file has a column, and of numbers if `is_number`. Reports the columns that it has.
+/// Checks that a file has a column, and that it is numeric if `is_number`. If not, reports the available columns.
 bool require_column(const data::FrameInfo& info, const std::string& name, bool is_number, const std::string& part,
                     KeyFaults& faults);
 

@@ -29,11 +29,11 @@ constexpr const char* type_text(Type type) {
 struct Operand {
   Type type;
   Span span;
-  std::size_t index = 0;  ///< text columns and texts: as in SelectionStep
+  std::size_t index = 0;  ///< text columns and strings: as in SelectionStep
 };
 
-/// Walks the postfix steps with a stack of types. Texts stay on this stack until their comparison: no block holds
-/// texts.
+/// Walks the postfix steps with a stack of types. Strings stay on this stack until they are compared, because blocks
+/// cannot hold strings.
 class Binder {
  public:
   Binder(const SelectionCode& code, const std::vector<data::ColumnInfo>& columns) : code_(code) {
@@ -198,9 +198,9 @@ class Binder {
   std::string verbatim(Span span) const { return code_.text.substr(span.begin, span.end - span.begin); }
 
   const SelectionCode& code_;
-  std::vector<bool> is_text_;  ///< of the selection's columns
+  std::vector<bool> is_text_;  ///< per column of the selection
   std::vector<Operand> stack_;
-  std::size_t numbers_ = 0, truths_ = 0;  ///< on stack_
+  std::size_t numbers_ = 0, truths_ = 0;  ///< number of numbers and truth values on stack_
   SelectionProgram program_;
 };
 

@@ -42,13 +42,13 @@ enum class SelectionOp {
 /// A step of a selection in postfix notation.
 struct SelectionStep {
   SelectionOp op;
-  Span span;              ///< of the operand or operator
+  Span span;              ///< position of the operand or operator
   double number = 0;      ///< kNumber
   std::size_t index = 0;  ///< kColumn: into columns; kText: into texts; kInNumbers, kInTexts: into the lists
 };
 
-/// A parsed selection: operands before their operator. Postfix rather than a tree, so that nothing recurses over it: a
-/// chain of a million `||` is as deep as it is long.
+/// A parsed selection: operands before their operator. Postfix rather than a tree, to avoid recursion: a chain of a
+/// million `||` would be a million levels deep.
 struct SelectionCode {
   std::string text;
   std::vector<SelectionStep> steps;
@@ -58,12 +58,12 @@ struct SelectionCode {
   std::vector<std::vector<std::string>> text_lists;
 };
 
-/// Parses a text, without knowing the columns of any table.
+/// Parses a selection without knowing the columns of the table.
 ///
 /// Errors     those of parse_selection()
 SelectionCode parse_selection_code(std::string_view text);
 
-/// Throws base::Error(kBadData) for a place in a selection.
+/// Throws base::Error(kBadData) for a position in a selection.
 [[noreturn]] void fail_selection(const std::string& selection, Span span, const std::string& text,
                                  const std::string& remedy);
 

@@ -14,7 +14,7 @@ enum class TokenKind { kEnd, kNumber, kText, kName, kQuotedName, kSymbol };
 struct Token {
   TokenKind kind = TokenKind::kEnd;
   Span span;
-  std::string_view text;  ///< of a string or name, without quotes; of a symbol, verbatim
+  std::string_view text;  ///< string or name without quotes; symbol verbatim
   double number = 0;
 };
 

@@ -24,13 +24,13 @@ enum class BlockOp {
   kDivide,
   kMin,
   kMax,
-  kEqual,  ///< two numbers to a truth value, as the next five
+  kEqual,  ///< compares two numbers and pushes a truth value, like the next five
   kUnequal,
   kLess,
   kLessEqual,
   kGreater,
   kGreaterEqual,
-  kInNumbers,  ///< a number to a truth value
+  kInNumbers,  ///< pushes whether a number is in a list
   kInTexts,    ///< pushes whether a text column's value is in a list
   kSameText,   ///< pushes whether two text columns are equal
   kNot,
@@ -42,14 +42,14 @@ struct BlockStep {
   BlockOp op;
   double number = 0;                   ///< kConstant
   std::size_t column = 0, second = 0;  ///< indices into the selection's columns
-  std::size_t list = 0;                ///< kInNumbers: into the selection's; kInTexts: into the program's lists
+  std::size_t list = 0;  ///< kInNumbers: index into the selection's lists; kInTexts: into the program's lists
 };
 
 /// A selection whose types are known.
 struct SelectionProgram {
   std::vector<BlockStep> steps;                      ///< empty: all rows are selected
   std::vector<std::vector<std::string>> text_lists;  ///< ascending
-  std::size_t number_depth = 0, truth_depth = 0;     ///< blocks that the two stacks need
+  std::size_t number_depth = 0, truth_depth = 0;     ///< maximum depth of the two stacks, blocks
 };
 
 /// Determines the types of a selection's operands.

@@ -17,7 +17,7 @@ constexpr std::size_t kBlock = 1024;
 
 using Truth = std::uint8_t;
 
-/// A text condition on a column: one truth value for each distinct text.
+/// A condition on a text column: one truth value for each distinct string.
 using WordTruths = std::vector<Truth>;
 
 WordTruths truths_of(const data::Words& words, const std::vector<std::string>& ascending) {
@@ -27,7 +27,7 @@ WordTruths truths_of(const data::Words& words, const std::vector<std::string>& a
   return out;
 }
 
-/// For each distinct text of `from`, its index in `to`; the number of texts in `to` if it is not among them.
+/// For each distinct string of `from`, its index in `to`; the number of strings in `to` if it is not found.
 std::vector<std::uint32_t> index_in(const data::Words& from, const data::Words& to) {
   std::unordered_map<std::string, std::uint32_t> indices;
   for (std::size_t i = 0; i < to.words.size(); ++i) indices.emplace(to.words[i], static_cast<std::uint32_t>(i));

@@ -42,10 +42,10 @@ struct Scale {
   double of(double x) const { return std::abs(x * factor) < kTiny ? 0 : x * factor; }
 };
 
-/// A place in the sample, and what is known of its nearest neighbour.
+/// A position in the sample, and the best known distance to its nearest neighbour.
 struct Sample {
   Vec3d place;
-  std::size_t count = 1;        ///< points of the sample at this place
+  std::size_t count = 1;        ///< number of points of the sample at this position
   double nearest2 = kInfinity;  ///< squared distance
 
   void update(const Vec3d& p) {
@@ -56,7 +56,7 @@ struct Sample {
 };
 
 /// Returns the sample: one point of each stratum of consecutive points, chosen by a hash. A constant stride could
-/// choose one face of a lattice. Points at one place become one sample, because millions of points may be there.
+/// choose one face of a lattice. Coincident points become one sample, because there may be millions.
 std::vector<Sample> sample_of(const scene::PointArray& centers, const Scale& scale) {
   const std::size_t count = centers.size() <= kMaxExact ? centers.size() : kSamples;
   std::vector<Vec3d> places(count);
@@ -100,16 +100,17 @@ void bound(Sample* begin, Sample* end) {
   bound(middle, end);
 }
 
-/// Hash table from cells of space to the samples whose nearest neighbour may be in the cell. Each sample is in cells
-/// a few times as large as the distance to its nearest neighbour so far, so one outlier or one dense cluster does not
-/// decide the size of all cells.
+/// Hash table from cells of space to the samples whose nearest neighbour may be in the cell. Each sample is in cells a
+/// few times as large as the distance to its nearest neighbour so far, so that a single outlier or dense cluster does
+/// not determine the size of all cells.
 class SampleGrid {
  public:
-  /// `octaves`  Sizes of cells are 2^octaves apart. More octaves cost more distances to compute, fewer more look-ups.
+  /// `octaves`  cell sizes differ by factors of 2^octaves. More octaves cost more distances to compute, fewer more
+  ///            look-ups.
   SampleGrid(std::vector<Sample>& samples, int octaves) : samples_(samples), begin_(kBuckets + 1) {
     std::vector<std::pair<Entry, std::size_t>> entries;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const double radius = std::sqrt(samples[i].nearest2) * (1 + 1e-9);  // more than the rounding of cell_of()
+      const double radius = std::sqrt(samples[i].nearest2) * (1 + 1e-9);  // exceeds the rounding of cell_of()
       const int finest = std::ilogb(radius) + 2;
       const int exponent = finest + (octaves - 1) - (finest + (octaves - 1) + 3000) % octaves;
       const Level level{std::ldexp(1.0, -exponent), mixed(static_cast<std::uint64_t>(exponent))};
@@ -177,7 +178,7 @@ class SampleGrid {
 
   std::vector<Sample>& samples_;
   std::vector<Level> levels_;
-  std::vector<std::uint32_t> begin_;  ///< of each bucket in entries_
+  std::vector<std::uint32_t> begin_;  ///< first entry of each bucket in entries_
   std::vector<Entry> entries_;
 };
 
@@ -207,11 +208,11 @@ double median_neighbor_distance(const scene::PointArray& centers) {
     return samples[0].nearest2 < kInfinity ? std::sqrt(samples[0].nearest2) / scale.factor : 0;
   }
   bound(samples.data(), samples.data() + samples.size());
-  // The sample is a small part of the places, so that few of it are in one large cell.
+  // The sample is a small fraction of the positions, so that a large cell contains few of its points.
   const auto singles =
       std::count_if(samples.begin(), samples.end(), [](const Sample& sample) { return sample.count == 1; });
   const bool is_sparse = centers.size() > kMaxExact && static_cast<std::size_t>(singles) > samples.size() / 10 * 9;
-  // Few points first: they make the cells small for the others.
+  // A few points first: they reduce the cell size for the others.
   for (const std::size_t stride : {1024, 64, 8, 1}) {
     SampleGrid grid(samples, is_sparse ? 3 : 1);
     for (std::size_t i = 0; i < centers.size(); i += stride) grid.add(scale(centers[i]));

@@ -5,11 +5,11 @@
 
 namespace orrery::points {
 
-/// Returns the median over the points of the distance to the nearest point at another place. Twice the radius at which
+/// Returns the median distance of the points to their nearest neighbours at other positions: twice the radius at which
 /// typical neighbours touch.
 ///
 /// Domain     finite coordinates
-/// Result     0 if all points are at one place, or there are none
+/// Result     0 if all points coincide, or if there are none
 /// Precision  exact for up to 100,000 points; of an even number the smaller of the two medians. Otherwise the median
 ///            over a fixed sample of 4,096 points, each with its true nearest neighbour among all points: with a
 ///            probability of 95 % a quantile between 0.484 and 0.516

@@ -13,7 +13,7 @@ namespace {
 constexpr double kMinShare = 0.1;
 /// Numbers from this size on, and ranges below the second, have an exponent.
 constexpr double kLargestFixed = 1e6, kSmallestFixed = 1e-3;
-/// Smaller ranges have one tick: the spacing of doubles would be visible.
+/// Smaller ranges have one tick, because the spacing of doubles would be visible.
 constexpr double kMinRange = 1e-290, kMinRelativeRange = 1e-12;
 
 int exponent_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
@@ -61,7 +61,7 @@ std::vector<Tick> nice_ticks(double first, double last) {
     const double value = n == 0 ? 0 : multiple(n);  // not -0
     Tick tick{value, is_fixed ? fixed_text(value, -exponent) : "0"};
     if (!is_fixed && value != 0) {
-      // All have the exponent of the largest.
+      // All use the exponent of the largest.
       const double mantissa = value / std::pow(10, largest);
       tick.label = fixed_text(mantissa, largest - exponent) + 'e' + std::to_string(largest);
     }

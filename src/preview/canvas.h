@@ -15,13 +15,13 @@ struct Cell {
   int x, y, width, height;  ///< px
 };
 
-/// The image as rendered so far, which the rendering threads write and a preview's thread reads, without locks.
+/// The image rendered so far, written by the rendering threads and read by a preview's thread, without locks.
 ///
 /// A pixel that is written and read at the same time may be read with channels from different passes; its cell is then
-/// marked as changed again, so the next reading corrects it.
+/// marked as changed again, so the next read corrects it.
 class Canvas {
  public:
-  static constexpr int kSide = 32;  ///< of a cell, px
+  static constexpr int kSide = 32;  ///< side of a cell, px
 
   Canvas(int width_px, int height_px);
 
@@ -30,12 +30,12 @@ class Canvas {
 
   /// Copies the means of pixels and marks their cells as changed. Called on the rendering threads.
   ///
-  /// Domain     no two calls at a time have a pixel in common
+  /// Domain     concurrent calls have no pixel in common
   void write(const film::Partial& state, const film::RenderedPixels& rendered) noexcept;
 
-  /// Copies an image, such as the denoised one.
+  /// Copies an image, such as the denoised result.
   ///
-  /// Domain     of the same size, with the planes R, G and B; no other call at the same time
+  /// Domain     of the same size, with the planes R, G and B; no concurrent calls
   void write(const film::Picture& picture) noexcept;
 
   /// The cells that have changed since the last call, as indices in row-major order. Called on one thread.

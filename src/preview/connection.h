@@ -25,10 +25,10 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   State state() const { return state_; }
-  /// Why it is closed: "Connection refused".
+  /// The reason why the connection is closed: "Connection refused".
   const std::string& reason() const { return reason_; }
 
-  /// Starts to connect, if closed.
+  /// Starts connecting, if closed.
   void open();
 
   /// Updates the state: whether connecting has succeeded, and whether the other side has closed the connection.
@@ -52,7 +52,7 @@ class Connection {
   void close(const std::string& reason);
 
   std::vector<Address> addresses_;
-  std::size_t next_ = 0;  ///< address to try next
+  std::size_t next_ = 0;  ///< index of the address to try next
   int socket_ = -1;
   State state_ = State::kClosed;
   std::string reason_;

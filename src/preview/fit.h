@@ -12,7 +12,7 @@ class Canvas;
 /// The size of an image in a terminal.
 struct Fit {
   int width = 0, height = 0;  ///< px of the bitmap; 0: the terminal is too small
-  int columns = 0, rows = 0;  ///< cells that it covers
+  int columns = 0, rows = 0;  ///< character cells that the image covers
 
   bool operator==(const Fit&) const = default;
 };
@@ -21,7 +21,7 @@ struct Fit {
 /// and fits into the terminal. At most kLargestBitmap pixels.
 Fit fit(int width_px, int height_px, double pixel_aspect, const Screen::CellGrid& grid);
 
-/// More pixels would slow down the terminal.
+/// Maximum number of pixels: more would slow down the terminal.
 inline constexpr double kLargestBitmap = 300'000;
 
 /// The image at a smaller size: scene-linear means of the pixels that each new pixel covers.

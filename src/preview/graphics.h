@@ -16,7 +16,7 @@ enum class Graphics {
   k256Colors,  ///< half blocks in the 256-colour palette
 };
 
-/// True if a character cell shows two pixels, one above the other, instead of an image of any resolution.
+/// True if each character cell shows two pixels, one above the other. Otherwise, images have any resolution.
 inline bool is_text(Graphics graphics) { return graphics == Graphics::kTrueColor || graphics == Graphics::k256Colors; }
 
 /// Returns the bytes that draw a bitmap at the cursor's cell. They leave the cursor in that cell's row or the one below
@@ -26,7 +26,7 @@ inline bool is_text(Graphics graphics) { return graphics == Graphics::kTrueColor
 /// Reference  kitty graphics; iTerm2 images; DEC STD 070; ECMA-48
 std::string drawn(Graphics graphics, const Bitmap& bitmap, int columns, int rows);
 
-// The formats by themselves.
+// The individual formats.
 std::string kitty(const Bitmap& bitmap, int columns);
 std::string iterm(const Bitmap& bitmap, int columns, int rows);
 std::string sixel(const Bitmap& bitmap);

@@ -10,7 +10,7 @@ inline constexpr double kShareOfTime = 0.003;
 /// Decides when a preview is updated: once per interval, and less often if updates are expensive.
 class Pacing {
  public:
-  /// A pace without updates so far.
+  /// Starts without any updates.
   ///
   /// `interval_s`   minimum time between updates
   explicit Pacing(double interval_s) : interval_s_(interval_s) {}

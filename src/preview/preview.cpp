@@ -51,7 +51,7 @@ void Preview::end() {
   canvas_.reset();
 }
 
-/// Lets the preview's thread serve a request, and waits until it has. In between, that thread owns all members.
+/// Passes a request to the preview's thread and waits until it is served. Meanwhile, that thread owns all members.
 void Preview::ask(Request request) {
   std::unique_lock lock(mutex_);
   request_ = request;

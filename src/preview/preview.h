@@ -12,7 +12,7 @@
 
 namespace orrery::preview {
 
-/// Shows the images of one render after another while they are rendered, on a thread of its own.
+/// Shows the images of consecutive renders while they are rendered, on a separate thread.
 ///
 /// The rendering threads only copy their pixels into a Canvas. Everything else happens on the preview's thread, which
 /// uses at most kShareOfTime of the render's processor time.
@@ -38,7 +38,7 @@ class Preview {
   /// Replaces the image. Called after all pixels have been rendered, before end().
   void write(const film::Picture& picture) noexcept { canvas_->write(picture); }
 
-  /// Ends the image: shows the pixels that are still missing. Without an image, does nothing.
+  /// Ends the image, after showing the pixels that are still missing. Does nothing without an image.
   void end();
 
  private:
@@ -54,7 +54,7 @@ class Preview {
   OnNote on_note_;
   display::PictureInfo picture_;
   std::unique_ptr<Canvas> canvas_;
-  bool failed_ = false;  ///< the sink has thrown
+  bool failed_ = false;  ///< the sink threw an exception
   std::mutex mutex_;     // guards request_
   std::condition_variable wake_, served_;
   Request request_ = Request::kNone;

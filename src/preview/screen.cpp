@@ -12,17 +12,17 @@
 namespace orrery::preview {
 namespace {
 
-/// Size of a cell if the terminal does not report it, px: rather too small, so that an image covers no more rows than
-/// are reserved for it.
+/// Assumed size of a cell if the terminal does not report it, px: a low estimate, so that an image does not cover more
+/// rows than are reserved for it.
 constexpr int kCellWidth = 6, kCellHeight = 12;
 
-/// Rows that are not for the image: the progress bar, and the line below a shell's prompt.
+/// Rows that are not available for the image: the progress bar, and the line below a shell prompt.
 constexpr int kOtherRows = 2;
 
-/// A terminal that has read nothing for this time hangs.
+/// A terminal that has read nothing for this long is considered hung.
 constexpr std::chrono::seconds kHangingTerminal{1};
 
-/// Text with the line ends of a terminal, whatever its mode.
+/// Converts line endings for a terminal in any mode.
 std::string with_returns(const std::string& text) {
   std::string out;
   for (const char c : text) {

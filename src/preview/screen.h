@@ -30,7 +30,7 @@ class Screen {
   /// The size of the terminal and of a cell, px.
   struct CellGrid {
     int columns = 0, rows = 0;
-    int cell_width = 1, cell_height = 2;  ///< as text, the pixels that a cell shows
+    int cell_width = 1, cell_height = 2;  ///< in text mode, the pixels that a cell shows
 
     bool operator==(const CellGrid&) const = default;
   };
@@ -39,10 +39,10 @@ class Screen {
   /// Sets the image: the bytes that draw it, and the number of rows that it covers.
   void show(std::string drawing, int rows);
 
-  /// True if everything that was set has been written, so that another image can be shown.
+  /// True if all output has been written, so that another image can be shown.
   bool is_idle() const { return sent_ == output_.size(); }
 
-  /// Writes what has changed, as much as the terminal accepts.
+  /// Writes pending changes, as much as the terminal accepts.
   void poll();
 
   /// Removes the bar, and writes the rest unless the terminal hangs. Afterwards, note() writes to stderr.
@@ -56,12 +56,12 @@ class Screen {
   TerminalReply reply_;
   Graphics graphics_;
   std::string drawing_;
-  int rows_ = 0;             ///< of the image
+  int rows_ = 0;             ///< rows of the image
   bool is_drawn_ = true;     ///< the image is on the terminal
-  int shown_rows_ = 0;       ///< of the terminal, above the cursor, that belong to the image
-  TerminalSize shown_size_;  ///< of the terminal when the image was drawn
-  std::string output_;       ///< being written
-  std::size_t sent_ = 0;     ///< bytes of output_
+  int shown_rows_ = 0;       ///< rows of the terminal above the cursor that belong to the image
+  TerminalSize shown_size_;  ///< size of the terminal when the image was drawn
+  std::string output_;       ///< output that is being written
+  std::size_t sent_ = 0;     ///< number of bytes of output_ that have been written
   std::mutex mutex_;         // guards the members below
   std::string bar_, notes_;
   bool bar_changed_ = false;

@@ -37,10 +37,10 @@ class Sink {
   /// Shows cells that have changed.
   virtual void update(const std::vector<std::size_t>& cells) = 0;
 
-  /// Continues output that would have blocked. Called often.
+  /// Continues output that would have blocked. Called frequently.
   virtual void poll() {}
 
-  /// Ends an image: waits until the viewer has everything, but not for a viewer that hangs.
+  /// Ends an image: waits until the viewer has received everything, unless it hangs.
   virtual void finish() {}
 };
 

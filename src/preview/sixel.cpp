@@ -10,7 +10,7 @@
 namespace orrery::preview {
 namespace {
 
-constexpr int kLevels = 6;  ///< of each channel: a cube of 216 colours, which every terminal with sixels has
+constexpr int kLevels = 6;  ///< levels per channel: a cube of 216 colours, which every sixel terminal supports
 constexpr int kColors = kLevels * kLevels * kLevels;
 constexpr int kBand = 6;  ///< px, height of a row of sixels
 

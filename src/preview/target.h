@@ -11,14 +11,14 @@ enum class TargetKind { kNone, kTev, kTerminal, kFile };
 /// Where a preview is shown.
 struct Target {
   TargetKind kind = TargetKind::kNone;
-  std::string host, port;      ///< of tev
+  std::string host, port;      ///< address of tev
   std::filesystem::path file;  ///< PNG
 
   /// True if the preview applies the display transform.
   bool is_developed() const { return kind == TargetKind::kTerminal || kind == TargetKind::kFile; }
 };
 
-/// tev listens here unless it is started with --hostname.
+/// Address on which tev listens unless it is started with --hostname.
 inline constexpr const char* kTevHost = "127.0.0.1";
 inline constexpr const char* kTevPort = "14158";
 

@@ -18,8 +18,8 @@ std::string environment(const char* name);
 /// Returns why a terminal shows no colours, according to $TERM and $NO_COLOR; empty if it does.
 std::string missing_colors(const Environment& environment);
 
-/// Returns queries for the graphics capabilities of a terminal: kitty's graphics, the size of a cell, and the device
-/// attributes, which every terminal reply and which therefore come last. Empty for a terminal that would print them.
+/// Returns queries for the graphics capabilities of a terminal: kitty graphics, the cell size, and the device
+/// attributes, which come last because every terminal answers them. Empty for a terminal that would print the queries.
 std::string queries(const Environment& environment);
 
 /// Reply of a terminal to queries().
@@ -29,7 +29,7 @@ struct TerminalReply {
   bool is_complete = false;             ///< the device attributes have arrived
 };
 
-/// Parses reply, which may still be incomplete.
+/// Parses a reply, which may still be incomplete.
 ///
 /// Reference  kitty graphics; xterm control sequences
 TerminalReply parse_reply(std::string_view bytes);

@@ -6,7 +6,7 @@
 
 namespace orrery::preview {
 
-/// A packet that lets tev create a black image with channels R, G and B, in the place of one of the same name.
+/// A packet that makes tev create a black image with channels R, G and B, replacing one of the same name.
 ///
 /// `grabs_focus`  tev selects the image
 /// Reference  tev

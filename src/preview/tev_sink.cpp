@@ -21,7 +21,7 @@ constexpr std::size_t kCellsPerPacket = 32;
 /// Time between attempts to connect.
 constexpr auto kRetry = 2s;
 
-/// A viewer that has read nothing for this time hangs.
+/// A viewer that has read nothing for this long is considered hung.
 constexpr auto kViewerTimeout = 1s;
 
 /// Maximum time to send the last pixels of an image.
@@ -75,7 +75,7 @@ void TevSink::finish() {
   canvas_ = nullptr;
 }
 
-/// Connects, and again after a while if that fails or the viewer goes away.
+/// Connects, and again after a while if that fails or the viewer disconnects.
 void TevSink::check_connection() {
   connection_.check();
   if (connection_.state() == Connection::State::kClosed) {
@@ -124,7 +124,7 @@ void TevSink::mark(std::size_t cell) {
   ++pending_count_;
 }
 
-/// Makes a packet of the next pending cells. They are taken in turn, so that none waits for ever.
+/// Makes a packet of the next pending cells. They are processed in rotation, so that none waits forever.
 bool TevSink::next_packet() {
   if (pending_count_ == 0) return false;
   const auto begin = pending_.begin();
@@ -148,7 +148,7 @@ bool TevSink::next_packet() {
   return true;
 }
 
-/// Sends packets until there are none, or the viewer does not read.
+/// Sends packets until there are none left or the viewer does not accept more.
 void TevSink::flush() {
   while (was_open_ && (!packet_.empty() || next_packet())) {
     const std::size_t count = connection_.send(packet_.data() + sent_, packet_.size() - sent_);

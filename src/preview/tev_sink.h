@@ -13,8 +13,8 @@ namespace orrery::preview {
 
 /// Sends images to tev: scene-linear R, G, B in the working space, without exposure.
 ///
-/// At most one packet waits to be sent. A viewer that reads slowly gets fewer updates; one that closes the connection,
-/// or starts later, gets the whole image when it can be reached again.
+/// At most one packet waits to be sent. A viewer that reads slowly receives fewer updates; one that closes the
+/// connection, or starts later, receives the whole image when it can be reached again.
 class TevSink : public Sink {
  public:
   /// Resolves the address of tev.
@@ -45,10 +45,10 @@ class TevSink : public Sink {
   const Canvas* canvas_ = nullptr;
   std::vector<bool> seen_, pending_;  ///< by cell: has content; must be sent
   std::size_t pending_count_ = 0, next_cell_ = 0;
-  std::string packet_;  ///< being sent
+  std::string packet_;  ///< packet that is being sent
   std::size_t sent_ = 0;
   bool was_open_ = false;
-  bool reported_ = false;  ///< that tev cannot be reached, or is gone
+  bool reported_ = false;  ///< the user was notified that tev is unreachable or has disconnected
   Clock::time_point retry_ = Clock::now(), last_sent_ = Clock::now();
 };
 

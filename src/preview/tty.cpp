@@ -16,7 +16,7 @@
 namespace orrery::preview {
 namespace {
 
-/// How long a terminal may take to answer.
+/// Maximum time for a terminal to reply.
 constexpr std::chrono::milliseconds kAnswerTime{500};
 
 /// Largest answer that is read, bytes.
@@ -83,7 +83,7 @@ std::string Tty::ask(const std::string& queries, bool (*is_complete)(const std::
       char bytes[256];
       const ssize_t count = ::read(terminal_, bytes, sizeof(bytes));
       if (count > 0) reply.append(bytes, static_cast<std::size_t>(count));
-      if (count == 0) break;  // the terminal is gone
+      if (count == 0) break;  // the terminal has been closed
       if (count < 0 && errno != EAGAIN && errno != EINTR) break;
     }
     if (!is_complete(reply)) tcflush(terminal_, TCIFLUSH);
@@ -100,7 +100,7 @@ std::size_t Tty::write(const char* bytes, std::size_t count) const {
 
 void Tty::wait(int milliseconds) const {
   pollfd writable{terminal_, POLLOUT, 0};
-  // A terminal that has hung up is ready at once, for a write that fails.
+  // A terminal that has hung up is reported as ready immediately; the write then fails.
   if (::poll(&writable, 1, milliseconds) > 0 && (writable.revents & (POLLHUP | POLLERR)) != 0)
     ::usleep(static_cast<useconds_t>(milliseconds) * 1000);
 }

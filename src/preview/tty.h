@@ -14,13 +14,13 @@ struct TerminalSize {
   bool operator==(const TerminalSize&) const = default;
 };
 
-/// The terminal of a file descriptor, written without blocking. Other processes that share the descriptor are not
-/// affected, because the terminal is opened again.
+/// The terminal of a file descriptor, written without blocking. The terminal is reopened, so that other processes that
+/// share the descriptor are not affected.
 class Tty {
  public:
-  /// Opens the terminal of a descriptor again, without blocking.
+  /// Reopens the terminal of a descriptor in non-blocking mode.
   ///
-  /// Errors     base::Error(kUsage) if the descriptor is not a terminal or cannot be opened again
+  /// Errors     base::Error(kUsage) if the descriptor is not a terminal or cannot be reopened
   explicit Tty(int descriptor);
   ~Tty();
   Tty(const Tty&) = delete;
@@ -31,13 +31,13 @@ class Tty {
   /// True if a shell runs this process in the background, so that the terminal belongs to another one.
   bool is_in_background() const;
 
-  /// Sends queries and returns the reply that arrive until `is_complete` returns true, for at most half a second.
-  /// Echo is off meanwhile; afterwards the terminal's mode is restored.
+  /// Sends queries and returns the replies received until `is_complete` returns true, for at most half a second. Turns
+  /// echo off and restores the terminal's mode afterwards.
   std::string ask(const std::string& queries, bool (*is_complete)(const std::string& reply)) const;
 
   /// Writes as much as the terminal accepts.
   ///
-  /// Result     number of bytes; 0 if the terminal does not read
+  /// Result     number of bytes; 0 if the terminal does not accept any
   std::size_t write(const char* bytes, std::size_t count) const;
 
   /// Waits until the terminal accepts bytes, for at most `milliseconds`.

@@ -16,16 +16,16 @@ namespace orrery::python {
 /// A column of a table: its name and a one-dimensional array of numbers.
 using NamedArray = std::pair<std::string, pybind11::array>;
 
-/// Makes a table of arrays. Arrays of float64 and float32 are not copied, whatever their strides; the caller keeps
-/// them.
+/// Makes a table of arrays. Arrays of float64 and float32 are not copied, regardless of their strides; the caller keeps
+/// them alive.
 ///
 /// Domain     one-dimensional arrays of one length, of native float64, float32, int64, int32, uint16 or uint8
 std::shared_ptr<const data::Table> table_of(const std::vector<NamedArray>& columns);
 
-/// Returns a str. Bytes that are not UTF-8, as in older files and folders, are replaced.
+/// Returns a str. Bytes that are not valid UTF-8, as in older files and folders, are replaced.
 pybind11::str str_of(const std::string& bytes);
 
-/// Moves a column into a one-dimensional array without a copy of the numbers; texts become a list of str.
+/// Moves a column into a one-dimensional array without copying the numbers; strings become a list of str.
 pybind11::object array_of(data::Values values);
 
 /// Returns a read-only array that views values without a copy.

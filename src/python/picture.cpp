@@ -20,7 +20,7 @@ namespace orrery::python {
 Picture::Picture(job::Rendering rendering) : rendering_(std::make_unique<job::Rendering>(std::move(rendering))) {
   std::vector<film::Plane>& planes = rendering_->picture.planes;
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    // Z is a layer of its own, although its channel has no layer name in an EXR.
+    // Z is a separate layer, although its channel has no layer name in an EXR.
     const bool is_beauty = planes[p].name.size() == 1 && std::string("RGBA").find(planes[p].name) != std::string::npos;
     const std::string name = is_beauty ? "" : planes[p].layer().empty() ? planes[p].name : planes[p].layer();
     auto layer = std::find_if(layers_.begin(), layers_.end(), [&](const Layer& l) { return l.name == name; });

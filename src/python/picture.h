@@ -50,7 +50,7 @@ class Picture {
     std::vector<float> values;        ///< interleaved
   };
   const Layer* find(const std::string& name) const;
-  /// The rendering with its planes, which are otherwise empty.
+  /// Returns the rendering with its planes, which are not stored otherwise.
   job::Rendering with_planes() const;
 
   std::unique_ptr<job::Rendering> rendering_;

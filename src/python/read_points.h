@@ -6,7 +6,7 @@
 namespace orrery::python {
 
 /// Adds the function `read_points(file, frame, component, columns)`, which returns the columns of a data file as
-/// arrays, and what the file says about them.
+/// arrays, and their metadata.
 void bind_read_points(pybind11::module_& m);
 
 }  // namespace orrery::python

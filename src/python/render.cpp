@@ -27,10 +27,10 @@ namespace py = pybind11;
 namespace orrery::python {
 namespace {
 
-/// Interval at which the calling thread looks for signals.
+/// Interval at which the calling thread checks for signals.
 constexpr std::chrono::milliseconds kPoll{100};
 
-/// What the render has to say to the calling thread.
+/// Messages from the render to the calling thread.
 class Messages {
  public:
   void set_progress(const render::Progress& progress) {
@@ -106,7 +106,7 @@ class RenderEntry {
 };
 
 /// Ends a daemon thread as CPython 3.14 does while the interpreter finalizes: it never runs again. If it returned to
-/// Python instead, it would print a traceback, and a thread that holds the lock of sys.stderr at that moment aborts the
+/// Python, it would print a traceback, and a thread that holds the lock of sys.stderr at that moment aborts the
 /// process.
 [[noreturn]] void hang_thread(RenderEntry& entry) {
   entry.remove();

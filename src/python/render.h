@@ -9,8 +9,8 @@ namespace orrery::python {
 
 class Picture;
 
-/// Renders on a thread of its own, without the GIL, while the calling thread reports progress and warnings and checks
-/// for signals: KeyboardInterrupt, and an exception in a callback, stop the render.
+/// Renders on a separate thread, without the GIL, while the calling thread reports progress and warnings and checks for
+/// signals: KeyboardInterrupt, and an exception in a callback, stop the render.
 ///
 /// `on_progress`  called with fraction, samples done, samples in all, seconds and goal; or None
 /// `on_warning`   called with a text
@@ -18,8 +18,9 @@ class Picture;
 /// Errors         those of job::run_job; those of the callbacks
 Picture render(job::Job job, const pybind11::object& on_progress, const pybind11::object& on_warning);
 
-/// Stops the renders of all other threads and waits until they have ended. Their threads, which are daemon threads, do
-/// not return to Python. Called before the interpreter finalizes: it would end them in the middle of a render.
+/// Stops the renders of all other threads and waits until they have ended. Those threads are daemon threads and do not
+/// return to Python. Called before the interpreter finalizes, which would otherwise kill them in the middle of a
+/// render.
 ///
 /// Domain     the calling thread holds the GIL
 void stop_renders();

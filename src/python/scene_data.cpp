@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names a file relative to another folder. Absolute names stay.
+/// Makes a file name relative to another folder. Absolute names are unchanged.
 std::string moved(const std::string& name, const fs::path& from, const fs::path& to) {
   if (fs::path(name).is_absolute()) return name;
   const auto absolute = [](const fs::path& folder) { return fs::absolute(folder / "").lexically_normal(); };
@@ -37,7 +37,7 @@ std::string moved(const std::string& name, const fs::path& from, const fs::path&
 /// Named in the data files of saved scenes, which save() may replace.
 constexpr const char* kWriter = "orrery Scene.save";
 
-/// The data file of a table beside the scene file.
+/// The data file of a table next to the scene file.
 std::string table_file_name(const fs::path& scene_file, const std::string& table) {
   return scene_file.stem().string() + "." + table + ".ply";
 }

@@ -16,7 +16,7 @@ namespace orrery::python {
 
 /// A scene as Python holds it: the text of a scene file, overrides, and tables of arrays in place of data files.
 struct SceneData {
-  std::filesystem::path file;  ///< of the scene
+  std::filesystem::path file;  ///< scene file
   bool is_file = false;        ///< false: the scene was made in Python, and `file` is only its name
   std::string text;
   std::vector<std::string> overrides;
@@ -29,7 +29,7 @@ struct SceneData {
 
 /// Reads the text of a scene file and checks that it is TOML.
 ///
-/// Errors     base::Error: those of format::read_scene, without those of keys and data files
+/// Errors     base::Error: those of format::read_scene, except those for keys and data files
 std::string read_scene_text(const std::filesystem::path& file);
 
 /// Checks everything that a render would reject.
@@ -41,10 +41,10 @@ std::vector<base::Diagnostic> check(const SceneData& scene);
 /// Returns the largest absolute radius of the spheres of all [[points]], scene units; 0 if there are none, or if the
 /// scene has errors, which a render reports.
 ///
-/// `memory_limit`   bytes that the spheres may take while they are read; 0: the free memory
+/// `memory_limit`   maximum memory for reading the spheres, bytes; 0: the free memory
 double largest_radius(const SceneData& scene, std::uint64_t memory_limit);
 
-/// Writes the scene as a scene file, and its arrays as PLY files beside it. Both read back to the same scene. A PLY
+/// Writes the scene as a scene file, and its arrays as PLY files next to it. Both read back to the same scene. A PLY
 /// file is replaced only if orrery wrote it.
 ///
 /// Errors     those of check(); base::Error: kUsage if a file is an input of the scene; kCannotCreate; kIo

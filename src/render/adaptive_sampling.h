@@ -12,11 +12,11 @@ class TileRenderer;
 struct Settings;
 struct Statistics;
 
-/// Adaptive sampling: each iteration chooses the pixels that double their samples, until the image reaches the target
-/// noise or the time budget or the samples are used up.
+/// Adaptive sampling: each iteration doubles the samples of selected pixels, until the image reaches the target noise,
+/// or the time budget or the samples are used up.
 ///
-/// Every pixel has two independent halves of samples, whose difference estimates its error. The choices depend only on
-/// sums that are exact in any order of addition, so without a time budget the image is deterministic.
+/// Every pixel has two independent halves of samples, whose difference estimates its error. The selection depends only
+/// on sums that are exact in any order of addition, so the image is deterministic without a time budget.
 ///
 /// `state`    has halves; rendering continues from it, even within an iteration
 /// Result     false if cancelled by the settings' `cancel`

@@ -10,12 +10,13 @@
 namespace orrery::render {
 namespace {
 
-/// An iteration adds at least this fraction of the existing samples, since choosing the pixels takes time, too.
+/// Minimum number of samples that an iteration adds, as a fraction of the existing ones, since choosing pixels also
+/// takes time.
 constexpr double kMinIteration = 1.0 / 64;
 
 /// A histogram of pixels by gain: how much their next sample reduces the image's squared error. Sixteen linear steps
-/// per octave from the number's exponent and fraction, since libraries' logarithms differ in their last bit, and the
-/// images would differ with them.
+/// per octave from the number's exponent and fraction, since logarithms of different libraries differ in the last bit,
+/// and images would differ as well.
 class Ranking {
  public:
   static constexpr int kStepsPerOctave = 16;
@@ -38,7 +39,7 @@ class Ranking {
   struct Bin {
     double error = 0;         ///< sum of the pixels' current squared errors
     double root = 0;          ///< sum of the roots of the squared errors of one sample
-    double samples = 0;       ///< that its pixels have
+    double samples = 0;       ///< number of samples of its pixels
     std::uint64_t price = 0;  ///< samples needed to double them
   };
   std::array<Bin, kBins> bins{};

@@ -8,7 +8,7 @@ namespace orrery::render {
 
 /// Target noise and sample limits of the next iteration of adaptive sampling.
 struct IterationGoal {
-  double error_ratio = 0;           ///< target squared error of the image / current one
+  double error_ratio = 0;           ///< target squared error of the image divided by the current one
   std::uint64_t affordable = 0;     ///< maximum samples of this iteration
   std::uint32_t max_per_pixel = 0;  ///< maximum samples of a pixel
 };

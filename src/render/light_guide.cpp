@@ -33,7 +33,7 @@ struct Padded {
 };
 
 /// Sums over windows of 2^(k + 1) + 1 pixels along the rows of a padded block, of its inner columns and all its rows.
-/// Sums of 2, 4, 8 .. pixels are built by pairwise addition. Nothing is subtracted, so dark pixels beside bright ones
+/// Sums of 2, 4, 8 .. pixels are built by pairwise addition. Nothing is subtracted, so dark pixels next to bright ones
 /// keep their precision, and the order is the same everywhere.
 using RowSums = std::array<std::vector<float>, kRadii>;
 

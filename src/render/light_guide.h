@@ -7,10 +7,10 @@
 
 namespace orrery::render {
 
-/// What the small emitters within a pixel cover of it; see find_small_emitters.
+/// Coverage of a pixel by the small emitters within it; see find_small_emitters.
 struct EmitterCoverage {
   float coverage = 0;  ///< fraction of the pixel
-  float light = 0;     ///< radiance that they add to the pixel's, mean of the three channels
+  float light = 0;     ///< radiance that they add to the pixel, mean of the three channels
 };
 
 /// Statistics of each pixel from its two independent halves of samples, in row-major order.
@@ -18,10 +18,10 @@ struct PixelStatistics {
   PixelStatistics(int width_px, int height_px);
 
   int width, height;                   ///< px
-  std::vector<std::uint32_t> samples;  ///< of each half, above 0
+  std::vector<std::uint32_t> samples;  ///< samples in each half, above 0
   std::vector<float> light;            ///< mean over both halves and the three channels, at least 0
   std::vector<float> variance;         ///< variance of `light`, mean of the three channels
-  /// 1: no path reached anything that could emit, so the pixel is black; empty: unknown for all.
+  /// 1: no path reached anything that could emit, so the pixel is black; empty: not known for any pixel.
   std::vector<std::uint8_t> known_black;
   std::vector<EmitterCoverage> small_emitters;  ///< empty: there are none
 
@@ -55,19 +55,19 @@ std::vector<PixelBlock> blocks_of(int width_px, int height_px);
 int window_size(int at, int reach, int size);
 int window_size(int at, int reach, int size, int remainder);
 
-/// An estimate of every pixel's radiance that borrows from its neighbours to the extent that its own samples are
+/// An estimate of every pixel's radiance that relies on its neighbours to the extent that its own samples are
 /// uncertain.
 ///
 /// Errors are relative to the pixel's radiance, but the pixel's own estimate of it fails if light is rare: without a
-/// hit it is zero, and with a single hit the relative error is one half, however rare such hits are. So the mean of the
-/// whole image is refined by the means of ever smaller windows, each weighted by its variance (the expected variation
-/// of the radiance is the radiance itself), and finally by the pixel's own value, as far as the pixels of a 5 x 5
-/// window differ by more than their variance (Wiener filter).
+/// hit it is zero, and with a single hit the relative error is one half, however rare such hits are. Therefore, the
+/// mean of the whole image is refined by the means of ever smaller windows, each weighted by its variance (the expected
+/// variation of the radiance is the radiance itself), and finally by the pixel's own value, to the extent that the
+/// pixels of a 5 x 5 window differ by more than their variance (Wiener filter).
 ///
 /// Reference  lee1980
 class LightGuide {
  public:
-  /// Ignores the pixels of `excluded_class`, so that the result does not depend on them.
+  /// Ignores the pixels of `excluded_class`, which therefore do not affect the result.
   ///
   /// Domain     the statistics outlive this
   LightGuide(const PixelStatistics& statistics, int excluded_class);

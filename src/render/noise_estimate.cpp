@@ -15,8 +15,8 @@
 namespace orrery::render {
 namespace {
 
-/// Half-widths of windows, px: for averaging errors; the same if effectively fewer than kMinEffectiveCount pixels make
-/// up the mean of the first; and for deciding whether an estimate is reliable.
+/// Half-widths of windows, px: for averaging errors; for averaging if fewer than kMinEffectiveCount pixels effectively
+/// contribute to the first mean; and for deciding whether an estimate is reliable.
 constexpr int kReach = 2, kWideReach = 4, kReliabilityReach = 3;
 constexpr double kMinEffectiveCount = 3;
 
@@ -111,8 +111,8 @@ class CrossValidatedErrors {
   int cell_rows() const { return down_; }
 
   /// The mean around a pixel of the excluded class, over the smallest window in which enough pixels contribute. If a
-  /// few pixels of a wide window have nearly all of its error, any pixel may be another of them, so the wide mean is a
-  /// lower bound.
+  /// few pixels of a wide window contribute nearly all of its error, any pixel may be another one, so the wide mean is
+  /// a lower bound.
   float around(int x, int y) const {
     const Sums& wide = wide_[static_cast<std::size_t>(y / kCell * across_ + x / kCell)];
     if (wide.sum == 0) return 0;
@@ -157,7 +157,7 @@ class CrossValidatedErrors {
   const PixelStatistics& s_;
   int across_, down_;  ///< cells
   std::vector<float> values_;
-  std::vector<Sums> cells_, wide_;  ///< of cells, and of the windows around them
+  std::vector<Sums> cells_, wide_;  ///< sums of cells, and of the windows around them
 };
 
 /// Whether a pixel's neighbours have found enough light, or can be trusted to be black.
@@ -179,8 +179,8 @@ bool has_reliable_estimate(const PixelStatistics& s, int x, int y) {
     }
   }
   if (count == 0 || n * count > 2 * samples) return true;  // its neighbours need more samples, not the pixel itself
-  if (2 * dark >= count) return false;                     // light beside a dark area says nothing about the area
-  return light * light >= kHits * variance;                // the number of hits if all are equally bright
+  if (2 * dark >= count) return false;       // light next to a dark area gives no information about the area
+  return light * light >= kHits * variance;  // the number of hits if all are equally bright
 }
 
 /// Whether all pixels that has_reliable_estimate() reads for a block have the same radiance in every sample. Their

@@ -13,13 +13,13 @@ namespace orrery::render {
 
 struct Settings;
 
-/// Reports progress to the caller, from the rendering threads: at each whole percent, and at most ten times a second in
+/// Reports progress to the caller, on the rendering threads: at each whole percent, and at most ten times a second in
 /// between.
 class ProgressReporter {
  public:
   /// Starts the clock.
   ///
-  /// `total`    samples to render, as far as known
+  /// `total`    expected number of samples to render
   /// `before`   work of earlier runs
   ProgressReporter(const Settings& settings, std::uint64_t total, const film::RenderWork& before);
 

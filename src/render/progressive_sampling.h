@@ -55,7 +55,8 @@ class ProgressiveSampling {
 /// The work of earlier runs plus that of this pool.
 film::RenderWork work_so_far(const film::RenderWork& before, const TilePool& pool, const ProgressReporter& progress);
 
-/// Renders all samples of the settings' pixel shard, in passes of growing size: the first soon show the whole image.
+/// Renders all samples of the settings' pixel shard, in passes of growing size, so that the whole image is soon
+/// visible.
 ///
 /// Result     false if cancelled by the settings' `cancel`
 bool render_progressively(const compile::CompiledScene& compiled, const Settings& settings,

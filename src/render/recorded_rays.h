@@ -19,7 +19,7 @@ struct RecordedRays {
   std::uint64_t paths = 0;
 };
 
-/// Renders tiles of an image on one thread and keeps every packet; the tiles' sums stay unchanged.
+/// Renders tiles of an image on one thread and keeps every packet; the tiles' sums remain unchanged.
 ///
 /// Domain     `accel` was built for the view, in the precision
 /// Cost       about 2 KB per 16 rays, 1 KB in `fast`
@@ -28,7 +28,7 @@ RecordedRays<kernel::RayPacket> record_rays(const kernel::SceneView& view, const
 RecordedRays<kernel::RayPacketFast> record_rays_fast(const kernel::SceneView& view, const accel::Accel& accel,
                                                      const std::vector<kernel::Tile>& tiles);
 
-/// Times tracing the packets again, without shading.
+/// Traces the packets again, without shading, and measures the time.
 ///
 /// Result     seconds
 double trace_again(const kernel::Tracer& tracer, std::vector<kernel::RayPacket>& packets);

@@ -43,7 +43,7 @@ Result render(const compile::CompiledScene& compiled, accel::Accel& accel, const
 Result render(const compile::CompiledScene& compiled, const Settings& settings);
 Result render(const compile::CompiledScene& compiled, const Settings& settings, std::optional<film::Partial> from);
 
-/// Samples per pixel that the settings request.
+/// The number of samples per pixel that the settings request.
 std::uint32_t samples_of(const compile::CompiledScene& compiled, const Settings& settings);
 
 /// Converts a partial to an image; pixels without samples are black.

@@ -15,7 +15,8 @@ struct Result {
   film::DeepPicture deep;  ///< empty unless requested
   Statistics statistics;
   bool completed = false;  ///< false: stopped by `cancel`
-  /// All sums; if stopped while rendering, the state to resume from. Absent if stopped earlier, and in finished().
+  /// All sums; if stopped while rendering, the state to resume from. Empty if stopped earlier, and in the result of
+  /// finished().
   std::optional<film::Partial> partial;
 };
 

@@ -33,7 +33,7 @@ struct SamplingLimits {
 
   /// True if the pixels are sampled adaptively.
   bool is_adaptive() const { return noise > 0 || seconds > 0; }
-  /// Takes time that has passed from the time budget, if there is one.
+  /// Subtracts elapsed time from the time budget, if there is one.
   void spend(double used_s) {
     constexpr double kShortest = 1e-3;  // 0 would be no limit
     if (seconds > 0) seconds = std::max(seconds - used_s, kShortest);

@@ -34,7 +34,7 @@ struct Settings {
   std::function<bool()> snapshot_is_due;
   std::function<void(const film::Partial&)> on_snapshot;
   /// Called on the rendering threads for pixels that have received samples, and for those of an earlier run when a
-  /// resumed render begins. During the call nobody changes these pixels; others change.
+  /// resumed render begins. These pixels do not change during the call; others may.
   std::function<void(const film::Partial&, const film::RenderedPixels&)> on_pixels;
 };
 

@@ -27,14 +27,13 @@ constexpr int kLargestSide = 3;
 constexpr double kExpectedHits = 4;
 /// Light below this fraction of that around the pixel is ignored.
 constexpr float kMinFraction = 1.0f / 8;
-/// Coverage from which on the error of a sample is not assumed to be larger, so that few samples are wasted on emitters
-/// that are occluded.
+/// Minimum coverage assumed in the error of a sample, so that few samples are wasted on occluded emitters.
 constexpr float kMinCoverage = 1.0f / 32;
 /// Half-width of the window around a pixel, px.
 constexpr int kWindowReach = 3;
 
-/// The distance of the sun of a daylight sky, in distances to the focus plane. Nothing depends on it as long as it is
-/// large.
+/// The distance of the sun of a daylight sky, in distances to the focus plane. The result does not depend on it as long
+/// as it is large.
 constexpr double kSunDistance = 0x1p40;
 
 /// The camera at the time when the shutter opens (0) or closes (1).
@@ -59,7 +58,7 @@ struct SphereImage {
   double area;            ///< square pixels
 };
 
-/// Projects a sphere. Empty if it is behind the camera or around it.
+/// Projects a sphere. Empty if the sphere is behind the camera or contains it.
 std::optional<SphereImage> image_of(const kernel::Camera& camera, Vec3d center, double radius) {
   const Vec3d forward = vector_of(camera.forward), right = vector_of(camera.right), down = vector_of(camera.down);
   const Vec3d to = center - vector_of(camera.origin), across = cross(right, down);

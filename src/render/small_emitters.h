@@ -8,9 +8,9 @@
 
 namespace orrery::render {
 
-// Small emitters: those that the camera sees as at most 3 x 3 pixels, such as distant lamps, or the sun in a wide view.
-// Few of a pixel's samples hit them, and the pixel's neighbours, by which its error is judged, do not see them. But the
-// camera and the scene tell where they are without any sample, so that choosing pixels by them causes no bias.
+// Small emitters cover at most 3 x 3 pixels, such as distant lamps, or the sun in a wide view. Few of a pixel's samples
+// hit them, and the neighbouring pixels, from which its error is estimated, do not see them. Their positions in the
+// image follow from camera and scene without any samples, so selecting pixels by them causes no bias.
 
 /// Computes the coverage and the radiance that small emitters add to each pixel, as if nothing occluded them.
 ///
@@ -18,17 +18,17 @@ namespace orrery::render {
 /// Cost       one pass over the spheres if something emits
 std::vector<EmitterCoverage> find_small_emitters(const kernel::SceneView& scene, int width_px, int height_px);
 
-/// Whether a pixel has too few samples to have hit its small emitters several times.
+/// Returns whether a pixel has too few samples to have hit its small emitters several times.
 ///
-/// Result     false from kSamplesForReliability on, and if their light would not matter among that of the neighbours.
-///            Does not depend on the pixel's own values, nor on those of its class
+/// Result     false from kSamplesForReliability on, and if their light is insignificant compared with that of the
+///            neighbours. Independent of the pixel's own values and those of its class
 bool needs_samples_for_emitters(const PixelStatistics& statistics, int x, int y);
 
 /// The squared relative display error of a single sample of a pixel that comes from hitting its small emitters by
 /// chance.
 ///
-/// Result     0 if there are none, or if their light would not matter among that of the neighbours. Does not depend on
-///            the pixel's own values, nor on those of its class
+/// Result     0 if there are none, or if their light is insignificant compared with that of the neighbours. Independent
+///            of the pixel's own values and those of its class
 float error_of_small_emitters(const PixelStatistics& statistics, int x, int y);
 
 }  // namespace orrery::render

@@ -17,8 +17,8 @@
 namespace orrery::render {
 
 struct TilePool::Impl {
-  // Raises the limit if necessary: by default TBB uses no more threads than processors. The smallest limit holds for
-  // all renders of the process, so that fewer threads must not set one.
+  // Raises the limit if necessary: by default TBB uses no more threads than processors. The smallest limit applies to
+  // all renders of the process, so renders with fewer threads must not set one.
   std::optional<tbb::global_control> limit;
   tbb::task_arena arena;
   tbb::enumerable_thread_specific<TileWorker> workers;

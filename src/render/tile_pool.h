@@ -20,7 +20,7 @@ class TilePool {
 
   /// Calls `work(i, worker)` for i = 0 .. count - 1, in any order and on all threads, until `shall_stop` returns true.
   ///
-  /// Result     false if some were not called
+  /// Result     false if some calls were skipped
   bool run(std::size_t count, const std::function<void(std::size_t i, TileWorker& worker)>& work,
            const std::function<bool()>& shall_stop);
 

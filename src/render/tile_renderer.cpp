@@ -60,7 +60,7 @@ TileRenderer::TileRenderer(const compile::CompiledScene& compiled, const accel::
     : view_(compiled.view()),
       tracer_(accel.tracer()),
       request_(request),
-      // Each half of a low-discrepancy sequence is a sequence of its own.
+      // Each half of a low-discrepancy sequence is a sequence in its own right.
       second_half_(is_adaptive ? kernel::Sampler::kSecondHalf
                                : std::max(1U, static_cast<std::uint32_t>(compiled.samples) / 2)) {
   const bool layers = request.any();

@@ -21,7 +21,7 @@ namespace orrery::render {
 /// A growing buffer of a tile's light events.
 class LightEventBuffer : public kernel::LightEvents {
  public:
-  /// Clears the buffer and reserves one event per path, which is all that a scene without lights has.
+  /// Clears the buffer and reserves one event per path, the maximum in a scene without lights.
   void reset(std::size_t paths);
   const kernel::LightEvent* begin() const { return storage_.data(); }
 
@@ -35,8 +35,8 @@ struct TileWorker {
   std::unique_ptr<kernel::PathStream> stream;
   std::unique_ptr<kernel::PathStreamFast> stream_fast;
   std::vector<kernel::PathRecord> records;
-  std::vector<kernel::PixelSum> light;   ///< of a tile's pixels
-  std::vector<kernel::GuideSum> guides;  ///< of a tile's pixels
+  std::vector<kernel::PixelSum> light;   ///< sums of a tile's pixels
+  std::vector<kernel::GuideSum> guides;  ///< guides of a tile's pixels
   LightEventBuffer events;
   kernel::TileCounts counts;
 };
@@ -56,14 +56,14 @@ class TileRenderer {
 
  private:
   void trace(const kernel::Tile& tile, TileWorker& worker) const;
-  /// Renders samples of one half, with sums of their own.
+  /// Renders samples of one half into separate sums.
   void trace_half(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
   void trace_records(const kernel::Tile& tile, TileWorker& worker, film::Partial& image) const;
 
   kernel::SceneView view_;
   kernel::Tracer tracer_;
   const film::LayerRequest& request_;
-  std::uint32_t second_half_;  ///< its first sample
+  std::uint32_t second_half_;  ///< first sample of the second half
   kernel::RenderTile render_ = nullptr;
   kernel::RenderTileFast render_fast_ = nullptr;  ///< used if not null
 };

@@ -21,7 +21,7 @@ constexpr double kMaxTrialPaths = 32 * 1024;
 /// Fewer tiles than this would sample only a corner of the image.
 constexpr int kMinTrialTiles = 4;
 
-/// Without a trial: in larger scenes secondary rays diverge too soon for packets.
+/// Number of spheres above which, without a trial, secondary rays are assumed to be too incoherent for packets.
 constexpr std::size_t kManySpheres = 1000;
 
 /// A deterministic set of tiles, spread over the image. Each fills a whole path stream; otherwise packets of secondary

@@ -18,7 +18,7 @@ namespace orrery::render {
 accel::Traversals choose_traversals(const compile::CompiledScene& compiled, accel::Accel& accel,
                                     std::optional<accel::Traversal> requested);
 
-/// Description of the traversal before anything is built: "packet", "single", "list", or that a trial will choose.
+/// Describes the traversal before anything is built: "packet", "single", "list", or that a trial will choose.
 std::string planned_traversal(const compile::CompiledScene& compiled);
 
 /// Name of the traversals, e.g. "packet" or "packet, secondary single".

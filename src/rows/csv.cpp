@@ -55,7 +55,7 @@ double distance_pc(double parallax_mas) {
   return parallax_mas > 0 ? 1000 / parallax_mas : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Full intensity of colours in a text, which has no types: the smallest customary one that no colour exceeds.
+/// Full intensity of colours in a text file, which has no types: the smallest customary value that no colour exceeds.
 double full_intensity(const std::vector<ColumnInfo>& columns, const std::vector<ColumnSurvey>& surveys,
                       const std::array<std::string, 3>& rgb) {
   double largest = 0;
@@ -195,7 +195,7 @@ class CsvFile final : public SingleFrame {
 bool is_csv(const Signature& signature) {
   const std::string& extension = signature.extension;
   if (extension == ".csv" || extension == ".tsv" || extension == ".tab") return true;
-  // Any text of lines that consist of numbers, or that have names of coordinates above them.
+  // Any text file whose lines consist of numbers, or which has a header with names of coordinates.
   if (signature.head.find('\0') != std::string::npos) return false;
   const std::size_t end = signature.head.rfind('\n');  // the last line may be incomplete
   const std::vector<char> lines(

@@ -16,7 +16,7 @@ using namespace data;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
-/// Rows that are examined, and bytes: lines may be long.
+/// Maximum number of rows and bytes to examine: lines may be long.
 constexpr std::size_t kSampleRows = 1000;
 constexpr std::uint64_t kSampleBytes = std::uint64_t{4} << 20;
 
@@ -29,7 +29,7 @@ struct Line {
 
 struct Sample {
   std::string comment;      ///< the last one, without its sign
-  std::vector<Line> lines;  ///< that are neither comments nor blank
+  std::vector<Line> lines;  ///< lines that are neither comments nor blank
 };
 
 Sample read_sample(const ByteSource& bytes) {
@@ -48,7 +48,7 @@ Sample read_sample(const ByteSource& bytes) {
     }
     const std::string_view text = trimmed(line.text);
     if (text.empty()) continue;
-    // Above the rows, names may follow the sign at once; CloudCompare writes two slashes.
+    // Above the rows, names may follow the comment sign immediately; CloudCompare writes two slashes.
     if (sample.lines.empty() && (text[0] == '#' || text[0] == '%' || text.starts_with("//"))) {
       sample.comment = trimmed(text.substr(std::min(text.find_first_not_of("#%/"), text.size())));
       continue;

@@ -123,7 +123,7 @@ class DataHeader {
     std::string known;
     for (const Style& s : kStyles) known += (known.empty() ? "" : ", ") + std::string(s.name);
     if (style.empty())
-      faults_.fail(line(), "the section \"Atoms\" does not name its style, which decides what its columns mean",
+      faults_.fail(line(), "the section \"Atoms\" does not name its style, which determines the meaning of its columns",
                    "write for example \"Atoms # full\"; styles: " + known);
     if (style.size() != 1 || !set_columns(style[0]))
       faults_.fail(line(), fmt::format("atom style \"{}\" is not supported", style[0]), "supported: " + known);
@@ -210,7 +210,7 @@ class LammpsData final : public DataFile {
   }
 
  private:
-  /// Checks that a section, or nothing, follows the atoms.
+  /// Checks that the atoms are followed by a section or by the end of the file.
   void require_end(TextCursor cursor) const {
     std::string line;
     while (cursor.next_filled(line)) {

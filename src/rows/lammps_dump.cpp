@@ -79,7 +79,7 @@ FrameInfo described(const LammpsFrame& frame) {
   return info;
 }
 
-/// One coordinate of positions that the file has in units of the box.
+/// One coordinate of positions that the file stores in units of the box.
 std::vector<double> unscaled(const Box& box, std::size_t axis, const std::array<const double*, 3>& scaled,
                              std::size_t rows) {
   const auto part = [axis](const Vec3d& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
@@ -156,7 +156,7 @@ class LammpsDump final : public TextFrames {
 
   bool begins_frame(std::string_view line) const override { return line.starts_with("ITEM:"); }
 
-  /// Whether the types of atoms are labels, as with `dump_modify types labels`: the first one is no number.
+  /// Whether the types of atoms are labels, as with `dump_modify types labels`: the first one is not a number.
   ///
   /// `rows`     at the first row
   static bool has_labels(const LammpsFrame& frame, TextCursor rows) {

@@ -30,7 +30,7 @@ class FrameReader {
       if (item.find_first_not_of(" \t") == std::string::npos) continue;
       if (!item.starts_with("ITEM:"))
         faults_.fail(item_line(), fmt::format("expected a line \"ITEM: ...\", found '{}'", item.substr(0, kMaxShown)),
-                     "check the number of atoms of the frame before, and the lines of its header");
+                     "check the number of atoms of the previous frame, and the lines of its header");
       const std::string name = item.substr(std::min(item.find_first_not_of(" \t", 5), item.size()));
       if (name.starts_with("ATOMS")) {
         read_columns(name);
@@ -45,7 +45,7 @@ class FrameReader {
       else if (name.starts_with("UNITS") || name.starts_with("TIME"))
         next_line();
       else
-        faults_.fail(item_line(), fmt::format("'ITEM: {}' is no item of a dump of atoms", name.substr(0, kMaxShown)),
+        faults_.fail(item_line(), fmt::format("'ITEM: {}' is not an item of an atom dump", name.substr(0, kMaxShown)),
                      "supported: dumps of style atom and custom");
     }
   }

@@ -20,15 +20,15 @@ struct LammpsFrame {
   std::uint64_t rows_line = 0;  ///< number of the line that declares `rows`
   std::optional<data::Box> box;
   std::vector<std::string> columns;
-  bool has_labels = false;  ///< the column `type` has labels instead of numbers
+  bool has_labels = false;  ///< the column `type` contains labels instead of numbers
 };
 
 /// Reads the items of a frame up to and including `ITEM: ATOMS`.
 ///
-/// Errors     base::Error(kBadData) by `faults`
+/// Errors     base::Error(kBadData), thrown through `faults`
 LammpsFrame read_lammps_frame(data::TextCursor& cursor, data::Faults& faults);
 
-/// A box of LAMMPS: low and high coordinates, and tilt factors.
+/// Converts a LAMMPS box, given by low and high coordinates and tilt factors.
 data::Box lammps_box(const data::Vec3d& low, const data::Vec3d& high, double xy, double xz, double yz);
 
 }  // namespace orrery::rows

@@ -66,7 +66,7 @@ class PlyFile final : public SingleFrame {
  private:
   const PlyElement& vertex() const { return header_.elements[vertex_]; }
   bool is_ascii() const { return header_.encoding == PlyEncoding::kAscii; }
-  /// Numbers of a text are read as float64 or int64.
+  /// Numbers of an ASCII file are read as float64 or int64.
   ColumnType type_of(const PlyProperty& property) const {
     if (!is_ascii()) return column_type(property.type);
     return is_float(property.type) ? ColumnType::kFloat64 : ColumnType::kInt64;
@@ -128,7 +128,7 @@ class PlyFile final : public SingleFrame {
     check_end(faults, header_, cursor);
   }
 
-  /// Reads an ascii file that has nothing but vertices.
+  /// Reads an ASCII file that contains only vertices.
   std::vector<Values> read_lines(const std::vector<std::size_t>& wanted, Faults& faults) const {
     TextLayout layout;
     layout.begin = header_.bytes;
@@ -168,14 +168,14 @@ class PlyFile final : public SingleFrame {
         for (std::size_t w = 0; w < wanted.size(); ++w)
           if (!append(out[w], row[wanted[w]]))
             faults.fail(static_cast<std::uint64_t>(cursor.line()),
-                        fmt::format("{}, `{}`: not an integer of 64 bits", name(), element.properties[wanted[w]].name));
+                        fmt::format("{}, `{}`: not a 64-bit integer", name(), element.properties[wanted[w]].name));
       }
     }
     check_end(faults, header_, cursor);
     return out;
   }
 
-  /// Appends a number to a column; false if the column has integers and the number is none.
+  /// Appends a number to a column; false if the column has integers and the number is not one.
   static bool append(Values& values, double number) {
     return std::visit(
         [number](auto& column) {

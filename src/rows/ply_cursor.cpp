@@ -70,7 +70,7 @@ bool PlyCursor::skip(const PlyProperty& property) {
   if (is_bad_length_) return false;
   for (double i = 0; i < value; ++i) {
     double ignored = 0;
-    if (!take(property.type, ignored)) return false;  // stops at the end of the data, whatever the length is
+    if (!take(property.type, ignored)) return false;  // stops at the end of the data, regardless of the length
   }
   return true;
 }

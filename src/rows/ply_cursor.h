@@ -10,7 +10,7 @@
 
 namespace orrery::rows {
 
-/// Reads values in sequence from the data after the header. In an ascii file, each row is one line.
+/// Reads values in sequence from the data after the header. In an ASCII file, each row is one line.
 class PlyCursor {
  public:
   /// `line` is the line number of the first data byte.
@@ -18,12 +18,12 @@ class PlyCursor {
 
   /// Advances to the next row; skips blank lines.
   void begin_row();
-  /// Ends a row; false if the row has unread values.
+  /// Ends a row; false if the row has unread values left.
   bool end_row();
   /// Returns the line number of the row; 0 in a binary file.
   int line() const { return row_line_; }
 
-  /// Reads a value; false at the end of the row or of the data, or if an ascii value is not a number.
+  /// Reads a value; false at the end of the row or the data, or if an ASCII value is not a number.
   bool take(data::NumberType type, double& value);
   /// Skips a value or a list; false as for take(), and if the length of the list is invalid.
   bool skip(const PlyProperty& property);

@@ -23,7 +23,7 @@ struct PlyProperty {
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
-  int line = 0;  ///< of its declaration
+  int line = 0;  ///< line of its declaration
   std::vector<PlyProperty> properties;
 
   bool has_list() const {
@@ -36,12 +36,12 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  std::size_t bytes = 0;  ///< length of the header, which the data follow
+  std::size_t bytes = 0;  ///< length of the header; the data follow
   int lines = 0;
 };
 
-/// Maximum length of a header, bytes: room for ten thousand properties. A file without end_header must not be searched
-/// to its end.
+/// Maximum length of a header, bytes: room for ten thousand properties. Avoids scanning a whole file that has no
+/// end_header.
 inline constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
 /// Parses a PLY header.

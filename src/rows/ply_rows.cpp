@@ -22,7 +22,7 @@ std::uint64_t min_bytes(const PlyElement& element, PlyEncoding encoding) {
 
 void check_count(Faults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left) {
   const std::uint64_t each = std::max<std::uint64_t>(1, min_bytes(element, header.encoding));
-  // The last ascii word needs no space after it.
+  // The last ASCII word need not be followed by a space.
   const std::uint64_t bytes = bytes_left + (header.encoding == PlyEncoding::kAscii ? 1 : 0);
   if (element.count > bytes / each)
     faults.fail(static_cast<std::uint64_t>(element.line),

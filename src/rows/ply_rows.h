@@ -14,15 +14,15 @@ namespace orrery::rows {
 /// check counts before memory is allocated.
 std::uint64_t min_bytes(const PlyElement& element, PlyEncoding encoding);
 
-/// Raises an error at the line of an element if fewer bytes follow than its rows need.
+/// Throws an error at the line of an element if fewer bytes follow than its rows need.
 void check_count(data::Faults& faults, const PlyElement& element, const PlyHeader& header, std::uint64_t bytes_left);
 
-/// Raises an error at the line of the cursor, in a binary file that of the element.
+/// Throws an error at the line of the cursor; in a binary file, at that of the element.
 [[noreturn]] void fail_in_row(data::Faults& faults, const PlyElement& element, const PlyCursor& cursor,
                               const std::string& text);
 
-/// Reads one row. Errors have its line, in a binary file that of the element. Calls `take(property, index)` for each
-/// property, which returns false if the value is invalid.
+/// Reads one row. Errors refer to its line; in a binary file, to that of the element. Calls `take(property, index)` for
+/// each property, which returns false if the value is invalid.
 ///
 /// `name()`   name of the row, for messages
 template <class Name, class Take>
@@ -39,7 +39,7 @@ void read_row(data::Faults& faults, const PlyElement& element, PlyCursor& cursor
 /// Skips an element other than `vertex`.
 void skip_element(data::Faults& faults, const PlyElement& element, const PlyHeader& header, PlyCursor& cursor);
 
-/// Raises an error if data follow the last row that the header declares, at the line of the last element with rows.
+/// Throws an error, at the line of the last element with rows, if data follow the last row that the header declares.
 void check_end(data::Faults& faults, const PlyHeader& header, PlyCursor& cursor);
 
 }  // namespace orrery::rows

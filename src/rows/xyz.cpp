@@ -85,7 +85,7 @@ class XyzHeaderReader {
     return {add(names[0], type), add(names[1], type), add(names[2], type)};
   }
 
-  /// Elements, or types: numbers in the place of elements mean atomic numbers to some programs, types to others.
+  /// Elements or types: some programs interpret numbers in the element column as atomic numbers, others as types.
   void set_species(const std::string& name, const Parts& first, std::size_t column) {
     std::int64_t ignored = 0;
     const bool is_number = column < first.size() && parse_integer(first[column], ignored);
@@ -98,7 +98,7 @@ class XyzHeaderReader {
     for (const XyzProperty& p : properties) {
       if (p.name == "pos") {
         if (p.count != 3 || p.type != ColumnType::kFloat64)
-          faults_.fail(comment_line_, "property \"pos\" is not of 3 real numbers", "write pos:R:3");
+          faults_.fail(comment_line_, "property \"pos\" does not have 3 real components", "write pos:R:3");
         roles.position = add_three(kXyz, p.type);
         continue;
       }
@@ -174,7 +174,7 @@ class Xyz final : public TextFrames {
       layout.columns.push_back({column.type, std::find(columns.begin(), columns.end(), column.name) != columns.end()});
       names.push_back(column.name);
     }
-    // Rows of plain XYZ may have anything behind the position.
+    // Rows of plain XYZ may have anything after the position.
     constexpr std::size_t kPlainColumns = 4;
     layout.allows_more = !header.is_extended;
     while (!header.is_extended && layout.columns.size() > kPlainColumns && !layout.columns.back().is_wanted)
@@ -199,7 +199,7 @@ class Xyz final : public TextFrames {
     if (!parse_count(line, count))
       Faults(bytes().file())
           .fail(cursor.line() - 1, fmt::format("expected a number of atoms, found '{}'", line.substr(0, kMaxShown)),
-                "check the number of atoms of the frame before");
+                "check the number of atoms of the previous frame");
     cursor.skip(1);
     return static_cast<std::uint64_t>(count);
   }

@@ -27,7 +27,7 @@ char closing(char opening) {
   }
 }
 
-/// Takes a word, or what is in quotes or brackets, off the front of a text.
+/// Removes a word, or a quoted or bracketed part, from the front of a string and returns it.
 std::string taken(std::string_view& text, std::string_view separators) {
   std::string out;
   if (text.empty()) return out;

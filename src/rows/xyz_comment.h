@@ -14,7 +14,7 @@
 namespace orrery::rows {
 
 /// The values in the second line of a frame of extended XYZ, by key. Quotes and brackets around a value are removed; a
-/// key without a value has an empty one.
+/// key without a value maps to an empty string.
 using XyzValues = std::map<std::string, std::string, std::less<>>;
 
 XyzValues xyz_values(std::string_view line);
@@ -28,13 +28,13 @@ struct XyzProperty {
 
 /// Parses "species:S:1:pos:R:3".
 ///
-/// Errors     base::Error(kBadData) by `faults`
+/// Errors     base::Error(kBadData), thrown through `faults`
 std::vector<XyzProperty> xyz_properties(std::string_view text, std::uint64_t line, data::Faults& faults);
 
 /// Reads `Lattice`, `pbc` and `Origin`.
 ///
-/// Result     nothing without a lattice
-/// Errors     base::Error(kBadData) by `faults`
+/// Result     empty without a lattice
+/// Errors     base::Error(kBadData), thrown through `faults`
 std::optional<data::Box> xyz_box(const XyzValues& values, std::uint64_t line, data::Faults& faults);
 
 }  // namespace orrery::rows

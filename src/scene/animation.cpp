@@ -17,7 +17,7 @@ namespace {
 
 bool is_number(ValueType type) { return type == ValueType::kNumber || type == ValueType::kVector; }
 
-/// True for the tables whose numbers can be animated; those of the other tables hold for the whole animation.
+/// True for the tables whose numbers can be animated; those of the other tables apply to the whole animation.
 bool is_singleton_table(const std::string& table) { return table == "camera" || table == "background"; }
 
 template <class Target>

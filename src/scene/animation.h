@@ -27,7 +27,7 @@ std::optional<Animated> find_animated(const Scene& scene, const std::string& tar
 /// Returns the indices of the spheres that a target matches; several if they share a name. Empty for other targets.
 std::vector<std::size_t> spheres_of_target(const Scene& scene, const std::string& target);
 
-/// Returns all targets that find_animated accepts in this scene, except those by sphere index.
+/// Returns all targets that find_animated accepts in this scene, except those with a sphere index.
 std::vector<std::string> animated_names(const Scene& scene);
 
 /// Returns the names of the interpolations in scene files, in enumerator order.

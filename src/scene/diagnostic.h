@@ -13,7 +13,7 @@ struct SceneDiagnostic {
   base::Severity severity = base::Severity::kError;
   std::string key;  ///< "camera.up", "sphere[3].radius", "points[0].file", 0-based; empty: the whole scene
   std::string text;
-  base::ErrorKind kind = base::ErrorKind::kBadData;  ///< of an error; kBadData or kMissingInput
+  base::ErrorKind kind = base::ErrorKind::kBadData;  ///< kind of an error: kBadData or kMissingInput
 };
 
 }  // namespace orrery::scene

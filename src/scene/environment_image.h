@@ -12,17 +12,17 @@ namespace orrery::scene {
 /// The sun of an image background: a disc of constant radiance, separate from the texels.
 struct Sun {
   math::Vec3d direction{0, 1, 0};  ///< unit, from the scene to the centre of the disc, in the map's space
-  double one_minus_cos = 0;        ///< of half the angle that the disc subtends
+  double one_minus_cos = 0;        ///< 1 - cos of half the angle that the disc subtends
   math::Vec3d radiance{0, 0, 0};   ///< scene-linear, working space; 0: no sun
 };
 
 /// A latitude-longitude map, as the OpenEXR and USD conventions orient it: rows from +y to -y, longitude 0 at +z, +x at
 /// a quarter of the width.
 ///
-/// Cost       12 bytes per texel. Rows take no memory before they are written.
+/// Cost       12 bytes per texel. Rows take no memory until they are written.
 class EnvironmentImage {
  public:
-  /// The values of the texels are indeterminate.
+  /// Creates a map whose texels are uninitialized.
   EnvironmentImage(int width, int height)
       : width_(width), height_(height), values_(std::make_unique_for_overwrite<float[]>(begin_of(height) + kPadding)) {
     values_[begin_of(height)] = 0;
@@ -37,7 +37,7 @@ class EnvironmentImage {
   const float* row(int y) const { return &values_[begin_of(y)]; }
 
   Sun sun;
-  /// The image at decreasing resolutions, without sun, for textures that are seen from far away; empty for backgrounds.
+  /// The lower levels of a mip map, without sun; empty for backgrounds.
   std::vector<EnvironmentImage> reduced;
 
  private:

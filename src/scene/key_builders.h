@@ -15,10 +15,10 @@
 
 namespace orrery::scene {
 
-/// Ranges of a reflectance, probability or fuzz, and of a radiance without exposure.
+/// Range of a reflectance, probability or fuzz; range of a radiance without exposure.
 inline constexpr Range kUnit{0, 1};
 inline constexpr Range kLight{0, kBrightestBackground};
-/// Ranges of a coordinate and of a length, scene units.
+/// Range of a coordinate, and of a length, scene units.
 inline constexpr Range kAnyLength{-kLargestLength, kLargestLength};
 inline constexpr Range kLength{kSmallestRadius, kLargestLength};
 
@@ -116,7 +116,7 @@ Key<Target> choice(const char* name, std::vector<std::string> choices, const Key
             return string_text(choices[static_cast<std::size_t>(at(const_cast<Target&>(t)))]);
           }};
 }
-/// Builds a key for one of several words, stored as text; empty: none.
+/// Builds a key for one of several words, stored as a string; empty: none.
 template <class Target, class At>
 Key<Target> choice_of_text(const char* name, std::vector<std::string> choices, const KeyDoc& about, At at) {
   Key<Target> key = key_of<Target>(name, ValueType::kChoice, {}, about, at, string_text);

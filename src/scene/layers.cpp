@@ -27,7 +27,7 @@ bool has_emitters(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(), is_emitter);
 }
 
-/// Whether any light belongs to another group than the default one.
+/// True if any light belongs to a group other than the default.
 bool has_light_groups(const Scene& scene) {
   const auto is_named = [](const std::string& group) { return !group.empty() && group != kDefaultLightGroup; };
   return is_named(background_light_group(scene.background)) ||

@@ -24,7 +24,7 @@ inline constexpr const char* kDefaultLightGroup = "default";
 /// it and belong to the default group.
 std::string background_light_group(const Background& background);
 
-/// Returns why the layers of a light group cannot have this name; empty if they can.
+/// Returns why a name is invalid for a light group; empty if it is valid.
 std::string light_group_fault(const std::string& name);
 
 /// Returns why a scene cannot have a layer; empty if it can.

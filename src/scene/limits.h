@@ -13,11 +13,11 @@ inline constexpr double kLongestShutter = 100;
 /// Maximum absolute frame number of a [[key]], and maximum turntable length, frames.
 inline constexpr double kMaxFrame = 1e6;
 
-/// Maximum absolute coordinate and radius, scene units: squares and products of squares stay far inside the range of a
+/// Maximum absolute coordinate and radius, scene units: squares and products of squares stay well within the range of a
 /// double.
 inline constexpr double kLargestLength = 1e18;
 
-/// Maximum absolute value at the ends of a colour map, in the unit of the column: their difference is finite.
+/// Maximum absolute value at the ends of a colour map, in the unit of the column, so that their difference is finite.
 inline constexpr double kLargestValue = 1e300;
 
 /// Minimum absolute radius, and minimum length of a vector that defines a direction, scene units: their squares keep
@@ -27,10 +27,11 @@ inline constexpr double kSmallestRadius = 1e-30;
 /// The same for spheres in precision `fast`: the square of the radius is a normal number of single precision.
 inline constexpr double kSmallestFastRadius = 1e-18;
 
-/// Maximum number of spheres of a scene: ids have 32 bits, and the last one means none.
+/// Maximum number of spheres of a scene: ids have 32 bits, and the largest id means none.
 inline constexpr std::size_t kMaxSpheres = 0xFFFFFFFF;
 
-/// Minimum sine of the angle between the view direction and `up`: below it, the camera roll would be rounding error.
+/// Minimum sine of the angle between the view direction and `up`; below it, rounding errors would determine the camera
+/// roll.
 inline constexpr double kSmallestUpSine = 1e-9;
 
 using base::kLargestSide;
@@ -45,22 +46,22 @@ inline constexpr double kBrightestLight = 0x1p34;
 /// Maximum absolute rotation of the background, degrees: an animation may make many turns.
 inline constexpr double kLargestRotation = 1e6;
 
-/// Maximum overscan, px: a wider border calls for a larger frame.
+/// Maximum overscan, px; for a wider border, use a larger frame.
 inline constexpr int kWidestOverscan = 4096;
 
-/// Maximum absolute exposure, stops: no scene needs more, and 2^100 is as good as infinity.
+/// Maximum absolute exposure, stops: no scene needs more.
 inline constexpr double kMaxStops = 100;
 
 /// Range of the turbidity of a daylight sky: from pure air to haze in which the model's errors become large.
 inline constexpr double kLowestTurbidity = 1, kHighestTurbidity = 10;
 
-/// Maximum pixel filter width, px: a wider filter is a blur.
+/// Maximum pixel filter width, px; a wider filter is a blur.
 inline constexpr double kWidestFilter = 32;
 
 /// Range of a texture's scale: products with the largest coordinate are finite in single precision.
 inline constexpr double kSmallestScale = 1e-18, kLargestScale = 1e18;
 
-/// Maximum path depth, rays: with more, a render would not end in practice.
+/// Maximum path depth, rays; with more, renders could take practically forever.
 inline constexpr int kDeepestPath = 10000;
 
 using base::kMaxLightGroups;
@@ -68,8 +69,8 @@ using base::kMaxLightGroups;
 /// Maximum number of copies of a points file along an axis.
 inline constexpr int kMaxCopies = 1000;
 
-/// Maximum length of a light group's name, bytes: EXR channel names have up to 255, and "_transmission_indirect.R"
-/// has 24.
+/// Maximum length of a light group's name, bytes: EXR channel names have up to 255 bytes, and
+/// "_transmission_indirect.R" has 24.
 inline constexpr std::size_t kLongestLightGroup = 231;
 
 }  // namespace orrery::scene

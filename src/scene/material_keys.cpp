@@ -51,8 +51,8 @@ std::vector<MaterialType> make_material_types() {
             "fuzz", kUnit,
             {"",
              "Radius of the sphere, centred on the tip of the unit reflected or refracted direction, on which the "
-             "perturbed direction is sampled. Directions on the wrong side of the surface are absorbed. 0 is "
-             "clear. Or a [texture](#textures)",
+             "perturbed direction is sampled. Directions on the wrong side of the surface are absorbed. 0: smooth. Or "
+             "a [texture](#textures)",
              "Above 0: lights are found by BSDF sampling only"},
             [](M& m) -> double& { return std::get<Dielectric>(m).fuzz; })},
        {of("fuzz", TextureUse::kNumber, [](M& m) -> TextureSlot& { return std::get<Dielectric>(m).fuzz_texture; })}},

@@ -38,7 +38,7 @@ class ValueIterator {
 };
 
 /// Numbers of double precision, stored compactly as long as that is lossless: as a single number if all are equal, as
-/// indices of one byte if there are few different ones, or as floats.
+/// one-byte indices if there are few distinct values, or as floats.
 ///
 /// Not thread-safe, even for writes to different elements.
 class NumberArray {
@@ -75,7 +75,7 @@ class NumberArray {
   bool fits_single() const noexcept;
   /// The numbers, if they are stored as floats; otherwise null.
   const float* singles() const noexcept { return storage_ == Storage::kSingles ? singles_.data() : nullptr; }
-  /// Numbers among which are all in this array, if they are stored as indices of these; otherwise empty.
+  /// The distinct numbers, if numbers are stored as indices; otherwise empty. May contain unused numbers.
   const std::vector<double>& palette() const noexcept { return palette_; }
   /// The index into the palette of each number.
   const std::vector<std::uint8_t>& palette_indices() const noexcept { return indices_; }
@@ -141,14 +141,14 @@ class NumberArray {
  private:
   enum class Storage : std::uint8_t { kOne, kPalette, kSingles, kDoubles };
 
-  /// More would take longer to search than the memory is worth.
+  /// Maximum palette size; searching a larger one would cost too much time.
   static constexpr std::size_t kMaxPalette = 16;
 
   static bool is_single(double x) { return math::in_single_precision(x) == x || std::isnan(x); }
   /// Distinguishes 0 from -0.
   static bool is_same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
-  /// Sets last_found_ to the value's index in the palette, to which it is added if there is room; else returns false.
+  /// Sets last_found_ to the value's index in the palette; adds the value if there is room, else returns false.
   bool find(double value) {
     if (is_same(palette_[last_found_], value)) return true;
     for (std::size_t i = 0; i < palette_.size(); ++i)
@@ -167,7 +167,7 @@ class NumberArray {
     reserve(numbers.size());
     for (const double x : numbers) push_back(x);
   }
-  /// Changes the storage, so that `value` can be added.
+  /// Changes the storage so that it can hold `value`.
   void spread(double value);
 
   Storage storage_ = Storage::kOne;

@@ -52,7 +52,7 @@ struct Camera {
   Vec3d look_from{0, 0, 0};
   Vec3d look_at{0, 0, -1};
   Vec3d up{0, 1, 0};
-  double vfov = 90;          ///< perspective: degrees, vertical
+  double vfov = 90;          ///< perspective: vertical field of view, degrees
   double defocus_angle = 0;  ///< degrees, apex angle of the cone from a point in focus to the lens; 0: pinhole
   std::optional<double> focus_distance;  ///< scene units; default: distance from look_from to look_at
   double shutter_open = 0;               ///< frames, relative to the frame
@@ -65,21 +65,21 @@ enum class BackgroundType { kGradient, kConstant, kImage, kSky };
 
 struct Background {
   BackgroundType type = BackgroundType::kGradient;
-  Vec3d bottom{1, 1, 1};   ///< gradient: straight down
-  Vec3d top{0.5, 0.7, 1};  ///< gradient: straight up
-  Vec3d color{1, 1, 1};    ///< constant
+  Vec3d bottom{1, 1, 1};   ///< gradient: radiance from straight below
+  Vec3d top{0.5, 0.7, 1};  ///< gradient: radiance from straight above
+  Vec3d color{1, 1, 1};    ///< constant: radiance
   int alpha = 1;           ///< 0: the background is transparent
   // Image and sky.
   std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`, or the baked sky; null until loaded
   std::filesystem::path file = {};                     ///< image: latitude-longitude map, relative to the scene file
-  std::string color_space = {};                        ///< image: empty: by the file's attribute, else the scene's
+  std::string color_space = {};                        ///< image; empty: from the file's metadata, else the scene's
   double rotation = 0;                                 ///< degrees about +y
   double exposure = 0;                                 ///< stops
   std::string light_group = {};                        ///< empty: the default group
-  bool visible = true;                                 ///< to the camera; scattered rays always see the background
-  double sun_elevation = 45;                           ///< sky: degrees above the horizon
-  double sun_azimuth = 0;                              ///< sky: degrees from +z towards +x
-  double turbidity = 2;                                ///< sky: amount of haze; 1 is pure air
+  bool visible = true;        ///< visible to the camera; scattered rays always see the background
+  double sun_elevation = 45;  ///< sky: degrees above the horizon
+  double sun_azimuth = 0;     ///< sky: degrees from +z towards +x
+  double turbidity = 2;       ///< sky: amount of haze; 1 is pure air
   Vec3d ground_albedo{0.2, 0.2, 0.2};
   bool sun = true;  ///< sky: includes the sun's disc
 };
@@ -98,7 +98,7 @@ struct Render {
   Shading shading = Shading::kPath;
   Accelerator accelerator = Accelerator::kEmbree;
   Filter filter = Filter::kBox;
-  std::optional<double> filter_width = {};  ///< px, full width; default: 1, 3, 3 or 4, by filter
+  std::optional<double> filter_width = {};  ///< full width, px; default: 1, 3, 3 or 4, depending on the filter
   int roulette_depth = 3;                   ///< scattering events before Russian roulette begins; 0: off
   Sampler sampler = Sampler::kSobol;
   DirectLighting direct_lighting = DirectLighting::kMis;
@@ -155,33 +155,33 @@ struct Interval {
   double low = 0, high = 1;
 };
 
-/// Radii of the spheres of a points file: by one of `value`, `column`, `element` and `types`; by none of them, those in
-/// the file.
+/// Radii of the spheres of a points file, set by one of `value`, `column`, `element` and `types`; if none is set, those
+/// in the file.
 struct PointsRadius {
-  std::optional<double> value;                        ///< of every sphere, scene units
+  std::optional<double> value;                        ///< radius of every sphere, scene units
   std::string column;                                 ///< name of a column
   std::string element;                                ///< "vdw", "covalent" or "ball"
-  std::vector<std::pair<std::string, double>> types;  ///< by particle type, scene units
+  std::vector<std::pair<std::string, double>> types;  ///< radii by particle type, scene units
   double scale = 1;                                   ///< multiplies column and element radii
 };
 
-/// Colours of the spheres of a points file: by one of `column`, `element`, `types` and `rgb`; by none of them, those of
-/// the material.
+/// Colours of the spheres of a points file, set by one of `column`, `element`, `types` and `rgb`; if none is set, those
+/// of the material.
 struct PointsColor {
-  std::string column;                                ///< coloured by a map
-  std::string map = "viridis";                       ///< name of a colour map, or a file relative to the scene file
-  std::optional<Interval> range;                     ///< of the column's values; default: that of the selected spheres
-  Vec3d nan_color{0.5, 0.5, 0.5};                    ///< of values that are not numbers
-  std::string element;                               ///< "jmol"
+  std::string column;              ///< coloured by a map
+  std::string map = "viridis";     ///< name of a colour map, or a file relative to the scene file
+  std::optional<Interval> range;   ///< range of the column's values; default: that of the selected spheres
+  Vec3d nan_color{0.5, 0.5, 0.5};  ///< colour of NaN values
+  std::string element;             ///< "jmol"
   std::vector<std::pair<std::string, Vec3d>> types;  ///< by particle type
   bool rgb = false;                                  ///< the file's colours
 
   bool is_set() const { return !column.empty() || !element.empty() || !types.empty() || rgb; }
-  /// Whether `map` is a file: names have neither dots nor slashes.
+  /// True if `map` is a file: names of colour maps contain neither dots nor slashes.
   bool has_map_file() const { return map.find_first_of("./\\") != std::string::npos; }
 };
 
-/// A point p of a file is at scale * R p + translate, where R turns about x, then y, then z.
+/// Transforms a point p of a file to scale * R p + translate, where R rotates about x, then y, then z.
 struct PointsTransform {
   double scale = 1;
   Vec3d rotate{0, 0, 0};  ///< degrees
@@ -194,30 +194,31 @@ struct Points {
   std::uint32_t material = 0;    ///< index into Scene::materials; used if the file has no materials
   std::string name = {};         ///< optional, for mattes: all spheres share it; default: the file name
   std::string group = {};        ///< optional, for mattes
-  std::optional<int> frame;      ///< of the file, from 1; default: the rendered frame, if the file has several
+  std::optional<int> frame;      ///< frame of the file, from 1; default: the rendered frame, if the file has several
   std::optional<int> component;  ///< particle type of an HDF5 snapshot
   PointsRadius radius;
   PointsColor color;
   std::string select;        ///< condition on columns; empty: all
   Vec3d replicate{1, 1, 1};  ///< number of periodic boxes along each box edge
-  bool unwrap = false;       ///< by the periodic image flags of the file
+  bool unwrap = false;       ///< unwrap coordinates with the periodic image flags of the file
   std::string assembly;      ///< biological assembly; empty: the file's own atoms
   PointsTransform transform;
   std::array<std::optional<Interval>, 3> clip = {};  ///< keeps spheres with centres in these intervals of x, y and z
   std::string material_column = "material";          ///< indices into Scene::materials, in PLY files; empty: none
   bool skip_bad = false;                             ///< skips rows with non-finite coordinates or radii
   PointArray centers = {};
-  NumberArray radii = {};                     ///< as many as centers
-  std::vector<std::uint32_t> materials = {};  ///< as many as centers, or empty: `material` for all
-  std::vector<std::uint16_t> colors = {};     ///< as many as centers, index into `palette`; or empty: the material's
+  NumberArray radii = {};                     ///< one per centre
+  std::vector<std::uint32_t> materials = {};  ///< one per centre; empty: `material` for all
+  std::vector<std::uint16_t> colors = {};     ///< one per centre, index into `palette`; empty: the material's colour
   std::vector<Vec3d> palette = {};            ///< colours that replace those of the material
   std::size_t palette_rec709 = 0;  ///< leading colours that are linear Rec.709; the others are in Color::space
-  std::optional<Interval> color_range = {};   ///< of the colour map, if there is one
-  std::vector<std::string> color_names = {};  ///< of the colours in `palette`, if they stand for types or elements
-  std::vector<std::string> unused = {};       ///< unused columns of the file, such as colours
-  bool spheres_are_rows = true;  ///< sphere i is row i of the file: nothing was selected, sorted, copied or clipped
+  std::optional<Interval> color_range = {};  ///< range of the colour map, if there is one
+  std::vector<std::string> color_names =
+      {};                                ///< names of the colours in `palette`, if they represent types or elements
+  std::vector<std::string> unused = {};  ///< unused columns of the file, such as colours
+  bool spheres_are_rows = true;          ///< sphere i is row i of the file: no selection, sorting, copying or clipping
 
-  /// Frees the memory of the spheres. The keys stay.
+  /// Frees the memory of the spheres; keeps the keys.
   void release_spheres() {
     centers.clear();
     radii.clear();
@@ -246,7 +247,7 @@ enum class Interpolation { kLinear, kCubic, kHold };
 
 /// Keyframes of an animated number or vector, and the interpolation between them.
 struct Track {
-  std::string target;  ///< as for scene::find_animated: "camera.look_from", "sphere[3].radius"
+  std::string target;  ///< as accepted by scene::find_animated: "camera.look_from", "sphere[3].radius"
   Interpolation interpolation = Interpolation::kLinear;
   std::vector<double> frames;  ///< ascending
   std::vector<Vec3d> values;   ///< one per frame; a single number is in x
@@ -269,7 +270,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Sphere> spheres;
   std::vector<Points> points;
-  /// No two spheres coincide in this precision, nor in one that rounds less. Empty: not known.
+  /// No two spheres coincide in this precision or a higher one. Empty: not known.
   std::optional<Precision> distinct_in = {};
 
   /// Returns the number of spheres in [[sphere]] tables and points files.

@@ -61,7 +61,7 @@ Table camera_table() {
            {"degrees", "Apex angle of the cone from a point in focus to the rim of the lens. 0 is a pinhole camera",
             "Above 0: one lens sample per path"},
            [](S& s) -> double& { return s.camera.defocus_angle; }),
-       optional_number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the plane of focus"},
+       optional_number<S>("focus_distance", kLength, {"scene units", "Distance from the camera to the focus plane"},
                           "distance to look_at",
                           [](S& s) -> std::optional<double>& { return s.camera.focus_distance; }),
        number<S>("shutter_open", {-kLongestShutter, kLongestShutter},
@@ -140,7 +140,7 @@ Table background_table() {
                  [](S& s) -> double& { return s.background.turbidity; }),
        vector<S>("ground_albedo", kUnit, {unit, "Sky: reflectance of the ground, which also brightens the sky"},
                  [](S& s) -> Vec3d& { return s.background.ground_albedo; }),
-       boolean<S>("sun", {"", "Sky: includes the sun's disc, which is sampled as a light of its own"},
+       boolean<S>("sun", {"", "Sky: includes the sun's disc, which is sampled as a separate light"},
                   [](S& s) -> bool& { return s.background.sun; })}};
 }
 
@@ -150,25 +150,24 @@ Table render_table() {
       {integer<S>("samples", {1, std::numeric_limits<std::int32_t>::max()},
                   {"per pixel", "Paths per pixel", "Time scales linearly; four times as many samples halve the noise"},
                   [](S& s) -> int& { return s.render.samples; }),
-       integer<S>(
-           "max_depth", {1, kDeepestPath},
-           {"rays",
-            "Maximum number of rays per path, counted as in the book: the camera ray is the first. Where the last "
-            "ray hits a sphere, only the sphere's emission counts",
-            "An upper bound only: most paths leave the scene earlier"},
-           [](S& s) -> int& { return s.render.max_depth; }),
+       integer<S>("max_depth", {1, kDeepestPath},
+                  {"rays",
+                   "Maximum number of rays per path, counted as in the book: the camera ray is the first. If the last "
+                   "ray hits a sphere, only the sphere's emission counts",
+                   "An upper bound only: most paths leave the scene earlier"},
+                  [](S& s) -> int& { return s.render.max_depth; }),
        integer<S>("roulette_depth", {0, kDeepestPath},
                   {"scattering events",
                    "Scattering events before Russian roulette begins. It terminates paths with a probability that "
                    "grows as their throughput falls, and divides the throughput of survivors by their survival "
                    "probability; the result is unbiased. 0: no roulette",
-                   "0: up to twice the render time, most of all in dark scenes"},
+                   "0: up to twice the render time, especially in dark scenes"},
                   [](S& s) -> int& { return s.render.roulette_depth; }),
        choice<S>("sampler", {"independent", "sobol", "blue-noise"},
                  {"",
                   "Sampler. `independent`: uncorrelated random numbers, as in the book. `sobol`: Owen-scrambled Sobol "
-                  "sequence (low discrepancy). `blue-noise`: one such sequence for neighbouring pixels, whose errors "
-                  "then form blue noise",
+                  "sequence (low discrepancy). `blue-noise`: a Sobol sequence shared by neighbouring pixels, so that "
+                  "their errors form blue noise",
                   "`sobol` and `blue-noise` need fewer samples for the same error"},
                  [](S& s) -> Sampler& { return s.render.sampler; }),
        integer<S>("seed", {0, std::numeric_limits<std::uint32_t>::max()},

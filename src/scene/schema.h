@@ -9,8 +9,8 @@
 
 #include "scene/value.h"
 
-/// The schema of scene files: the one description of all keys, from which reading, checking, `--set`, suggestions,
-/// `--settings` and the documentation are derived. Defaults are the member initialisers in scene/scene.h.
+/// The schema of scene files: the only description of all keys, used for reading, validation, `--set`, suggestions,
+/// `--settings` and the documentation. Defaults are the member initialisers in scene/scene.h.
 namespace orrery::scene {
 
 enum class TextureType;
@@ -71,7 +71,7 @@ struct MaterialType {
   std::string doc;
   MaterialModel model;  ///< default values
   std::vector<Key<MaterialModel>> keys;
-  std::vector<TexturedKey> textured = {};  ///< those of the keys that may be textures
+  std::vector<TexturedKey> textured = {};  ///< the keys whose values may be textures
 };
 const std::vector<MaterialType>& material_types();
 

@@ -14,10 +14,10 @@ class EnvironmentImage;
 
 enum class TextureType { kChecker, kNoise, kTurbulence, kMarble, kImage };
 
-/// How the texels of an image are averaged over the footprint of a ray: by a mip map, or by the samples alone.
+/// How the texels of an image are averaged over the footprint of a ray: with a mip map, or only by the pixel's samples.
 enum class TextureFilter { kMip, kBilinear };
 
-/// A texture of a material. Where it stands for a number, such as `fuzz`, all components of a colour are equal.
+/// A texture of a material. If it replaces a number, such as `fuzz`, all components of its colours are equal.
 struct Texture {
   TextureType type = TextureType::kChecker;
   double scale = 1;           ///< checker: edge of a cell, scene units; noise: lattice cells per scene unit
@@ -26,13 +26,13 @@ struct Texture {
   std::uint32_t seed = 1;     ///< noise
   // Image.
   std::filesystem::path file = {};  ///< latitude-longitude map, relative to the scene file
-  std::string color_space = {};     ///< empty: by the file's attribute or format
+  std::string color_space = {};     ///< empty: determined from the file's metadata or format
   double rotation = 0;              ///< degrees about +y
   TextureFilter filter = TextureFilter::kMip;
   std::shared_ptr<const EnvironmentImage> image = {};  ///< the texels of `file`; null until loaded
 };
 
-/// Use of a texture, which decides the type and range of its values.
+/// Use of a texture; determines the type and range of its values.
 enum class TextureUse { kReflectance, kRadiance, kNumber };
 
 }  // namespace orrery::scene

@@ -74,8 +74,8 @@ std::vector<TextureTypeKeys> make_texture_types(TextureUse use) {
                         [](Texture& t) -> double& { return t.rotation; }),
         choice<Texture>("filter", {"mip", "bilinear"},
                         {"",
-                         "`mip`: where texels are small, a mip map averages them over a sixteenth of a pixel or lobe. "
-                         "`bilinear`: texels are only interpolated, and averaged by the samples",
+                         "`mip`: a mip map averages small texels over a sixteenth of a pixel or lobe. `bilinear`: "
+                         "texels are interpolated, and averaged only by the samples",
                          "`bilinear`: up to three times the error at the same number of samples, without blur"},
                         [](Texture& t) -> TextureFilter& { return t.filter; })}}};
 }

@@ -10,12 +10,12 @@
 
 namespace orrery::scene {
 
-/// Maximum number of similar diagnostics of bulk data; of the rest only the number is reported.
+/// Maximum number of similar diagnostics of bulk data; only the number of the others is reported.
 inline constexpr std::size_t kMaxReported = 10;
 
 /// Returns what is wrong with the exposure of a light; empty if the light is not too bright.
 ///
-/// `radiance`  its largest component
+/// `radiance`  largest component of the radiance
 /// `exposure`  stops
 std::string exposure_fault(double radiance, double exposure);
 
@@ -29,13 +29,13 @@ std::vector<std::string> sphere_faults(math::Vec3d center, double radius, Precis
 /// `index`    of the sphere, from 0
 std::string sphere_name(const Scene& scene, std::size_t points, std::size_t index);
 
-/// Checks what the type and range of a single key cannot: a camera without direction, a lens that is too large, lights
-/// that are too bright, numbers outside the domain, materials that do not exist, names of light groups, layers that the
+/// Checks constraints beyond the type and range of a single key: a camera without direction, a lens that is too large,
+/// lights that are too bright, numbers outside the domain, undefined materials, names of light groups, layers that the
 /// scene cannot have.
 ///
 /// Domain     any scene, including non-finite numbers
 /// Result     empty if the scene is valid; all diagnostics of [[sphere]] tables; the first kMaxReported of each points
-///            file, with the number of the rest
+///            file, and the number of the others
 /// Errors     base::Error(kStopped) in a base::StopScope
 /// Cost       linear in the number of spheres
 std::vector<SceneDiagnostic> validate(const Scene& scene);
@@ -43,7 +43,7 @@ std::vector<SceneDiagnostic> validate(const Scene& scene);
 /// Warns of coincident spheres: of two identical surfaces only the first is rendered.
 ///
 /// `closing`  the scene at shutter close; null: no motion
-/// Result     the first kMaxReported, with the number of the rest; empty if there are none
+/// Result     the first kMaxReported, and the number of the others; empty if there are none
 /// Errors     base::Error(kStopped) in a base::StopScope
 /// Cost       see base::find_duplicates
 std::vector<SceneDiagnostic> warn_of_coincident(const Scene& scene, const Scene* closing);

@@ -10,7 +10,7 @@
 
 namespace orrery::scene {
 
-/// Value of a key in a scene file. A kName is a string or an integer, and stored as a string.
+/// Value of a key in a scene file. A kName is a string or an integer and is stored as a string.
 using Value = std::variant<std::int64_t, double, Vec3d, std::string, std::vector<std::string>, Window, bool, Interval>;
 
 enum class ValueType { kInteger, kNumber, kVector, kText, kChoice, kChoices, kWindow, kBoolean, kInterval, kName };

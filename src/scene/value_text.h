@@ -20,7 +20,7 @@ std::string string_text(const std::string& value);
 /// Formats a list of strings for a scene file: ["a", "b"].
 std::string list_text(const std::vector<std::string>& values);
 
-/// Removes the quotes of a string_text without escapes; other text is returned unchanged.
+/// Removes the quotes of a string_text() without escapes; returns other text unchanged.
 std::string unquoted(const std::string& text);
 
 }  // namespace orrery::scene

@@ -125,7 +125,7 @@ TEST_F(BatchShards, MissingSamplesCanBeAllowed) {
   EXPECT_EQ(run("compare merged.exr whole.exr -q --fail-above bias=0.01").status, 0);
 }
 
-TEST_F(BatchShards, FilesThatAreNoShardsAreReportedIfThereAreNoOthers) {
+TEST_F(BatchShards, FilesThatAreNotShardsAreReportedIfThereAreNoOthers) {
   expect_refused(merge({"missing.exr"}), 66, {"missing.exr"});
   expect_refused(merge({"whole.exr"}), 65, {"whole.exr"});
   expect_refused(merge({"missing.exr"}, "--allow-missing"), 66, {"missing.exr"});

@@ -157,7 +157,7 @@ TEST_F(CliConvert, ColorsOfTheFileAreBytes) {
   expect_error("convert a.dump -o b.csv --color-by rgb", 65, "the file has no colours");
 }
 
-TEST_F(CliConvert, FramesAreFilesOfTheirOwn) {
+TEST_F(CliConvert, FramesAreSeparateFiles) {
   const Outcome r = run("convert a.dump -o f.##.csv --frames all --color-by vx --map viridis");
   EXPECT_EQ(r.status, 0);
   EXPECT_TRUE(contains(r.err, "a.dump: warning: frame 2: the frame has no particles\nwrote f.02.csv: 0 spheres"))

@@ -99,7 +99,7 @@ TEST_F(CliDenoise, FilesInTilesAreRewrittenInTiles) {
   EXPECT_EQ(run("compare a.exr b.exr --fail-above max=0").status, 0);
 }
 
-TEST_F(CliDenoise, PartsWithColorsOfTheirOwnAreCopiedAndNamed) {
+TEST_F(CliDenoise, PartsWithSeparateColorsAreCopiedAndNamed) {
   ASSERT_EQ(run("render good.toml -q --samples 8 -o left.exr --type float").status, 0);
   ASSERT_EQ(run("render good.toml -q --samples 8 -o right.exr --type float --seed 2").status, 0);
   const auto file = [&](const char* name) { return "'" + (folder_ / name).string() + "' "; };
@@ -108,7 +108,8 @@ TEST_F(CliDenoise, PartsWithColorsOfTheirOwnAreCopiedAndNamed) {
   ASSERT_EQ(std::system(join.c_str()), 0);
   const Outcome denoised = run("denoise both.exr -o out.exr");
   EXPECT_EQ(denoised.status, 0);
-  EXPECT_NE(denoised.err.find("warning: the parts right have channels R, G and B"), std::string::npos) << denoised.err;
+  EXPECT_NE(denoised.err.find("warning: the parts right have separate channels R, G and B"), std::string::npos)
+      << denoised.err;
   ASSERT_EQ(std::system(("oiiotool " + file("out.exr") + "--subimage 1 -o " + file("copied.exr")).c_str()), 0);
   EXPECT_EQ(run("compare right.exr copied.exr --fail-above max=0").status, 0);
   EXPECT_EQ(run("compare left.exr out.exr --fail-above max=0").status, 1);

@@ -48,7 +48,7 @@ TEST_F(CliPlot, LegendsHaveTheSettingsOfTheImage) {
   EXPECT_EQ(legend("--set color.view=Raw"), legend("--view Raw"));
 }
 
-TEST_F(CliPlot, LegendsAsImagesHaveTexts) {
+TEST_F(CliPlot, LegendsAsImagesHaveText) {
   ASSERT_EQ(plot("c.csv -o a.ppm --color-by q -q --legend l.ppm").status, 0);
   const std::string bar = text_of(folder_ / "l.ppm");
   ASSERT_EQ(plot("c.csv -o a.ppm --color-by q --range 0:2 -q --legend l.ppm").status, 0);
@@ -118,7 +118,7 @@ TEST_F(CliPlot, RangesAreFinite) {
   EXPECT_EQ(plot("c.csv -o a.ppm -q --color-by q --range=-1e300:1e300 --legend a.svg").status, 0);
 }
 
-TEST_F(CliPlot, ScenesAndDataFilesAreToldApart) {
+TEST_F(CliPlot, ScenesAndDataFilesAreDistinguished) {
   expect_error("render c.csv -o a.png", 2, "c.csv is a data file, not a scene; render it: orrery plot c.csv -o IMAGE");
   expect_error("plot good.toml -o a.png", 2, "good.toml is a scene; render it: orrery render good.toml");
 }

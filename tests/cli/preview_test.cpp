@@ -122,7 +122,7 @@ TEST_F(CliPreview, TevHasTheImageInTheEnd) {
   EXPECT_EQ(image.values, rows_of_exr(folder_ / "a.exr", 32, 18));
 }
 
-TEST_F(CliPreview, ViewersThatHangLeaveOrAreMissingAreNoError) {
+TEST_F(CliPreview, ViewersThatHangLeaveOrAreMissingAreNotErrors) {
   for (const TevServer::Manner manner : {TevServer::Manner::kHangs, TevServer::Manner::kLeaves}) {
     TevServer server(manner);
     const Outcome outcome = run("render good.toml -o a.png --width 640 --height 360 --preview " + server.target());

@@ -261,7 +261,7 @@ std::string fault_with_selection(const std::filesystem::path&, const std::string
           if (name.empty()) return "a column without a name";
         const std::vector<std::uint8_t> mask = selection.evaluate(table);
         if (mask.size() != table.rows) return "a mask of another size";
-        return std::all_of(mask.begin(), mask.end(), [](auto m) { return m <= 1; }) ? "" : "a mask beside 0 and 1";
+        return std::all_of(mask.begin(), mask.end(), [](auto m) { return m <= 1; }) ? "" : "a mask other than 0 and 1";
       },
       false);
 }

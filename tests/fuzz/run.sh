@@ -4,9 +4,9 @@
 #
 #   tests/fuzz/run.sh scene|ply|overrides|data|hdf5|selection|color_map [SECONDS=600] [FOLDER...] [libFuzzer options]
 #
-# FOLDER: more files to begin with, for example damaged ones that other programs test with. They are not changed.
+# FOLDER: additional seed files, for example damaged ones from the tests of other programs. They are not changed.
 #
-# `data` has all formats but HDF5, which `hdf5` has: libhdf5 1.10 itself crashes on some damaged files.
+# `data` covers all formats except HDF5, which `hdf5` covers: libhdf5 1.10 itself crashes on some damaged files.
 # Crashing inputs (crash-*) and the corpus are kept in the build folder (ORRERY_FUZZ_BUILD, default build-fuzz).
 set -euo pipefail
 from=$PWD

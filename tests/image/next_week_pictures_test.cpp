@@ -113,7 +113,7 @@ TEST(ImageNextWeekPictures, NoiseIsGreyTurbulenceIsDarkerAndMarbleReachesBothEnd
   EXPECT_GT(marble.deviation, 1.5 * noise.deviation);
 }
 
-TEST(ImageNextWeekPictures, TheLampLightsTheFloorBesideIt) {
+TEST(ImageNextWeekPictures, TheLampLightsTheFloorNextToIt) {
   const film::Picture p = picture_of_scene("07-lamp");
   EXPECT_EQ(brightness(pixel(p, 0.05, 0.05)), 0);
   EXPECT_GT(spread(p, 0.77, 0.75, 0.87, 0.79).mean, 4 * spread(p, 0.02, 0.75, 0.15, 0.79).mean);

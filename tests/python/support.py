@@ -42,7 +42,7 @@ def run(*arguments):
 
 
 class FolderTest(unittest.TestCase):
-    """A test with a folder of its own, which is the working directory."""
+    """A test with a separate folder as its working directory."""
 
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory()

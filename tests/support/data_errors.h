@@ -50,7 +50,7 @@ inline std::vector<double> column_numbers(const data::Table& table, const std::s
   return out;
 }
 
-/// The texts of a column.
+/// The strings of a column.
 inline std::vector<std::string> column_texts(const data::Table& table, const std::string& name) {
   const data::Column* const column = table.find(name);
   std::vector<std::string> out;

@@ -51,7 +51,7 @@ const std::vector<T>& values(const data::Table& table, std::string_view name) {
   return std::get<std::vector<T>>(table.find(name)->values);
 }
 
-/// The texts of a column; fails if there are none.
+/// The strings of a column; fails if there are none.
 inline std::vector<std::string> texts(const data::Table& table, std::string_view name) {
   const data::Column* const column = table.find(name);
   if (column == nullptr || column->type() != data::ColumnType::kText) {

@@ -32,14 +32,14 @@ inline scene::Scene dark_stage(int width_px, int height_px) {
   return s;
 }
 
-/// Adds an emitter with a material of its own.
+/// Adds an emitter with a separate material.
 inline void add_lamp(scene::Scene& s, math::Vec3d center, double radius, math::Vec3d radiance,
                      const std::string& group = {}) {
   s.materials.push_back({"lamp" + std::to_string(s.materials.size()), scene::Emitter{radiance, 0, group}});
   s.spheres.push_back({center, radius, static_cast<std::uint32_t>(s.materials.size() - 1)});
 }
 
-/// Adds a ball beside the diffuse one.
+/// Adds a ball next to the diffuse one.
 inline void add_ball(scene::Scene& s, math::Vec3d center, double radius, const scene::MaterialModel& model) {
   s.materials.push_back({"ball" + std::to_string(s.materials.size()), model});
   s.spheres.push_back({center, radius, static_cast<std::uint32_t>(s.materials.size() - 1)});

@@ -101,7 +101,7 @@ class PseudoTerminal {
   std::size_t answered_ = 0;
 };
 
-/// Reads a terminal on a thread of its own until this ends.
+/// Reads a terminal on a separate thread until destruction.
 class TerminalReader {
  public:
   explicit TerminalReader(PseudoTerminal& terminal)

@@ -11,7 +11,7 @@
 
 namespace orrery::image {
 
-/// The public functions of this room that need OpenImageIO. They are in a module that the program loads at the first
+/// The public functions of this room that need OpenImageIO. They are in a module that the program loads on the first
 /// call.
 struct Functions {
   decltype(&image::set_threads) set_threads;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's side of the module: forwards the room's functions to the module and loads it at the first call. Loading
+// The program's side of the module: forwards the room's functions to the module and loads it on the first call. Loading
 // OpenImageIO's 260 libraries takes longer than most commands, so commands without image I/O do not load them.
 #include <atomic>
 #include <chrono>
@@ -32,7 +32,7 @@ const Functions& module() {
 void set_threads(int count) {
   threads = count;
   // A job calls this before rendering and later writes an image, so the module is loaded in the background. The first
-  // call that needs the module retries the loading and reports its error.
+  // call that needs the module tries again and reports an error.
   static const std::future<void> loading = std::async(std::launch::async, [] { module(); });
   if (loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready) module().set_threads(count);
 }

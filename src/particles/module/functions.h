@@ -6,8 +6,8 @@
 
 namespace orrery::particles {
 
-/// The public functions of this room, which needs third-party libraries. They are in a module that the program loads at
-/// the first call.
+/// The public functions of this room. They need third-party libraries and are therefore in a module that the program
+/// loads on the first call.
 struct Functions {
   decltype(&particles::open) open;
   decltype(&particles::table_format) table_format;

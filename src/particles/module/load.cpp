@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's side of the module: forwards the room's functions to the module and loads it at the first call, so that
+// The program's side of the module: forwards the room's functions to the module and loads it on the first call, so that
 // only commands that use data files load libarchive, HDF5, gemmi and pugixml.
 #include "base/module.h"
 #include "particles/module/functions.h"

@@ -54,7 +54,7 @@ class Keys:
 
 
 class Camera(Keys):
-    """A camera, by the keys of [camera]: vfov in degrees, the rest in scene units.
+    """A camera, defined by the keys of [camera]: vfov in degrees, the rest in scene units.
 
     An orthographic camera has projection="orthographic" and a width.
     """

@@ -15,8 +15,7 @@ class Picture:
     """A rendered image: scene-linear float32 arrays, read-only, without a copy. Rows are from the top.
 
     picture["Z"], picture["N"], picture["CryptoObject00"] are layers of [output]; layers of one channel have the shape
-    (height, width), others (height, width, channels). picture["R"] and picture["N.X"] are single channels. An array
-    stays valid when the picture is gone.
+    (height, width), others (height, width, channels). picture["R"] and picture["N.X"] are single channels. Arrays remain valid after the picture is deleted.
     """
 
     def __init__(self, native):
@@ -37,7 +36,7 @@ class Picture:
 
     @property
     def layers(self):
-        """Names of the layers besides the beauty."""
+        """Names of the layers other than the beauty."""
         return tuple(self._native.layers)
 
     @property
@@ -47,7 +46,7 @@ class Picture:
 
     @property
     def statistics(self):
-        """What the render did: spheres, paths, rays, samples, noise, threads, and seconds of its phases."""
+        """Statistics of the render: spheres, paths, rays, samples, noise, threads, and seconds of its phases."""
         return self._native.statistics()
 
     def __getitem__(self, name):
@@ -85,7 +84,7 @@ class Picture:
         type          of colours in an EXR: "half" or "float"
         compression   of an EXR, e.g. "zip"
         multipart     one part per layer in an EXR
-        reproducible  leave everything that varies between runs out of the header
+        reproducible  omit everything from the header that varies between runs
         display, view, look, exposure   display transform; by default the scene's
         """
         if type not in ("half", "float"):

@@ -50,7 +50,7 @@ def colormap(values, name="viridis", range=None, nan_color=None):
 
 
 class Points(Mapping):
-    """The columns of a data file by name, as arrays; texts are lists. See read_points()."""
+    """The columns of a data file by name, as arrays; strings are lists. See read_points()."""
 
     def __init__(self, columns, described):
         self._columns = columns

@@ -47,9 +47,9 @@ class Scene:
 
     camera      a Camera
     background  Constant, Gradient, Image or Sky
-    materials   materials by name, besides "matte", a light grey
+    materials   materials by name, in addition to "matte", a light grey
 
-    Settings are checked when the scene is rendered, saved or checked. Arrays are not copied: they are read then, too.
+    Settings are checked when the scene is rendered, saved or checked. Arrays are not copied; they are read at the same time.
     """
 
     def __init__(self, camera=None, background=None, materials=None):
@@ -127,7 +127,7 @@ class Scene:
         return self._data().check()
 
     def save(self, file):
-        """Writes a scene file, and a PLY file beside it for each add_points(). Both read back without loss.
+        """Writes a scene file, and a PLY file next to it for each add_points(). Both read back without loss.
 
         Comments of a loaded scene are not kept. No file that the scene reads is replaced.
         """
@@ -154,12 +154,12 @@ class Scene:
         noise          target noise (relative display error), e.g. 0.02
         time           time budget for adaptive sampling, seconds
         threads        by default all CPUs available to the process
-        frame          of an animation
+        frame          frame of the animation to render
         memory_limit   bytes; by default the free memory
-        denoise        filters the beauty and the light layers, as `orrery render --denoise`
+        denoise        filters the beauty and the light layers, like `orrery render --denoise`
         on_progress    called with a Progress, at most ten times a second
 
-        Other Python threads run meanwhile. KeyboardInterrupt, and an exception in on_progress, stop the render.
+        Other Python threads can run in the meantime. KeyboardInterrupt, and an exception in on_progress, stop the render.
         """
         sizes = [_whole("width", width), _whole("height", height)]
         samples, frame = _whole("samples", samples), _whole("frame", frame)

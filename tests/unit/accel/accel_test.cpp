@@ -108,14 +108,14 @@ TEST(AccelAccel, EmbreeAndListFindTheSameHits) {
   kernel::limit_isa("");
 }
 
-/// Spheres in single precision, as compile::SphereStore keeps them, with radii of their own or from a palette.
+/// Spheres in single precision, as compile::SphereStore keeps them, with individual radii or radii from a palette.
 struct Compact {
   std::vector<Sphere> plain;  ///< the same numbers, all as they are
   std::vector<float> centers, radii;
   std::vector<std::uint8_t> indices;
   std::vector<double> palette;
 
-  /// `begin`   number of spheres that stay as they are
+  /// `begin`   number of spheres that remain unchanged
   Compact(const std::vector<Sphere>& spheres, std::size_t begin, bool has_palette) : plain(spheres) {
     for (Sphere& s : plain)
       for (double* x : {&s.x, &s.y, &s.z}) *x = math::in_single_precision(*x);

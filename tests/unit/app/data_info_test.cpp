@@ -111,7 +111,7 @@ TEST_F(AppDataInfo, ColumnsCanBeReadOneByOne) {
   }
 }
 
-TEST_F(AppDataInfo, ManyAndStrangeTexts) {
+TEST_F(AppDataInfo, ManyAndUnusualStrings) {
   std::string csv = "x,y,z,t\n";
   for (int i = 0; i < 10; ++i) csv += "1,2,3,\"w" + std::to_string(i) + "\"\n";
   std::string text = data_info_text(info("a.csv", csv));

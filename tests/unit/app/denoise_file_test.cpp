@@ -104,7 +104,7 @@ TEST_F(AppDenoiseFile, NeverReplacesItsInput) {
   EXPECT_EQ(bytes(denoising_.input), before);
 }
 
-TEST_F(AppDenoiseFile, RejectsWhatIsNoImage) {
+TEST_F(AppDenoiseFile, RejectsFilesThatAreNotImages) {
   EXPECT_EQ(kind_of_error(), base::ErrorKind::kMissingInput);
   denoising_.output = folder_ / "out.png";
   EXPECT_EQ(kind_of_error(), base::ErrorKind::kUsage);

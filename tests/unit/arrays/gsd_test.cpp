@@ -201,7 +201,7 @@ TEST_F(ArraysGsd, DamagedFilesAreRefused) {
   }
 }
 
-TEST_F(ArraysGsd, LyingIndexEntriesAreRefused) {
+TEST_F(ArraysGsd, IndexEntriesBeyondTheFileAreRefused) {
   const auto one = [this](const char* name, int type, std::uint64_t rows, std::uint32_t components, std::size_t size) {
     GsdWriter gsd;
     gsd.add<std::uint32_t>(0, "particles/N", kUint32, 1, {2});

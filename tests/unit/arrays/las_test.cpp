@@ -204,7 +204,7 @@ TEST_F(ArraysLas, TheLongCountOfVersion14) {
   EXPECT_NE(faults(las).find("declares 9223372036854775808 points of 20 bytes"), std::string::npos);
 }
 
-TEST_F(ArraysLas, BytesBehindThePointsAreAllowed) {
+TEST_F(ArraysLas, BytesAfterThePointsAreAllowed) {
   Las las;
   las.count = 1;
   las.gap = std::string(10, 'x');

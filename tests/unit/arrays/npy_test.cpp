@@ -46,7 +46,7 @@ TEST_F(ArraysNpy, ThreeColumnsArePositionsAndAFourthIsTheRadius) {
   EXPECT_EQ(numbers(support::read_table(*four), "radius"), (std::vector<double>{4, 8}));
 }
 
-TEST_F(ArraysNpy, FortranOrderHasColumnsOneAfterAnother) {
+TEST_F(ArraysNpy, FortranOrderStoresColumnsContiguously) {
   const Table table = read(npy_bytes("'>f4'", true, "(2, 3)", sequence<float>({1, 2, 3, 4, 5, 6}, true)));
   EXPECT_EQ(numbers(table, "x"), (std::vector<double>{1, 2}));
   EXPECT_EQ(numbers(table, "y"), (std::vector<double>{3, 4}));
@@ -127,7 +127,7 @@ TEST_F(ArraysNpy, FieldsHaveCustomaryRoles) {
   EXPECT_EQ(numbers(table, "color[3]"), std::vector<double>{3});
 }
 
-TEST_F(ArraysNpy, TextsAreUnicodeOfBothByteOrders) {
+TEST_F(ArraysNpy, StringsAreUnicodeOfBothByteOrders) {
   const std::u32string words[] = {U"O", U"\u00c5", U"\u4e2d", U"\U0001F600"};
   for (const bool big : {false, true}) {
     std::string data;
@@ -172,7 +172,7 @@ TEST_F(ArraysNpy, NoRows) {
   EXPECT_EQ(numbers(table, "x").size(), 0u);
 }
 
-TEST_F(ArraysNpy, ArraysThatAreNoTablesAreRefused) {
+TEST_F(ArraysNpy, ArraysThatAreNotTablesAreRefused) {
   EXPECT_EQ(
       faults(npy_bytes("'<f8'", false, "(6,)", std::string(48, '\0'))),
       "the array has the shape (6,); a plain array must be (N, 3), or (N, 4) with the radius last; transpose it, or "
@@ -193,7 +193,7 @@ TEST_F(ArraysNpy, ArraysThatAreNoTablesAreRefused) {
             "field `a` is a record; save its fields separately\n");
 }
 
-TEST_F(ArraysNpy, LyingShapesAreRefusedBeforeAllocation) {
+TEST_F(ArraysNpy, ShapesBeyondTheDataAreRefusedBeforeAllocation) {
   const std::string data(24, '\0');
   EXPECT_EQ(faults(npy_bytes("'<f8'", false, "(2, 3)", data)),
             "the header declares an array with shape (2, 3) with items of 8 bytes, but 24 bytes follow; the file is "

@@ -89,7 +89,7 @@ TEST_F(ArraysNpz, MembersAreColumns) {
   }
 }
 
-TEST_F(ArraysNpz, CoordinatesInArraysOfTheirOwnOrInAStructuredArray) {
+TEST_F(ArraysNpz, CoordinatesInSeparateArraysOrInAStructuredArray) {
   const std::string one = npy_bytes("'<f8'", false, "(1,)", number_bytes(7.0));
   EXPECT_EQ(numbers(support::read_table(*open({{"x.npy", one}, {"y.npy", one}, {"z.npy", one}})), "z"),
             std::vector<double>{7});
@@ -111,20 +111,20 @@ TEST_F(ArraysNpz, ASecondArrayOfPositionsHasNumberedColumns) {
 }
 
 TEST_F(ArraysNpz, WithoutPositionsTheArraysAreListed) {
-  EXPECT_EQ(
-      faults({{"a.npy", npy_bytes("'<f8'", false, "(1,)", number_bytes(7.0))},
-              {"pos.npy", npy_bytes("'|O'", false, "(2, 3)", "pickle")},
-              {"b.npy", npy_bytes("'<f4'", false, "(1, 2, 3)", "")},
-              {"readme", "text"}}),
-      "there is no array of positions; the arrays are: a (1,), pos (it contains Python objects; convert them, "
-      "e.g. with `astype('f8')`), b (the shape (1, 2, 3) is not that of columns), readme (not an array in NumPy's "
-      "format); save an array `pos` with shape (N, 3), or arrays `x`, `y` and `z` with shape (N,)\n");
+  EXPECT_EQ(faults({{"a.npy", npy_bytes("'<f8'", false, "(1,)", number_bytes(7.0))},
+                    {"pos.npy", npy_bytes("'|O'", false, "(2, 3)", "pickle")},
+                    {"b.npy", npy_bytes("'<f4'", false, "(1, 2, 3)", "")},
+                    {"readme", "text"}}),
+            "there is no array of positions; the arrays are: a (1,), pos (it contains Python objects; convert them, "
+            "e.g. with `astype('f8')`), b (the shape (1, 2, 3) is not that of one or more columns), readme (not an "
+            "array in NumPy's "
+            "format); save an array `pos` with shape (N, 3), or arrays `x`, `y` and `z` with shape (N,)\n");
   EXPECT_NE(faults({}), "");
   EXPECT_EQ(faults({{"pos.npy", kPositions}, {"pos.npy", kPositions}, {"pos.npy", kPositions}}),
             "duplicate column `pos[1]`\n");
 }
 
-TEST_F(ArraysNpz, LyingShapesAreRefused) {
+TEST_F(ArraysNpz, ShapesBeyondTheDataAreRefused) {
   EXPECT_EQ(faults({{"pos.npy", npy_bytes("'<f8'", false, "(2, 3)", std::string(40, '\0'))}}),
             "array `pos` with shape (2, 3) needs 48 bytes of data, but 40 follow its header\n");
   EXPECT_EQ(faults({{"pos.npy", npy_bytes("'<f8'", false, "(2, 3)", std::string(49, '\0'))}}),

@@ -238,7 +238,7 @@ TEST_F(ArraysVtk, TooManyArraysAreRefused) {
   EXPECT_EQ(faults(root("", poly(piece(2, kPoints, arrays)))), "there are more than 4096 arrays\n");
 }
 
-TEST_F(ArraysVtk, LyingBinaryHeadersAreRefusedBeforeAllocation) {
+TEST_F(ArraysVtk, BinaryHeadersBeyondTheDataAreRefusedBeforeAllocation) {
   const auto with = [](const std::string& attributes, const std::string& bytes) {
     return root(attributes, poly(piece(2, "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">" +
                                               base64(bytes) + "</DataArray>")));

@@ -20,7 +20,7 @@ bool stops(const StopPoint& point) {
   }
 }
 
-TEST(BaseStopPoint, NothingStopsOutsideOfAScope) {
+TEST(BaseStopPoint, NothingStopsOutsideAScope) {
   EXPECT_FALSE(stops(StopPoint()));
   const StopScope none(nullptr);
   EXPECT_FALSE(stops(StopPoint()));

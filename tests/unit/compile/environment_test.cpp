@@ -35,7 +35,7 @@ TEST(CompileEnvironment, PowerIsTheIntegralOfTheRadiance) {
   EXPECT_NEAR(EnvironmentMap(image, settings).view().power, 4 * pi * 1.5 + 2 * pi * 1e-5 * 1.5e5, 1e-9);
 }
 
-TEST(CompileEnvironment, AUniformMapIsNotSampledBesideBsdfs) {
+TEST(CompileEnvironment, AUniformMapIsNotSampledInAdditionToBsdfs) {
   for (const float radiance : {0.1F, 1.0F, 12345.678F})
     EXPECT_FALSE(EnvironmentMap(uniform_image(33, 16, radiance), {}).view().is_sampled) << radiance;
   EnvironmentSettings alone;

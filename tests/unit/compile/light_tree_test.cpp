@@ -69,7 +69,7 @@ TEST(CompileLightTree, EveryNodeBoundsItsEmittersAndHoldsTheirPower) {
   EXPECT_EQ(tree.view().leaf(1000), kernel::Lights::kNoLeaf);
 }
 
-TEST(CompileLightTree, DarkEmittersAreLeftOut) {
+TEST(CompileLightTree, BlackEmittersAreOmitted) {
   scene::Scene s = test::dark_stage(16, 9);
   test::add_lamp(s, {0, 3, 0}, 1, {0, 0, 0});
   EXPECT_TRUE(compile(s).light_tree.spheres.empty());
@@ -77,7 +77,7 @@ TEST(CompileLightTree, DarkEmittersAreLeftOut) {
   EXPECT_EQ(compile(s).light_tree.spheres, std::vector<std::uint32_t>{3});
 }
 
-TEST(CompileLightTree, SpheresThatCoincideWithAnEarlierOneAreLeftOut) {
+TEST(CompileLightTree, SpheresThatCoincideWithAnEarlierOneAreOmitted) {
   scene::Scene s = test::dark_stage(16, 9);
   test::add_lamp(s, {0, 5, 0}, 1, {1, 1, 1});
   test::add_lamp(s, {0, 5, 0}, -1, {2, 2, 2});

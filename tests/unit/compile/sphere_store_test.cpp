@@ -91,7 +91,7 @@ TEST(CompileSphereStore, RadiiInSinglePrecisionTakeFourBytesMore) {
   EXPECT_EQ(store.bytes(), 2 * sizeof(Sphere) + points.size() * 16);
 }
 
-TEST(CompileSphereStore, WhatSinglePrecisionWouldChangeStaysAsItIs) {
+TEST(CompileSphereStore, ValuesThatSinglePrecisionWouldChangeStayDouble) {
   for (const std::vector<Sphere>& points : {std::vector<Sphere>{{1, 2, 3, 0.5}, {0.1, 5, 6, 0.5}},
                                             {{1, 2, 3, 0.5}, {4, 5, 1e300, 0.5}},
                                             with_many_radii(0.1)}) {

@@ -52,7 +52,7 @@ TEST(CompileTextures, ReplaceAConstantWhoseValueIsTheirMean) {
   EXPECT_DOUBLE_EQ(m.albedo[2], 0.25);
 }
 
-TEST(CompileTextures, TexturesOfMaterialsThatNoSphereUsesAreLeftOut) {
+TEST(CompileTextures, TexturesOfUnusedMaterialsAreOmitted) {
   scene::Scene s = scene_with(scene::Lambertian{{0.5, 0.5, 0.5}, slot(checker())});
   s.spheres.pop_back();
   EXPECT_FALSE(compile(s).features.extended);

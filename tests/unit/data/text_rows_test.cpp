@@ -65,7 +65,7 @@ const std::vector<std::int64_t>& integers(const TextTable& table, std::size_t co
   return std::get<std::vector<std::int64_t>>(table.values[column]);
 }
 
-/// The texts of a column.
+/// The strings of a column.
 std::vector<std::string> words(const TextTable& table, std::size_t column) {
   const Words& all = std::get<Words>(table.values[column]);
   std::vector<std::string> out;
@@ -83,7 +83,7 @@ TEST_F(DataTextRows, ReadsTheColumnsThatAreWanted) {
   EXPECT_TRUE(numbers(table, 3).empty());
 }
 
-TEST_F(DataTextRows, StopsBehindTheLastRow) {
+TEST_F(DataTextRows, StopsAfterTheLastRow) {
   TextLayout rows = layout({kNumber}, 2);
   rows.begin = 5;
   const TextTable table = read("head\n1\n2\n3\n", rows);

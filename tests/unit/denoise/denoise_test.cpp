@@ -243,7 +243,7 @@ TEST(DenoiseDenoise, ManyFirefliesLeaveNoSquares) {
   EXPECT_LT(*most / *least, 1.6F);
 }
 
-TEST(DenoiseDenoise, AShadowTakesNoLightFromNoiseBesideIt) {
+TEST(DenoiseDenoise, AShadowTakesNoLightFromAdjacentNoise) {
   film::Picture picture = noisy(0);
   for (film::Plane& plane : picture.planes)
     if (plane.name.find("normal") != std::string::npos) plane.values.assign(kPixels, 0.5F);
@@ -270,7 +270,7 @@ TEST(DenoiseDenoise, IsTheSameForAllThreadsAndInstructionSets) {
   choice.limit(choice.available());
 }
 
-/// Adds layers that divide the beauty, in single precision, with noise of their own.
+/// Adds layers that divide the beauty, in single precision, with independent noise.
 void add_light_layers(film::Picture& picture) {
   std::mt19937 random(7);
   std::uniform_int_distribution<int> part(0, 8);
@@ -344,7 +344,7 @@ TEST(DenoiseDenoise, LightLayersStillAddUpToTheBeauty) {
   }
 }
 
-TEST(DenoiseDenoise, LayersThatAreNotTheWholeLightAreFilteredToo) {
+TEST(DenoiseDenoise, LayersWithOnlyPartOfTheLightAreAlsoFiltered) {
   film::Picture picture = noisy(0.2F);
   film::Picture partial = picture;
   add_light_layers(picture);
@@ -376,7 +376,7 @@ TEST(DenoiseDenoise, BadPixelsStayAloneAndDoNotSpread) {
 }
 
 /// A half without samples is NaN. Taken for 0, it would make all pixels look alike.
-TEST(DenoiseDenoise, AHalfWithoutSamplesTellsNothing) {
+TEST(DenoiseDenoise, AHalfWithoutSamplesIsIgnored) {
   film::Picture picture = noisy(0.1F);
   for (film::Plane& plane : picture.planes)
     if (plane.name.starts_with("half_b."))
@@ -456,7 +456,7 @@ TEST(DenoiseDenoise, GuidesWithoutHalvesAreUsed) {
   EXPECT_LT(mean_squared_error(picture), before / 5);
 }
 
-TEST(DenoiseDenoise, RadianceOfAnyScaleIsFilteredAlike) {
+TEST(DenoiseDenoise, RadianceOfAnyScaleIsFilteredEqually) {
   film::Picture normal = noisy(0.1F), tiny = normal;
   constexpr float kScale = 0x1p-30F;  // a power of two, so that no rounding differs
   for (film::Plane& plane : tiny.planes)

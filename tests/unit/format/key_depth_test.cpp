@@ -54,7 +54,7 @@ TEST(FormatKeyDepth, DecimalPointsInAListDoNotAccumulate) {
 
 TEST(FormatKeyDepth, KeyDepthResetsAtNewline) { EXPECT_EQ(line_of("x = 1.5\na.b.c.d.e.f.g.h = 1\n"), 0); }
 
-TEST(FormatKeyDepth, AcceptsTruncatedTexts) {
+TEST(FormatKeyDepth, AcceptsTruncatedText) {
   const std::string text = "x = \"\"\"a\\\"b\"\"\"\"\ny = '''c'''\n" + std::string(kNine);
   for (std::size_t n = 0; n + 1 < text.size(); ++n)
     EXPECT_LE(too_deep_key(std::string_view(text).substr(0, n)).line, 3);

@@ -115,7 +115,7 @@ TEST(FormatWriteScene, CommentsAcceptAnyFileName) {
   EXPECT_EQ(files.read(text).scene.camera.vfov, 33);
 }
 
-TEST(FormatWriteScene, WritesPointsFilesBesideTheScene) {
+TEST(FormatWriteScene, WritesPointsFilesNextToTheScene) {
   const support::TempDir folder;
   scene::Scene s;
   s.materials = {{"a", scene::Dielectric{}}, {"b", scene::Dielectric{2}}};

@@ -50,7 +50,7 @@ TEST_F(ImageReadMap, RowsHoldRedGreenBlueFromTheTop) {
   EXPECT_EQ(values_of(folder_ / "a.exr"), exr.rgb);
 }
 
-TEST_F(ImageReadMap, OtherChannelsAreLeftOut) {
+TEST_F(ImageReadMap, OtherChannelsAreIgnored) {
   OIIO::ImageSpec spec(2, 1, 5, OIIO::TypeDesc::FLOAT);
   spec.channelnames = {"R", "G", "B", "A", "Z"};
   write_foreign("a.exr", spec);

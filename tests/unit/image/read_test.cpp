@@ -245,7 +245,7 @@ TEST_F(ImageRead, DamagedBytesNeverCrashAndPrintNothing) {
   std::_Exit(100);
 }
 
-TEST_F(ImageRead, TooLittleMemoryIsNoFaultOfTheFile) {
+TEST_F(ImageRead, TooLittleMemoryIsNotAnErrorOfTheFile) {
   write_foreign(folder_ / "small.exr", grey(4, 4));
   write_foreign(folder_ / "large.exr", grey(4096, 4096));
   EXPECT_EXIT(read_without_memory(folder_ / "small.exr", folder_ / "large.exr"),

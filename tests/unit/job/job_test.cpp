@@ -263,7 +263,8 @@ TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
     image::write_partial(checkpoint, preview, {}, wrong.provenance, wrong.partial);
     const base::Error refused = error();
     EXPECT_EQ(refused.kind(), base::ErrorKind::kBadData);
-    EXPECT_NE(std::string(refused.what()).find("other sums than its header says; delete it"), std::string::npos)
+    EXPECT_NE(std::string(refused.what()).find("contains sums that do not match its header; delete it"),
+              std::string::npos)
         << refused.what();
   }
   image::write_partial(checkpoint, preview, {}, right.provenance, right.partial);

@@ -102,7 +102,7 @@ TEST_F(JobLoadBackground, DisplaySpacesAreLinearized) {
   EXPECT_NEAR(loaded.image->row(0)[1], 0.21404, 1e-4);
 }
 
-TEST_F(JobLoadBackground, ValuesThatAreNoRadianceCountAsZero) {
+TEST_F(JobLoadBackground, InvalidRadianceCountsAsZero) {
   ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
   exr.rgb[0] = std::numeric_limits<float>::quiet_NaN();
   exr.rgb[4] = std::numeric_limits<float>::infinity();

@@ -79,7 +79,7 @@ TEST_F(JobLoadTextures, EncodedFilesAreSrgbUnlessTheSceneSaysOtherwise) {
   EXPECT_EQ(loaded[0].map.color_space, "srgb_texture");
 }
 
-/// Alpha beside colours is ignored: the colours are those of the file.
+/// Alpha is ignored: the colours are those of the file.
 TEST_F(JobLoadTextures, ColorsAreNotMultipliedByAlpha) {
   film::EncodedPicture picture;
   picture.width = 64;

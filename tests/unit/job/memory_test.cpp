@@ -50,7 +50,7 @@ TEST_F(JobMemory, TheTightestControlGroupLimits) {
   EXPECT_EQ(available(), 0u) << "zero, without wrapping";
 }
 
-TEST_F(JobMemory, TheRootControlGroupLimitsToo) {
+TEST_F(JobMemory, TheRootControlGroupAlsoLimits) {
   write("proc/self/cgroup", "0::/\n");
   write("sys/fs/cgroup/memory.max", "10485760\n");
   write("sys/fs/cgroup/memory.current", "0\n");

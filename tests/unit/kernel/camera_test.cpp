@@ -69,7 +69,7 @@ CameraCase lens_case() {
   return c;
 }
 
-TEST(KernelCamera, LensRaysStartOnTheLensAndMeetOnTheFocusPlane) {
+TEST(KernelCamera, LensRaysStartOnTheLensAndIntersectOnTheFocusPlane) {
   std::mt19937_64 engine(5);
   double farthest = 0, corner = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -119,7 +119,7 @@ TEST(KernelCamera, OrthographicRaysAreParallel) {
   }
 }
 
-TEST(KernelCamera, OrthographicLensRaysMeetOnTheFocusPlane) {
+TEST(KernelCamera, OrthographicLensRaysIntersectOnTheFocusPlane) {
   CameraCase c = lens_case();
   c.camera.is_orthographic = true;
   c.random[2] = 0.1;

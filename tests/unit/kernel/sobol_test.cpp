@@ -238,7 +238,7 @@ TEST(KernelSampler, SecondPointProductVarianceDoesNotExceedIndependent) {
   EXPECT_NEAR(product_variance(SamplerKind::kIndependent, 16, 2, 0, true).mean, 1, 0.1);
 }
 
-TEST(KernelSampler, SecondPointsAreNoOthersPoints) {
+TEST(KernelSampler, SecondPointsDifferFromAllOthers) {
   for (const SamplerKind kind : {SamplerKind::kIndependent, SamplerKind::kSobol}) {
     Sampler sampler;
     sampler.kind = kind;

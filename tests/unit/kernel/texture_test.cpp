@@ -172,7 +172,7 @@ TEST(KernelTexture, CheckersNeedNoIntegers) {
   EXPECT_EQ(value_at(texture, 1.5, 0.5, 0.5, 0x1p80), 1);
   EXPECT_EQ(value_at(texture, 0.5, 0.5, 0.5, -0x1p52 - 1), 1);
   EXPECT_EQ(value_at(texture, -0.5, 0.5, 0.5, 0x1p52 + 1), 0);
-  // Neither overflows to a colour of its own.
+  // Neither overflows to a different colour.
   for (const double scale : {1e-18, 1e18})
     for (const double x : {-1e18, 1e18}) {
       std::vector<SolidPoint> one(1);

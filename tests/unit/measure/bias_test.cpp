@@ -107,7 +107,7 @@ film::Picture sun_found_by_chance(std::mt19937_64& engine, double hits) {
   return out;
 }
 
-TEST(MeasureBias, LightThatFewPathsHaveFoundIsNoBias) {
+TEST(MeasureBias, LightThatFewPathsHaveFoundIsNotBias) {
   std::mt19937_64 engine(6);
   Noise noise(6);
   const Pair reference = noise.pair(1 << 20);

@@ -252,7 +252,7 @@ TEST(MetricsHdrFlip, RunsExposuresWithForEachInAnyOrder) {
   EXPECT_GT(calls, 1u);
 }
 
-TEST(MetricsPixelErrors, LeftOutPixelsDoNotCount) {
+TEST(MetricsPixelErrors, ExcludedPixelsDoNotCount) {
   const Own a(2, 1, [](int x, int, int) { return x == 0 ? 1e30 : 3.0; });
   const Own b(2, 1, [](int, int, int) { return 2.0; });
   const PixelErrors e = pixel_errors(a.view, b.view, {true, false});

@@ -97,7 +97,7 @@ class ParticlesWriteTable : public testing::Test {
   std::vector<std::string> left_out_;
 };
 
-TEST_F(ParticlesWriteTable, NpyKeepsValuesTypesAndTexts) {
+TEST_F(ParticlesWriteTable, NpyKeepsValuesTypesAndStrings) {
   Table table = extremes();
   table.columns.push_back(large_integers());
   table.columns.push_back({"it's a \\", words({"", "a, \"b\"", "\xC3\x85", " x\ny "})});
@@ -110,7 +110,7 @@ TEST_F(ParticlesWriteTable, NpyKeepsValuesTypesAndTexts) {
   EXPECT_TRUE(left_out_.empty());
 }
 
-TEST_F(ParticlesWriteTable, PlyKeepsValuesAndTypesButNoTexts) {
+TEST_F(ParticlesWriteTable, PlyKeepsValuesAndTypesButNoStrings) {
   Table table = extremes();
   table.columns.push_back({"unsigned", std::vector<std::int64_t>{0, 4294967295, 1, 2}});
   table.columns.push_back({"beyond", std::vector<std::int64_t>{0, 2147483648, 1, 2}});
@@ -176,7 +176,7 @@ TEST_F(ParticlesWriteTable, XyzHasColorsOfOneProperty) {
   EXPECT_EQ(std::lround(255 * read.columns[1].number(1)), 1);
 }
 
-TEST_F(ParticlesWriteTable, XyzLeavesOutTextsWithBlanksAndEmptyTexts) {
+TEST_F(ParticlesWriteTable, XyzOmitsStringsWithSpacesAndEmptyStrings) {
   const Table table = extremes();
   for (const char* text : {"a b", "", "a\n", "\""}) {
     Table with_text = table;
@@ -215,12 +215,12 @@ TEST_F(ParticlesWriteTable, NoRows) {
   for (const char* file : {"a.ply", "a.npy", "a.csv", "a.xyz"}) EXPECT_EQ(round_trip(table, file).rows, 0u) << file;
 }
 
-TEST_F(ParticlesWriteTable, WhatAFormatCannotStoreIsRefused) {
+TEST_F(ParticlesWriteTable, ValuesThatAFormatCannotStoreAreRefused) {
   Table table = extremes();
   EXPECT_EQ(refusal(table, "a.vtp"), "a.vtp: unknown extension `.vtp`; use .ply, .xyz, .npy or .csv");
   table.columns.push_back(large_integers());
   EXPECT_EQ(refusal(table, "a.ply"),
-            "a.ply: PLY has no integers as large as those of column `id`; write .npy, or leave the column out");
+            "a.ply: PLY has no integer type that is large enough for column `id`; write .npy, or leave the column out");
   table.columns.push_back({"t", words({"a b", "", "\n", "c"})});
   EXPECT_EQ(refusal(table, "a.csv"),
             "a.csv: CSV cannot store the text `\n` of column `t`; write .npy, or leave the column out");

@@ -96,7 +96,7 @@ TEST_F(PlotPlot, DefaultsWithoutRadiusAndColor) {
   EXPECT_EQ(scene.image.height, 1080);
   EXPECT_EQ(scene.background.type, scene::BackgroundType::kConstant);
   EXPECT_EQ(scene.background.color, (Vec3d{1, 1, 1}));
-  EXPECT_EQ(scene.color.view, "Un-tone-mapped") << "colours stay those of the map";
+  EXPECT_EQ(scene.color.view, "Un-tone-mapped") << "colours match the colour map";
   EXPECT_TRUE(scene.spheres.empty());
   EXPECT_TRUE(made.warnings.empty());
   EXPECT_TRUE(made.frames.empty());
@@ -318,7 +318,7 @@ TEST_F(PlotPlot, SequencesOfFiles) {
   EXPECT_EQ(read(1).camera.look_at.x, 3);
   options.frames.clear();
   options.all_frames = true;
-  EXPECT_NE(error().find("--frames: `all` are the frames of one file"), std::string::npos) << error();
+  EXPECT_NE(error().find("--frames: `all` selects the frames of a single file"), std::string::npos) << error();
 }
 
 TEST_F(PlotPlot, TheFrameIsPrinted) {
@@ -336,26 +336,24 @@ TEST_F(PlotPlot, TheFrameIsPrinted) {
   EXPECT_TRUE(chose("frame 1: the first; --frame N selects another")) << "the file ends in a header: " << choices();
 }
 
-TEST_F(PlotPlot, NothingToSeeIsAWarning) {
+TEST_F(PlotPlot, NothingToRenderIsAWarning) {
   const std::string none = frame("x y z radius", {}), one = frame("x y z radius", {"0 0 0 1"});
   const auto warning = [&](const std::string& text) {
     make("a.dump", text);
     return made.warnings.size() == 1 ? made.warnings[0] : std::to_string(made.warnings.size()) + " warnings";
   };
-  EXPECT_EQ(warning(none), "there is nothing to see: the file has no spheres");
-  EXPECT_EQ(
-      warning(none + one + one),
-      "there is nothing to see: frame 1 of 3 has no spheres; --frame N selects another, --frames all renders all");
+  EXPECT_EQ(warning(none), "nothing to render: the file has no spheres");
+  EXPECT_EQ(warning(none + one + one),
+            "nothing to render: frame 1 of 3 has no spheres; --frame N selects another, --frames all renders all");
   options.points.frame = 2;
-  EXPECT_EQ(
-      warning(one + none),
-      "there is nothing to see: frame 2 of 2 has no spheres; --frame N selects another, --frames all renders all");
+  EXPECT_EQ(warning(one + none),
+            "nothing to render: frame 2 of 2 has no spheres; --frame N selects another, --frames all renders all");
   options.points.frame.reset();
   options.frames = {1, 2};
-  EXPECT_EQ(warning(none + none + one), "there is nothing to see: none of the 2 frames has spheres");
+  EXPECT_EQ(warning(none + none + one), "nothing to render: none of the 2 frames has spheres");
   options.frames.clear();
   options.points.select = "x > 5";
-  EXPECT_EQ(warning(one), "there is nothing to see: the selection has no spheres");
+  EXPECT_EQ(warning(one), "nothing to render: the selection has no spheres");
   options.points.select.clear();
   warning(none);
   options.ground = true;
@@ -423,7 +421,7 @@ TEST_F(PlotPlot, StylesAndGround) {
 }
 
 /// From level or below, the ground would be in front of the spheres, or a bar at the bottom of the image.
-TEST_F(PlotPlot, TheGroundIsLeftOutWhereItWouldHideTheSpheres) {
+TEST_F(PlotPlot, TheGroundIsOmittedIfItWouldHideTheSpheres) {
   write("a.csv", "x,y,z,radius\n0,0,2,1\n0,0,7,1\n");
   options.ground = true;
   const auto has_ground = [&](const std::string& view) {

@@ -184,7 +184,7 @@ TEST(PointsCopies, OrderOfTheTransform) {
   EXPECT_EQ(points.radii[0], 1);
 }
 
-TEST(PointsCopies, RotationsFollowOneAnother) {
+TEST(PointsCopies, RotationsAreAppliedInOrder) {
   const auto turned = [](Vec3d p, Vec3d degrees) {
     scene::Points points;
     points.centers = {p};

@@ -67,7 +67,7 @@ TEST(PointsLegend, PatchesAndNan) {
   EXPECT_FALSE(contains(svg, "linearGradient"));
 }
 
-TEST(PointsLegend, TextsAreEscapedAndTruncated) {
+TEST(PointsLegend, StringsAreEscapedAndTruncated) {
   Legend legend;
   legend.title = "a<b & c>d\x01\xFF \xC3\xA5 \xED\xA0\x80 \xEF\xBF\xBF";
   const std::string svg = legend_svg(legend);

@@ -446,7 +446,7 @@ TEST_F(PointsLoadPoints, ColorsByMap) {
   EXPECT_EQ(color(2), linear_from_srgb(find_color_map("fast")->knots.back().srgb));
 }
 
-TEST_F(PointsLoadPoints, ColorsOfTextsAreNamed) {
+TEST_F(PointsLoadPoints, ColorsOfStringsAreNamed) {
   points.color.column = "name";
   points.color.map = "tab10";
   EXPECT_EQ(load("a.csv", kCsv), "");

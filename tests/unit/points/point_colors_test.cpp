@@ -157,7 +157,7 @@ TEST_F(PointsPointColors, CategoriesOfFractionsAreNumbered) {
   EXPECT_EQ(diagnostics, "");
 }
 
-TEST_F(PointsPointColors, CategoriesOfTextsDoNotDependOnTheSelection) {
+TEST_F(PointsPointColors, CategoriesOfStringsDoNotDependOnTheSelection) {
   keys.map = "tab10";
   const std::vector<ColorMap::Knot>& knots = find_color_map("tab10")->knots;
   const data::Table table = table_of(data::Words{{"S", "C", "N"}, {0, 1, 2}});
@@ -166,7 +166,7 @@ TEST_F(PointsPointColors, CategoriesOfTextsDoNotDependOnTheSelection) {
   EXPECT_EQ(out.names, std::vector<std::string>{"S"});
 }
 
-TEST_F(PointsPointColors, NanIsACategoryOfItsOwn) {
+TEST_F(PointsPointColors, NanIsASeparateCategory) {
   keys.map = "tab10";
   keys.nan_color = {0.1, 0.2, 0.3};
   const PointColors out = colors(table_of(std::vector<double>{1, kNan, 2}));
@@ -175,7 +175,7 @@ TEST_F(PointsPointColors, NanIsACategoryOfItsOwn) {
   EXPECT_EQ(out.names, (std::vector<std::string>{"1", "2", "nan"}));
 }
 
-TEST_F(PointsPointColors, TextsBySpreadColorsOfAContinuousMap) {
+TEST_F(PointsPointColors, StringsSpreadOverAContinuousMap) {
   const ColorMap& map = *find_color_map("viridis");
   const PointColors out = colors(table_of(data::Words{{"b", "c", "a"}, {0, 1, 2}}));
   EXPECT_EQ(out.palette, palette(map, 3));

@@ -68,7 +68,7 @@ TEST(PointsRows, LabelsOfLargeNumbersAreNotRounded) {
   EXPECT_EQ(labels_of(huge, Rows(2), 5).names, (Names{"1e+300", "inf"}));
 }
 
-TEST(PointsRows, LabelsOfTextsAreThoseOfTheRows) {
+TEST(PointsRows, LabelsOfStringsAreThoseOfTheRows) {
   const Column column{"chain", Words{{"B", "unused", "A", "C"}, {0, 2, 3, 0}}};
   const Labels labels = labels_of(column, Rows(RowList{3, 0, 1}), 2);
   EXPECT_EQ(labels.names, (Names{"A", "B"}));

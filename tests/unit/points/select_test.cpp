@@ -82,7 +82,7 @@ TEST(PointsSelect, ComparesNumbersOfAllTypes) {
   EXPECT_EQ(rows("2 == type"), "124");
 }
 
-TEST(PointsSelect, ComparesTexts) {
+TEST(PointsSelect, ComparesStrings) {
   EXPECT_EQ(rows("element == \"C\""), "025");
   EXPECT_EQ(rows("element != 'C'"), "134");
   EXPECT_EQ(rows("'CA' == element"), "3");
@@ -208,7 +208,7 @@ TEST(PointsSelect, SyntaxErrorsHavePositionAndRemedy) {
   EXPECT_EQ(fault("z >").source_line, "z >");
 }
 
-TEST(PointsSelect, HostileTextsAreRefusedOrEvaluated) {
+TEST(PointsSelect, HostileSelectionsAreRefusedOrEvaluated) {
   const std::size_t many = 100'000;
   EXPECT_NE(message(std::string(many, '(')).find("more than 100 nested"), std::string::npos);
   EXPECT_NE(message(std::string(many, '!')).find("more than 100 nested"), std::string::npos);

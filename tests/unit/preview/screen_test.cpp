@@ -97,7 +97,7 @@ TEST(PreviewScreen, ATerminalThatDoesNotReadDelaysNothingForLong) {
   screen.finish();
 }
 
-TEST(PreviewScreen, RefusesWhatIsNoColourTerminal) {
+TEST(PreviewScreen, RefusesTerminalsWithoutColours) {
   ORRERY_NEEDS_PSEUDO_TERMINAL();
   PseudoTerminal terminal;
   const auto message = [](int descriptor, const Environment& environment) -> std::string {

@@ -28,7 +28,7 @@ TEST(PreviewTarget, KnowsTheTerminalAndPngFiles) {
   EXPECT_EQ(parse_target("tev:9000.png").kind, TargetKind::kFile);
 }
 
-TEST(PreviewTarget, AFrameIsNoPreview) {
+TEST(PreviewTarget, AFramePatternIsNotAPreview) {
   try {
     parse_target("p.##.png");
     ADD_FAILURE();

@@ -12,7 +12,7 @@ Environment with(std::map<std::string, std::string> values) {
   return [values](const char* name) { return values.count(name) > 0 ? values.at(name) : std::string(); };
 }
 
-TEST(PreviewTerminalKind, NamesWhyThereAreNoColours) {
+TEST(PreviewTerminalKind, ReportsWhyThereAreNoColours) {
   EXPECT_EQ(missing_colors(with({{"TERM", "xterm"}})), "");
   EXPECT_EQ(missing_colors(with({{"TERM", "vte-256color"}})), "");
   EXPECT_EQ(missing_colors(with({})), "TERM is not set");

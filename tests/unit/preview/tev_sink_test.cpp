@@ -69,7 +69,7 @@ TEST_F(PreviewTevSink, AViewerThatNeverReadsDelaysNothingForLong) {
   EXPECT_EQ(std::count(notes_.begin(), notes_.end(), '\n'), 1);
 }
 
-TEST_F(PreviewTevSink, AViewerThatLeavesIsNoError) {
+TEST_F(PreviewTevSink, AViewerThatLeavesIsNotAnError) {
   TevServer server(TevServer::Manner::kLeaves);
   {
     const film::Partial state = partial(1200, 1200);

@@ -181,7 +181,7 @@ TEST(RenderCoincident, OnlyTheFirstEmitterIsALight) {
   expect_equal_light(one, more, "lamps");
 }
 
-TEST(RenderCoincident, AnEmitterBehindAnEarlierSphereIsNoLight) {
+TEST(RenderCoincident, AnEmitterThatCoincidesWithAnEarlierSphereIsNotALight) {
   scene::Scene dark = dark_stage();
   scene::Scene hidden = dark;
   test::add_lamp(hidden, dark.spheres[1].center, dark.spheres[1].radius, {20, 15, 10});

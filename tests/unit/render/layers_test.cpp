@@ -449,7 +449,7 @@ TEST(RenderWindow, PixelAspectStretchesPixels) {
   EXPECT_NEAR(length(compiled.camera.right) / length(compiled.camera.down), 2, 1e-12);
 }
 
-/// Both halves have samples of their own, and their mean is the beauty.
+/// The halves have different samples, and their mean is the beauty.
 TEST(RenderLayers, HalvesAverageToTheBeauty) {
   scene::Scene s = test::everything();
   s.image = {32, 18};

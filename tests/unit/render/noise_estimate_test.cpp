@@ -135,7 +135,7 @@ TEST(RenderNoiseEstimate, BlackIsAcceptedAfter1024Samples) {
   EXPECT_EQ(find_unreliable_pixels(s, pool).count, 0u);
 }
 
-TEST(RenderNoiseEstimate, TooFewHitsAreNoEvidence) {
+TEST(RenderNoiseEstimate, TooFewHitsAreNotEvidence) {
   TilePool pool(1);
   PixelStatistics s(7, 7);
   std::fill(s.samples.begin(), s.samples.end(), 8u);
@@ -150,7 +150,7 @@ TEST(RenderNoiseEstimate, TooFewHitsAreNoEvidence) {
   EXPECT_EQ(find_unreliable_pixels(s, pool).of_pixel[s.at(3, 3)], 0);
 }
 
-TEST(RenderNoiseEstimate, LightBesideADarkAreaIsNoEvidenceForIt) {
+TEST(RenderNoiseEstimate, LightNextToADarkAreaIsNotEvidenceForIt) {
   TilePool pool(1);
   PixelStatistics s(30, 20);
   std::fill(s.samples.begin(), s.samples.end(), 8u);

@@ -97,7 +97,7 @@ TEST(RenderSmallEmitters, LargeEmittersAndThoseOutsideTheImageDoNotCount) {
   EXPECT_TRUE(find(compile::compile(s)).empty()) << "no emitter";
 }
 
-TEST(RenderSmallEmitters, TheSunOfASkyIsOne) {
+TEST(RenderSmallEmitters, TheSunOfASkyIsASmallEmitter) {
   scene::Scene s = distant_lamp();
   s.spheres.clear();
   s.background.type = scene::BackgroundType::kImage;
@@ -137,7 +137,7 @@ TEST(RenderSmallEmitters, NeedSeveralExpectedHits) {
   EXPECT_EQ(find_unreliable_pixels(with_emitter(8, 10), pool).count, 1u);
 }
 
-TEST(RenderSmallEmitters, RaiseTheErrorOfAPixelWhateverItsOwnValues) {
+TEST(RenderSmallEmitters, RaiseTheErrorOfAPixelRegardlessOfItsOwnValues) {
   TilePool pool(1);
   PixelStatistics s = with_emitter(256, 10);
   const auto error = [&] { return errors_of_one_sample(s, estimate_noise(s, pool), pool)[s.at(7, 7)]; };

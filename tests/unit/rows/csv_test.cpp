@@ -201,7 +201,7 @@ TEST_F(RowsCsv, CommentsAreSkippedAnywhere) {
   EXPECT_EQ(roles("//X Y Z R G B\n1 2 3 255 0 0\n").rgb[0], "R") << "of CloudCompare";
 }
 
-TEST_F(RowsCsv, QuotedColumnsAreTextsUnlessAllAreQuoted) {
+TEST_F(RowsCsv, QuotedColumnsAreStringsUnlessAllAreQuoted) {
   EXPECT_EQ(columns("x,y,z,chain\n1,2,3,\"1\"\n1,2,3,\"2\"\n"), "x:float64 y:float64 z:float64 chain:text");
   EXPECT_EQ(columns("x,y,z,chain\n1,2,3,\"1\"\n1,2,3,2\n"), "x:float64 y:float64 z:float64 chain:float64");
   EXPECT_EQ(columns("\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n"), "x:float64 y:float64 z:float64");
@@ -226,7 +226,7 @@ TEST_F(RowsCsv, FilesWithoutRows) {
   EXPECT_EQ(faults("a,b\n1,2\n").rfind("2: there are neither", 0), 0u);
 }
 
-TEST_F(RowsCsv, TextsAreRecognisedByTheirContent) {
+TEST_F(RowsCsv, TextFilesAreRecognisedByTheirContent) {
   EXPECT_EQ(open("x y z\n1 2 3\n", "a.txt")->format(), Format::kCsv);
   EXPECT_EQ(open("ra,dec,dist\n1,2,3\n", "a.dat")->format(), Format::kCsv);
   EXPECT_EQ(open("1 2 3\n4 5 6", "a.asc")->format(), Format::kCsv);

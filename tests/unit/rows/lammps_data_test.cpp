@@ -90,7 +90,7 @@ TEST_F(RowsLammpsData, TypesMayBeLabels) {
 
 TEST_F(RowsLammpsData, StyleIsNotGuessed) {
   EXPECT_EQ(errors(kHead + "Atoms\n\n1 1 0 0 0 0 0\n2 1 0 0 0 0 0\n"),
-            "15: the section \"Atoms\" does not name its style, which decides what its columns mean\n");
+            "15: the section \"Atoms\" does not name its style, which determines the meaning of its columns\n");
   EXPECT_EQ(errors(kHead + "Atoms # body\n\n1 1 0 0 0 0 0\n"), "15: atom style \"body\" is not supported\n");
 }
 

@@ -233,14 +233,14 @@ TEST_F(RowsLammpsDump, ErrorsHaveLines) {
             "8: a lower bound of the box exceeds the upper bound\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n-1\n"), "4: expected a number of atoms, found '-1'\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\n"),
-            "3: 'ITEM: NUMBER OF ENTRIES' is no item of a dump of atoms\n");
+            "3: 'ITEM: NUMBER OF ENTRIES' is not an item of an atom dump\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\n" + kBox + atoms + "0 0 0\n"),
             "7: the frame has no item \"NUMBER OF ATOMS\" before its atoms\n");
   EXPECT_EQ(errors("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9000000000000000000\n" + atoms + "0 0 0\n"),
             "7: the file ends after 1 of 9000000000000000000 rows\n");
 }
 
-TEST_F(RowsLammpsDump, RowsBehindTheFrameAreNotIgnored) {
+TEST_F(RowsLammpsDump, RowsAfterTheFrameAreNotIgnored) {
   const auto file = open(kFrameHead + kBox + "ITEM: ATOMS x y z\n0 0 0\n0 0 0\n0 0 0\n");
   try {
     file->read(0, {"x"});

@@ -171,7 +171,7 @@ TEST_F(RowsPly, RowsThatDifferFromTheHeaderAreRefused) {
   const std::string colors = "element vertex 1\n" + std::string(kXyz) + "property uchar red\n";
   EXPECT_NE(faults(header("ascii", colors) + "1 2 3 0.5\n"), "");
   EXPECT_EQ(faults(header("ascii", colors + "element e 1\nproperty int e\n") + "1 2 3 0.5\n7\n"),
-            "11: vertex 1 of 1, `red`: not an integer of 64 bits\n");
+            "11: vertex 1 of 1, `red`: not a 64-bit integer\n");
 }
 
 TEST_F(RowsPly, ElementsAfterTheVerticesMustBeComplete) {

@@ -162,7 +162,7 @@ TEST_F(RowsXyz, ErrorsHaveLines) {
   EXPECT_EQ(errors("2\n\nH 1 2 3\nH 1 2\n"), "4: has 3 values, not 4\n");
   EXPECT_EQ(errors("1\nProperties=species:S:1:pos:R:3\nH 1 2 3 4\n"), "3: has more than 4 values\n");
   EXPECT_EQ(errors("1\nProperties=species:S:1\nH\n"), "2: Properties has no positions\n");
-  EXPECT_EQ(errors("1\nProperties=pos:R:2\n1 2\n"), "2: property \"pos\" is not of 3 real numbers\n");
+  EXPECT_EQ(errors("1\nProperties=pos:R:2\n1 2\n"), "2: property \"pos\" does not have 3 real components\n");
   EXPECT_EQ(errors("1\nProperties=pos:R:3:a:R:9999999\n1 2 3\n"),
             "2: property \"a\": '9999999' is not a number of columns; at most 4096 in all\n");
   for (const char* title : {"Si crystal, lattice=5.43", "Si lattice relaxed", "pbc = xyz, lattice = 5"})
@@ -188,7 +188,7 @@ TEST_F(RowsXyz, ColorsByName) {
   EXPECT_EQ(roles.rgb_maximum, 255);
 }
 
-TEST_F(RowsXyz, RowsBehindTheFrameAreNotIgnored) {
+TEST_F(RowsXyz, RowsAfterTheFrameAreNotIgnored) {
   const auto file = open("1\n\nH 1 2 3\nH 1 2 3\n");
   try {
     file->read(0, {"x"});

@@ -115,7 +115,7 @@ TEST(SceneLayers, LightGroupsAreValidated) {
   EXPECT_EQ(problem_of(s), "material.m.light_group: the scene has more than 64 light groups, with the default group");
 }
 
-TEST(SceneLayers, NamesBesideAllAreAdded) {
+TEST(SceneLayers, NamesInAdditionToAllAreAdded) {
   Scene s;
   s.output.layers = {"Z", "all", "CryptoGroup"};
   EXPECT_EQ(requested_layers(s).size(), available_layers(s).size()) << "without `halves`, with CryptoGroup";
