@@ -178,9 +178,11 @@ def main():
         folder = pathlib.Path(name)
         program = Program(options.program, options.isa)
         if options.whole:
-            scene = uniform(folder, options.whole)
-            out = statistics(program, scene, folder, "--width", "1920", "--height", "1080", "--samples", "16")
-            print(json.dumps({k: out[k] for k in ("spheres", "seconds", "peak_memory_bytes", "traversal")}, indent=1))
+            for make in (uniform, crystal):
+                scene = make(folder, options.whole)
+                out = statistics(program, scene, folder, "--width", "1920", "--height", "1080", "--samples", "16")
+                keys = ("spheres", "seconds", "peak_memory_bytes", "traversal")
+                print(json.dumps({"scene": scene.stem, **{k: out[k] for k in keys}}, indent=1), flush=True)
             return
         base = base_bytes(program, folder)
         results = []
