@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/preview_screen.h"
+#include "display/picture_info.h"
 #include "film/partial.h"
 #include "film/picture.h"
 #include "film/rendered_pixels.h"

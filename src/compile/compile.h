@@ -11,7 +11,7 @@ namespace orrery::compile {
 /// A negative radius becomes a positive one with the material turned inside out, angles become vectors, and unused
 /// materials are left out.
 ///
-/// A sky that is not baked yet is baked, in linear Rec.709; job::load_scene bakes it for other working spaces.
+/// A sky that is not baked yet is baked, in linear Rec.709; load::load_scene bakes it for other working spaces.
 ///
 /// `closing`  the scene at shutter close, without points; null: no motion blur. What does not move costs nothing.
 /// Domain     scenes in which scene::validate finds no error
