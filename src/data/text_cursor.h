@@ -52,8 +52,8 @@ class TextCursor {
 /// A text without white space at its ends.
 std::string_view trimmed(std::string_view text);
 
-/// The words of a text, which are separated by blanks and tabs.
-std::vector<std::string_view> words_of(std::string_view text);
+/// The words of a text, which are separated by any of these characters.
+std::vector<std::string_view> words_of(std::string_view text, std::string_view separators = " \t\r");
 
 /// Reads an integer that is the whole word.
 ///
