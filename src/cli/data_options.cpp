@@ -64,7 +64,7 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
                    fmt::format("--replicate: `{}` must be three numbers of copies, e.g. 2,2,1", arguments.replicate));
     for (const double n : counts)
       if (!(n >= 1 && n <= scene::kMaxCopies && n == std::floor(n)))
-        refuse("--replicate: the numbers of copies must be integers from 1 to " + std::to_string(scene::kMaxCopies));
+        refuse(fmt::format("--replicate: the numbers of copies must be integers from 1 to {}", scene::kMaxCopies));
     points.replicate = {counts[0], counts[1], counts[2]};
   }
 }
