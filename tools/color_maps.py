@@ -11,6 +11,7 @@ BATLOW.CPT is /usr/share/gmt/cpt/SCM/batlow.cpt of the Debian package gmt-common
 """
 import re
 import sys
+import textwrap
 
 import numpy as np
 from matplotlib import colormaps
@@ -29,6 +30,10 @@ FAST = np.array([
     [0.7061412605695164, 0.9275207599610714, 0.6214389091739178, 0.31535705838676426],
     [0.8476395308725272, 0.8, 0.352, 0.16],
     [1, 0.59, 0.0767, 0.119475]])
+
+# All maps, in the order of the tables.
+CONTINUOUS = ["fast", "coolwarm", "viridis", "magma", "inferno", "plasma", "cividis", "batlow", "turbo"]
+CATEGORICAL = ["tab10", "okabe-ito", "set2"]
 
 OKABE_ITO = ["E69F00", "56B4E9", "009E73", "F0E442", "0072B2", "D55E00", "CC79A7", "000000"]
 
@@ -114,18 +119,25 @@ def hex_codes(name):
     return ["%02X%02X%02X" % tuple(round(255 * x) for x in color[:3]) for color in colormaps[name].colors]
 
 
+def emit_table(kind, names):
+    rows = ", ".join(f'{{"{name}",~{constant(name)}}}' for name in names)
+    print(f"constexpr {kind}Table k{kind}[] = {{")
+    print(textwrap.fill(rows, 115, initial_indent="    ", subsequent_indent="    ").replace("~", " ") + "};\n")
+
+
 def main():
-    tables = {"fast": fast(), "batlow": batlow(sys.argv[1])}
-    for name in ["coolwarm", "viridis", "magma", "inferno", "plasma", "cividis", "turbo"]:
-        tables[name] = colormaps[name](np.arange(256))[:, :3]
+    own = {"fast": fast(), "batlow": batlow(sys.argv[1])}
+    good = True
     print(HEADER)
-    good = [emit_knots(name, tables[name], smoothed(tables[name]) if name == "batlow" else tables[name])
-            for name in ["fast", "coolwarm", "viridis", "magma", "inferno", "plasma", "cividis", "batlow", "turbo"]]
-    emit_colors("tab10", hex_codes("tab10"))
-    emit_colors("okabe-ito", OKABE_ITO)
-    emit_colors("set2", hex_codes("Set2"))
+    for name in CONTINUOUS:
+        table = own[name] if name in own else colormaps[name](np.arange(256))[:, :3]
+        good = emit_knots(name, table, smoothed(table) if name == "batlow" else table) and good
+    for name in CATEGORICAL:
+        emit_colors(name, OKABE_ITO if name == "okabe-ito" else hex_codes(name.replace("set", "Set")))
+    emit_table("Continuous", CONTINUOUS)
+    emit_table("Categorical", CATEGORICAL)
     print(FOOTER)
-    return 0 if all(good) else 1
+    return 0 if good else 1
 
 
 HEADER = """\
@@ -148,11 +160,8 @@ namespace {
 FOOTER = """\
 }  // namespace
 
-const ContinuousTable kContinuousTables[9] = {
-    {"fast", kFast}, {"coolwarm", kCoolwarm}, {"viridis", kViridis}, {"magma", kMagma}, {"inferno", kInferno},
-    {"plasma", kPlasma}, {"cividis", kCividis}, {"batlow", kBatlow}, {"turbo", kTurbo}};
-
-const CategoricalTable kCategoricalTables[3] = {{"tab10", kTab10}, {"okabe-ito", kOkabeIto}, {"set2", kSet2}};
+const std::span<const ContinuousTable> kContinuousTables = kContinuous;
+const std::span<const CategoricalTable> kCategoricalTables = kCategorical;
 
 }  // namespace orrery::points"""
 

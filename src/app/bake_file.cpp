@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "display/settings.h"
-#include "job/job_files.h"
+#include "load/scene_files.h"
 
 namespace orrery::app {
 
@@ -15,7 +15,7 @@ void bake_file(const display::Settings& display, int cube_size, const std::files
     throw base::Error(base::ErrorKind::kUsage,
                       file.string() + " is not a display transform file; use the extension .cube or .clf");
   base::FileSet files;
-  job::add_ocio_configs(display.config, files);
+  load::add_ocio_configs(display.config, files);
   files.add_output(file, "-o");
   base::check_creatable(file);
   base::write_text_file(

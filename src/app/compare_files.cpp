@@ -10,6 +10,7 @@
 
 #include "app/compared_channels.h"
 #include "base/atomic_file.h"
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/text.h"
@@ -19,7 +20,6 @@
 #include "image/read.h"
 #include "image/write.h"
 #include "job/machine.h"
-#include "job/memory.h"
 #include "job/text.h"
 #include "job/version.h"
 #include "metrics/color_view.h"
@@ -218,7 +218,7 @@ Comparison compare_files(const std::filesystem::path& picture, const std::filesy
   if (!layer.empty() && !pictures.flip.empty())
     throw base::Error(base::ErrorKind::kUsage, "--flip covers colours only; remove --layer");
   const auto read = [](const std::filesystem::path& file) {
-    return image::read(file, image::Parts::kAll, job::available_memory().value_or(0));
+    return image::read(file, image::Parts::kAll, base::available_memory().value_or(0));
   };
   const film::Picture a = read(picture), b = read(reference);
   for (const auto& file : {pictures.difference, pictures.heat, pictures.flip})

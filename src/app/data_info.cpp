@@ -9,8 +9,8 @@
 
 #include <fmt/core.h>
 
+#include "base/available_memory.h"
 #include "base/error.h"
-#include "job/memory.h"
 #include "particles/open.h"
 #include "points/derived.h"
 
@@ -67,7 +67,7 @@ void add_summaries(data::DataFile& file, int frame, const std::vector<std::strin
 DataInfo data_info(const DataInfoRequest& request) {
   data::OpenOptions options;
   options.component = request.component;
-  options.limit_memory(job::available_memory().value_or(0));
+  options.limit_memory(base::available_memory().value_or(0));
   const std::unique_ptr<data::DataFile> file = particles::open(request.file, options);
   DataInfo info;
   info.file = request.file;
@@ -82,7 +82,7 @@ DataInfo data_info(const DataInfoRequest& request) {
   for (const data::ColumnInfo& column : info.described.columns) info.columns.push_back({column});
   points::add_derived_columns(info.described);
   const std::uint64_t limit =
-      request.table_bytes > 0 ? request.table_bytes : job::available_memory().value_or(kUnknownMemory) / 4;
+      request.table_bytes > 0 ? request.table_bytes : base::available_memory().value_or(kUnknownMemory) / 4;
   std::vector<std::string> names;
   std::uint64_t bytes = 0;
   const auto read = [&] {

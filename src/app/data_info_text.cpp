@@ -65,7 +65,7 @@ std::string assemblies_text(const std::vector<data::Assembly>& assemblies) {
     const std::size_t copies = copies_of(assemblies[i]);
     out.push_back(fmt::format("{} ({}{}", assemblies[i].name, copies, copies == 1 ? " copy)" : " copies)"));
   }
-  if (assemblies.size() > kMaxAssemblies) out.push_back(std::to_string(assemblies.size() - kMaxAssemblies) + " more");
+  if (assemblies.size() > kMaxAssemblies) out.push_back(fmt::format("{} more", assemblies.size() - kMaxAssemblies));
   return base::joined(out);
 }
 

@@ -2,15 +2,15 @@
 #include "app/develop_file.h"
 
 #include "base/atomic_file.h"
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "image/format.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "job/display_writer.h"
-#include "job/job_files.h"
-#include "job/memory.h"
 #include "job/outputs.h"
 #include "job/version.h"
+#include "load/scene_files.h"
 
 namespace orrery::app {
 namespace {
@@ -32,14 +32,14 @@ DevelopReport develop_file(const Development& development) {
   job::check_bits(job::image_files(development.outputs), development.bits);
   base::FileSet files;
   files.add_input(development.input, "image");
-  job::add_ocio_configs(development.display.config, files);
+  load::add_ocio_configs(development.display.config, files);
   for (const auto& output : development.outputs) {
     files.add_output(output, "-o");
     base::check_creatable(output);
   }
   DevelopReport report;
   const film::Picture picture =
-      image::read(development.input, image::Parts::kFirst, job::available_memory().value_or(0));
+      image::read(development.input, image::Parts::kFirst, base::available_memory().value_or(0));
   for (const auto& output : development.outputs) image::check_size(output, picture.width, picture.height);
   display::Settings display = development.display;
   if (display.working_space.empty()) display.working_space = picture.color_interop_id;

@@ -15,12 +15,12 @@
 #include "film/layer_film.h"
 #include "format/read_result.h"
 #include "job/layers.h"
-#include "job/load_scene.h"
-#include "job/load_textures.h"
-#include "job/loaded_scene.h"
 #include "job/scene_hash.h"
 #include "job/text.h"
 #include "kernel/isa.h"
+#include "load/load_scene.h"
+#include "load/load_textures.h"
+#include "load/loaded_scene.h"
 #include "measure/bench_scene.h"
 #include "measure/feature_cost.h"
 #include "render/traversals.h"
@@ -60,7 +60,7 @@ std::vector<Feature> features_of(const compile::CompiledScene& compiled, bool ha
 }
 
 /// Describes the textures of a scene.
-std::vector<TextureInfo> texture_infos(const scene::Scene& scene, const std::vector<job::LoadedTexture>& loaded) {
+std::vector<TextureInfo> texture_infos(const scene::Scene& scene, const std::vector<load::LoadedTexture>& loaded) {
   std::vector<TextureInfo> out;
   std::size_t next = 0;
   for (const scene::NamedTexture& named : scene::textures(scene)) {
@@ -68,7 +68,7 @@ std::vector<TextureInfo> texture_infos(const scene::Scene& scene, const std::vec
     info.key = named.key;
     info.type = scene::texture_types(named.use)[static_cast<std::size_t>(named.texture->type)].name;
     if (named.texture->type == scene::TextureType::kImage) {
-      const job::LoadedMap& map = loaded.at(next++).map;
+      const load::LoadedMap& map = loaded.at(next++).map;
       info.file = named.texture->file.string();
       info.width = map.width;
       info.height = map.height;
@@ -112,10 +112,10 @@ std::vector<std::pair<std::string, std::uint64_t>> count_materials(const compile
 
 }  // namespace
 
-SceneInfo scene_info(const job::SceneRequest& request) {
-  job::SceneRequest with_any_background = request;
+SceneInfo scene_info(const load::SceneRequest& request) {
+  load::SceneRequest with_any_background = request;
   with_any_background.skips_large_background = true;
-  job::LoadedScene loaded = job::load_scene(with_any_background);
+  load::LoadedScene loaded = load::load_scene(with_any_background);
   const format::ReadResult& read = loaded.read;
   const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   const film::LayerRequest layers = job::choose_layers(read.scene, compiled).request;
@@ -161,7 +161,7 @@ SceneInfo scene_info(const job::SceneRequest& request) {
     info.background = std::move(loaded.background);
   }
   needs.textures = 0;
-  for (const job::LoadedTexture& texture : loaded.textures) {
+  for (const load::LoadedTexture& texture : loaded.textures) {
     if (!texture.is_shared) needs.textures += texture.map.bytes;
     if (!texture.map.image) info.scene_hash.clear();
   }
@@ -174,7 +174,7 @@ SceneInfo scene_info(const job::SceneRequest& request) {
   return info;
 }
 
-void measure_savings(const job::SceneRequest& request, SceneInfo& info) {
+void measure_savings(const load::SceneRequest& request, SceneInfo& info) {
   measure::BenchRequest bench;
   bench.scene = request.source;
   for (const measure::FeatureCost& cost : measure::bench_features(bench))

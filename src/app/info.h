@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "job/forward.h"
-#include "job/loaded_map.h"
 #include "job/memory.h"
+#include "load/forward.h"
+#include "load/loaded_map.h"
 
 namespace orrery::app {
 
@@ -55,7 +55,7 @@ struct SceneInfo {
   std::string precision, accelerator, isa;
   std::string traversal;  ///< BVH traversal, if known before rendering
   job::MemoryEstimate memory;
-  std::optional<job::LoadedBackground> background;  ///< set for an image background
+  std::optional<load::LoadedBackground> background;  ///< set for an image background
   std::string background_file;
   std::vector<TextureInfo> textures;
   struct Setting {
@@ -67,13 +67,13 @@ struct SceneInfo {
 
 /// Loads a scene and determines its properties without rendering.
 ///
-/// Errors     those of load_scene
-SceneInfo scene_info(const job::SceneRequest& request);
+/// Errors     those of load::load_scene
+SceneInfo scene_info(const load::SceneRequest& request);
 
 /// Measures the time saved by omitting the kernel features that the scene does not require, and sets Feature::saves.
 ///
 /// Errors     those of bench_features
-void measure_savings(const job::SceneRequest& request, SceneInfo& info);
+void measure_savings(const load::SceneRequest& request, SceneInfo& info);
 
 /// The properties as text.
 std::string info_text(const SceneInfo& info);

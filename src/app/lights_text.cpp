@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "compile/emitters.h"
@@ -43,7 +45,7 @@ std::uint64_t count_emitters(const compile::CompiledScene& compiled) {
 std::string lights_text(const compile::CompiledScene& compiled, std::uint64_t count) {
   if (count == 0 && !compiled.environment) return {};
   std::vector<std::string> lights;
-  if (count > 0) lights.push_back(std::to_string(count) + (count == 1 ? " emitter" : " emitters"));
+  if (count > 0) lights.push_back(fmt::format("{} emitter{}", count, count == 1 ? "" : "s"));
   if (compiled.environment) lights.push_back("background");
   std::string out = base::joined(lights);
   const std::string environment = environment_text(compiled);

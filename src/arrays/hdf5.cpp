@@ -111,7 +111,8 @@ void SnapshotReader::find_parts(const std::filesystem::path& file, std::uint64_t
     fail(file, fmt::format("the snapshot has {} files, but this file's name has no number", count),
          fmt::format("name them NAME.0{}, NAME.1{} and so on", extension, extension));
   for (std::uint64_t i = 0; i < count; ++i) {
-    const std::filesystem::path part = file.parent_path() / (stem.substr(0, dot + 1) + std::to_string(i) + extension);
+    const std::filesystem::path part =
+        file.parent_path() / fmt::format("{}{}{}", stem.substr(0, dot + 1), i, extension);
     std::error_code ignored;
     if (!std::filesystem::exists(part, ignored))
       fail(file, fmt::format("the snapshot has {} files, but {} does not exist", count, part.string()),
@@ -157,7 +158,7 @@ void SnapshotReader::choose_type(std::optional<int> wanted, const hdf5::Handle& 
          "of HDF5, only snapshots in the layout of Gadget, SWIFT and AREPO are supported; write other data as NPY or "
          "CSV, e.g. with h5py and numpy.save");
   if (wanted && std::find(present.begin(), present.end(), *wanted) == present.end())
-    fail(file_, "there is no component " + std::to_string(*wanted), "the file has " + list);
+    fail(file_, fmt::format("there is no component {}", *wanted), "the file has " + list);
   if (!wanted && filled.size() > 1)
     fail(file_, "the snapshot has several components", "select one with --component: " + list);
   type_ = wanted ? *wanted : filled.empty() ? present.front() : filled.front();

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"
@@ -11,7 +12,6 @@
 #include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/signals.h"
-#include "job/memory.h"
 #include "plot/convert.h"
 #include "plot/converted_file.h"
 
@@ -44,7 +44,7 @@ int run_convert(ConvertArguments& arguments) {
   read_data_options(arguments.data, convert);
   if (convert.color_by.empty() && (convert.has_map || convert.points.color.range))
     base::refuse("--map and --range need --color-by");
-  convert.memory_limit = job::available_memory().value_or(0);
+  convert.memory_limit = base::available_memory().value_or(0);
   plot::convert(convert, [&](const plot::ConvertedFile& written) { print_file(written, arguments.quiet); });
   return 0;
 }

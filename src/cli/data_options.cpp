@@ -65,8 +65,8 @@ void read_points(const DataArguments& arguments, scene::Points& points) {
                    fmt::format("--replicate: `{}` must be three numbers of copies, e.g. 2,2,1", arguments.replicate));
     for (const double n : counts)
       if (!(n >= 1 && n <= scene::kMaxCopies && n == std::floor(n)))
-        base::refuse("--replicate: the numbers of copies must be integers from 1 to " +
-                     std::to_string(scene::kMaxCopies));
+        base::refuse(
+            fmt::format("--replicate: the numbers of copies must be integers from 1 to {}", scene::kMaxCopies));
     points.replicate = {counts[0], counts[1], counts[2]};
   }
 }

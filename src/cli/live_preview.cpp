@@ -6,30 +6,14 @@
 #include <utility>
 
 #include "cli/preview_screen.h"
+#include "display/picture_info.h"
 #include "film/partial.h"
 #include "film/picture.h"
 #include "film/rendered_pixels.h"
 #include "job/hooks.h"
-#include "preview/file_sink.h"
 #include "preview/preview.h"
-#include "preview/terminal_sink.h"
-#include "preview/tev_sink.h"
 
 namespace orrery::cli {
-namespace {
-
-std::unique_ptr<preview::Sink> sink_of(const preview::Target& target, PreviewScreen* screen,
-                                       const preview::OnNote& note) {
-  switch (target.kind) {
-    case preview::TargetKind::kNone: break;
-    case preview::TargetKind::kTev: return std::make_unique<preview::TevSink>(target.host, target.port, note);
-    case preview::TargetKind::kTerminal: return std::make_unique<preview::TerminalSink>(screen->screen());
-    case preview::TargetKind::kFile: return std::make_unique<preview::FileSink>(target.file);
-  }
-  return nullptr;
-}
-
-}  // namespace
 
 PreviewScreen::PreviewScreen() : screen_(STDERR_FILENO) {}
 
@@ -39,7 +23,7 @@ std::unique_ptr<PreviewScreen> open_screen(const preview::Target& target) {
 
 std::unique_ptr<preview::Preview> start_preview(const preview::Target& target, PreviewScreen* screen,
                                                 preview::OnNote note, job::Hooks& hooks) {
-  std::unique_ptr<preview::Sink> sink = sink_of(target, screen, note);
+  std::unique_ptr<preview::Sink> sink = preview::make_sink(target, screen ? &screen->screen() : nullptr, note);
   if (!sink) return nullptr;
   auto out = std::make_unique<preview::Preview>(std::move(sink), std::move(note));
   preview::Preview* const started = out.get();

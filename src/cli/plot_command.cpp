@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
+#include "base/available_memory.h"
 #include "base/diagnostic.h"
 #include "base/file_set.h"
 #include "base/frames.h"
@@ -20,10 +21,10 @@
 #include "format/write_tree.h"
 #include "job/check_job.h"
 #include "job/job_files.h"
-#include "job/load_scene.h"
-#include "job/loaded_scene.h"
-#include "job/memory.h"
-#include "job/working_space.h"
+#include "load/load_scene.h"
+#include "load/loaded_scene.h"
+#include "load/scene_files.h"
+#include "load/working_space.h"
 #include "plot/plot.h"
 #include "plot/write_legend.h"
 #include "preview/target.h"
@@ -55,10 +56,10 @@ void take_override(const std::vector<format::Override>& overrides, const std::st
 
 /// A provisional scene with only the overrides of tables that every scene has, validated.
 ///
-/// `develops` see job::SceneRequest
-job::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments,
-                             const std::vector<format::Override>& overrides, bool develops) {
-  job::SceneRequest request{job.scene, job.outputs.display, develops};
+/// `develops` see load::SceneRequest
+load::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments,
+                              const std::vector<format::Override>& overrides, bool develops) {
+  load::SceneRequest request{job.scene, job.outputs.display, develops};
   request.source.file = arguments.save_scene.empty() ? arguments.plot.file : arguments.save_scene;
   request.source.text = std::make_shared<const std::string>();
   request.source.is_generated = true;
@@ -66,7 +67,7 @@ job::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments
   for (const format::Override& override : overrides)
     for (const char* table : {"color.", "image.", "output.", "render."})
       if (override.text.starts_with(table)) request.source.overrides.push_back(override);
-  return job::load_scene(request);
+  return load::load_scene(request);
 }
 
 /// The files that plot writes in addition to those of a render.
@@ -152,7 +153,7 @@ display::Settings display_of(const display::Settings& options, const std::vector
   };
   scene::Color color;
   color.config = string_of(overrides, "color.config");
-  if (out.config.empty()) out.config = job::config_of(scene_file, color);
+  if (out.config.empty()) out.config = load::config_of(scene_file, color);
   otherwise(out.display, "color.display");
   otherwise(out.view, "color.view");
   otherwise(out.look, "color.look");
@@ -166,7 +167,7 @@ void check_outputs(const PlotArguments& arguments) {
   for (const int frame : plot.frames.empty() ? std::vector<int>{1} : plot.frames)
     files.add_input(base::with_frame(plot.file.string(), frame), "data file");
   if (plot.points.color.has_map_file()) files.add_input(plot.points.color.map, "colour map");
-  job::add_ocio_configs(plot.display.config, files);
+  load::add_ocio_configs(plot.display.config, files);
   for (const job::OutputFile& output : own_outputs(arguments)) {
     files.add_output(output.path, output.role);
     base::check_creatable(output.path);
@@ -193,7 +194,7 @@ int run_plot(PlotArguments& arguments) {
                : arguments.style == "night" ? plot::Style::kNight
                                             : plot::Style::kStudio;
   plot.memory_limit = render.batch.job.resources.memory_limit > 0 ? render.batch.job.resources.memory_limit
-                                                                  : job::available_memory().value_or(0);
+                                                                  : base::available_memory().value_or(0);
   const bool saves = !arguments.save_scene.empty();
   const std::filesystem::path scene_file = saves ? arguments.save_scene : plot.file;
   render.picture.finish(render.batch.job);

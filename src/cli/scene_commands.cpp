@@ -18,9 +18,9 @@
 #include "cli/output.h"
 #include "cli/scene_options.h"
 #include "format/read_scene.h"
-#include "job/load_background.h"
-#include "job/load_scene.h"
-#include "job/load_textures.h"
+#include "load/load_background.h"
+#include "load/load_scene.h"
+#include "load/load_textures.h"
 
 namespace orrery::cli {
 namespace {
@@ -69,7 +69,7 @@ int data_info(const InfoOptions& options) {
 int info(const InfoOptions& options) {
   if (options.file.extension() != ".toml") return data_info(options);
   refuse_option(!options.component.empty(), "--component", options, "scene; the option applies to data files");
-  job::SceneRequest request;
+  load::SceneRequest request;
   request.source.file = options.file;
   request.source.overrides = options.overrides.overrides();
   request.source.frame = options.overrides.frame();
@@ -95,9 +95,9 @@ std::string memory_warning(const app::SceneInfo& info) {
 /// Checks the frames of one scene. Prints equal messages of several frames once.
 class FrameChecks {
  public:
-  explicit FrameChecks(job::SceneRequest request) : request_(std::move(request)) {
-    request_.background_cache = std::make_shared<job::BackgroundCache>();
-    request_.texture_cache = std::make_shared<job::TextureCache>();
+  explicit FrameChecks(load::SceneRequest request) : request_(std::move(request)) {
+    request_.background_cache = std::make_shared<load::BackgroundCache>();
+    request_.texture_cache = std::make_shared<load::TextureCache>();
   }
 
   /// Result     the exit status
@@ -130,7 +130,7 @@ class FrameChecks {
   /// Limits the output, e.g. for a thousand frames without their files.
   static constexpr std::size_t kMaxTexts = 100;
 
-  job::SceneRequest request_;
+  load::SceneRequest request_;
   std::set<std::string> printed_;
   std::vector<int> bad_;
   int status_ = 0;
@@ -142,7 +142,7 @@ int check(const CheckOptions& options) {
       options.frames.empty() ? std::vector<int>{format::kFirstFrame} : base::parse_frames(options.frames);
   int status = 0;
   for (const auto& scene : options.scenes) {
-    job::SceneRequest request;
+    load::SceneRequest request;
     request.source.file = scene;
     request.source.overrides = options.overrides.overrides();
     request.develops = true;  // also find what a render to a display format would reject

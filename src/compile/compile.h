@@ -11,7 +11,7 @@ namespace orrery::compile {
 /// A negative radius becomes a positive one with the material turned inside out, angles become vectors, and unused
 /// materials are dropped.
 ///
-/// A sky that is not yet baked is baked in linear Rec.709; job::load_scene bakes it for other working spaces.
+/// A sky that is not yet baked is baked in linear Rec.709; load::load_scene bakes it for other working spaces.
 ///
 /// `closing`  the scene at shutter close, without points; null: no motion blur. Static objects cost nothing.
 /// Domain     scenes in which scene::validate finds no error

@@ -86,11 +86,11 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
 }
 
-std::vector<std::string_view> words_of(std::string_view text) {
+std::vector<std::string_view> words_of(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> words;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t begin = std::min(text.find_first_not_of(" \t\r", at), text.size());
-    at = std::min(text.find_first_of(" \t\r", begin), text.size());
+    const std::size_t begin = std::min(text.find_first_not_of(separators, at), text.size());
+    at = std::min(text.find_first_of(separators, begin), text.size());
     if (begin < at) words.push_back(text.substr(begin, at - begin));
   }
   return words;

@@ -52,8 +52,8 @@ class TextCursor {
 /// Removes white space at both ends of a string.
 std::string_view trimmed(std::string_view text);
 
-/// Splits a string into words separated by spaces and tabs.
-std::vector<std::string_view> words_of(std::string_view text);
+/// Splits a string into words separated by any of these characters.
+std::vector<std::string_view> words_of(std::string_view text, std::string_view separators = " \t\r");
 
 /// Parses a word as an integer.
 ///

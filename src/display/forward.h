@@ -7,6 +7,7 @@ namespace orrery::display {
 class PixelDeveloper;
 
 struct Choice;
+struct PictureInfo;
 struct Settings;
 
 }  // namespace orrery::display

@@ -6,8 +6,9 @@
 #include "base/frames.h"
 #include "job/job_files.h"
 #include "job/job_report.h"
-#include "job/load_background.h"
-#include "job/load_textures.h"
+#include "load/load_background.h"
+#include "load/load_textures.h"
+#include "load/scene_files.h"
 #include "points/open_data.h"
 
 namespace orrery::farm {
@@ -48,9 +49,9 @@ void check_name(const Batch& batch, const std::string& name) {
 }
 
 /// Adds the files that a scene names, if it can be parsed. Otherwise its job reports the errors.
-void add_readable_files(const job::SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
+void add_readable_files(const load::SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
   try {
-    job::add_named_files(scene, frames, files);
+    load::add_named_files(scene, frames, files);
   } catch (const base::Error& error) {
     if (error.kind() == base::ErrorKind::kUsage) throw;
   }
@@ -61,11 +62,11 @@ void add_readable_files(const job::SceneSource& scene, const std::vector<int>& f
 std::vector<job::Job> jobs_of(const Batch& batch) {
   job::Job common = batch.job;
   for (const fs::path* name : names_of(common)) check_name(batch, name->string());
-  const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{job::SceneSource().frame} : batch.frames;
+  const std::vector<int> frames = batch.frames.empty() ? std::vector<int>{load::SceneSource().frame} : batch.frames;
   std::vector<job::Job> jobs;
   common.files = std::make_shared<base::FileSet>();
-  common.background_cache = std::make_shared<job::BackgroundCache>();
-  common.texture_cache = std::make_shared<job::TextureCache>();
+  common.background_cache = std::make_shared<load::BackgroundCache>();
+  common.texture_cache = std::make_shared<load::TextureCache>();
   if (frames.size() > 1 && !common.scene.open_data) common.scene.open_data = points::open_once();
   base::FileSet& files = *common.files;
   if (!batch.log.empty()) files.add_output(batch.log, "--log");
@@ -90,7 +91,7 @@ std::vector<job::Job> jobs_of(const Batch& batch) {
   // before that.
   if (jobs.size() > 1 || !batch.log.empty() || !batch.others.empty())
     for (const fs::path& scene : batch.scenes) {
-      job::SceneSource source = common.scene;
+      load::SceneSource source = common.scene;
       source.file = scene;
       add_readable_files(source, frames, files);
     }

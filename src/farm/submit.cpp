@@ -7,9 +7,9 @@
 #include <fmt/core.h>
 
 #include "format/read_scene.h"
-#include "job/job_files.h"
-#include "job/load_scene.h"
-#include "job/loaded_scene.h"
+#include "load/load_scene.h"
+#include "load/loaded_scene.h"
+#include "load/scene_files.h"
 
 namespace orrery::farm {
 namespace {
@@ -30,8 +30,8 @@ Commands commands_of(const Submission& submission) {
   const std::vector<job::Job> jobs = jobs_of(batch);
   Commands out;
   out.frames = batch.frames.empty() ? std::vector<int>{format::kFirstFrame} : batch.frames;
-  const job::SceneRequest scene{{batch.scenes.front(), job.scene.overrides, out.frames.front()}, job.outputs.display};
-  job::add_scene_files(scene.source.file, job::load_scene(scene).read.scene, *jobs.front().files);
+  const load::SceneRequest scene{{batch.scenes.front(), job.scene.overrides, out.frames.front()}, job.outputs.display};
+  load::add_scene_files(scene.source.file, load::load_scene(scene).read.scene, *jobs.front().files);
   out.name = job_name_of(batch.scenes.front());
   // Named after the image: jobs that render one scene with different settings must not share shards.
   const std::filesystem::path& image = job.outputs.images.front().path;

@@ -167,7 +167,7 @@ std::string openjd_text(const Submission& s, const Commands& c) {
   Words render = c.render;
   render.insert(render.end(), {"--progress", "openjd"});
   ordered_json parameters = ordered_json::array({parameter("Frame", range)});
-  if (s.shards > 1) parameters.push_back(parameter("Shard", "1-" + std::to_string(s.shards)));
+  if (s.shards > 1) parameters.push_back(parameter("Shard", fmt::format("1-{}", s.shards)));
   ordered_json job = {{"specificationVersion", "jobtemplate-2023-09"}, {"name", c.name}};
   job["steps"] = ordered_json::array({step("Render", render, parameters)});
   if (!c.merge.empty()) {
@@ -202,7 +202,7 @@ std::string opencue_text(const Submission& s, const Commands& c) {
         name, type, xml_escaped(command), range);
   };
   for (int i = 1; i <= s.shards; ++i)
-    layer("render_" + std::to_string(i), "Render",
+    layer(fmt::format("render_{}", i), "Render",
           shell_line(c.render, "#IFRAME#", std::to_string(i)) + " --progress arnold");
   if (!c.merge.empty()) layer("merge", "Post", shell_line(c.merge, "#IFRAME#", ""));
   out += "    </layers>\n  </job>\n";

@@ -47,13 +47,17 @@ std::optional<double> read_number(ReadState& state, const toml::node& node, cons
   return x;
 }
 
+/// What stands in place of a list of another length: "a string", "a list of 2".
+std::string text_of(const toml::node& node) {
+  const toml::array* const array = node.as_array();
+  return array == nullptr ? type_name(node) : fmt::format("a list of {}", array->size());
+}
+
 std::optional<Value> read_vector(ReadState& state, const toml::node& node, const std::string& name,
                                  const scene::Range& range) {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 3) {
-    state.error(place_of(node),
-                fmt::format("{} must be three numbers like [0, 1, 0], not {}", name,
-                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+    state.error(place_of(node), fmt::format("{} must be three numbers like [0, 1, 0], not {}", name, text_of(node)));
     return {};
   }
   double v[3];
@@ -103,8 +107,7 @@ std::optional<Value> read_window(ReadState& state, const toml::node& node, const
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 4) {
     state.error(place_of(node),
-                fmt::format("{} must be x, y, width and height like [0, 0, 640, 360], not {}", name,
-                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+                fmt::format("{} must be x, y, width and height like [0, 0, 640, 360], not {}", name, text_of(node)));
     return {};
   }
   std::int64_t v[4];
@@ -120,9 +123,7 @@ std::optional<Value> read_interval(ReadState& state, const toml::node& node, con
                                    const scene::Range& range) {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 2) {
-    state.error(place_of(node),
-                fmt::format("{} must be two numbers like [0, 1], not {}", name,
-                            array == nullptr ? type_name(node) : "a list of " + std::to_string(array->size())));
+    state.error(place_of(node), fmt::format("{} must be two numbers like [0, 1], not {}", name, text_of(node)));
     return {};
   }
   const auto low = read_number(state, *array->get(0), name + "[0]", range);

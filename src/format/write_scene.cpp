@@ -108,7 +108,7 @@ void add_tracks(std::string& out, const scene::Scene& scene) {
 const std::string& material_name(const scene::Scene& scene, std::uint32_t material) {
   if (material >= scene.materials.size())
     throw base::Error(base::ErrorKind::kInternal,
-                      "cannot write a scene that uses missing material " + std::to_string(material));
+                      fmt::format("cannot write a scene that uses missing material {}", material));
   return scene.materials[material].name;
 }
 

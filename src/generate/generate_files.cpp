@@ -138,7 +138,7 @@ void generate_sky(const scene::Background& sky, int width, const std::filesystem
 
 void generate_planet(std::uint64_t seed, int width, const std::filesystem::path& file) {
   check_environment(file);
-  write_environment(make_planet(seed, width), "planet --seed " + std::to_string(seed), file, false);
+  write_environment(make_planet(seed, width), fmt::format("planet --seed {}", seed), file, false);
 }
 
 }  // namespace orrery::generate

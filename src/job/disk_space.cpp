@@ -7,12 +7,12 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "film/layer_film.h"
 #include "film/layers.h"
 #include "image/exr_options.h"
 #include "image/format.h"
 #include "job/outputs.h"
-#include "job/text.h"
 
 namespace orrery::job {
 namespace {

@@ -9,6 +9,5 @@ struct Job;
 struct JobReport;
 struct Outputs;
 struct Rendering;
-struct SceneRequest;
 
 }  // namespace orrery::job

@@ -6,10 +6,8 @@
 #include <string>
 
 #include "base/diagnostic.h"
-#include "display/picture_info.h"
-#include "display/settings.h"
+#include "display/forward.h"
 #include "film/forward.h"
-#include "film/partial.h"
 #include "render/forward.h"
 #include "render/progress.h"
 

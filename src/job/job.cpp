@@ -12,10 +12,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/stop_point.h"
+#include "base/text.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
 #include "denoise/denoise.h"
+#include "display/picture_info.h"
 #include "film/layer_film.h"
 #include "film/partial.h"
 #include "format/read_result.h"
@@ -28,8 +30,6 @@
 #include "job/job_files.h"
 #include "job/job_report.h"
 #include "job/layers.h"
-#include "job/load_scene.h"
-#include "job/loaded_scene.h"
 #include "job/machine.h"
 #include "job/make_picture.h"
 #include "job/matte_manifest.h"
@@ -38,9 +38,11 @@
 #include "job/provenance.h"
 #include "job/rendering.h"
 #include "job/statistics.h"
-#include "job/text.h"
 #include "job/version.h"
 #include "job/write_outputs.h"
+#include "load/load_scene.h"
+#include "load/loaded_scene.h"
+#include "load/scene_files.h"
 #include "render/result.h"
 #include "render/settings.h"
 #include "scene/layers.h"
@@ -71,13 +73,13 @@ void warn(const Job& job, const base::Diagnostic& diagnostic) {
 }
 
 /// Loads the scene and checks it against the job's output formats.
-LoadedScene load(const Job& job, JobReport& report) {
+load::LoadedScene load(const Job& job, JobReport& report) {
   const bool writes_display_format = job.outputs.has_display_format();
-  SceneRequest request{job.scene, job.outputs.display, writes_display_format || job.hooks.develops_pixels};
+  load::SceneRequest request{job.scene, job.outputs.display, writes_display_format || job.hooks.develops_pixels};
   request.memory_limit = job.resources.memory_limit;
   request.background_cache = job.background_cache;
   request.texture_cache = job.texture_cache;
-  LoadedScene loaded = load_scene(request);
+  load::LoadedScene loaded = load::load_scene(request);
   for (const base::Diagnostic& warning : loaded.warnings) warn(job, warning);
   if (writes_display_format) {
     report.display = *loaded.choice;
@@ -195,10 +197,10 @@ void keep(const Job& job, const format::ReadResult& read, const compile::Compile
 void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   Stopwatch watch, total;
   report.phases.prepare_s = job.prepare_s;
-  LoadedScene loaded = load(job, report);
+  load::LoadedScene loaded = load(job, report);
   format::ReadResult& read = loaded.read;
   const display::Settings& display = loaded.display;
-  add_scene_files(job.scene.file, read.scene, files);
+  load::add_scene_files(job.scene.file, read.scene, files);
   report.phases.read_s = watch.lap();
   stop_if_cancelled(job);
 
@@ -276,7 +278,7 @@ bool may_report(const Job& job, const JobReport& report, const base::Error& erro
   if (error.kind() == base::ErrorKind::kUsage) return false;
   if (!report.scene_hash.empty()) return true;
   try {
-    add_named_files(job.scene, {job.scene.frame}, files);
+    load::add_named_files(job.scene, {job.scene.frame}, files);
     return true;
   } catch (const base::Error& unreadable) {
     std::error_code ignored;

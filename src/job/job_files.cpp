@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job_files.h"
 
-#include "base/frames.h"
-#include "display/config_files.h"
-#include "format/named_files.h"
 #include "job/checkpoint.h"
 #include "job/job.h"
 #include "job/matte_manifest.h"
-#include "job/working_space.h"
-#include "scene/scene.h"
-#include "scene/textures.h"
+#include "load/scene_files.h"
 
 namespace orrery::job {
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kPointsRole = "points file";
-constexpr const char* kMapRole = "colour map";
-constexpr const char* kBackgroundRole = "background image";
-constexpr const char* kTextureRole = "texture";
-
-}  // namespace
-
 std::vector<OutputFile> outputs_of(const Job& job) {
   std::vector<OutputFile> out;
   for (const ImageFile& output : job.outputs.images) out.push_back({output.path, "-o"});
@@ -36,49 +20,11 @@ std::vector<OutputFile> outputs_of(const Job& job) {
 void add_job_files(const Job& job, base::FileSet& files, const std::string& owner) {
   if (job.scene.has_file) files.add_input(job.scene.file, "scene");
   for (const ShardFile& shard : job.merge.shards) files.add_input(shard.file, "shard");
-  add_ocio_configs(job.outputs.display.config, files);
+  load::add_ocio_configs(job.outputs.display.config, files);
   for (const OutputFile& output : outputs_of(job)) files.add_output(output.path, output.role + owner);
   if (is_shard(job)) return;
-  for (const fs::path& manifest : possible_manifest_files(job.outputs))
+  for (const std::filesystem::path& manifest : possible_manifest_files(job.outputs))
     files.add_output(manifest, "Cryptomatte manifest" + owner);
-}
-
-void add_named_files(const SceneSource& scene, const std::vector<int>& frames, base::FileSet& files) {
-  const fs::path& scene_file = scene.file;
-  const format::NamedFiles named = format::named_files(scene_file, scene.overrides, scene.text.get());
-  scene::Color color;
-  color.config = named.ocio_config;
-  add_ocio_configs(config_of(scene_file, color), files);
-  const auto add = [&](const std::string& name, const char* role) {
-    if (!base::has_frame_pattern(name)) {
-      files.add_input(scene_file.parent_path() / name, role);
-      return;
-    }
-    for (const int frame : frames) files.add_input(scene_file.parent_path() / base::with_frame(name, frame), role);
-  };
-  for (const std::string& name : named.points) add(name, kPointsRole);
-  for (const std::string& name : named.color_maps) add(name, kMapRole);
-  if (!named.background.empty()) add(named.background, kBackgroundRole);
-  for (const std::string& name : named.textures) add(name, kTextureRole);
-}
-
-void add_scene_files(const fs::path& scene_file, const scene::Scene& scene, base::FileSet& files) {
-  add_ocio_configs(config_of(scene_file, scene.color), files);
-  for (const scene::Points& points : scene.points) {
-    files.add_input(scene_file.parent_path() / points.file, kPointsRole);
-    if (points.color.has_map_file()) files.add_input(scene_file.parent_path() / points.color.map, kMapRole);
-  }
-  if (!scene.background.file.empty())
-    files.add_input(scene_file.parent_path() / scene.background.file, kBackgroundRole);
-  for (const scene::NamedTexture& texture : scene::image_textures(scene))
-    files.add_input(scene_file.parent_path() / texture.texture->file, kTextureRole);
-}
-
-void add_ocio_configs(const std::string& config, base::FileSet& files) {
-  for (const fs::path& file : display::config_files(config)) {
-    if (!files.add_input(file, "OCIO config")) continue;
-    for (const fs::path& table : display::table_files(file)) files.add_input(table, "table of the OCIO config");
-  }
 }
 
 }  // namespace orrery::job

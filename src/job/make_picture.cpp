@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "compile/compiled_scene.h"
+#include "film/partial.h"
 #include "film/picture.h"
 #include "image/format.h"
 #include "image/partial_file.h"

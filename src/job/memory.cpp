@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/memory.h"
 
-#include <algorithm>
-#include <fstream>
-#include <sstream>
-
 #include <fmt/core.h>
 
 #include "accel/accel.h"
+#include "base/available_memory.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
 #include "film/layer_film.h"
 #include "film/layer_pixel.h"
 #include "film/layers.h"
-#include "job/text.h"
 #include "kernel/pixel_sum.h"
 
 namespace orrery::job {
@@ -39,30 +36,6 @@ std::uint64_t bytes_of_sums(const MemoryNeeds& needs) {
   constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
   return (needs.records ? sizeof(film::LayerPixel) : 0) + (needs.guides ? sizeof(film::Halves) : 0) +
          (needs.light_cells > 0 ? needs.light_cells * kBytesPerCell + kHeapBytes : 0);
-}
-
-/// The number after `key` in a file of "key number unit" lines. An empty key reads a file of one number.
-std::optional<std::uint64_t> number_in(const std::filesystem::path& file, const std::string& key) {
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::string word = key;
-    std::uint64_t number = 0;
-    if (!key.empty()) words >> word;
-    if (word == key && words >> number) return number;
-  }
-  return {};
-}
-
-/// Bytes that a control group still allows; empty if it has no limit.
-std::optional<std::uint64_t> group_allowance(const std::filesystem::path& group) {
-  const auto limit = number_in(group / "memory.max", "");  // "max" is not a number
-  const auto used = number_in(group / "memory.current", "");
-  if (!limit || !used) return {};
-  // The page cache counts as used, but is evicted when memory is needed.
-  const std::uint64_t files = number_in(group / "memory.stat", "inactive_file").value_or(0);
-  const std::uint64_t held = *used - std::min(files, *used);
-  return *limit - std::min(held, *limit);
 }
 
 }  // namespace
@@ -104,25 +77,6 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   return needs;
 }
 
-std::optional<std::uint64_t> available_memory(const std::filesystem::path& root) {
-  std::optional<std::uint64_t> least;
-  const auto at_most = [&](std::optional<std::uint64_t> bytes) {
-    if (bytes && (!least || *bytes < *least)) least = bytes;
-  };
-  if (const auto kib = number_in(root / "proc/meminfo", "MemAvailable:")) at_most(*kib * 1024);
-
-  // "0::/a/b": this process belongs to /a/b and to every group above it.
-  std::ifstream groups(root / "proc/self/cgroup");
-  for (std::string line; std::getline(groups, line);) {
-    if (line.rfind("0::/", 0) != 0) continue;
-    const std::filesystem::path top = root / "sys/fs/cgroup";
-    std::filesystem::path group = line.substr(4);
-    for (at_most(group_allowance(top / group)); !group.empty(); at_most(group_allowance(top / group)))
-      group = group.parent_path();
-  }
-  return least;
-}
-
 std::string text_of(const MemoryEstimate& m) {
   std::string out = fmt::format("film {}, spheres {}, accelerator {}", base::bytes_text(m.film),
                                 base::bytes_text(m.spheres), base::bytes_text(m.accelerator));
@@ -133,7 +87,7 @@ std::string text_of(const MemoryEstimate& m) {
 }
 
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held) {
-  const std::uint64_t allowed = limit > 0 ? limit : available_memory().value_or(needed.total()) + held;
+  const std::uint64_t allowed = limit > 0 ? limit : base::available_memory().value_or(needed.total()) + held;
   if (needed.total() <= allowed) return;
   using base::bytes_text;
   throw base::Error(

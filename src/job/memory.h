@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <string>
 
 #include "compile/forward.h"
@@ -42,19 +40,12 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs);
 MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
                          bool is_adaptive = false);
 
-/// Bytes that this process can still allocate: the machine's available memory, limited by the process's control groups.
-/// Empty if neither is known.
-///
-/// Domain     `root` is "/", or a folder in its place in tests
-/// Reference  proc_meminfo(5); the kernel's documentation of control groups, version 2, memory.max
-std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
-
 /// Formats the parts of an estimate: "film 1 MiB, spheres 2 MiB, accelerator 3 MiB".
 std::string text_of(const MemoryEstimate& estimate);
 
 /// Checks that a render fits into memory.
 ///
-/// `limit`    bytes; 0: available_memory()
+/// `limit`    bytes; 0: base::available_memory()
 /// `held`     bytes of `needed` that are already allocated, and therefore no longer available
 /// Errors     base::Error(kNoMemory) with the needed and the allowed size
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held = 0);

@@ -6,12 +6,13 @@
 #include <utility>
 
 #include "base/atomic_file.h"
+#include "film/partial.h"
 #include "image/format.h"
 #include "job/check_job.h"
-#include "job/job_files.h"
 #include "job/matte_manifest.h"
 #include "job/provenance.h"
 #include "job/write_outputs.h"
+#include "load/scene_files.h"
 
 namespace orrery::job {
 namespace {
@@ -23,7 +24,7 @@ void check_outputs(const Rendering& rendering, const Outputs& outputs) {
     files.add_output(file, role);
     base::check_creatable(file);
   };
-  add_ocio_configs(display_of(rendering, outputs.display).config, files);
+  load::add_ocio_configs(display_of(rendering, outputs.display).config, files);
   check_bits(outputs.images, outputs.bits);
   image::check_compression(outputs.exr.compression);
   for (const ImageFile& output : outputs.images) {

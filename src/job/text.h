@@ -5,11 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "base/text.h"
-
 namespace orrery::job {
-
-using base::bytes_text;
 
 /// Formats a value as indented JSON with a final newline. Bytes that are not UTF-8, possible in file names, become
 /// replacement characters.

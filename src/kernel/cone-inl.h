@@ -72,9 +72,7 @@ HWY_INLINE RayCone<V> camera_cone(D d, const SceneView& scene, const CameraVecto
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V lobe_slope2(D d, const Surface<D>& at, double width) {
   using T = hn::TFromD<D>;
-  const auto is_specular =
-      hn::Or(is_kind(d, at.kind, MaterialKind::kMetal), is_kind(d, at.kind, MaterialKind::kDielectric));
-  const V slope = hn::IfThenElse(is_specular, at.fuzz, hn::Set(d, T(1))) * hn::Set(d, static_cast<T>(2 * width));
+  const V slope = hn::IfThenElse(is_specular(d, at), at.fuzz, hn::Set(d, T(1))) * hn::Set(d, static_cast<T>(2 * width));
   return slope * slope;
 }
 
@@ -93,11 +91,10 @@ HWY_INLINE RayCone<V> scattered_cone(D d, const RayCone<V>& cone, const Surface<
                                      const Vec3<V>& direction, double width) {
   using T = hn::TFromD<D>;
   const V one = hn::Set(d, T(1));
-  const auto is_specular =
-      hn::Or(is_kind(d, at.kind, MaterialKind::kMetal), is_kind(d, at.kind, MaterialKind::kDielectric));
+  const auto specular = is_specular(d, at);
   const V cos_leaving = dot(direction, at.normal), cos_arriving = hn::Neg(dot(at.direction, at.normal));
-  const V a = hn::IfThenElseZero(is_specular, hn::IfThenElse(cos_leaving < hn::Zero(d), at.eta, one));
-  const V b = hn::IfThenElseZero(is_specular, hn::MulAdd(a, cos_arriving, cos_leaving));
+  const V a = hn::IfThenElseZero(specular, hn::IfThenElse(cos_leaving < hn::Zero(d), at.eta, one));
+  const V b = hn::IfThenElseZero(specular, hn::MulAdd(a, cos_arriving, cos_leaving));
   const V bend = b / hn::IfThenElse(at.from_outside, radius, hn::Neg(radius));  // slope per distance
   const V bent = bend * cone.width2, kept = a * cone.mixed;
   return {cone.width2, kept + bent,

@@ -229,13 +229,6 @@ class Recorder {
   Ids pixels_, samples_;
 };
 
-/// Lanes whose material is delta: a perfect mirror or a smooth dielectric.
-template <class D>
-HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
-  const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == hn::Zero(d));
-  return hn::Or(mirror, is_kind(d, at.kind, MaterialKind::kDielectric));
-}
-
 /// Updates the history of paths that a surface has scattered.
 ///
 /// `has_lobes`  true if the lobe and the indirect bit are needed
@@ -250,18 +243,16 @@ HWY_INLINE hn::Vec<IdTag<D>> continued(D d, hn::Vec<IdTag<D>> history, const Sur
   };
   const auto delta = where(is_delta(d, at), hn::And(history, ids(kOnlyDeltaBit)));
   if (!has_lobes) return delta;
-  const auto glass = is_kind(d, at.kind, MaterialKind::kDielectric);
-  const auto passes = hn::AndNot(at.same_side(d, direction), glass);
+  const auto passes = is_transmitted(d, at, direction);
   if (depth > 0) {
     const auto lobe = hn::And(history, ids(kLobeBits));
     const auto through = hn::And(passes, hn::RebindMask(d, lobe == ids(kTransmission)));
     const auto indirect = hn::Or(hn::And(history, ids(kIndirectBit)), where(hn::Not(through), ids(kIndirectBit)));
     return hn::Or(hn::Or(lobe, indirect), delta);
   }
-  const auto metal = is_kind(d, at.kind, MaterialKind::kMetal);
   const auto lobe =
       hn::IfThenElse(hn::RebindMask(du, passes), ids(kTransmission),
-                     hn::IfThenElse(hn::RebindMask(du, hn::Or(metal, glass)), ids(kSpecular), ids(kDiffuse)));
+                     hn::IfThenElse(hn::RebindMask(du, is_specular(d, at)), ids(kSpecular), ids(kDiffuse)));
   return hn::Or(lobe, delta);
 }
 

@@ -59,6 +59,28 @@ HWY_INLINE hn::Mask<D> is_kind(D d, hn::Vec<IdTag<D>> kinds, E kind) {
   return hn::RebindMask(d, kinds == hn::Set(du, static_cast<hn::TFromD<decltype(du)>>(kind)));
 }
 
+/// Lanes whose material scatters around the mirror direction or the refracted one, with an angle of twice the fuzz.
+/// Light from other materials is diffuse.
+template <class D>
+HWY_INLINE hn::Mask<D> is_specular(D d, const Surface<D>& at) {
+  return hn::Or(is_kind(d, at.kind, MaterialKind::kMetal), is_kind(d, at.kind, MaterialKind::kDielectric));
+}
+
+/// Lanes whose material is delta: a perfect mirror or a dielectric. See pdf_bsdf.
+template <class D>
+HWY_INLINE hn::Mask<D> is_delta(D d, const Surface<D>& at) {
+  const auto mirror = hn::And(is_kind(d, at.kind, MaterialKind::kMetal), at.fuzz == hn::Zero(d));
+  return hn::Or(mirror, is_kind(d, at.kind, MaterialKind::kDielectric));
+}
+
+/// Lanes whose scattered direction passes through the surface.
+///
+/// Space      w unit
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> is_transmitted(D d, const Surface<D>& at, const Vec3<V>& w) {
+  return hn::AndNot(at.same_side(d, w), is_kind(d, at.kind, MaterialKind::kDielectric));
+}
+
 /// Samples the cosine-weighted hemisphere: the normal plus a point of the unit sphere, normalized.
 template <class D>
 HWY_INLINE Vec3<hn::Vec<D>> sample_lambertian(D d, const Surface<D>& at, const Vec3<hn::Vec<D>>& on_sphere) {

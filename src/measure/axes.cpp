@@ -65,11 +65,11 @@ class Planner {
     };
   }
 
-  static std::string flag(int samples) { return "--samples " + std::to_string(samples); }
+  static std::string flag(int samples) { return fmt::format("--samples {}", samples); }
 
   void samples() {
     for (const int n : {4, 16, 64, 256}) {
-      const std::string name = std::to_string(n) + " sobol";
+      const std::string name = fmt::format("{} sobol", n);
       add("samples", name, flag(n) + " --set render.sampler=sobol", n).apply = [](CompiledScene& w) {
         w.sampler.kind = kernel::SamplerKind::kSobol;
       };
@@ -95,16 +95,16 @@ class Planner {
 
   void samplers() {
     for (const int n : {16, 64, 256})
-      add("sampler", std::to_string(n) + " independent", flag(n) + " --set render.sampler=independent", n).apply =
+      add("sampler", fmt::format("{} independent", n), flag(n) + " --set render.sampler=independent", n).apply =
           [](CompiledScene& w) { w.sampler.kind = kernel::SamplerKind::kIndependent; };
     for (const int n : {16, 64})
-      add("sampler", std::to_string(n) + " blue-noise", flag(n) + " --set render.sampler=blue-noise", n).apply =
+      add("sampler", fmt::format("{} blue-noise", n), flag(n) + " --set render.sampler=blue-noise", n).apply =
           [](CompiledScene& w) { w.sampler.kind = kernel::SamplerKind::kBlueNoise; };
   }
 
   void denoising() {
     for (const int n : {16, 64}) {
-      Choice& c = add("denoise", std::to_string(n) + " sobol", flag(n) + " --set render.sampler=sobol --denoise", n);
+      Choice& c = add("denoise", fmt::format("{} sobol", n), flag(n) + " --set render.sampler=sobol --denoise", n);
       c.apply = [](CompiledScene& w) { w.sampler.kind = kernel::SamplerKind::kSobol; };
       c.is_denoised = c.is_shortcut = true;
     }
@@ -122,7 +122,7 @@ class Planner {
       return;
     }
     for (const int from : {0, 1, 3}) {
-      const std::string name = from == 0 ? "off" : "from " + std::to_string(from);
+      const std::string name = from == 0 ? "off" : fmt::format("from {}", from);
       add("roulette", name, fmt::format("{} --set render.roulette_depth={}", flag(kCompared), from), kCompared).apply =
           [from](CompiledScene& w) {
             w.roulette_depth = from == 0 ? kernel::kNoRoulette : static_cast<std::uint32_t>(from);
@@ -137,7 +137,7 @@ class Planner {
     }
     for (const std::uint32_t depth : {2u, 4u, 8u, 16u}) {
       if (depth >= compiled_.max_depth) continue;
-      Choice& c = add("depth", "at most " + std::to_string(depth),
+      Choice& c = add("depth", fmt::format("at most {}", depth),
                       fmt::format("{} --max-depth {}", flag(kCompared), depth), kCompared);
       c.apply = [depth](CompiledScene& w) { w.max_depth = depth; };
       c.is_shortcut = true;

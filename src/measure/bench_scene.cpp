@@ -16,13 +16,13 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "format/read_result.h"
-#include "job/load_scene.h"
-#include "job/loaded_scene.h"
 #include "job/machine.h"
-#include "job/reduced_picture.h"
 #include "job/scene_hash.h"
 #include "kernel/ray_packet.h"
 #include "kernel/render_tile.h"
+#include "load/load_scene.h"
+#include "load/loaded_scene.h"
+#include "load/reduced_picture.h"
 #include "measure/bench_build.h"
 #include "measure/bench_tracing.h"
 #include "measure/feature_cost.h"
@@ -74,10 +74,10 @@ const std::vector<std::pair<const char*, bool kernel::Features::*>>& known_featu
 
 /// The compiled scene at the reduced image size.
 compile::CompiledScene reduced_scene(const BenchRequest& request) {
-  job::SceneRequest load;
+  load::SceneRequest load;
   load.source = request.scene;
-  format::ReadResult read = std::move(job::load_scene(load).read);
-  job::reduce_picture(read, kPixels);
+  format::ReadResult read = std::move(load::load_scene(load).read);
+  load::reduce_picture(read, kPixels);
   return compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
 }
 

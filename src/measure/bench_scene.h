@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "job/scene_source.h"
+#include "load/scene_source.h"
 #include "measure/quartiles.h"
 
 namespace orrery::measure {
 
 /// Scene and protocol of a benchmark.
 struct BenchRequest {
-  job::SceneSource scene;
+  load::SceneSource scene;
   std::string isa;  ///< instruction set; empty: the best available
   int threads = 1;
   int rounds = 7;         ///< number of rounds; each measures every case once

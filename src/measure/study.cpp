@@ -19,15 +19,15 @@
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
 #include "format/read_result.h"
-#include "job/job_files.h"
 #include "job/layers.h"
-#include "job/load_scene.h"
-#include "job/loaded_scene.h"
 #include "job/machine.h"
 #include "job/memory.h"
-#include "job/reduced_picture.h"
 #include "job/scene_hash.h"
 #include "job/version.h"
+#include "load/load_scene.h"
+#include "load/loaded_scene.h"
+#include "load/reduced_picture.h"
+#include "load/scene_files.h"
 #include "measure/axes.h"
 #include "measure/bench_scene.h"
 #include "measure/file_axis.h"
@@ -107,11 +107,11 @@ class Runner {
       files.add_output(request_.report, "-o");
       base::check_creatable(request_.report);
     }
-    job::SceneRequest load;
+    load::SceneRequest load;
     load.source = request_.scene;
-    read_ = std::move(job::load_scene(load).read);
+    read_ = std::move(load::load_scene(load).read);
     scene::Scene& scene = read_.scene;
-    job::add_scene_files(request_.scene.file, scene, files);
+    load::add_scene_files(request_.scene.file, scene, files);
     if (scene.render.shading != scene::Shading::kPath)
       throw base::Error(base::ErrorKind::kUsage,
                         "a study needs render.shading = \"path\"; the other modes trace no light paths");
@@ -165,7 +165,7 @@ class Runner {
     format::ReadResult small;
     small.scene = read_.scene;
     small.closing = read_.closing;
-    job::reduce_picture(small, pixels);
+    load::reduce_picture(small, pixels);
     const CompiledScene view = compile::compile(small.scene, small.closing ? &*small.closing : nullptr);
     compiled.camera = view.camera;
     compiled.camera_motion = view.camera_motion;

@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "film/picture.h"
-#include "job/scene_source.h"
+#include "load/scene_source.h"
 #include "measure/feature_cost.h"
 
 namespace orrery::measure {
 
 /// Scene and limits of a study.
 struct Request {
-  job::SceneSource scene;
+  load::SceneSource scene;
   std::filesystem::path report;  ///< file that the caller will write; checked for conflicts with input files
   std::string isa;               ///< instruction set; empty: the best available
   int threads = 0;               ///< 0: as many as this process may use

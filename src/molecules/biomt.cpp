@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "molecules/biomt.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -9,7 +8,6 @@
 #include <fmt/core.h>
 
 #include "data/faults.h"
-
 #include "data/text_cursor.h"
 
 namespace orrery::molecules {
@@ -17,16 +15,6 @@ namespace orrery::molecules {
 using namespace data;  // NOLINT(google-build-using-namespace)
 
 namespace {
-
-std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = text.find_first_not_of(separators); at != std::string_view::npos;) {
-    const std::size_t end = std::min(text.find_first_of(separators, at), text.size());
-    words.push_back(text.substr(at, end - at));
-    at = text.find_first_not_of(separators, end);
-  }
-  return words;
-}
 
 bool is_finite_number(std::string_view word, double& value) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -53,7 +41,7 @@ void BiomtReader::take(std::string_view text, std::uint64_t line, Faults& faults
       auto& parts = assemblies_.back().parts;
       if (!parts.back().chains.empty() || !parts.back().transforms.empty()) parts.emplace_back();
     }
-    for (const std::string_view name : split(text.substr(at + kChains.size()), ", \t"))
+    for (const std::string_view name : words_of(text.substr(at + kChains.size()), ", \t"))
       part().chains.emplace_back(name);
   } else if (text.starts_with(kRow)) {
     const std::vector<std::string_view> words = words_of(text);

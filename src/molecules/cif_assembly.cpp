@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "molecules/cif_assembly.h"
 
-#include <algorithm>
 #include <charconv>
 #include <unordered_map>
 
 #include <fmt/core.h>
 
 #include "data/faults.h"
+#include "data/text_cursor.h"
 
 namespace orrery::molecules {
 
@@ -18,15 +18,10 @@ namespace {
 /// Maximum number of transforms in a file. The largest viruses need a few thousand.
 constexpr std::size_t kMaxTransforms = 1'000'000;
 
-std::vector<std::string> split(const std::string& text) {
-  constexpr const char* kSeparators = ", \t\r\n";
-  std::vector<std::string> words;
-  for (std::size_t at = text.find_first_not_of(kSeparators); at != std::string::npos;) {
-    const std::size_t end = std::min(text.find_first_of(kSeparators, at), text.size());
-    words.push_back(text.substr(at, end - at));
-    at = text.find_first_not_of(kSeparators, end);
-  }
-  return words;
+/// The words of a list, whose separators may be commas or white space.
+std::vector<std::string> split(const std::string& list) {
+  const std::vector<std::string_view> words = words_of(list, ", \t\r\n");
+  return {words.begin(), words.end()};
 }
 
 /// Splits "(1-60)(P)" into "1-60" and "P"; an expression without parentheses is a single group.

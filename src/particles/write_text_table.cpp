@@ -111,7 +111,7 @@ XyzOutput property_at(const Table& table, std::size_t first) {
   const std::string name = column.name.substr(0, column.name.size() - 3);
   for (std::size_t i = first + 1; i < table.columns.size(); ++i) {
     const Column& next = table.columns[i];
-    if (next.name != name + "[" + std::to_string(i - first + 1) + "]" || xyz_type(next) != out.type ||
+    if (next.name != fmt::format("{}[{}]", name, i - first + 1) || xyz_type(next) != out.type ||
         !is_storable_in_xyz(next))
       break;
     out.columns.push_back(&next);
@@ -202,7 +202,7 @@ std::vector<std::string> write_xyz_table(base::OutputFile& out, const Table& tab
   std::string& text = out.buffer();
   std::vector<std::string> left_out;
   const std::vector<XyzOutput> properties = xyz_outputs(table, left_out);
-  text = std::to_string(table.rows) + "\nProperties=";
+  text = fmt::format("{}\nProperties=", table.rows);
   for (const XyzOutput& property : properties) {
     if (&property != &properties.front()) text += ':';
     text += fmt::format("{}:{}:{}", property.name, property.type, property.columns.size());

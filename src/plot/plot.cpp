@@ -40,7 +40,8 @@ class PlotMaker {
   const std::vector<int>& frames() const { return out_.frames; }
 
   PlotScene run() {
-    const std::string which = data_.described_frame() > 1 ? " in frame " + std::to_string(data_.described_frame()) : "";
+    const int frame = data_.described_frame();
+    const std::string which = frame > 1 ? fmt::format(" in frame {}", frame) : "";
     chose(data::format_name(data_.format()), fmt::format("{} particles{}", info_.rows, which));
     choose_frame();
     // Determining the radius from the spacing requires reading the file, so the colour options are checked first.
@@ -91,11 +92,11 @@ class PlotMaker {
 
   /// A still image of a file with several frames: which one it shows.
   void choose_frame() {
-    if (options_.all_frames) chose("frames 1-" + std::to_string(out_.frames.size()), "all of the file");
+    if (options_.all_frames) chose(fmt::format("frames 1-{}", out_.frames.size()), "all of the file");
     if (!out_.frames.empty() || options_.points.frame) return;
     const std::optional<int> count = data_.frame_count();
     if (count && *count > 1)
-      chose("frame 1 of " + std::to_string(*count), "the first; --frames all renders all of them");
+      chose(fmt::format("frame 1 of {}", *count), "the first; --frames all renders all of them");
     else if (!count)
       chose("frame 1", "the first; --frame N selects another");
   }
@@ -107,7 +108,7 @@ class PlotMaker {
     if (count == 1 || data_.is_sequence())
       return std::string(options_.points.select.empty() ? "the file" : "the selection") + " has no spheres";
     return fmt::format("frame {}{} has no spheres; --frame N selects another, --frames all renders all",
-                       data_.described_frame(), count ? " of " + std::to_string(*count) : "");
+                       data_.described_frame(), count ? fmt::format(" of {}", *count) : "");
   }
 
   scene::Points load(int frame) const { return data_.load(frame, out_.points).points; }

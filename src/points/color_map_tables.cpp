@@ -120,12 +120,16 @@ constexpr std::uint32_t kOkabeIto[] = {0xE69F00, 0x56B4E9, 0x009E73, 0xF0E442, 0
 
 constexpr std::uint32_t kSet2[] = {0x66C2A5, 0xFC8D62, 0x8DA0CB, 0xE78AC3, 0xA6D854, 0xFFD92F, 0xE5C494, 0xB3B3B3};
 
-}  // namespace
-
-const ContinuousTable kContinuousTables[9] = {
+constexpr ContinuousTable kContinuous[] = {
     {"fast", kFast}, {"coolwarm", kCoolwarm}, {"viridis", kViridis}, {"magma", kMagma}, {"inferno", kInferno},
     {"plasma", kPlasma}, {"cividis", kCividis}, {"batlow", kBatlow}, {"turbo", kTurbo}};
 
-const CategoricalTable kCategoricalTables[3] = {{"tab10", kTab10}, {"okabe-ito", kOkabeIto}, {"set2", kSet2}};
+constexpr CategoricalTable kCategorical[] = {
+    {"tab10", kTab10}, {"okabe-ito", kOkabeIto}, {"set2", kSet2}};
+
+}  // namespace
+
+const std::span<const ContinuousTable> kContinuousTables = kContinuous;
+const std::span<const CategoricalTable> kCategoricalTables = kCategorical;
 
 }  // namespace orrery::points

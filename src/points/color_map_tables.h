@@ -22,7 +22,7 @@ struct CategoricalTable {
   std::span<const std::uint32_t> colors;  ///< 0xRRGGBB
 };
 
-extern const ContinuousTable kContinuousTables[9];
-extern const CategoricalTable kCategoricalTables[3];
+extern const std::span<const ContinuousTable> kContinuousTables;
+extern const std::span<const CategoricalTable> kCategoricalTables;
 
 }  // namespace orrery::points

@@ -24,6 +24,7 @@
 #include "points/rows.h"
 #include "points/select.h"
 #include "points/source_rows.h"
+#include "points/valid_spheres.h"
 #include "scene/limits.h"
 #include "scene/validate.h"
 #include "scene/value_text.h"
@@ -173,12 +174,11 @@ class Loader {
     scene::PointArray centers = centers_of(table, rows);
     if (points_.unwrap) unwrap(table, rows, info_, centers);
     if (faults_.has_errors()) return;
-    if (!all_valid(centers, radii)) {
-      check_domain(rows, centers, radii);
-      const std::vector<std::uint32_t> good = valid_rows(rows, centers, radii);
-      if (faults_.has_errors()) return;
-      rows = kept(rows, good, centers, radii);
-    }
+    // A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
+    // error that the image would not show.
+    const bool may_be_hollow = radius_.kind == RadiusSource::Kind::kValue || file_->format() == data::Format::kPly;
+    keep_valid(points_, may_be_hollow, rows, centers, radii, faults_);
+    if (faults_.has_errors()) return;
     Labels chains;
     if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)
       chains = labels_of(*column, rows, table.rows);
@@ -235,88 +235,6 @@ class Loader {
     return out;
   }
 
-  /// A radius below 0 makes hollow glass, in a scene or in a PLY file that was made for one. In other data it is an
-  /// error that would not be visible in the image.
-  bool may_be_negative() const {
-    return radius_.kind == RadiusSource::Kind::kValue || file_->format() == data::Format::kPly;
-  }
-  bool is_valid(Vec3d center, double radius) const {
-    return math::is_finite(center) && std::isfinite(radius) && (radius > 0 || (radius < 0 && may_be_negative()));
-  }
-  bool all_valid(const scene::PointArray& centers, const scene::NumberArray& radii) const {
-    const auto is_inside = [](double x) { return std::abs(x) <= scene::kLargestLength; };
-    for (std::size_t i = 0; i < centers.size(); ++i) {
-      const Vec3d center = centers[i];
-      const double radius = std::abs(radii[i]);
-      if (!is_inside(center.x) || !is_inside(center.y) || !is_inside(center.z) || !is_inside(radius) ||
-          !(radius >= scene::kSmallestRadius) || (radii[i] < 0 && !may_be_negative()))
-        return false;
-    }
-    return true;
-  }
-
-  /// Reports spheres that are outside the domain of scenes, here where their rows are known.
-  void check_domain(const Rows& rows, const scene::PointArray& centers, const scene::NumberArray& radii) {
-    const data::Transform placement = transform_of(points_.transform);
-    std::size_t bad = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!is_valid(centers[i], radii[i])) continue;  // reported by valid_rows()
-      for (const std::string& fault : scene::sphere_faults(
-               applied(placement, centers[i]), radii[i] * points_.transform.scale, scene::Precision::kExact))
-        if (++bad <= scene::kMaxReported) faults_.error(".file", fmt::format("{}: {}", row_name(rows[i]), fault));
-    }
-    report_rest(bad);
-  }
-  /// Reports the total number of similar errors, of which only the first are listed.
-  void report_rest(std::size_t faults) {
-    if (faults > scene::kMaxReported)
-      faults_.error(".file", fmt::format("and {} more ({} in all)", faults - scene::kMaxReported, faults));
-  }
-
-  /// Returns the indices of rows with finite coordinates and radii. Reports the others, as errors unless they are to be
-  /// skipped.
-  std::vector<std::uint32_t> valid_rows(const Rows& rows, const scene::PointArray& centers,
-                                        const scene::NumberArray& radii) {
-    std::vector<std::uint32_t> good;
-    std::size_t bad = 0;
-    for (std::uint32_t i = 0; i < rows.size(); ++i) {
-      if (is_valid(centers[i], radii[i])) {
-        good.push_back(i);
-      } else if (!points_.skip_bad && ++bad <= scene::kMaxReported) {
-        faults_.error(".file", fmt::format("{} has center {} and radius {}", row_name(rows[i]),
-                                           scene::vector_text(centers[i]), scene::number_text(radii[i])));
-      }
-    }
-    const std::size_t count = rows.size() - good.size();
-    if (bad > 0)
-      faults_.error(".file", fmt::format("{} of {} rows have coordinates that are not finite, or a radius that is not "
-                                         "above 0; `skip_bad = true`, or --skip-bad, leaves them out",
-                                         count, rows.size()));
-    else if (count > 0)
-      faults_.warning(
-          ".skip_bad",
-          fmt::format("{} of {} rows were left out: their coordinates are not finite, or their radius is not above 0",
-                      count, rows.size()));
-    return good;
-  }
-
-  /// "row 3 of melt.dump"
-  std::string row_name(std::size_t row) const { return fmt::format("row {} of {}", row + 1, points_.file.string()); }
-
-  /// Keeps the listed rows with their centres and radii.
-  static Rows kept(const Rows& rows, const std::vector<std::uint32_t>& good, scene::PointArray& centers,
-                   scene::NumberArray& radii) {
-    std::vector<std::uint32_t> list;
-    for (std::size_t i = 0; i < good.size(); ++i) {
-      list.push_back(static_cast<std::uint32_t>(rows[good[i]]));
-      centers.set(i, centers[good[i]]);
-      radii.set(i, radii[good[i]]);
-    }
-    centers.resize(good.size());
-    radii.resize(good.size());
-    return Rows(std::move(list));
-  }
-
   /// Sets the material of each sphere from the file's column of indices into the scene's materials.
   void set_materials(const data::Table& table, const Rows& rows) {
     std::size_t bad = 0;
@@ -325,10 +243,10 @@ class Loader {
       const bool exists = v >= 0 && v < static_cast<double>(request_.materials) && v == std::floor(v);
       points_.materials[i] = exists ? static_cast<std::uint32_t>(v) : 0;
       if (!exists && ++bad <= scene::kMaxReported)
-        faults_.error(".file", fmt::format("{} has material {}; the scene has {}, counted from 0", row_name(rows[i]),
-                                           scene::number_text(v), request_.materials));
+        faults_.error(".file", fmt::format("{} has material {}; the scene has {}, counted from 0",
+                                           row_name(points_, rows[i]), scene::number_text(v), request_.materials));
     });
-    report_rest(bad);
+    report_rest(bad, faults_);
   }
 
   const LoadRequest& request_;

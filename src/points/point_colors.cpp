@@ -203,7 +203,7 @@ std::vector<std::uint32_t> bytes_of(const data::Table& table, const Rows& rows, 
       out[i] = out[i] << 8 | static_cast<std::uint32_t>(byte + 0.5);
     });
   }
-  if (nan > 0) faults.warning(".color.rgb", std::to_string(nan) + " values are NaN and are replaced by 0");
+  if (nan > 0) faults.warning(".color.rgb", fmt::format("{} values are NaN and are replaced by 0", nan));
   if (out_of_range > 0)
     faults.warning(".color.rgb",
                    fmt::format("{} values are outside 0..{} and were clamped", out_of_range, scene::number_text(full)));

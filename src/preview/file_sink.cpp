@@ -8,6 +8,7 @@
 
 #include "base/output_file.h"
 #include "display/develop.h"
+#include "display/picture_info.h"
 #include "preview/canvas.h"
 
 namespace orrery::preview {

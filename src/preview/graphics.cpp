@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "base/base64.h"
+#include "preview/png.h"
 
 namespace orrery::preview {
 namespace {

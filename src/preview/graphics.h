@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "preview/png.h"
-
 namespace orrery::preview {
+
+struct Bitmap;
 
 /// Ways to draw an image in a terminal, from best to worst.
 enum class Graphics {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 
+#include "display/picture_info.h"
 #include "preview/canvas.h"
 #include "preview/sink.h"
 

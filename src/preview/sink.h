@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "display/picture_info.h"
+#include "display/forward.h"
 
 namespace orrery::preview {
 

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "preview/graphics.h"
+#include "preview/png.h"
 
 namespace orrery::preview {
 namespace {

@@ -8,6 +8,9 @@
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "preview/file_sink.h"
+#include "preview/terminal_sink.h"
+#include "preview/tev_sink.h"
 
 namespace orrery::preview {
 namespace {
@@ -63,6 +66,16 @@ Target parse_target(const std::string& text) {
   if (is_png(text)) return {TargetKind::kFile, {}, {}, text};
   if (text.starts_with("tev:")) return tev_at(text.substr(4));
   refuse(fmt::format("`{}` is not a preview", text));
+}
+
+std::unique_ptr<Sink> make_sink(const Target& target, Screen* screen, const OnNote& note) {
+  switch (target.kind) {
+    case TargetKind::kNone: break;
+    case TargetKind::kTev: return std::make_unique<TevSink>(target.host, target.port, note);
+    case TargetKind::kTerminal: return std::make_unique<TerminalSink>(*screen);
+    case TargetKind::kFile: return std::make_unique<FileSink>(target.file);
+  }
+  return nullptr;
 }
 
 }  // namespace orrery::preview

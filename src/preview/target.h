@@ -2,9 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
+#include "preview/sink.h"
+
 namespace orrery::preview {
+
+class Screen;
 
 enum class TargetKind { kNone, kTev, kTerminal, kFile };
 
@@ -26,5 +31,12 @@ inline constexpr const char* kTevPort = "14158";
 ///
 /// Errors     base::Error(kUsage)
 Target parse_target(const std::string& text);
+
+/// Makes the sink of a target; null without a preview.
+///
+/// `screen`   of the terminal, for that target; else null
+/// Domain     `screen` outlives the result
+/// Errors     those of the sinks
+std::unique_ptr<Sink> make_sink(const Target& target, Screen* screen, const OnNote& note);
 
 }  // namespace orrery::preview

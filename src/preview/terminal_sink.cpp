@@ -6,6 +6,7 @@
 #include "display/develop.h"
 #include "preview/canvas.h"
 #include "preview/fit.h"
+#include "preview/png.h"
 
 namespace orrery::preview {
 

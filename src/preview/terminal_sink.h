@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "display/forward.h"
+#include "display/picture_info.h"
 #include "preview/screen.h"
 #include "preview/sink.h"
 

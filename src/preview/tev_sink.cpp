@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/diagnostic.h"
+#include "display/picture_info.h"
 #include "preview/canvas.h"
 #include "preview/tev_packets.h"
 

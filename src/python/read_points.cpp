@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "data/data_file.h"
-#include "job/memory.h"
 #include "particles/open.h"
 #include "points/derived.h"
 #include "python/arrays.h"
@@ -37,7 +37,7 @@ ReadPoints read(const std::filesystem::path& file, int frame, std::optional<int>
                 const std::vector<std::string>& names) {
   data::OpenOptions options;
   options.component = component;
-  options.limit_memory(job::available_memory().value_or(0));
+  options.limit_memory(base::available_memory().value_or(0));
   const std::unique_ptr<data::DataFile> opened = particles::open(file, options);
   ReadPoints out;
   out.frames = opened->frame_count();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/output_file.h"
@@ -14,10 +15,9 @@
 #include "format/source_text.h"
 #include "format/write_ply.h"
 #include "format/write_tree.h"
-#include "job/job_files.h"
-#include "job/load_scene.h"
-#include "job/loaded_scene.h"
-#include "job/memory.h"
+#include "load/load_scene.h"
+#include "load/loaded_scene.h"
+#include "load/scene_files.h"
 #include "particles/open.h"
 #include "particles/write_table.h"
 
@@ -53,8 +53,8 @@ void check_data_file(const fs::path& file) {
 
 }  // namespace
 
-job::SceneSource SceneData::source() const {
-  job::SceneSource out;
+load::SceneSource SceneData::source() const {
+  load::SceneSource out;
   out.file = file;
   out.text = std::make_shared<const std::string>(text);
   out.has_file = is_file;
@@ -77,18 +77,18 @@ std::string read_scene_text(const fs::path& file) {
 }
 
 std::vector<base::Diagnostic> check(const SceneData& scene) {
-  job::SceneRequest request;
+  load::SceneRequest request;
   request.source = scene.source();
-  return job::load_scene(request).warnings;
+  return load::load_scene(request).warnings;
 }
 
 double largest_radius(const SceneData& scene, std::uint64_t memory_limit) {
-  const job::SceneSource source = scene.source();
+  const load::SceneSource source = scene.source();
   format::ReadOptions options;
   options.text = source.text;
   options.frame = source.frame;
   options.open_data = source.open_data;
-  options.memory_limit = memory_limit > 0 ? memory_limit : job::available_memory().value_or(0);
+  options.memory_limit = memory_limit > 0 ? memory_limit : base::available_memory().value_or(0);
   double out = 0;
   try {
     for (const scene::Points& points : format::read_scene(source.file, source.overrides, options).scene.points)
@@ -101,11 +101,11 @@ double largest_radius(const SceneData& scene, std::uint64_t memory_limit) {
 
 void save(const SceneData& scene, const fs::path& file) {
   static_cast<void>(check(scene));
-  const job::SceneSource source = scene.source();
+  const load::SceneSource source = scene.source();
   const fs::path folder = file.parent_path();
   base::FileSet files;
   if (scene.is_file) files.add_input(scene.file, "scene");
-  job::add_named_files(source, {scene.frame}, files);
+  load::add_named_files(source, {scene.frame}, files);
   files.add_output(file, "save()");
   base::check_creatable(file);
   for (const auto& [name, table] : scene.tables) {

@@ -10,7 +10,7 @@
 
 #include "base/diagnostic.h"
 #include "data/forward.h"
-#include "job/scene_source.h"
+#include "load/scene_source.h"
 
 namespace orrery::python {
 
@@ -24,7 +24,7 @@ struct SceneData {
   std::map<std::string, std::shared_ptr<const data::Table>> tables;  ///< by the name that [[points]] gives as its file
 
   /// The scene as a job reads it. The memory of the arrays must outlive the result's use.
-  job::SceneSource source() const;
+  load::SceneSource source() const;
 };
 
 /// Reads the text of a scene file and checks that it is TOML.
@@ -35,7 +35,7 @@ std::string read_scene_text(const std::filesystem::path& file);
 /// Checks everything that a render would reject.
 ///
 /// Result     warnings
-/// Errors     those of job::load_scene
+/// Errors     those of load::load_scene
 std::vector<base::Diagnostic> check(const SceneData& scene);
 
 /// Returns the largest absolute radius of the spheres of all [[points]], scene units; 0 if there are none, or if the

@@ -52,9 +52,9 @@ void check_end(Faults& faults, const PlyHeader& header, PlyCursor& cursor) {
                                  [](const PlyElement& element) { return element.count > 0; });
   const PlyElement& element = last != header.elements.rend() ? *last : header.elements.back();
   faults.fail(static_cast<std::uint64_t>(element.line),
-              std::to_string(cursor.bytes_left()) +
-                  " bytes follow the last row that the header declares; the counts are wrong, or the "
-                  "file is damaged");
+              fmt::format("{} bytes follow the last row that the header declares; the counts are wrong, or the "
+                          "file is damaged",
+                          cursor.bytes_left()));
 }
 
 }  // namespace orrery::rows

@@ -42,12 +42,11 @@ std::vector<Key<P>> make_keys() {
                 [](P& p) -> double& { return p.radius.scale; }),
       text<P>("color.column", {"", "Column of the file that `color.map` maps to colours"},
               [](P& p) -> std::string& { return p.color.column; }),
-      text<P>(
-          "color.map",
-          {"",
-           "Colour map: `fast`, `coolwarm`, `viridis`, `magma`, `inferno`, `plasma`, `cividis`, `batlow`, `turbo`, a "
-           "categorical set, or a text file relative to the scene file; see [Data files](data.md)"},
-          [](P& p) -> std::string& { return p.color.map; }),
+      text<P>("color.map",
+              {"",
+               "Colour map: the name of a built-in map, or a text file relative to the scene file; see "
+               "[Data files](data.md#colour)"},
+              [](P& p) -> std::string& { return p.color.map; }),
       optional_interval<P>(
           "color.range", kAnyValue, {"", "Values of the column at both ends of the map, e.g. `[-2, 2]`"},
           "minimum and maximum of the frame", [](P& p) -> std::optional<Interval>& { return p.color.range; }),

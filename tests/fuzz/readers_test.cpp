@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fuzz/mutator.h"
-#include "support/data_errors.h"
+#include "support/data_tables.h"
 #include "support/temp_dir.h"
 
 namespace orrery::fuzz {

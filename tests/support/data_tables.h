@@ -28,11 +28,16 @@ std::string number_bytes(T value, bool is_big_endian = false) {
   return out;
 }
 
+/// Names of the columns of a frame.
+inline std::vector<std::string> column_names(const data::FrameInfo& info) {
+  std::vector<std::string> names;
+  for (const data::ColumnInfo& column : info.columns) names.push_back(column.name);
+  return names;
+}
+
 /// All columns of a frame.
 inline data::Table read_table(data::DataFile& file, int frame = 0) {
-  std::vector<std::string> names;
-  for (const data::ColumnInfo& column : file.describe(frame).columns) names.push_back(column.name);
-  return file.read(frame, names);
+  return file.read(frame, column_names(file.describe(frame)));
 }
 inline data::Table read_table(const std::filesystem::path& file) { return read_table(*particles::open(file)); }
 
@@ -70,6 +75,25 @@ inline std::string columns_text(const data::FrameInfo& info) {
   for (const data::ColumnInfo& column : info.columns)
     out += (out.empty() ? "" : " ") + column.name + ":" + data::type_name(column.type);
   return out;
+}
+
+/// Reads all columns of all frames of a data file.
+///
+/// Result     the diagnostics, "line: text", one per line; empty if the file is valid
+inline std::string data_errors(const std::filesystem::path& file) {
+  std::string all;
+  try {
+    const auto opened = particles::open(file);
+    for (int frame = 0; frame < opened->frame_count(); ++frame) read_table(*opened, frame);
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData) << error.what();
+    for (const base::Diagnostic& d : error.diagnostics()) {
+      EXPECT_EQ(d.file, file.string());
+      all += std::to_string(d.line) + ": " + d.text + "\n";
+    }
+    EXPECT_NE(all, "");
+  }
+  return all;
 }
 
 /// Diagnostics of reading all columns of the first frame, "line: text; remedy\n"; empty if there is no error.

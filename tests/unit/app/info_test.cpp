@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "format/override.h"
-#include "job/load_scene.h"
+#include "load/load_scene.h"
 #include "support/temp_dir.h"
 
 namespace orrery::app {
@@ -47,7 +47,7 @@ class AppInfo : public testing::Test {
  protected:
   SceneInfo info(const std::string& scene, const std::vector<format::Override>& overrides = {}) {
     support::write_bytes(folder_ / "scene.toml", scene);
-    job::SceneRequest request;
+    load::SceneRequest request;
     request.source.file = folder_ / "scene.toml";
     request.source.overrides = overrides;
     return scene_info(request);

@@ -48,5 +48,22 @@ TEST(BaseText, JoinsWithCommas) {
   EXPECT_EQ(joined({}), "");
 }
 
+TEST(BaseText, AppendTakesAnyLength) {
+  const std::string word(5000, 'x');
+  std::string out = "a ";
+  append(out, "%s %d", word.c_str(), 42);
+  EXPECT_EQ(out, "a " + word + " 42");
+  append(out, "%s", "");
+  EXPECT_EQ(out, "a " + word + " 42");
+}
+
+TEST(BaseText, BytesHaveTheLargestUnitAboveOne) {
+  EXPECT_EQ(bytes_text(0), "0.0 KiB");
+  EXPECT_EQ(bytes_text(1536), "1.5 KiB");
+  EXPECT_EQ(bytes_text(1024 * 1024), "1.0 MiB");
+  EXPECT_EQ(bytes_text(5ull << 40), "5.0 TiB");
+  EXPECT_EQ(bytes_text(5ull << 50), "5120.0 TiB");
+}
+
 }  // namespace
 }  // namespace orrery::base

@@ -3,59 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "film/layer_pixel.h"
 #include "job/layers.h"
 #include "scene/scene.h"
-#include "support/temp_dir.h"
 
 namespace orrery::job {
 namespace {
 
 constexpr std::uint64_t kMega = 1 << 20;
-
-/// A machine simulated by files.
-class JobMemory : public testing::Test {
- protected:
-  void write(const std::string& file, const std::string& text) {
-    std::filesystem::create_directories((root_ / file).parent_path());
-    support::write_bytes(root_ / file, text);
-  }
-  std::optional<std::uint64_t> available() { return available_memory(root_.path()); }
-
-  support::TempDir root_;
-};
-
-TEST_F(JobMemory, AvailableMemoryIsEmptyIfUnknown) { EXPECT_FALSE(available().has_value()); }
-
-TEST_F(JobMemory, ReadsTheAvailableMemoryOfTheMachine) {
-  write("proc/meminfo", "MemTotal:       8192 kB\nMemFree:  1024 kB\nMemAvailable:   4096 kB\n");
-  EXPECT_EQ(available(), 4 * kMega);
-}
-
-TEST_F(JobMemory, TheTightestControlGroupLimits) {
-  write("proc/meminfo", "MemAvailable:   1048576 kB\n");
-  write("proc/self/cgroup", "0::/job/step\n");
-  write("sys/fs/cgroup/job/step/memory.max", "max\n");
-  write("sys/fs/cgroup/job/step/memory.current", "1048576\n");
-  EXPECT_EQ(available(), 1024 * kMega) << "a group without a limit";
-  write("sys/fs/cgroup/job/memory.max", "104857600\n");
-  write("sys/fs/cgroup/job/memory.current", "62914560\n");
-  EXPECT_EQ(available(), 40 * kMega);
-  write("sys/fs/cgroup/job/memory.stat", "anon 5\ninactive_file 20971520\n");
-  EXPECT_EQ(available(), 60 * kMega) << "the page cache can be evicted";
-  write("sys/fs/cgroup/job/memory.current", "209715200\n");
-  EXPECT_EQ(available(), 0u) << "zero, without wrapping";
-}
-
-TEST_F(JobMemory, TheRootControlGroupAlsoLimits) {
-  write("proc/self/cgroup", "0::/\n");
-  write("sys/fs/cgroup/memory.max", "10485760\n");
-  write("sys/fs/cgroup/memory.current", "0\n");
-  EXPECT_EQ(available(), 10 * kMega);
-}
 
 MemoryEstimate estimate(int width, std::uint64_t spheres, bool embree, std::uint64_t layer_planes = 0,
                         bool is_adaptive = false) {
@@ -148,7 +107,7 @@ TEST(JobMemoryEstimate, CountsTheBackgroundOnce) {
   EXPECT_EQ(estimate.total(), 1000 * kMega);
   EXPECT_NE(text_of(estimate).find(", background 1000.0 MiB"), std::string::npos) << text_of(estimate);
   // What is held already needs no free memory, but counts against a limit.
-  const std::uint64_t free_memory = available_memory().value_or(0);
+  const std::uint64_t free_memory = base::available_memory().value_or(0);
   needs.background = free_memory + (1 << 30);
   EXPECT_THROW(require_memory(estimate_memory(needs), 0), base::Error);
   EXPECT_NO_THROW(require_memory(estimate_memory(needs), 0, needs.background));

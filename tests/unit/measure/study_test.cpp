@@ -13,8 +13,8 @@
 #include "compile/compile.h"
 #include "compile/compiled_scene.h"
 #include "compile/environment.h"
-#include "job/load_scene.h"
-#include "job/loaded_scene.h"
+#include "load/load_scene.h"
+#include "load/loaded_scene.h"
 #include "measure/axes.h"
 #include "support/everything.h"
 #include "support/lit_scenes.h"
@@ -133,7 +133,7 @@ support::TempDir* MeasureRun::folder = nullptr;
 Study* MeasureRun::study = nullptr;
 
 app::SceneInfo info_of(const std::filesystem::path& scene) {
-  job::SceneRequest request;
+  load::SceneRequest request;
   request.source.file = scene;
   return app::scene_info(request);
 }

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <string>
 
 #include "base/error.h"
 #include "support/temp_dir.h"
@@ -30,6 +32,17 @@ TEST(PointsColorMap, NamesAreFound) {
   }
   EXPECT_EQ(find_color_map("jet"), nullptr);
   EXPECT_EQ(find_color_map("Viridis"), nullptr);
+}
+
+TEST(PointsColorMap, TheDocumentsListAllMaps) {
+  const std::filesystem::path docs = std::filesystem::path(ORRERY_ROOT) / "docs";
+  const std::string data = support::file_bytes(docs / "data.md"), manual = support::file_bytes(docs / "orrery.1");
+  const std::string sources = support::file_bytes(docs / "references.md");
+  for (const std::string& name : color_map_names()) {
+    EXPECT_NE(data.find("`" + name + "`"), std::string::npos) << name;
+    EXPECT_NE(manual.find(" " + name + " "), std::string::npos) << name;
+    EXPECT_NE(sources.find(name), std::string::npos) << name;
+  }
 }
 
 TEST(PointsColorMap, ColorsAreThoseOfThePublishedTables) {

@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <string>
+
 #include "base/error.h"
+#include "preview/file_sink.h"
+#include "preview/tev_sink.h"
 
 namespace orrery::preview {
 namespace {
@@ -26,6 +31,15 @@ TEST(PreviewTarget, KnowsTheTerminalAndPngFiles) {
   EXPECT_EQ(parse_target("out/p.PNG").file, "out/p.PNG");
   EXPECT_EQ(parse_target("tev.png").kind, TargetKind::kFile);
   EXPECT_EQ(parse_target("tev:9000.png").kind, TargetKind::kFile);
+}
+
+TEST(PreviewTarget, MakesTheSinkOfItsKind) {
+  const auto sink_of = [](const Target& target) { return make_sink(target, nullptr, {}); };
+  EXPECT_EQ(sink_of({}), nullptr);
+  const std::unique_ptr<Sink> file = sink_of(parse_target("p.png"));
+  EXPECT_NE(dynamic_cast<const FileSink*>(file.get()), nullptr);
+  const std::unique_ptr<Sink> tev = sink_of(parse_target("tev"));
+  EXPECT_NE(dynamic_cast<const TevSink*>(tev.get()), nullptr);
 }
 
 TEST(PreviewTarget, AFramePatternIsNotAPreview) {

@@ -6,8 +6,8 @@
 
 #include "data/data_file.h"
 #include "particles/open.h"
-#include "support/data_errors.h"
 #include "support/data_file_test.h"
+#include "support/data_tables.h"
 #include "support/shared_data.h"
 #include "support/temp_dir.h"
 
@@ -18,9 +18,9 @@ using namespace data;  // NOLINT(google-build-using-namespace)
 namespace {
 
 using support::column_names;
-using support::column_numbers;
-using support::column_texts;
 using support::data_errors;
+using support::numbers;
+using support::texts;
 using Numbers = std::vector<double>;
 
 const std::string kHead =
@@ -59,13 +59,16 @@ TEST_F(RowsLammpsData, ColumnsFollowFromTheStyle) {
       EXPECT_EQ(info.roles.image[0], has_images ? "ix" : "");
       const Table table = file->read(0, column_names(info));
       ASSERT_EQ(table.rows, 2u) << c.style;
-      EXPECT_EQ(column_numbers(table, "id"), (Numbers{4, 4}));
-      EXPECT_EQ(column_numbers(table, "type"), (Numbers{2, 2}));
+      EXPECT_EQ(numbers(table, "id"), (Numbers{4, 4}));
+      EXPECT_EQ(numbers(table, "type"), (Numbers{2, 2}));
       const char* const axes[] = {"x", "y", "z"};
-      for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(column_numbers(table, axes[i])[1], c.xyz[i]) << c.style;
-      EXPECT_EQ(column_numbers(table, "iy"), has_images ? (Numbers{-1, -1}) : Numbers{});
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(numbers(table, axes[i])[1], c.xyz[i]) << c.style;
+      if (has_images)
+        EXPECT_EQ(numbers(table, "iy"), (Numbers{-1, -1}));
+      else
+        EXPECT_EQ(table.find("iy"), nullptr);
       if (!info.roles.radius.empty()) {
-        EXPECT_EQ(column_numbers(table, info.roles.radius)[0] * info.roles.radius_scale, 0.625);
+        EXPECT_EQ(numbers(table, info.roles.radius)[0] * info.roles.radius_scale, 0.625);
       }
       EXPECT_EQ(info.roles.radius.empty(), std::string(c.style).find("sphere") == std::string::npos);
     }
@@ -85,7 +88,7 @@ TEST_F(RowsLammpsData, BoxAndTitleAreRead) {
 
 TEST_F(RowsLammpsData, TypesMayBeLabels) {
   const auto file = open("\n2 atoms\n\nAtom Type Labels\n\n1 C\n2 H\n\nAtoms # atomic\n\n1 C 0 0 0\n2 H 0 0 0 # x\n");
-  EXPECT_EQ(column_texts(file->read(0, {"type"}), "type"), (std::vector<std::string>{"C", "H"}));
+  EXPECT_EQ(texts(file->read(0, {"type"}), "type"), (std::vector<std::string>{"C", "H"}));
 }
 
 TEST_F(RowsLammpsData, StyleIsNotGuessed) {
@@ -109,7 +112,7 @@ TEST_F(RowsLammpsData, ReadsFilesOfOtherPrograms) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) EXPECT_EQ(data_errors(entry.path()), "");
   const auto file = particles::open(folder / "molid.lmp");
-  EXPECT_EQ(column_numbers(file->read(0, {"mol", "x"}), "x")[2], 8.506);
+  EXPECT_EQ(numbers(file->read(0, {"mol", "x"}), "x")[2], 8.506);
   EXPECT_EQ(particles::open(folder / "triclinic-2.lmp")->describe(0).box->edges[2].x, -8);
   EXPECT_EQ(particles::open(folder / "triclinic-1.lmp")->read(0, {"x"}).rows, 0u);
 }

@@ -8,8 +8,8 @@
 
 #include "data/data_file.h"
 #include "particles/open.h"
-#include "support/data_errors.h"
 #include "support/data_file_test.h"
+#include "support/data_tables.h"
 #include "support/shared_data.h"
 #include "support/temp_dir.h"
 
@@ -20,9 +20,9 @@ using namespace data;  // NOLINT(google-build-using-namespace)
 namespace {
 
 using support::column_names;
-using support::column_numbers;
-using support::column_texts;
 using support::data_errors;
+using support::numbers;
+using support::texts;
 using Numbers = std::vector<double>;
 
 const std::string kFrameHead = "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\n";
@@ -40,7 +40,7 @@ TEST_F(RowsLammpsDump, TypesMayBeLabels) {
   const auto file = open(head + "1 C 0 0 0\n2 O 1 1 1\n" + head + "1 1 0 0 0\n2 2 1 1 1\n");
   EXPECT_EQ(file->describe(0).columns[1].type, ColumnType::kText);
   EXPECT_EQ(file->describe(0).roles.type, "type");
-  EXPECT_EQ(column_texts(file->read(0, {"type"}), "type"), (std::vector<std::string>{"C", "O"}));
+  EXPECT_EQ(texts(file->read(0, {"type"}), "type"), (std::vector<std::string>{"C", "O"}));
   EXPECT_EQ(file->describe(1).columns[1].type, ColumnType::kInt64) << "each frame has its own";
   EXPECT_NE(errors(head + "1 1 0 0 0\n2 O 1 1 1\n"), "");
 }
@@ -68,12 +68,12 @@ TEST_F(RowsLammpsDump, ReadsColumnsWithTheirTypesAndRoles) {
   EXPECT_EQ(info.roles.id, "id");
   EXPECT_EQ(info.roles.image[1], "iy");
   const Table table = file->read(0, column_names(info));
-  EXPECT_EQ(column_numbers(table, "id"), (Numbers{2, 1}));
-  EXPECT_EQ(column_texts(table, "element"), (std::vector<std::string>{"Na", "Cl"}));
-  EXPECT_EQ(column_numbers(table, "y"), (Numbers{1, 2}));
-  EXPECT_EQ(column_numbers(table, "c_stress[1]")[0], -1e-3);
-  EXPECT_TRUE(std::isnan(column_numbers(table, "c_stress[1]")[1]));
-  EXPECT_EQ(column_numbers(table, "iy"), (Numbers{-1, 0}));
+  EXPECT_EQ(numbers(table, "id"), (Numbers{2, 1}));
+  EXPECT_EQ(texts(table, "element"), (std::vector<std::string>{"Na", "Cl"}));
+  EXPECT_EQ(numbers(table, "y"), (Numbers{1, 2}));
+  EXPECT_EQ(numbers(table, "c_stress[1]")[0], -1e-3);
+  EXPECT_TRUE(std::isnan(numbers(table, "c_stress[1]")[1]));
+  EXPECT_EQ(numbers(table, "iy"), (Numbers{-1, 0}));
   EXPECT_EQ(file->read(0, {"z"}).columns.size(), 1u);
 }
 
@@ -100,22 +100,22 @@ TEST_F(RowsLammpsDump, ScaledPositionsBecomePositions) {
   EXPECT_EQ(info.roles.position[0], "x");
   EXPECT_EQ(column_names(info), (std::vector<std::string>{"xs", "ys", "zs", "x", "y", "z"}));
   const Table table = file->read(0, column_names(info));
-  EXPECT_EQ(column_numbers(table, "x"), (Numbers{-1, 1}));
-  EXPECT_EQ(column_numbers(table, "y"), (Numbers{0, 2.5}));
-  EXPECT_EQ(column_numbers(table, "z"), (Numbers{2, 4}));
-  EXPECT_EQ(column_numbers(table, "xs"), (Numbers{0, 0.5}));
+  EXPECT_EQ(numbers(table, "x"), (Numbers{-1, 1}));
+  EXPECT_EQ(numbers(table, "y"), (Numbers{0, 2.5}));
+  EXPECT_EQ(numbers(table, "z"), (Numbers{2, 4}));
+  EXPECT_EQ(numbers(table, "xs"), (Numbers{0, 0.5}));
   EXPECT_EQ(file->read(0, {"y"}).columns.size(), 1u);
 }
 
 TEST_F(RowsLammpsDump, ScaledUnwrappedPositionsBecomePositions) {
   const auto file = open(kFrameHead + kBox + "ITEM: ATOMS xsu ysu zsu\n0 0 0\n1.5 -0.25 1\n");
-  EXPECT_EQ(column_numbers(file->read(0, {"x", "y"}), "y"), (Numbers{0, -2.5}));
+  EXPECT_EQ(numbers(file->read(0, {"x", "y"}), "y"), (Numbers{0, -2.5}));
 }
 
 TEST_F(RowsLammpsDump, UnwrappedPositionsStayAsTheyAre) {
   const auto file = open(kFrameHead + kBox + "ITEM: ATOMS xu yu zu xs ys zs\n1 2 3 0 0 0\n4 5 6 0 0 0\n");
   EXPECT_EQ(file->describe(0).roles.position, (std::array<std::string, 3>{"xu", "yu", "zu"}));
-  EXPECT_EQ(column_numbers(file->read(0, {"yu"}), "yu"), (Numbers{2, 5}));
+  EXPECT_EQ(numbers(file->read(0, {"yu"}), "yu"), (Numbers{2, 5}));
 }
 
 /// A cell with a = (4, 0, 0), b = (xy, 5, 0), c = (xz, yz, 6) at (-1, 2, 3), as LAMMPS writes it: xlo_bound is
@@ -135,7 +135,7 @@ TEST_F(RowsLammpsDump, ImageCountsApplyToWrappedPositionsOnly) {
 TEST_F(RowsLammpsDump, ColumnsOfOneNameAreNumbered) {
   const auto file = open(kFrameHead + kBox + "ITEM: ATOMS x y z v v v\n1 2 3 4 5 6\n1 2 3 7 8 9\n");
   EXPECT_EQ(column_names(file->describe(0)), (std::vector<std::string>{"x", "y", "z", "v", "v_2", "v_3"}));
-  EXPECT_EQ(column_numbers(file->read(0, {"v_3"}), "v_3"), (Numbers{6, 9}));
+  EXPECT_EQ(numbers(file->read(0, {"v_3"}), "v_3"), (Numbers{6, 9}));
   std::string many = "ITEM: ATOMS x y z";
   for (int i = 0; i < 4094; ++i) many += " v";
   EXPECT_EQ(errors(kFrameHead + kBox + many + "\n"), "9: there are more than 4096 columns\n");
@@ -166,9 +166,9 @@ TEST_F(RowsLammpsDump, TiltedBoxIsRecoveredFromItsBounds) {
     EXPECT_EQ(box.edges[2].z, 6);
     EXPECT_EQ(box.periodic, (std::array<bool, 3>{true, true, false}));
     const Table table = file->read(0, {"x", "y", "z"});
-    EXPECT_EQ(column_numbers(table, "x"), (Numbers{-1, 3 + t.xy + t.xz}));
-    EXPECT_EQ(column_numbers(table, "y"), (Numbers{2, 7 + t.yz}));
-    EXPECT_EQ(column_numbers(table, "z"), (Numbers{3, 9}));
+    EXPECT_EQ(numbers(table, "x"), (Numbers{-1, 3 + t.xy + t.xz}));
+    EXPECT_EQ(numbers(table, "y"), (Numbers{2, 7 + t.yz}));
+    EXPECT_EQ(numbers(table, "z"), (Numbers{3, 9}));
   }
 }
 
@@ -181,9 +181,9 @@ TEST_F(RowsLammpsDump, BoxMayBeGeneral) {
   EXPECT_EQ(box.edges[2].y, 0.5);
   EXPECT_EQ(box.periodic, (std::array<bool, 3>{true, false, true}));
   const Table table = file->read(0, {"x", "y", "z"});
-  EXPECT_EQ(column_numbers(table, "x"), (Numbers{10, 9}));
-  EXPECT_EQ(column_numbers(table, "y"), (Numbers{20, 23.25}));
-  EXPECT_EQ(column_numbers(table, "z"), (Numbers{30, 35}));
+  EXPECT_EQ(numbers(table, "x"), (Numbers{10, 9}));
+  EXPECT_EQ(numbers(table, "y"), (Numbers{20, 23.25}));
+  EXPECT_EQ(numbers(table, "z"), (Numbers{30, 35}));
 }
 
 /// Frames of different numbers of rows, the first one empty.
@@ -206,7 +206,7 @@ TEST_F(RowsLammpsDump, FramesAreReadInAnyOrder) {
     EXPECT_EQ(file->frame_count(), 200);
     for (const int frame : {199, 5, 0, 1, 198}) {
       EXPECT_EQ(file->describe(frame).rows, static_cast<std::uint64_t>(frame));
-      EXPECT_EQ(column_numbers(file->read(frame, {"z"}), "z"),
+      EXPECT_EQ(numbers(file->read(frame, {"z"}), "z"),
                 Numbers(static_cast<std::size_t>(frame), static_cast<double>(frame)));
     }
   }
@@ -265,7 +265,7 @@ TEST_F(RowsLammpsDump, ReadsFilesOfOtherPrograms) {
   const auto salt = particles::open(folder / "nacl.lammpstrj");
   const Table table = salt->read(0, {"x", "z", "vx"});
   EXPECT_EQ(table.rows, 512u);
-  EXPECT_NEAR(column_numbers(table, "z")[1], -1.41005 + 0.1875 * (21.15075 + 1.41005), 1e-5);
+  EXPECT_NEAR(numbers(table, "z")[1], -1.41005 + 0.1875 * (21.15075 + 1.41005), 1e-5);
   const auto properties = particles::open(folder / "properties.lammpstrj");
   const Table stress = properties->read(properties->frame_count() - 1, {"c_stress[3]", "v_sq_pos", "i_flag"});
   EXPECT_EQ(stress.rows, 4000u);

@@ -7,8 +7,8 @@
 #include "data/data_file.h"
 #include "particles/open.h"
 #include "rows/xyz_comment.h"
-#include "support/data_errors.h"
 #include "support/data_file_test.h"
+#include "support/data_tables.h"
 #include "support/shared_data.h"
 #include "support/temp_dir.h"
 
@@ -19,9 +19,9 @@ using namespace data;  // NOLINT(google-build-using-namespace)
 namespace {
 
 using support::column_names;
-using support::column_numbers;
-using support::column_texts;
 using support::data_errors;
+using support::numbers;
+using support::texts;
 using Numbers = std::vector<double>;
 using Texts = std::vector<std::string>;
 
@@ -41,17 +41,17 @@ TEST_F(RowsXyz, PlainFilesHaveElementsAndPositions) {
   EXPECT_EQ(info.roles.type, "");
   EXPECT_FALSE(info.box);
   const Table table = file->read(0, column_names(info));
-  EXPECT_EQ(column_texts(table, "element"), (Texts{"H", "O"}));
-  EXPECT_EQ(column_numbers(table, "x"), (Numbers{1, -1.5}));
-  EXPECT_EQ(column_numbers(table, "z"), (Numbers{3, 10}));
+  EXPECT_EQ(texts(table, "element"), (Texts{"H", "O"}));
+  EXPECT_EQ(numbers(table, "x"), (Numbers{1, -1.5}));
+  EXPECT_EQ(numbers(table, "z"), (Numbers{3, 10}));
 }
 
 TEST_F(RowsXyz, PlainFilesMayHaveMoreColumns) {
   const auto file = open("2\n\nH 1 2 3 0.5 a\nO 1 2 3 0.25 b c\n");
   EXPECT_EQ(column_names(file->describe(0)), (Texts{"element", "x", "y", "z", "column5", "column6"}));
   const Table table = file->read(0, {"column5", "column6"});
-  EXPECT_EQ(column_numbers(table, "column5"), (Numbers{0.5, 0.25}));
-  EXPECT_EQ(column_texts(table, "column6"), (Texts{"a", "b"}));
+  EXPECT_EQ(numbers(table, "column5"), (Numbers{0.5, 0.25}));
+  EXPECT_EQ(texts(table, "column6"), (Texts{"a", "b"}));
   // Columns that are not requested may be missing.
   EXPECT_EQ(open("2\n\nH 1 2 3 0.5\nO 1 2 3\n")->read(0, {"x"}).rows, 2u);
 }
@@ -60,7 +60,7 @@ TEST_F(RowsXyz, NumbersInThePlaceOfElementsAreTypes) {
   const auto file = open("1\nAtoms. Timestep: 0\n2 1 2 3\n");
   EXPECT_EQ(file->describe(0).roles.type, "type");
   EXPECT_EQ(file->describe(0).roles.element, "");
-  EXPECT_EQ(column_numbers(file->read(0, {"type"}), "type"), (Numbers{2}));
+  EXPECT_EQ(numbers(file->read(0, {"type"}), "type"), (Numbers{2}));
 }
 
 TEST_F(RowsXyz, ExtendedFilesDeclareTheirColumns) {
@@ -83,10 +83,10 @@ TEST_F(RowsXyz, ExtendedFilesDeclareTheirColumns) {
   EXPECT_EQ(box.origin.y, -2);
   EXPECT_EQ(box.periodic, (std::array<bool, 3>{true, false, true}));
   const Table table = file->read(0, column_names(info));
-  EXPECT_EQ(column_numbers(table, "y"), (Numbers{2, 5}));
-  EXPECT_EQ(column_numbers(table, "forces[1]"), (Numbers{10, 10}));
-  EXPECT_EQ(column_numbers(table, "forces[2]"), (Numbers{20, 0.2}));
-  EXPECT_EQ(column_texts(table, "fixed"), (Texts{"T", "F"}));
+  EXPECT_EQ(numbers(table, "y"), (Numbers{2, 5}));
+  EXPECT_EQ(numbers(table, "forces[1]"), (Numbers{10, 10}));
+  EXPECT_EQ(numbers(table, "forces[2]"), (Numbers{20, 0.2}));
+  EXPECT_EQ(texts(table, "fixed"), (Texts{"T", "F"}));
 }
 
 TEST_F(RowsXyz, ColumnsOfOneNameAreNumbered) {
@@ -94,7 +94,7 @@ TEST_F(RowsXyz, ColumnsOfOneNameAreNumbered) {
   const FrameInfo info = file->describe(0);
   EXPECT_EQ(column_names(info), (Texts{"x", "x_2", "y", "z", "v", "v_2"}));
   EXPECT_EQ(info.roles.position[0], "x_2");
-  EXPECT_EQ(column_numbers(file->read(0, {"x_2", "v_2"}), "v_2"), (Numbers{5}));
+  EXPECT_EQ(numbers(file->read(0, {"x_2", "v_2"}), "v_2"), (Numbers{5}));
 }
 
 TEST_F(RowsXyz, RolesHaveTheTypeThatTheyNeed) {
@@ -141,7 +141,7 @@ TEST_F(RowsXyz, FramesAreReadInAnyOrder) {
   EXPECT_EQ(file->frame_count(), 100);
   for (const int frame : {99, 0, 7, 8, 50}) {
     EXPECT_EQ(file->describe(frame).title, "frame " + std::to_string(frame));
-    EXPECT_EQ(column_numbers(file->read(frame, {"x"}), "x"), Numbers(static_cast<std::size_t>(frame), frame));
+    EXPECT_EQ(numbers(file->read(frame, {"x"}), "x"), Numbers(static_cast<std::size_t>(frame), frame));
   }
 }
 
@@ -205,7 +205,7 @@ TEST_F(RowsXyz, ReadsFilesOfOtherPrograms) {
   for (const char* const name : {"extended.xyz", "methane.xyz", "spaces.xyz", "trajectory.xyz"})
     EXPECT_EQ(data_errors(folder / name), "");
   const auto file = particles::open(folder / "extended.xyz");
-  EXPECT_EQ(column_numbers(file->read(0, {"CS[2]"}), "CS[2]")[0], 31.34);
+  EXPECT_EQ(numbers(file->read(0, {"CS[2]"}), "CS[2]")[0], 31.34);
 }
 
 TEST_F(RowsXyz, MalformedFilesOfOtherProgramsAreRefused) {

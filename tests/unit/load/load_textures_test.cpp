@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/load_textures.h"
+#include "load/load_textures.h"
 
 #include <gtest/gtest.h>
 
@@ -21,12 +21,12 @@
 #include "support/exr_file.h"
 #include "support/temp_dir.h"
 
-namespace orrery::job {
+namespace orrery::load {
 namespace {
 
 using support::ExrFile;
 
-class JobLoadTextures : public testing::Test {
+class LoadTextures : public testing::Test {
  protected:
   void SetUp() override { ::unsetenv("OCIO"); }
 
@@ -67,7 +67,7 @@ class JobLoadTextures : public testing::Test {
   scene::Scene scene_;
 };
 
-TEST_F(JobLoadTextures, EncodedFilesAreSrgbUnlessTheSceneSaysOtherwise) {
+TEST_F(LoadTextures, EncodedFilesAreSrgbUnlessTheSceneSaysOtherwise) {
   write_flat("a.png", 0.5F);
   add("a.png");
   add("a.png", "raw");
@@ -80,7 +80,7 @@ TEST_F(JobLoadTextures, EncodedFilesAreSrgbUnlessTheSceneSaysOtherwise) {
 }
 
 /// Alpha is ignored: the colours are those of the file.
-TEST_F(JobLoadTextures, ColorsAreNotMultipliedByAlpha) {
+TEST_F(LoadTextures, ColorsAreNotMultipliedByAlpha) {
   film::EncodedPicture picture;
   picture.width = 64;
   picture.height = 32;
@@ -100,7 +100,7 @@ TEST_F(JobLoadTextures, ColorsAreNotMultipliedByAlpha) {
   }
 }
 
-TEST_F(JobLoadTextures, NumbersAreNotConverted) {
+TEST_F(LoadTextures, NumbersAreNotConverted) {
   write_flat("a.png", 0.5F);
   scene_.materials.push_back({"m", scene::Metal{{1, 1, 1}, 0, nullptr, map("a.png")}});
   const auto loaded = load();
@@ -109,7 +109,7 @@ TEST_F(JobLoadTextures, NumbersAreNotConverted) {
   EXPECT_NEAR(loaded[0].map.image->row(3)[4], 0.5, 0.003);
 }
 
-TEST_F(JobLoadTextures, ReflectancesAboveOneAreClampedAndReported) {
+TEST_F(LoadTextures, ReflectancesAboveOneAreClampedAndReported) {
   support::write_bytes(folder_ / "a.exr", ExrFile{2, 1, {0.5F, 2, 0.5F, 1, 1, 3}}.bytes());
   add("a.exr");
   const auto loaded = load();
@@ -121,7 +121,7 @@ TEST_F(JobLoadTextures, ReflectancesAboveOneAreClampedAndReported) {
   EXPECT_EQ(load()[0].map.image->row(0)[5], 3) << "radiance may exceed 1";
 }
 
-TEST_F(JobLoadTextures, AFileThatIsMissingIsAnError) {
+TEST_F(LoadTextures, AFileThatIsMissingIsAnError) {
   add("none.png");
   const auto loaded = load();
   ASSERT_EQ(loaded[0].map.diagnostics.size(), 1u);
@@ -130,7 +130,7 @@ TEST_F(JobLoadTextures, AFileThatIsMissingIsAnError) {
   EXPECT_NE(text(loaded[0]).find("No such file"), std::string::npos);
 }
 
-TEST_F(JobLoadTextures, ATruncatedFileIsAnErrorInEveryFormat) {
+TEST_F(LoadTextures, ATruncatedFileIsAnErrorInEveryFormat) {
   for (const std::string name : {"a.png", "a.jpg", "a.tif", "a.ppm"}) {
     write_flat(name, 0.7F);
     const auto size = std::filesystem::file_size(folder_ / name);
@@ -144,13 +144,13 @@ TEST_F(JobLoadTextures, ATruncatedFileIsAnErrorInEveryFormat) {
   }
 }
 
-TEST_F(JobLoadTextures, AnUnknownFormatIsAnError) {
+TEST_F(LoadTextures, AnUnknownFormatIsAnError) {
   support::write_bytes(folder_ / "a.webp", "RIFF");
   add("a.webp");
   EXPECT_NE(text(load()[0]).find("a texture must be an exr, hdr, png, tiff, jpeg or ppm file"), std::string::npos);
 }
 
-TEST_F(JobLoadTextures, AFileIsReadOnceForAllItsUses) {
+TEST_F(LoadTextures, AFileIsReadOnceForAllItsUses) {
   write_flat("a.png", 0.5F);
   add("a.png");
   add("a.png");
@@ -161,7 +161,7 @@ TEST_F(JobLoadTextures, AFileIsReadOnceForAllItsUses) {
   EXPECT_EQ(load(&cache)[0].map.image, loaded[0].map.image) << "by the next frame, too";
 }
 
-TEST_F(JobLoadTextures, OnlyFilteredImagesHaveAMipMap) {
+TEST_F(LoadTextures, OnlyFilteredImagesHaveAMipMap) {
   write_flat("a.png", 0.5F);
   add("a.png");
   scene_.materials.push_back(
@@ -174,7 +174,7 @@ TEST_F(JobLoadTextures, OnlyFilteredImagesHaveAMipMap) {
   EXPECT_EQ(loaded[1].map.bytes, 64 * 32 * 12u);
 }
 
-TEST_F(JobLoadTextures, TheMemoryLimitHoldsForAllOfThem) {
+TEST_F(LoadTextures, TheMemoryLimitHoldsForAllOfThem) {
   write_flat("a.png", 0.5F);
   write_flat("b.png", 0.5F);
   add("a.png");
@@ -185,7 +185,7 @@ TEST_F(JobLoadTextures, TheMemoryLimitHoldsForAllOfThem) {
   EXPECT_THROW(load(nullptr, kBytes * 3 / 2), base::Error);
 }
 
-TEST_F(JobLoadTextures, TheSceneGetsTheImages) {
+TEST_F(LoadTextures, TheSceneGetsTheImages) {
   write_flat("a.png", 0.5F);
   add("a.png");
   const auto loaded = load();
@@ -194,4 +194,4 @@ TEST_F(JobLoadTextures, TheSceneGetsTheImages) {
 }
 
 }  // namespace
-}  // namespace orrery::job
+}  // namespace orrery::load

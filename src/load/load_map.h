@@ -9,11 +9,10 @@
 
 #include "compile/forward.h"
 #include "image/read_map.h"
+#include "load/forward.h"
 #include "scene/limits.h"
 
-namespace orrery::job {
-
-struct LoadedMap;
+namespace orrery::load {
 
 /// A latitude-longitude map to read: an image background or a texture.
 struct MapRequest {
@@ -42,4 +41,4 @@ struct MapRequest {
 ///            fit into memory, before its pixels are read
 LoadedMap load_map(const MapRequest& request);
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -9,7 +9,7 @@
 #include "scene/diagnostic.h"
 #include "scene/forward.h"
 
-namespace orrery::job {
+namespace orrery::load {
 
 /// A map that was read, and the properties of its file.
 struct LoadedMap {
@@ -24,4 +24,4 @@ struct LoadedMap {
 /// An image background that was read, or a sky.
 using LoadedBackground = LoadedMap;
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -9,7 +9,7 @@
 #include "format/override.h"
 #include "points/open_data.h"
 
-namespace orrery::job {
+namespace orrery::load {
 
 /// A scene as specified on the command line: file, overrides, and a frame of its animation.
 struct SceneSource {
@@ -22,4 +22,4 @@ struct SceneSource {
   bool is_generated = false;                     ///< see format::ReadOptions
 };
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "job/loaded_map.h"
+#include "load/loaded_map.h"
 #include "scene/forward.h"
 
-namespace orrery::job {
+namespace orrery::load {
 
 /// An image texture that was read.
 struct LoadedTexture {
@@ -40,4 +40,4 @@ std::vector<LoadedTexture> load_textures(const std::filesystem::path& scene_file
 /// Assigns the images that load_textures() has read to the textures of a scene.
 void set_textures(const std::vector<LoadedTexture>& loaded, scene::Scene& scene);
 
-}  // namespace orrery::job
+}  // namespace orrery::load

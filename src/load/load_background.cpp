@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/load_background.h"
+#include "load/load_background.h"
 
 #include <algorithm>
 
@@ -9,10 +9,10 @@
 #include "compile/daylight.h"
 #include "compile/environment.h"
 #include "display/color_space.h"
-#include "job/load_map.h"
+#include "load/load_map.h"
 #include "scene/scene.h"
 
-namespace orrery::job {
+namespace orrery::load {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ LoadedBackground load_background(const BackgroundRequest& request, const scene::
   return loaded;
 }
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -3,7 +3,7 @@
 
 #include "format/forward.h"
 
-namespace orrery::job {
+namespace orrery::load {
 
 /// Reduces the resolution of a scene to at most this many pixels with the same view, at both shutter times. Drops crop
 /// and overscan.
@@ -11,4 +11,4 @@ namespace orrery::job {
 /// Domain     pixels >= 1
 void reduce_picture(format::ReadResult& scene, double pixels);
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/working_space.h"
+#include "load/working_space.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 #include "scene/textures.h"
 
-namespace orrery::job {
+namespace orrery::load {
 namespace {
 
 /// Tolerance for rounding in the conversion.
@@ -81,4 +81,4 @@ int to_working_space(const std::string& ocio, scene::Scene& scene) {
   return convert(ocio, scene.color.space, working, authored) + convert(ocio, "lin_rec709", working, rec709);
 }
 
-}  // namespace orrery::job
+}  // namespace orrery::load

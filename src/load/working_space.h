@@ -6,7 +6,7 @@
 
 #include "scene/forward.h"
 
-namespace orrery::job {
+namespace orrery::load {
 
 /// The OCIO config that a scene names, in the form of display::Settings; empty: none.
 std::string config_of(const std::filesystem::path& scene_file, const scene::Color& color);
@@ -18,4 +18,4 @@ std::string config_of(const std::filesystem::path& scene_file, const scene::Colo
 /// Errors     those of display::convert_colors
 int to_working_space(const std::string& ocio, scene::Scene& scene);
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/load_textures.h"
+#include "load/load_textures.h"
 
 #include <algorithm>
 #include <system_error>
@@ -8,12 +8,11 @@
 #include <fmt/core.h>
 
 #include "image/read_map.h"
-#include "job/load_map.h"
-#include "job/memory.h"
+#include "load/load_map.h"
 #include "scene/scene.h"
 #include "scene/textures.h"
 
-namespace orrery::job {
+namespace orrery::load {
 namespace {
 
 namespace fs = std::filesystem;
@@ -93,4 +92,4 @@ void set_textures(const std::vector<LoadedTexture>& loaded, scene::Scene& scene)
   });
 }
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/working_space.h"
+#include "load/working_space.h"
 
 #include <gtest/gtest.h>
 
@@ -8,15 +8,15 @@
 #include "base/error.h"
 #include "support/everything.h"
 
-namespace orrery::job {
+namespace orrery::load {
 namespace {
 
-class JobWorkingSpace : public testing::Test {
+class LoadWorkingSpace : public testing::Test {
  protected:
   void SetUp() override { ::unsetenv("OCIO"); }
 };
 
-TEST_F(JobWorkingSpace, EqualSpacesNeedNoConversionOrConfig) {
+TEST_F(LoadWorkingSpace, EqualSpacesNeedNoConversionOrConfig) {
   scene::Scene s = test::everything();
   s.color.space = s.color.working = "no such space";
   EXPECT_EQ(to_working_space("no such config", s), 0);
@@ -25,7 +25,7 @@ TEST_F(JobWorkingSpace, EqualSpacesNeedNoConversionOrConfig) {
 }
 
 /// Grey stays grey in every space; red gains green and blue in wider primaries, by the matrix between the spaces.
-TEST_F(JobWorkingSpace, ColoursAreConverted) {
+TEST_F(LoadWorkingSpace, ColoursAreConverted) {
   scene::Scene s = test::everything();
   s.color.working = "ACEScg";
   s.background.bottom = {1, 1, 1};
@@ -40,7 +40,7 @@ TEST_F(JobWorkingSpace, ColoursAreConverted) {
   EXPECT_EQ(std::get<scene::Dielectric>(s.materials[4].model).ior, 1.5);
 }
 
-TEST_F(JobWorkingSpace, RadianceOfEmittersIsConverted) {
+TEST_F(LoadWorkingSpace, RadianceOfEmittersIsConverted) {
   scene::Scene s;
   s.materials = {{"lamp", scene::Emitter{{20, 0, 0}}}};
   s.color.working = "ACEScg";
@@ -49,7 +49,7 @@ TEST_F(JobWorkingSpace, RadianceOfEmittersIsConverted) {
 }
 
 /// Colour maps are Rec.709 whatever the scene's space is; colours that the scene authors are in its space.
-TEST_F(JobWorkingSpace, PalettesAreConvertedFromTheirOwnSpaces) {
+TEST_F(LoadWorkingSpace, PalettesAreConvertedFromTheirOwnSpaces) {
   scene::Scene s;
   s.color.space = "ACEScg";
   s.color.working = "ACEScg";
@@ -71,7 +71,7 @@ TEST_F(JobWorkingSpace, PalettesAreConvertedFromTheirOwnSpaces) {
   EXPECT_EQ(s.points[0].palette[2].x, 1) << "an albedo is at most 1";
 }
 
-TEST_F(JobWorkingSpace, ClampsAndCountsColoursOutOfRange) {
+TEST_F(LoadWorkingSpace, ClampsAndCountsColoursOutOfRange) {
   scene::Scene s = test::everything();
   s.color.space = "ACEScg";
   s.color.working = "lin_rec709";
@@ -82,7 +82,7 @@ TEST_F(JobWorkingSpace, ClampsAndCountsColoursOutOfRange) {
   EXPECT_EQ(green.y, 1);
 }
 
-TEST_F(JobWorkingSpace, RejectsSpacesThatAreNotSceneLinear) {
+TEST_F(LoadWorkingSpace, RejectsSpacesThatAreNotSceneLinear) {
   scene::Scene s = test::everything();
   for (const char* name : {"acescct", "raw", "srgb_texture"}) {
     s.color.working = name;
@@ -97,4 +97,4 @@ TEST_F(JobWorkingSpace, RejectsSpacesThatAreNotSceneLinear) {
 }
 
 }  // namespace
-}  // namespace orrery::job
+}  // namespace orrery::load

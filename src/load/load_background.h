@@ -6,10 +6,10 @@
 #include <memory>
 #include <string>
 
-#include "job/loaded_map.h"
+#include "load/loaded_map.h"
 #include "scene/forward.h"
 
-namespace orrery::job {
+namespace orrery::load {
 
 /// The last background that was read, for the frames of a sequence. A file that has changed since is read again.
 struct BackgroundCache {
@@ -41,4 +41,4 @@ LoadedBackground load_background(const BackgroundRequest& request, const scene::
 ///                base::Error as for display::pixel_conversion
 LoadedBackground load_sky(const std::string& ocio_config, const scene::Scene& scene);
 
-}  // namespace orrery::job
+}  // namespace orrery::load

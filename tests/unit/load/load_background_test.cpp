@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/load_background.h"
+#include "load/load_background.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@
 #include "support/exr_file.h"
 #include "support/temp_dir.h"
 
-namespace orrery::job {
+namespace orrery::load {
 namespace {
 
 using support::ExrFile;
 
-class JobLoadBackground : public testing::Test {
+class LoadBackground : public testing::Test {
  protected:
   void SetUp() override {
     ::unsetenv("OCIO");
@@ -44,7 +44,7 @@ class JobLoadBackground : public testing::Test {
   BackgroundRequest request_;
 };
 
-TEST_F(JobLoadBackground, TexelsAreThoseOfTheFile) {
+TEST_F(LoadBackground, TexelsAreThoseOfTheFile) {
   const LoadedBackground loaded = load({2, 1, {1, 2, 3, 4, 5, 6}});
   EXPECT_EQ(texts(loaded), Texts{});
   ASSERT_NE(loaded.image, nullptr);
@@ -54,7 +54,7 @@ TEST_F(JobLoadBackground, TexelsAreThoseOfTheFile) {
 }
 
 /// Red in ACEScg is (1.7051, -0.1302, -0.0240) in Rec.709.
-TEST_F(JobLoadBackground, TheDeclaredColourSpaceComesBeforeTheScenes) {
+TEST_F(LoadBackground, TheDeclaredColourSpaceComesBeforeTheScenes) {
   ExrFile exr = ExrFile::constant(2, 1, {1, 0.5F, 0.5F});
   const auto red = [](const LoadedBackground& loaded) { return loaded.image->row(0)[0]; };
   EXPECT_EQ(red(load(exr)), 1);
@@ -75,7 +75,7 @@ TEST_F(JobLoadBackground, TheDeclaredColourSpaceComesBeforeTheScenes) {
   EXPECT_EQ(red(load(exr)), 1) << "colorInteropID comes before chromaticities";
 }
 
-TEST_F(JobLoadBackground, AnUnknownDeclaredSpaceIsAWarningAndAnUnknownKeyAnError) {
+TEST_F(LoadBackground, AnUnknownDeclaredSpaceIsAWarningAndAnUnknownKeyAnError) {
   ExrFile exr = ExrFile::constant(2, 1, {1, 1, 1});
   exr.color_interop_id = "foo_scene";
   LoadedBackground loaded = load(exr);
@@ -95,14 +95,14 @@ TEST_F(JobLoadBackground, AnUnknownDeclaredSpaceIsAWarningAndAnUnknownKeyAnError
   EXPECT_EQ(loaded.image, nullptr);
 }
 
-TEST_F(JobLoadBackground, DisplaySpacesAreLinearized) {
+TEST_F(LoadBackground, DisplaySpacesAreLinearized) {
   scene_.background.color_space = "srgb_texture";
   const LoadedBackground loaded = load(ExrFile::constant(2, 1, {0.5F, 0.5F, 0.5F}));
   EXPECT_EQ(texts(loaded), Texts{});
   EXPECT_NEAR(loaded.image->row(0)[1], 0.21404, 1e-4);
 }
 
-TEST_F(JobLoadBackground, InvalidRadianceCountsAsZero) {
+TEST_F(LoadBackground, InvalidRadianceCountsAsZero) {
   ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
   exr.rgb[0] = std::numeric_limits<float>::quiet_NaN();
   exr.rgb[4] = std::numeric_limits<float>::infinity();
@@ -116,7 +116,7 @@ TEST_F(JobLoadBackground, InvalidRadianceCountsAsZero) {
     EXPECT_EQ(loaded.image->row(0)[i], i == 0 || i == 4 || i == 5 || i == 8 || i == 9 ? 0 : 1) << i;
 }
 
-TEST_F(JobLoadBackground, ValuesBeyondTheFilmAreClamped) {
+TEST_F(LoadBackground, ValuesBeyondTheFilmAreClamped) {
   ExrFile exr = ExrFile::constant(4, 2, {1, 1, 1});
   exr.rgb[4] = 1e30F;
   const LoadedBackground loaded = load(exr);
@@ -125,7 +125,7 @@ TEST_F(JobLoadBackground, ValuesBeyondTheFilmAreClamped) {
   EXPECT_EQ(loaded.brightest, 0x1p34F);
 }
 
-TEST_F(JobLoadBackground, ColoursOutsideTheWorkingSpaceAreClamped) {
+TEST_F(LoadBackground, ColoursOutsideTheWorkingSpaceAreClamped) {
   ExrFile exr = ExrFile::constant(2, 1, {0, 1, 0});
   exr.color_interop_id = "lin_ap1_scene";
   const LoadedBackground loaded = load(exr);
@@ -133,12 +133,12 @@ TEST_F(JobLoadBackground, ColoursOutsideTheWorkingSpaceAreClamped) {
   EXPECT_EQ(loaded.image->row(0)[0], 0);
 }
 
-TEST_F(JobLoadBackground, OtherProportionsAreAWarning) {
+TEST_F(LoadBackground, OtherProportionsAreAWarning) {
   EXPECT_EQ(texts(load(ExrFile::constant(3, 2, {1, 1, 1}))),
             Texts{"background.file: 3 x 2 texels; a latitude-longitude map is twice as wide as high"});
 }
 
-TEST_F(JobLoadBackground, TexelsOutsideTheDataWindowAreAWarning) {
+TEST_F(LoadBackground, TexelsOutsideTheDataWindowAreAWarning) {
   ExrFile exr = ExrFile::constant(2, 2, {1, 1, 1});
   exr.display_width = 4;
   const LoadedBackground loaded = load(exr);
@@ -148,7 +148,7 @@ TEST_F(JobLoadBackground, TexelsOutsideTheDataWindowAreAWarning) {
             (std::vector<float>{1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0}));
 }
 
-TEST_F(JobLoadBackground, MemoryIsCheckedBeforePixelsAreRead) {
+TEST_F(LoadBackground, MemoryIsCheckedBeforePixelsAreRead) {
   support::write_bytes(folder_ / "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 65536\n");
   request_.file = folder_ / "a.hdr";
   request_.memory_limit = 1 << 30;
@@ -170,7 +170,7 @@ TEST_F(JobLoadBackground, MemoryIsCheckedBeforePixelsAreRead) {
   EXPECT_EQ(loaded.diagnostics[0].severity, base::Severity::kWarning);
 }
 
-TEST_F(JobLoadBackground, FramesShareAnUnchangedImage) {
+TEST_F(LoadBackground, FramesShareAnUnchangedImage) {
   request_.cache = std::make_shared<BackgroundCache>();
   ExrFile exr = ExrFile::constant(3, 2, {1, 1, 1});
   const LoadedBackground first = load(exr), second = load_background(request_, scene_);
@@ -191,7 +191,7 @@ scene::Scene evening() {
   return scene;
 }
 
-TEST(JobLoadSky, InRec709ItIsTheModel) {
+TEST(LoadSky, InRec709ItIsTheModel) {
   const LoadedBackground loaded = load_sky("", evening());
   ASSERT_NE(loaded.image, nullptr);
   EXPECT_TRUE(loaded.diagnostics.empty());
@@ -206,7 +206,7 @@ TEST(JobLoadSky, InRec709ItIsTheModel) {
 
 /// White is the same in both spaces, so the grey ground stays grey, and the luminance stays the same: about
 /// 0.2722 R + 0.6741 G + 0.0537 B in ACEScg.
-TEST(JobLoadSky, IsConvertedToTheWorkingSpace) {
+TEST(LoadSky, IsConvertedToTheWorkingSpace) {
   ::unsetenv("OCIO");
   scene::Scene scene = evening();
   const LoadedBackground rec709 = load_sky("", scene);
@@ -225,7 +225,7 @@ TEST(JobLoadSky, IsConvertedToTheWorkingSpace) {
   EXPECT_NEAR(luminance(b.x, b.y, b.z).second / luminance(a.x, a.y, a.z).first, 1, 0.01);
 }
 
-TEST(JobLoadSky, TheAlbedoIsInTheSpaceOfTheScene) {
+TEST(LoadSky, TheAlbedoIsInTheSpaceOfTheScene) {
   ::unsetenv("OCIO");
   scene::Scene scene = evening();
   scene.background.ground_albedo = {0.1, 0.4, 0.1};
@@ -239,4 +239,4 @@ TEST(JobLoadSky, TheAlbedoIsInTheSpaceOfTheScene) {
 }
 
 }  // namespace
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/reduced_picture.h"
+#include "load/reduced_picture.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "format/read_result.h"
 
-namespace orrery::job {
+namespace orrery::load {
 
 void reduce_picture(format::ReadResult& scene, double pixels) {
   scene::Image& image = scene.scene.image;
@@ -18,4 +18,4 @@ void reduce_picture(format::ReadResult& scene, double pixels) {
   if (scene.closing) scene.closing->image = image;
 }
 
-}  // namespace orrery::job
+}  // namespace orrery::load

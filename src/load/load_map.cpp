@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/load_map.h"
+#include "load/load_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,17 +8,17 @@
 
 #include <fmt/core.h>
 
+#include "base/available_memory.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "compile/environment.h"
 #include "compile/mip_map.h"
 #include "display/color_space.h"
 #include "image/read_map.h"
-#include "job/loaded_map.h"
-#include "job/memory.h"
-#include "job/text.h"
+#include "load/loaded_map.h"
 #include "scene/environment_image.h"
 
-namespace orrery::job {
+namespace orrery::load {
 namespace {
 
 /// The colour space of integers that declare none.
@@ -115,11 +115,12 @@ class Loader {
 
   bool fits() {
     const std::uint64_t allowed =
-        request_.memory_limit > 0 ? request_.memory_limit : available_memory().value_or(out_.bytes);
+        request_.memory_limit > 0 ? request_.memory_limit : base::available_memory().value_or(out_.bytes);
     if (out_.bytes <= allowed) return true;
     const std::string text = fmt::format(
-        "an image of {} x {} texels needs about {}, and {}", out_.width, out_.height, bytes_text(out_.bytes),
-        request_.memory_limit > 0 ? "--memory-limit allows " + bytes_text(allowed) : bytes_text(allowed) + " is free");
+        "an image of {} x {} texels needs about {}, and {}", out_.width, out_.height, base::bytes_text(out_.bytes),
+        request_.memory_limit > 0 ? "--memory-limit allows " + base::bytes_text(allowed)
+                                  : base::bytes_text(allowed) + " is free");
     if (!request_.skips_large)
       throw base::Error(base::ErrorKind::kNoMemory, fmt::format("{}: {}", request_.file.string(), text));
     warn(request_.file_key, text + "; its pixels were not read");
@@ -164,4 +165,4 @@ class Loader {
 
 LoadedMap load_map(const MapRequest& request) { return Loader(request).load(); }
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/load_scene.h"
+#include "load/load_scene.h"
 
 #include <string>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "display/look_up.h"
 #include "format/read_result.h"
 #include "format/read_scene.h"
-#include "job/load_background.h"
-#include "job/load_textures.h"
-#include "job/loaded_scene.h"
-#include "job/memory.h"
-#include "job/working_space.h"
+#include "load/load_background.h"
+#include "load/load_textures.h"
+#include "load/loaded_scene.h"
+#include "load/working_space.h"
 #include "scene/validate.h"
 
-namespace orrery::job {
+namespace orrery::load {
 namespace {
 
 display::Settings settings_of(const SceneRequest& request, const scene::Color& color) {
@@ -155,7 +155,7 @@ LoadedScene load_scene(const SceneRequest& request) {
   options.frame = request.source.frame;
   options.open_data = request.source.open_data;
   options.also = check_and_load;
-  options.memory_limit = request.memory_limit > 0 ? request.memory_limit : available_memory().value_or(0);
+  options.memory_limit = request.memory_limit > 0 ? request.memory_limit : base::available_memory().value_or(0);
   out.read = format::read_scene(request.source.file, request.source.overrides, options);
   out.choice = check.take();
   scene::Scene& scene = out.read.scene;
@@ -173,4 +173,4 @@ LoadedScene load_scene(const SceneRequest& request) {
   return out;
 }
 
-}  // namespace orrery::job
+}  // namespace orrery::load

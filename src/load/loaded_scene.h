@@ -7,10 +7,10 @@
 #include "base/diagnostic.h"
 #include "display/settings.h"
 #include "format/read_result.h"
-#include "job/load_textures.h"
-#include "job/loaded_map.h"
+#include "load/load_textures.h"
+#include "load/loaded_map.h"
 
-namespace orrery::job {
+namespace orrery::load {
 
 /// A scene that is ready to be compiled, and what was determined while loading it.
 struct LoadedScene {
@@ -22,4 +22,4 @@ struct LoadedScene {
   std::vector<base::Diagnostic> warnings;
 };
 
-}  // namespace orrery::job
+}  // namespace orrery::load

@@ -6,13 +6,10 @@
 #include <memory>
 
 #include "display/settings.h"
-#include "job/scene_source.h"
+#include "load/forward.h"
+#include "load/scene_source.h"
 
-namespace orrery::job {
-
-struct BackgroundCache;
-struct LoadedScene;
-struct TextureCache;
+namespace orrery::load {
 
 /// A scene to load, and the display transform of its images.
 struct SceneRequest {
@@ -35,4 +32,4 @@ struct SceneRequest {
 ///            $OCIO
 LoadedScene load_scene(const SceneRequest& request);
 
-}  // namespace orrery::job
+}  // namespace orrery::load

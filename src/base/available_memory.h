@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace orrery::base {
+
+/// Bytes that this process may still allocate: the machine's available memory, limited by the process's control groups.
+/// Empty if neither is known.
+///
+/// Domain     `root` is "/", or a folder in its place in tests
+/// Reference  proc_meminfo(5); the kernel's documentation of control groups, version 2, memory.max
+std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
+
+}  // namespace orrery::base

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Declarations of the room's types, for headers that only name them.
+namespace orrery::load {
+
+struct BackgroundCache;
+struct LoadedMap;
+struct LoadedScene;
+struct SceneRequest;
+struct SceneSource;
+struct TextureCache;
+
+}  // namespace orrery::load
