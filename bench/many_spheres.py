@@ -6,6 +6,7 @@
     bench/many_spheres.py build/src/orrery --counts 100000
     bench/many_spheres.py build/src/orrery --radii               spheres of many sizes
     bench/many_spheres.py build/src/orrery --whole 100000000     from command to image, all threads
+    bench/many_spheres.py build/src/orrery --capsids 1M4X.pdb    the same for six copies of a PDB file's assembly 1
 
 For each scene the first form prints closest hits per second of `orrery bench` (the BVH for many spheres with single rays
 and with packets, one Embree primitive per sphere, Embree's sphere points), the ratio of the scene's accelerator to sphere
@@ -130,6 +131,22 @@ def giant(folder, count):
     return with_radii(folder, "giant", count, lambda source, i: 100 * radius if i == 0 else radius)
 
 
+def capsids(folder, file):
+    """Six copies of the first assembly of a PDB file, in two rows of three."""
+    head, _ = SCENE.split("[[points]]")
+    copies = "".join(f"""[[points]]
+file = "{file.resolve()}"
+assembly = "1"
+material = "white"
+radius.element = "vdw"
+color.element = "jmol"
+transform.translate = [{1950 * (i % 3)}, {1950 * (i // 3)}, 0]
+""" for i in range(6))
+    scene = folder / (file.stem + "-6.toml")
+    scene.write_text(head.format(look_from="3800, -9500, 5200", look_at="1900, 950, 0") + copies)
+    return scene
+
+
 class Program:
     """The orrery executable, with an instruction set."""
 
@@ -169,6 +186,7 @@ def main():
     parser.add_argument("--counts", default="1000000,10000000")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--whole", type=int, metavar="COUNT")
+    parser.add_argument("--capsids", type=pathlib.Path, metavar="FILE", help="a PDB file, e.g. 1M4X.pdb")
     parser.add_argument("--radii", action="store_true", help="stars, grains and a cloud with a giant instead")
     parser.add_argument("--isa", help="instruction set, e.g. avx2")
     parser.add_argument("--json")
@@ -177,12 +195,15 @@ def main():
     with tempfile.TemporaryDirectory(dir=options.folder) as name:
         folder = pathlib.Path(name)
         program = Program(options.program, options.isa)
-        if options.whole:
-            for make in (uniform, crystal):
-                scene = make(folder, options.whole)
-                out = statistics(program, scene, folder, "--width", "1920", "--height", "1080", "--samples", "16")
-                keys = ("spheres", "seconds", "peak_memory_bytes", "traversal")
-                print(json.dumps({"scene": scene.stem, **{k: out[k] for k in keys}}, indent=1), flush=True)
+        whole = [(make, options.whole) for make in (uniform, crystal) if options.whole]
+        if options.capsids:
+            whole.append((capsids, options.capsids))
+        for make, what in whole:
+            scene = make(folder, what)
+            out = statistics(program, scene, folder, "--width", "1920", "--height", "1080", "--samples", "16")
+            keys = ("spheres", "seconds", "peak_memory_bytes", "traversal")
+            print(json.dumps({"scene": scene.stem, **{k: out[k] for k in keys}}, indent=1), flush=True)
+        if whole:
             return
         base = base_bytes(program, folder)
         results = []
