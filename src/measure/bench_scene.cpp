@@ -124,7 +124,7 @@ class Subject {
     fast.features = required_;
     prepare(fast);
     accel::Accel& with = accel(fast);
-    return TracingBench(compiled_.view(), with, fast_rays(with), with_lists);
+    return TracingBench(compiled_.view(), fast_rays(with), with_lists);
   }
 
  private:

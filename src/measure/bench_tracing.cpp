@@ -11,15 +11,16 @@
 
 namespace orrery::measure {
 
-TracingBench::TracingBench(const kernel::SceneView& view, accel::Accel& fast,
-                           render::RecordedRays<kernel::RayPacketFast>& rays, bool with_list)
+TracingBench::TracingBench(const kernel::SceneView& view, render::RecordedRays<kernel::RayPacketFast>& rays,
+                           bool with_list)
     : points_(accel::make_native_points(view)), rays_(rays) {
   const AlternativeAccelerator other = alternative_accelerator(view);
+  by_count_ = accel::make_embree(view, kernel::Precision::kFast);
   other_ = accel::make_embree(view, kernel::Precision::kFast, {}, other.bvh_threshold);
   for (const auto* packets : {&rays_.camera, &rays_.secondary})
     for (const kernel::RayPacketFast& packet : *packets) ray_count_ += packet.count;
-  methods_ = {{"packets", &fast, accel::Traversal::kPacket, {}},
-              {"single rays", &fast, accel::Traversal::kSingle, {}},
+  methods_ = {{"packets", by_count_.get(), accel::Traversal::kPacket, {}},
+              {"single rays", by_count_.get(), accel::Traversal::kSingle, {}},
               {other.name + ", packets", other_.get(), accel::Traversal::kPacket, {}},
               {other.name + ", single", other_.get(), accel::Traversal::kSingle, {}},
               {"sphere points", points_.get(), accel::Traversal::kSingle, {}}};

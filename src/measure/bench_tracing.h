@@ -13,16 +13,15 @@ namespace orrery::measure {
 
 struct BenchTracing;
 
-/// Benchmark of closest-hit queries on the same rays: packets and single rays with the accelerator that renders the
-/// scene, then with the alternative one (one Embree primitive per sphere, or a SphereBvh); single rays with Embree's
-/// built-in sphere points; and a SIMD list.
+/// Benchmark of closest-hit queries on the same rays: packets and single rays with the structure that the number of
+/// spheres decides, then with the alternative one (one Embree primitive per sphere, or a SphereBvh); single rays with
+/// Embree's built-in sphere points; and a SIMD list.
 class TracingBench {
  public:
   /// Builds the remaining accelerators.
   ///
-  /// Domain     `fast` is built for precision fast; it, the view and the rays outlive this; at least one sphere
-  TracingBench(const kernel::SceneView& view, accel::Accel& fast, render::RecordedRays<kernel::RayPacketFast>& rays,
-               bool with_list);
+  /// Domain     the view and the rays outlive this; at least one sphere
+  TracingBench(const kernel::SceneView& view, render::RecordedRays<kernel::RayPacketFast>& rays, bool with_list);
 
   /// Measures every method once. Each round starts with a different one.
   void measure(int round);
@@ -37,6 +36,7 @@ class TracingBench {
     std::vector<double> rays_per_s;
   };
 
+  std::unique_ptr<accel::Accel> by_count_;  ///< the structure that the number of spheres decides
   std::unique_ptr<accel::Accel> other_, points_, list_;
   render::RecordedRays<kernel::RayPacketFast>& rays_;
   double ray_count_ = 0;

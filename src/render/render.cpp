@@ -80,9 +80,8 @@ std::unique_ptr<accel::Accel> build(const compile::CompiledScene& compiled, int 
                                     const accel::BuildMonitor& monitor) {
   std::unique_ptr<accel::Accel> accel;
   TilePool(threads).execute([&] {
-    accel = compiled.accelerator == compile::Accelerator::kList
-                ? accel::make_list(compiled.view(), compiled.precision)
-                : accel::make_embree(compiled.view(), compiled.precision, monitor);
+    accel = compiled.accelerator == compile::Accelerator::kList ? accel::make_list(compiled.view(), compiled.precision)
+                                                                : build_embree(compiled, monitor);
   });
   return accel;
 }

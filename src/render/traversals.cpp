@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "accel/accel.h"
@@ -19,7 +21,13 @@ constexpr double kTrialShare = 0.002;
 constexpr double kMaxTrialPaths = 32 * 1024;
 
 /// Fewer tiles than this would sample only a corner of the image.
-constexpr int kMinTrialTiles = 4;
+constexpr std::size_t kMinTrialTiles = 4;
+
+/// Larger BVHs are not compared with one primitive per sphere: building these would take longer than they could gain.
+constexpr std::size_t kMaxCompared = 100'000;
+
+/// Every n-th tile of the trial of traversals is in that of structures, which traces each ray four times.
+constexpr std::size_t kStructureStride = 4;
 
 /// Number of spheres above which, without a trial, secondary rays are assumed to be too incoherent for packets.
 constexpr std::size_t kManySpheres = 1000;
@@ -32,7 +40,7 @@ std::vector<kernel::Tile> trial_tiles(const compile::CompiledScene& compiled) {
   const int samples = std::min(compiled.samples, kernel::kPacketSize);
   const int width = std::min(kernel::kStreamSize / samples, compiled.width);
   std::vector<kernel::Tile> tiles;
-  if (count < kMinTrialTiles) return tiles;
+  if (count < static_cast<int>(kMinTrialTiles)) return tiles;
   for (int i = 0; i < count; ++i) {
     kernel::Tile tile;
     // Evenly spaced vertically, and horizontally by multiples of the golden ratio, which spread well.
@@ -64,6 +72,24 @@ accel::Traversals faster_traversal(accel::Accel& accel, RecordedRays<Packet> ray
   return {faster_traversal(accel, rays.camera), faster_traversal(accel, rays.secondary)};
 }
 
+/// Seconds to trace the packets once more, by the faster traversal.
+template <class Packet>
+double best_seconds(accel::Accel& accel, std::vector<Packet>& packets) {
+  double best = 1e300;
+  for (const auto traversal : {accel::Traversal::kPacket, accel::Traversal::kSingle}) {
+    accel.use({traversal, traversal});
+    best = std::min(best, trace_again(accel.tracer(), packets));
+  }
+  return best;
+}
+
+template <class Packet>
+bool is_faster(accel::Accel& accel, accel::Accel& than, RecordedRays<Packet> rays) {
+  const auto seconds = [&](accel::Accel& a) { return best_seconds(a, rays.camera) + best_seconds(a, rays.secondary); };
+  const double slow = seconds(than);
+  return seconds(accel) < slow;
+}
+
 accel::Traversals unmeasured(const compile::CompiledScene& compiled) {
   const bool many = compiled.spheres.size() >= kManySpheres;
   return {accel::Traversal::kPacket, many ? accel::Traversal::kSingle : accel::Traversal::kPacket};
@@ -83,6 +109,22 @@ accel::Traversals choose_traversals(const compile::CompiledScene& compiled, acce
   return compiled.precision == compile::Precision::kFast
              ? faster_traversal(accel, record_rays_fast(compiled.view(), accel, tiles))
              : faster_traversal(accel, record_rays(compiled.view(), accel, compiled.precision, tiles));
+}
+
+std::unique_ptr<accel::Accel> build_embree(const compile::CompiledScene& compiled, const accel::BuildMonitor& monitor) {
+  std::unique_ptr<accel::Accel> bvh = accel::make_embree(compiled.view(), compiled.precision, monitor);
+  const std::size_t many = accel::spheres_in_bvh(compiled.view());
+  if (many == 0 || many > kMaxCompared) return bvh;
+  const std::vector<kernel::Tile> all = trial_tiles(compiled);
+  if (all.size() < kMinTrialTiles * kStructureStride) return bvh;
+  std::vector<kernel::Tile> tiles;
+  for (std::size_t i = kStructureStride / 2; i < all.size(); i += kStructureStride) tiles.push_back(all[i]);
+  std::unique_ptr<accel::Accel> separate = accel::make_embree(compiled.view(), compiled.precision, {}, accel::kNoBvh);
+  const bool is_separate_faster =
+      compiled.precision == compile::Precision::kFast
+          ? is_faster(*separate, *bvh, record_rays_fast(compiled.view(), *bvh, tiles))
+          : is_faster(*separate, *bvh, record_rays(compiled.view(), *bvh, compiled.precision, tiles));
+  return is_separate_faster ? std::move(separate) : std::move(bvh);
 }
 
 std::string planned_traversal(const compile::CompiledScene& compiled) {

@@ -82,5 +82,22 @@ TEST(RenderTraversals, TrialChoosesATraversal) {
       << name;
 }
 
+/// Few enough spheres and enough samples for a trial of structures.
+TEST(RenderTraversals, TrialOfStructuresChangesNoBit) {
+  scene::Scene scene = balls(2000);
+  scene.image = {64, 36};
+  compile::CompiledScene compiled = compile::compile(scene);
+  compiled.samples = 1 << 20;
+  const std::unique_ptr<accel::Accel> accel = build(compiled, 1);
+  compiled.samples = 4;
+  const auto separate = accel::make_embree(compiled.view(), compiled.precision, {}, accel::kNoBvh);
+  const auto many = accel::make_embree(compiled.view(), compiled.precision, {}, 1);
+  ASSERT_NE(separate->bytes(), many->bytes());
+  EXPECT_TRUE(accel->bytes() == separate->bytes() || accel->bytes() == many->bytes());
+  const auto pixels = [&](accel::Accel& a) { return test::plane_values(render(compiled, a, {}).picture); };
+  EXPECT_EQ(pixels(*accel), pixels(*separate));
+  EXPECT_EQ(pixels(*accel), pixels(*many));
+}
+
 }  // namespace
 }  // namespace orrery::render
