@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/available_memory.h"
 #include "base/diagnostic.h"
+#include "base/error.h"
 #include "base/file_set.h"
 #include "base/frames.h"
 #include "base/output_file.h"
