@@ -83,11 +83,11 @@ double best_seconds(accel::Accel& accel, std::vector<Packet>& packets) {
   return best;
 }
 
+/// Returns whether `accel` traces these rays faster than `other`, each by its faster traversals.
 template <class Packet>
-bool is_faster(accel::Accel& accel, accel::Accel& than, RecordedRays<Packet> rays) {
+bool is_faster(accel::Accel& accel, accel::Accel& other, RecordedRays<Packet> rays) {
   const auto seconds = [&](accel::Accel& a) { return best_seconds(a, rays.camera) + best_seconds(a, rays.secondary); };
-  const double slow = seconds(than);
-  return seconds(accel) < slow;
+  return seconds(accel) < seconds(other);
 }
 
 accel::Traversals unmeasured(const compile::CompiledScene& compiled) {
@@ -119,7 +119,10 @@ std::unique_ptr<accel::Accel> build_embree(const compile::CompiledScene& compile
   if (all.size() < kMinTrialTiles * kStructureStride) return bvh;
   std::vector<kernel::Tile> tiles;
   for (std::size_t i = kStructureStride / 2; i < all.size(); i += kStructureStride) tiles.push_back(all[i]);
-  std::unique_ptr<accel::Accel> separate = accel::make_embree(compiled.view(), compiled.precision, {}, accel::kNoBvh);
+  // The second build can be cancelled as well, but has no progress to report.
+  const accel::BuildMonitor go_on = [&monitor](double) { return !monitor || monitor(1); };
+  std::unique_ptr<accel::Accel> separate =
+      accel::make_embree(compiled.view(), compiled.precision, go_on, accel::kNoBvh);
   const bool is_separate_faster =
       compiled.precision == compile::Precision::kFast
           ? is_faster(*separate, *bvh, record_rays_fast(compiled.view(), *bvh, tiles))
