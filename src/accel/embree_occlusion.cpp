@@ -63,10 +63,9 @@ void occluded(const RTCOccludedFunctionNArguments* arguments) {
     const auto flags = hn::LoadU(di, arguments->valid + v);
     if (hn::AllFalse(di, flags < hn::Zero(di))) continue;
     const auto valid = is_valid(d, flags);
-    const unsigned hits = bits_of(d, occlude_by_sphere<std::remove_const_t<decltype(d)>, kPrecision, kMoves>(
-                                         d, scene, id, *query.packet, query.first + v, valid));
-    for (int i = 0; i < static_cast<int>(hn::Lanes(d)); ++i)
-      if ((hits >> i & 1) != 0) limits[v + i] = kOccluded;
+    const auto hits = occlude_by_sphere<std::remove_const_t<decltype(d)>, kPrecision, kMoves>(
+        d, scene, id, *query.packet, query.first + v, valid);
+    store_float_lanes(d, hn::Set(d, kOccluded), hits, limits + v);
   }
 }
 

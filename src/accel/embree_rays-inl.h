@@ -96,6 +96,32 @@ HWY_INLINE hn::Mask<D> is_valid(D d, hn::Vec<hn::Rebind<std::int32_t, D>> flags)
   }
 }
 
+/// Converts a mask to Embree's valid flags.
+template <class D>
+HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, D>> flags_of(D, hn::Mask<D> mask) {
+  const hn::RebindToUnsigned<D> wide;
+  const hn::Rebind<std::int32_t, D> di;
+  const auto flags = hn::VecFromMask(wide, hn::RebindMask(wide, mask));
+  if constexpr (sizeof(hn::TFromD<D>) == 8) {
+    return hn::BitCast(di, hn::TruncateTo(hn::Rebind<std::uint32_t, D>(), flags));
+  } else {
+    return hn::BitCast(di, flags);
+  }
+}
+
+/// Stores the lanes of a mask as floats, and nothing in the others. Embree loads whole vectors soon afterwards, which
+/// would have to wait for stores of single lanes.
+template <class D>
+HWY_INLINE void store_float_lanes(D d, hn::Vec<D> value, hn::Mask<D> lanes, float* to) {
+  const hn::Rebind<float, D> df;
+  const hn::Rebind<std::int32_t, D> di;
+  if constexpr (sizeof(hn::TFromD<D>) == 8) {
+    hn::BlendedStore(hn::DemoteTo(df, value), hn::RebindMask(df, flags_of(d, lanes) < hn::Zero(di)), df, to);
+  } else {
+    hn::BlendedStore(value, lanes, df, to);
+  }
+}
+
 /// Sets the members that are the same in all queries.
 template <class EmbreeRay>
 HWY_INLINE void set_constants(EmbreeRay& rays) {
@@ -140,8 +166,8 @@ HWY_INLINE void set_rays(EmbreeQuery<Packet>& query, EmbreeRay& rays, int* valid
     hn::Store(box.start, d, query.start + v);
     // If a known hit is in front of all boxes, there is nothing to find, and Embree does not accept a negative limit.
     const auto active = hn::FirstN(d, static_cast<std::size_t>(std::max(0, packet.count - first)));
-    const unsigned lanes = bits_of(d, hn::And(hn::And(active, box.reaches), limit > hn::Zero(d)));
-    for (int i = 0; i < step; ++i) valid[v + i] = (lanes >> i & 1) != 0 ? -1 : 0;
+    const auto lanes = hn::And(hn::And(active, box.reaches), limit > hn::Zero(d));
+    hn::StoreU(flags_of(d, lanes), hn::Rebind<std::int32_t, decltype(d)>(), valid + v);
   }
 }
 

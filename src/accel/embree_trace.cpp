@@ -76,14 +76,9 @@ void intersect(const RTCIntersectFunctionNArguments* arguments) {
       continue;
     }
     closest.store(d, packet, first);
-    alignas(64) float limits[hn::MaxLanes(hn::ScalableTag<float>())];
-    store_float(d, far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query.start + v)), limits);
-    const unsigned hits = bits_of(d, closest.is_new);
-    for (int i = 0; i < step; ++i) {
-      const bool lane_hit = (hits >> i & 1) != 0;
-      if (lane_hit) to_limit[v + i] = limits[i];
-      arguments->valid[v + i] = lane_hit ? -1 : 0;
-    }
+    const auto limit = far_limits(d, closest.distance, scene.frame.scale, hn::Load(d, query.start + v));
+    store_float_lanes(d, limit, closest.is_new, to_limit + v);
+    hn::StoreU(flags_of(d, closest.is_new), di, arguments->valid + v);
   }
 }
 
