@@ -37,24 +37,58 @@ struct alignas(64) PathPayload {
   T cone[3][kPacketSize];   ///< in extended loops: see PathStreamOf
 };
 
+/// The sum of a pixel of the tile.
+HWY_INLINE PixelSum& sum_of(std::uint64_t pixel, const SceneView& scene, const Tile& tile) {
+  const PixelPlace at = place_of(pixel, scene);
+  return tile.sums[(at.y - tile.y) * tile.row_stride + (at.x - tile.x)];
+}
+
+/// Converts to units of 2^-60, like to_fixed_point().
+///
+/// Domain     |value| < 4
+HWY_INLINE void store_fixed_point(hn::ScalableTag<double> d, hn::Vec<hn::ScalableTag<double>> value, std::int64_t* to) {
+  const hn::RebindToSigned<decltype(d)> di;
+  hn::Store(hn::ConvertTo(di, value * hn::Set(d, 0x1p60)), di, to);
+}
+HWY_INLINE void store_fixed_point(hn::ScalableTag<float> d, hn::Vec<hn::ScalableTag<float>> value, std::int64_t* to) {
+  const hn::ScalableTag<double> wide;
+  const hn::Half<decltype(d)> half;
+  store_fixed_point(wide, hn::PromoteTo(wide, hn::LowerHalf(half, value)), to);
+  store_fixed_point(wide, hn::PromoteTo(wide, hn::UpperHalf(half, value)), to + hn::Lanes(wide));
+}
+
 /// Adds finished paths to their pixels. Bad samples are counted and excluded from the sums.
 template <class D>
 HWY_INLINE void deposit(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, hn::Vec<IdTag<D>> pixels,
                         hn::Vec<IdTag<D>> samples, const SceneView& scene, const Tile& tile, TileCounts& counts) {
   using T = hn::TFromD<D>;
+  HWY_ALIGN hn::TFromD<IdTag<D>> pixel[hn::MaxLanes(D())];
+  hn::Store(pixels, IdTag<D>(), pixel);
+  // Other instruction sets convert lanes one by one.
+  if constexpr (HWY_TARGET <= HWY_AVX3 && hn::MaxLanes(D()) > 1) {
+    const auto most = hn::Max(hn::Max(hn::Abs(light.x), hn::Abs(light.y)), hn::Abs(light.z));
+    const auto converts = most < hn::Set(d, T(4));  // false for NaN
+    if (scene.filter.negative_share == 0 && hn::AllFalse(d, hn::AndNot(converts, lanes))) {
+      HWY_ALIGN std::int64_t rgb[3][hn::MaxLanes(D())];
+      store_fixed_point(d, light.x, rgb[0]);
+      store_fixed_point(d, light.y, rgb[1]);
+      store_fixed_point(d, light.z, rgb[2]);
+      each_lane(d, hn::And(lanes, most > hn::Zero(d)), [&](int i) {
+        PixelSum& sum = sum_of(pixel[i], scene, tile);
+        for (int k = 0; k < 3; ++k) sum.rgb[k] += rgb[k][i];
+      });
+      return;
+    }
+  }
   HWY_ALIGN T rgb[3][hn::MaxLanes(D())];
-  HWY_ALIGN hn::TFromD<IdTag<D>> pixel[hn::MaxLanes(D())], sample[hn::MaxLanes(D())];
-  HWY_ALIGN T in[hn::MaxLanes(D())];
+  HWY_ALIGN hn::TFromD<IdTag<D>> sample[hn::MaxLanes(D())];
   hn::Store(light.x, d, rgb[0]);
   hn::Store(light.y, d, rgb[1]);
   hn::Store(light.z, d, rgb[2]);
-  hn::Store(pixels, IdTag<D>(), pixel);
   hn::Store(samples, IdTag<D>(), sample);
-  hn::Store(hn::IfThenElseZero(lanes, hn::Set(d, T(1))), d, in);
-  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-    if (in[i] == T(0) || (rgb[0][i] == T(0) && rgb[1][i] == T(0) && rgb[2][i] == T(0))) continue;
-    const PixelPlace at = place_of(pixel[i], scene);
-    PixelSum& sum = tile.sums[(at.y - tile.y) * tile.row_stride + (at.x - tile.x)];
+  each_lane(d, lanes, [&](int i) {
+    if (rgb[0][i] == T(0) && rgb[1][i] == T(0) && rgb[2][i] == T(0)) return;
+    PixelSum& sum = sum_of(pixel[i], scene, tile);
     const auto r = static_cast<double>(rgb[0][i]), g = static_cast<double>(rgb[1][i]),
                b = static_cast<double>(rgb[2][i]);
     const bool negative = scene.filter.negative_share != 0 && scene.filter.weight(sample[i], sample[i] + 1) < 0;
@@ -70,7 +104,7 @@ HWY_INLINE void deposit(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, h
       sum.rgb[1] += to_fixed_point(g);
       sum.rgb[2] += to_fixed_point(b);
     }
-  }
+  });
 }
 
 template <class D, class V = hn::Vec<D>>
