@@ -77,6 +77,8 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   return needs;
 }
 
+std::uint64_t held_memory(const MemoryNeeds& needs) { return needs.sphere_bytes + needs.background + needs.textures; }
+
 std::string text_of(const MemoryEstimate& m) {
   std::string out = fmt::format("film {}, spheres {}, accelerator {}", base::bytes_text(m.film),
                                 base::bytes_text(m.spheres), base::bytes_text(m.accelerator));

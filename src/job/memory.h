@@ -40,6 +40,9 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs);
 MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
                          bool is_adaptive = false);
 
+/// Bytes of these that a compiled scene has already allocated.
+std::uint64_t held_memory(const MemoryNeeds& needs);
+
 /// Formats the parts of an estimate: "film 1 MiB, spheres 2 MiB, accelerator 3 MiB".
 std::string text_of(const MemoryEstimate& estimate);
 

@@ -114,6 +114,20 @@ TEST(JobMemoryEstimate, CountsTheBackgroundOnce) {
   EXPECT_THROW(require_memory(estimate_memory(needs), kMega, needs.background), base::Error);
 }
 
+/// Compiled spheres and textures no longer need free memory.
+TEST(JobMemoryEstimate, WhatTheCompiledSceneHoldsNeedsNoFreeMemory) {
+  MemoryNeeds needs;
+  needs.spheres = 3;
+  needs.sphere_bytes = 1 * kMega;
+  needs.textures = 2 * kMega;
+  needs.background = 4 * kMega;
+  needs.lights = 8 * kMega;  // most of it is temporary
+  EXPECT_EQ(held_memory(needs), 7 * kMega);
+  needs.sphere_bytes = base::available_memory().value_or(0) + (1 << 30);
+  EXPECT_THROW(require_memory(estimate_memory(needs), 0), base::Error);
+  EXPECT_NO_THROW(require_memory(estimate_memory(needs), 0, held_memory(needs)));
+}
+
 TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {
   const MemoryEstimate million = estimate(1, 1'000'000, true);
   EXPECT_NO_THROW(require_memory(million, million.total()));
