@@ -164,11 +164,6 @@ std::uint64_t rest_of(std::uint64_t limit, std::uint64_t used) {
   return limit == 0 ? 0 : std::max<std::uint64_t>(limit - std::min(used, limit), 1);
 }
 
-std::uint64_t bytes_of_spheres(const scene::Points& points) {
-  return points.centers.numbers().bytes() + points.radii.bytes() + points.materials.size() * sizeof(std::uint32_t) +
-         points.colors.size() * sizeof(std::uint16_t);
-}
-
 void read_points(ReadState& state, const toml::table& root, const std::filesystem::path& scene_file,
                  const ReadOptions& options, const MaterialIndex& index, scene::Scene& scene) {
   const toml::array* list = tables_under(state, root, "points");
@@ -197,7 +192,7 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
       request.open = options.open_data;
       read_points_file(state, root, scene_file.string(), place_of(*table.get("file")), request, points);
     }
-    used += bytes_of_spheres(points);
+    used += points.bytes();
     scene.points.push_back(std::move(points));
   }
 }

@@ -205,6 +205,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.phases.read_s = watch.lap();
   stop_if_cancelled(job);
 
+  require_memory_to_compile(read.scene, job.resources.memory_limit);
   const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   check_samples(job, compiled);
   check_sizes(job, compiled);

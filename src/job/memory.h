@@ -6,6 +6,7 @@
 
 #include "compile/forward.h"
 #include "film/forward.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
 
@@ -52,5 +53,11 @@ std::string text_of(const MemoryEstimate& estimate);
 /// `held`     bytes of `needed` that are already allocated, and therefore no longer available
 /// Errors     base::Error(kNoMemory) with the needed and the allowed size
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held = 0);
+
+/// Checks that the spheres of data files fit into memory twice, as loaded and compiled.
+///
+/// `limit`    bytes; 0: base::available_memory()
+/// Errors     base::Error(kNoMemory) with the needed and the allowed size
+void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit);
 
 }  // namespace orrery::job

@@ -128,6 +128,22 @@ TEST(JobMemoryEstimate, WhatTheCompiledSceneHoldsNeedsNoFreeMemory) {
   EXPECT_NO_THROW(require_memory(estimate_memory(needs), 0, held_memory(needs)));
 }
 
+TEST(JobMemoryEstimate, LoadedSpheresAreNotCompiledWithoutMemoryForBoth) {
+  scene::Scene scene;
+  scene.points.resize(2);
+  for (int i = 0; i < 1000; ++i) {
+    scene.points[0].centers.push_back({1.0 * i, 2, 3});
+    scene.points[0].radii.push_back(1);
+    scene.points[1].centers.push_back({5.0 * i, 2, 3});
+    scene.points[1].radii.push_back(2);
+    scene.points[1].colors.push_back(0);
+  }
+  const std::uint64_t needed = 2 * 12'000 + 2000 + 2 * 13'000;
+  EXPECT_NO_THROW(require_memory_to_compile(scene, needed));
+  EXPECT_THROW(require_memory_to_compile(scene, needed - 1), base::Error);
+  EXPECT_NO_THROW(require_memory_to_compile(scene, 0));
+}
+
 TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {
   const MemoryEstimate million = estimate(1, 1'000'000, true);
   EXPECT_NO_THROW(require_memory(million, million.total()));
