@@ -29,8 +29,9 @@ using math::rounded_up;
 /// ray by at most 40 x 2^-24 relative to a sphere and by at most 19 x 2^-24 relative to a box.
 constexpr double kSpherePadding = 0x1.4p-17, kBoxPadding = 0x1p-18;
 
-/// Number of leaves that are created before the memory of their items is released.
-constexpr std::size_t kReleasedLeaves = 1 << 16;
+/// Number of leaves that are created before the memory of their items is released, and of items before that of their
+/// ids.
+constexpr std::size_t kReleasedLeaves = 1 << 16, kReleasedIds = kReleasedLeaves * kArity;
 
 struct Bounds {
   float lower[3] = {kInfinity, kInfinity, kInfinity};
@@ -45,8 +46,9 @@ struct Bounds {
   void add(const Bounds& b) { add(b.lower, b.upper); }
 };
 
-/// Returns memory to the operating system. The items are zero from then on.
-void release(SphereItem* begin, SphereItem* end) {
+/// Returns memory to the operating system. The elements are zero from then on.
+template <class T>
+void release(T* begin, T* end) {
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   const auto first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) / page * page,
              last = reinterpret_cast<std::uintptr_t>(end) / page * page;
@@ -138,7 +140,7 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
   // Its pages are first touched in parallel.
   std::unique_ptr<SphereItem[], decltype(free_items)> storage(Allocator().allocate(count), free_items);
   const std::span<SphereItem> items(storage.get(), count);
-  tbb::parallel_for(Range(0, count, 4096), [&](const Range& range) {
+  const auto make_items = [&](const Range& range) {
     stop.check();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const kernel::Sphere s = spheres[ids[i]];
@@ -147,7 +149,12 @@ SphereBvh::SphereBvh(const BoundedSpheres& spheres, std::vector<std::uint32_t> i
                    static_cast<float>((s.z - frame.middle[2]) * frame.scale)},
                   ids[i]};
     }
-  });
+  };
+  for (std::size_t begin = 0; begin < count; begin += kReleasedIds) {
+    const std::size_t end = std::min(count, begin + kReleasedIds);
+    tbb::parallel_for(Range(begin, end, 4096), make_items);
+    release(&ids[begin], &ids[0] + end);
+  }
   std::vector<std::uint32_t>().swap(ids);  // copied to the items
   const float box_padding = rounded_up(kBoxPadding * frame.reach);
   const NodeCells node_cells = sort_spheres(items, static_cast<float>(sum / static_cast<double>(count) * frame.scale),

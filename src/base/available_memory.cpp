@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/available_memory.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -53,5 +55,7 @@ std::optional<std::uint64_t> available_memory(const std::filesystem::path& root)
   }
   return least;
 }
+
+void release_freed_memory() { malloc_trim(0); }
 
 }  // namespace orrery::base

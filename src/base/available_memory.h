@@ -14,4 +14,7 @@ namespace orrery::base {
 /// Reference  proc_meminfo(5); the kernel's documentation of control groups, version 2, memory.max
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
+/// Returns freed memory to the operating system. The C library keeps that of arrays of up to 32 MiB.
+void release_freed_memory();
+
 }  // namespace orrery::base

@@ -54,18 +54,38 @@ void append_singles(const scene::NumberArray& numbers, base::HugeVector<float>& 
     for (const double number : numbers) out.push_back(static_cast<float>(number));
 }
 
+/// How the spheres of points files are stored.
+struct Layout {
+  std::vector<double> palette;  ///< distinct radii, if they are stored as indices
+  std::size_t count = 0;        ///< number of spheres
+  bool is_compact = true;       ///< in single precision
+};
+
+Layout layout_of(std::span<const scene::Points> sets) {
+  Layout out;
+  out.palette = common_palette(sets);
+  for (const scene::Points& points : sets) {
+    out.count += points.centers.size();
+    out.is_compact = out.is_compact && points.centers.numbers().fits_single() &&
+                     (!out.palette.empty() || points.radii.fits_single());
+  }
+  return out;
+}
+
 }  // namespace
 
+std::size_t SphereStore::bytes_of(std::span<const scene::Points> sets) {
+  const Layout layout = layout_of(sets);
+  if (!layout.is_compact) return layout.count * sizeof(kernel::Sphere);
+  const std::size_t radius = layout.palette.empty() ? sizeof(float) : layout.palette.size() > 1 ? 1 : 0;
+  return layout.count * (3 * sizeof(float) + radius);
+}
+
 void SphereStore::append(std::span<const scene::Points> sets) {
-  std::vector<double> palette = common_palette(sets);
+  Layout layout = layout_of(sets);
+  const std::size_t count = layout.count;
   const base::StopPoint stop;
-  std::size_t count = 0;
-  bool fits = true;
-  for (const scene::Points& points : sets) {
-    count += points.centers.size();
-    fits = fits && points.centers.numbers().fits_single() && (!palette.empty() || points.radii.fits_single());
-  }
-  if (!fits) {
+  if (!layout.is_compact) {
     plain_.reserve(plain_.size() + count);
     for (const scene::Points& points : sets)
       for (std::size_t i = 0; i < points.centers.size(); ++i) {
@@ -76,7 +96,7 @@ void SphereStore::append(std::span<const scene::Points> sets) {
     return;
   }
   stop.check();
-  radius_palette_ = std::move(palette);
+  radius_palette_ = std::move(layout.palette);
   if (count == 0) return;
   centers_.reserve(3 * count + 1);
   if (radius_palette_.empty()) radii_.reserve(count);

@@ -26,6 +26,9 @@ class SphereStore {
   /// their radii are exact as well or have few distinct values.
   void append(std::span<const scene::Points> points);
 
+  /// Bytes that append() adds.
+  static std::size_t bytes_of(std::span<const scene::Points> points);
+
   /// Returns a view that is valid until this is modified.
   kernel::SphereArray view() const noexcept {
     kernel::SphereArray v(plain_.data());

@@ -159,10 +159,16 @@ void read_types(ReadState& state, const toml::table& table, const std::string& t
   }
 }
 
+/// The rest of a memory limit, at least one byte; 0 if there is no limit.
+std::uint64_t rest_of(std::uint64_t limit, std::uint64_t used) {
+  return limit == 0 ? 0 : std::max<std::uint64_t>(limit - std::min(used, limit), 1);
+}
+
 void read_points(ReadState& state, const toml::table& root, const std::filesystem::path& scene_file,
                  const ReadOptions& options, const MaterialIndex& index, scene::Scene& scene) {
   const toml::array* list = tables_under(state, root, "points");
   if (list == nullptr) return;
+  std::uint64_t used = 0;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const toml::table& table = *list->get(i)->as_table();
     const std::string full_name = fmt::format("points[{}]", i);
@@ -182,10 +188,11 @@ void read_points(ReadState& state, const toml::table& root, const std::filesyste
       request.frame = options.frame;
       request.is_sequence = points.file.string() != pattern;
       request.materials = scene.materials.size();
-      request.memory_limit = options.memory_limit;
+      request.memory_limit = rest_of(options.memory_limit, used);
       request.open = options.open_data;
       read_points_file(state, root, scene_file.string(), place_of(*table.get("file")), request, points);
     }
+    used += points.bytes();
     scene.points.push_back(std::move(points));
   }
 }

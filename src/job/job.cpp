@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
+#include "base/available_memory.h"
 #include "base/error.h"
 #include "base/stop_point.h"
 #include "base/text.h"
@@ -204,6 +205,7 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   report.phases.read_s = watch.lap();
   stop_if_cancelled(job);
 
+  require_memory_to_compile(read.scene, job.resources.memory_limit);
   const compile::CompiledScene compiled = compile::compile(read.scene, read.closing ? &*read.closing : nullptr);
   check_samples(job, compiled);
   check_sizes(job, compiled);
@@ -216,10 +218,11 @@ void run_phases(const Job& job, base::FileSet& files, JobReport& report) {
   if (report.was_skipped) return;
   require_disk_space(job.outputs, is_shard(job), image_size(compiled.width, compiled.height, layers.request),
                      job.resources.disk_limit);
-  require_memory(estimate_memory(memory_needs(compiled, layers.request, job.sampling.is_adaptive())),
-                 job.resources.memory_limit, compiled.environment ? compiled.environment->bytes() : 0);
   // Keep no second copy of the spheres during the BVH build.
   for (scene::Points& points : read.scene.points) points.release_spheres();
+  base::release_freed_memory();
+  const MemoryNeeds needs = memory_needs(compiled, layers.request, job.sampling.is_adaptive());
+  require_memory(estimate_memory(needs), job.resources.memory_limit, held_memory(needs));
   report.hosts = {provenance.at("host")};
   report.width = compiled.width;
   report.height = compiled.height;

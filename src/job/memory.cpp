@@ -13,9 +13,12 @@
 #include "film/layer_pixel.h"
 #include "film/layers.h"
 #include "kernel/pixel_sum.h"
+#include "scene/scene.h"
 
 namespace orrery::job {
 namespace {
+
+using base::bytes_text;
 
 /// Embree's user geometry during the BVH build, one primitive per sphere, in addition to the sphere itself. Measured on
 /// clouds of one and three million spheres: peak_memory_bytes of --stats with embree minus that with list.
@@ -36,6 +39,15 @@ std::uint64_t bytes_of_sums(const MemoryNeeds& needs) {
   constexpr std::uint64_t kHeapBytes = 16, kBytesPerCell = sizeof(film::LayerPixel::light[0]);
   return (needs.records ? sizeof(film::LayerPixel) : 0) + (needs.guides ? sizeof(film::Halves) : 0) +
          (needs.light_cells > 0 ? needs.light_cells * kBytesPerCell + kHeapBytes : 0);
+}
+
+/// Throws an error that begins with `text` if there is not enough memory.
+void require(std::uint64_t needed, const std::string& text, std::uint64_t limit, std::uint64_t held) {
+  const std::uint64_t allowed = limit > 0 ? limit : base::available_memory().value_or(needed) + held;
+  if (needed <= allowed) return;
+  const std::string rest = limit > 0 ? fmt::format("--memory-limit allows {}; raise the limit", bytes_text(allowed))
+                                     : bytes_text(allowed) + " is free; free some, or override with --memory-limit";
+  throw base::Error(base::ErrorKind::kNoMemory, text + ", and " + rest);
 }
 
 }  // namespace
@@ -77,24 +89,27 @@ MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::Lay
   return needs;
 }
 
+std::uint64_t held_memory(const MemoryNeeds& needs) { return needs.sphere_bytes + needs.background + needs.textures; }
+
 std::string text_of(const MemoryEstimate& m) {
-  std::string out = fmt::format("film {}, spheres {}, accelerator {}", base::bytes_text(m.film),
-                                base::bytes_text(m.spheres), base::bytes_text(m.accelerator));
-  if (m.background > 0) out += ", background " + base::bytes_text(m.background);
-  if (m.textures > 0) out += ", textures " + base::bytes_text(m.textures);
-  if (m.lights > 0) out += ", lights " + base::bytes_text(m.lights);
+  std::string out = fmt::format("film {}, spheres {}, accelerator {}", bytes_text(m.film), bytes_text(m.spheres),
+                                bytes_text(m.accelerator));
+  if (m.background > 0) out += ", background " + bytes_text(m.background);
+  if (m.textures > 0) out += ", textures " + bytes_text(m.textures);
+  if (m.lights > 0) out += ", lights " + bytes_text(m.lights);
   return out;
 }
 
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held) {
-  const std::uint64_t allowed = limit > 0 ? limit : base::available_memory().value_or(needed.total()) + held;
-  if (needed.total() <= allowed) return;
-  using base::bytes_text;
-  throw base::Error(
-      base::ErrorKind::kNoMemory,
-      fmt::format("the render needs about {} ({}), and {}", bytes_text(needed.total()), text_of(needed),
-                  limit > 0 ? fmt::format("--memory-limit allows {}; raise the limit", bytes_text(allowed))
-                            : bytes_text(allowed) + " is free; free some, or override with --memory-limit"));
+  require(needed.total(), fmt::format("the render needs about {} ({})", bytes_text(needed.total()), text_of(needed)),
+          limit, held);
+}
+
+void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit) {
+  std::uint64_t loaded = 0;
+  for (const scene::Points& points : scene.points) loaded += points.bytes();
+  const std::uint64_t needed = loaded + compile::SphereStore::bytes_of(scene.points);
+  require(needed, "the spheres need about " + bytes_text(needed) + " while they are compiled", limit, loaded);
 }
 
 }  // namespace orrery::job

@@ -6,6 +6,7 @@
 
 #include "compile/forward.h"
 #include "film/forward.h"
+#include "scene/forward.h"
 
 namespace orrery::job {
 
@@ -40,6 +41,9 @@ MemoryEstimate estimate_memory(const MemoryNeeds& needs);
 MemoryNeeds memory_needs(const compile::CompiledScene& compiled, const film::LayerRequest& layers,
                          bool is_adaptive = false);
 
+/// Bytes of these that a compiled scene has already allocated.
+std::uint64_t held_memory(const MemoryNeeds& needs);
+
 /// Formats the parts of an estimate: "film 1 MiB, spheres 2 MiB, accelerator 3 MiB".
 std::string text_of(const MemoryEstimate& estimate);
 
@@ -49,5 +53,11 @@ std::string text_of(const MemoryEstimate& estimate);
 /// `held`     bytes of `needed` that are already allocated, and therefore no longer available
 /// Errors     base::Error(kNoMemory) with the needed and the allowed size
 void require_memory(const MemoryEstimate& needed, std::uint64_t limit, std::uint64_t held = 0);
+
+/// Checks that the spheres of data files fit into memory twice, as loaded and compiled.
+///
+/// `limit`    bytes; 0: base::available_memory()
+/// Errors     base::Error(kNoMemory) with the needed and the allowed size
+void require_memory_to_compile(const scene::Scene& scene, std::uint64_t limit);
 
 }  // namespace orrery::job

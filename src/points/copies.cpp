@@ -26,10 +26,39 @@ bool is_identity(const Transform& t) {
   return t.rows == identity.rows && t.translation == identity.translation;
 }
 
-/// Rounds the atoms of an assembly, which often has millions, to 12 bytes: by up to 6e-8 of the distance from the
-/// origin, in ångström less than the files' last digit.
+/// Rounding to single precision moves a coordinate by up to this fraction of itself.
+constexpr double kRounding = 0x1p-24;
+
+/// Centres are not rounded where this could move one by more than this fraction of the smallest radius.
+constexpr double kMaxDisplacement = 1e-3;
+
 Vec3d in_single_precision(Vec3d p) {
   return {math::in_single_precision(p.x), math::in_single_precision(p.y), math::in_single_precision(p.z)};
+}
+
+bool leaves_unchanged(const std::vector<Copy>& copies) {
+  return copies.size() == 1 && is_identity(copies[0].transform) && copies[0].chains == nullptr;
+}
+
+/// The largest absolute coordinate among the corners of the copies' bounding boxes.
+///
+/// Domain     at least one centre
+double largest_coordinate(const std::vector<Copy>& copies, const Transform& placement,
+                          const scene::PointArray& centers) {
+  Vec3d lower = centers[0], upper = lower;
+  for (const Vec3d c : centers) {
+    lower = {std::min(lower.x, c.x), std::min(lower.y, c.y), std::min(lower.z, c.z)};
+    upper = {std::max(upper.x, c.x), std::max(upper.y, c.y), std::max(upper.z, c.z)};
+  }
+  double largest = 0;
+  for (const Copy& copy : copies)
+    for (const double x : {lower.x, upper.x})
+      for (const double y : {lower.y, upper.y})
+        for (const double z : {lower.z, upper.z}) {
+          const Vec3d p = applied(placement, applied(copy.transform, {x, y, z}));
+          largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        }
+  return largest;
 }
 
 const data::Assembly* find_assembly(const data::FrameInfo& info, const std::string& name, KeyFaults& faults) {
@@ -163,6 +192,21 @@ std::vector<Copy> replicated(const std::vector<Copy>& copies, const data::Box& b
   return out;
 }
 
+std::vector<Copy> outermost(const std::vector<Copy>& copies, const data::Box& box, Vec3d counts) {
+  data::Box whole = box;
+  whole.edges = {box.edges[0] * (counts.x - 1), box.edges[1] * (counts.y - 1), box.edges[2] * (counts.z - 1)};
+  return replicated(copies, whole, {2, 2, 2});
+}
+
+bool are_rounded(const std::vector<Copy>& copies, const scene::Points& points, const scene::PointArray& centers,
+                 const scene::NumberArray& radii) {
+  if (points.assembly.empty() || leaves_unchanged(copies) || centers.empty()) return false;
+  double smallest = std::abs(radii[0]);
+  for (const double radius : radii) smallest = std::min(smallest, std::abs(radius));
+  return largest_coordinate(copies, transform_of(points.transform), centers) * kRounding <=
+         smallest * points.transform.scale * kMaxDisplacement;
+}
+
 std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count) {
   std::vector<std::uint64_t> counts(chains.names.size());
   for (const std::uint32_t label : chains.of_rows) ++counts[label];
@@ -208,7 +252,7 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
                  std::vector<std::uint32_t>* rows) {
   const Transform placement = transform_of(points.transform);
   const bool is_placed = !is_identity(placement);
-  if (copies.size() == 1 && is_identity(copies[0].transform) && copies[0].chains == nullptr) {
+  if (leaves_unchanged(copies)) {
     if (!is_placed) return;
     for (std::size_t i = 0; i < points.centers.size(); ++i)
       points.centers.set(i, applied(placement, points.centers[i]));
@@ -216,10 +260,11 @@ void make_copies(const std::vector<Copy>& copies, const Labels& chains, scene::P
     return;
   }
   const CopiedSpheres spheres = spheres_of(copies, chains, points.centers.size());
+  const bool rounds = are_rounded(copies, points, points.centers, points.radii);
   spheres.repeat(points.centers, [&](Vec3d center, std::size_t copy) {
     center = applied(copies[copy].transform, center);
-    if (!points.assembly.empty()) center = in_single_precision(center);
-    return is_placed ? applied(placement, center) : center;
+    if (is_placed) center = applied(placement, center);
+    return rounds ? in_single_precision(center) : center;
   });
   spheres.repeat(points.radii);
   spheres.repeat(points.materials);

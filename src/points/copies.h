@@ -43,6 +43,18 @@ std::vector<Copy> copies_of(const data::FrameInfo& info, const scene::Points& po
 /// Cost       100 bytes per copy and image: callers check the memory first
 std::vector<Copy> replicated(const std::vector<Copy>& copies, const data::Box& box, data::Vec3d counts);
 
+/// The copies in the outermost images: those at the corners of the block of images that replicated() makes.
+std::vector<Copy> outermost(const std::vector<Copy>& copies, const data::Box& box, data::Vec3d counts);
+
+/// Whether make_copies() rounds the centres to single precision, in which they take half the memory: those of an
+/// assembly, unless its only transform changes nothing, or the rounding could move a sphere by more than a thousandth
+/// of the smallest radius.
+///
+/// `copies`   all copies, or the outermost ones
+/// `centers`  spheres of the file, before they are copied
+bool are_rounded(const std::vector<Copy>& copies, const scene::Points& points, const scene::PointArray& centers,
+                 const scene::NumberArray& radii);
+
 /// The number of spheres that make_copies() creates from `count` spheres; an upper bound if a copy lists a chain twice.
 std::uint64_t copied_count(const std::vector<Copy>& copies, const Labels& chains, std::size_t count);
 

@@ -139,12 +139,13 @@ class Loader {
     for (const std::string& column : info_.roles.image) need(column);
   }
 
-  /// `count`   number of spheres in one image of the periodic box
-  void require_memory(std::uint64_t count) const {
+  /// `count`         number of spheres in one image of the periodic box
+  /// `are_rounded`   whether make_copies() rounds their centres
+  void require_memory(std::uint64_t count, bool are_rounded) const {
     ReadMemory need;
     need.rows = info_.rows;
     for (const std::string& column : columns_) need.row_bytes += data::bytes_per_value(type_of(info_, column));
-    need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, copies_.size());
+    need.sphere_bytes = bytes_per_sphere(info_, points_, radius_, are_rounded);
     if (!material_.empty()) need.sphere_bytes += sizeof(std::uint32_t);
     if (!color_.columns.empty()) need.sphere_bytes += sizeof(std::uint16_t);
     if (request_.source != nullptr) need.sphere_bytes += sizeof(std::uint32_t) + need.row_bytes;
@@ -160,8 +161,9 @@ class Loader {
   }
 
   void load(int frame) {
-    // The number of selected rows, and of spheres in the chains of an assembly, is not known yet.
-    require_memory(points_.select.empty() ? copied_count(copies_, {}, info_.rows) : 0);
+    // Not known yet: the number of selected rows, that of spheres in the chains of an assembly, and how far out they
+    // are.
+    require_memory(points_.select.empty() ? copied_count(copies_, {}, info_.rows) : 0, !points_.assembly.empty());
     data::Table table = file_->read(frame, columns_);
     if (!speed_sources_.empty()) compute_speed(speed_sources_, table);
     Rows rows = chosen_rows(table);
@@ -182,7 +184,9 @@ class Loader {
     Labels chains;
     if (const data::Column* column = table.find(info_.roles.chain); column != nullptr)
       chains = labels_of(*column, rows, table.rows);
-    require_memory(copied_count(copies_, chains, rows.size()));
+    const bool is_replicated = !(points_.replicate == Vec3d{1, 1, 1});
+    const std::vector<Copy> ends = is_replicated ? outermost(copies_, *info_.box, points_.replicate) : copies_;
+    require_memory(copied_count(copies_, chains, rows.size()), are_rounded(ends, points_, centers, radii));
     PointColors colors = colors_of(table, rows, color_, points_.color, faults_);
     points_.centers = std::move(centers);
     points_.radii = std::move(radii);
@@ -192,7 +196,7 @@ class Loader {
     points_.color_range = colors.range;
     points_.color_names = std::move(colors.names);
     if (!material_.empty()) set_materials(table, rows);
-    if (!(points_.replicate == Vec3d{1, 1, 1})) copies_ = replicated(copies_, *info_.box, points_.replicate);
+    if (is_replicated) copies_ = replicated(copies_, *info_.box, points_.replicate);
     std::vector<std::uint32_t>* const row_of_sphere = request_.source == nullptr ? nullptr : &request_.source->rows;
     if (row_of_sphere != nullptr) *row_of_sphere = rows.list();
     make_copies(copies_, chains, points_, row_of_sphere);

@@ -28,16 +28,14 @@ data::ColumnType type_of(const data::FrameInfo& info, const std::string& column)
 }
 
 std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
-                               std::size_t copies) {
+                               bool are_rounded) {
   const scene::PointsTransform unchanged;
   const scene::PointsTransform& t = points.transform;
   const bool is_placed =
       t.scale != unchanged.scale || !(t.rotate == unchanged.rotate) || !(t.translate == unchanged.translate);
-  bool all_single = !points.unwrap && points.replicate == math::Vec3d{1, 1, 1};
+  bool all_single = points.assembly.empty() && !is_placed && !points.unwrap && points.replicate == math::Vec3d{1, 1, 1};
   for (const std::string& column : info.roles.position) all_single = all_single && fits_single(type_of(info, column));
-  // make_copies rounds assemblies, unless their only transform changes nothing.
-  all_single = !is_placed && (all_single || (!points.assembly.empty() && copies > 1));
-  std::uint64_t bytes = 3 * (all_single ? sizeof(float) : sizeof(double));
+  std::uint64_t bytes = 3 * (are_rounded || all_single ? sizeof(float) : sizeof(double));
   const bool same = radius.scale == 1 && t.scale == unchanged.scale;
   if (radius.kind != RadiusSource::Kind::kValue)
     bytes += same && fits_single(type_of(info, radius.column)) ? sizeof(float) : sizeof(double);

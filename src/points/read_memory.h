@@ -29,9 +29,9 @@ data::ColumnType type_of(const data::FrameInfo& info, const std::string& column)
 /// Upper bound of the size of a sphere's centre and radius as scene data, bytes. Numbers that do not need double
 /// precision are stored as floats.
 ///
-/// `copies`   number of copies of an assembly; else 1
+/// `are_rounded`   whether make_copies() rounds the centres
 std::uint64_t bytes_per_sphere(const data::FrameInfo& info, const scene::Points& points, const RadiusSource& radius,
-                               std::size_t copies);
+                               bool are_rounded);
 
 /// Checks that there is enough memory to read the spheres.
 ///

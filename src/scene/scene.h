@@ -218,6 +218,11 @@ struct Points {
   std::vector<std::string> unused = {};  ///< unused columns of the file, such as colours
   bool spheres_are_rows = true;          ///< sphere i is row i of the file: no selection, sorting, copying or clipping
 
+  /// Bytes of the spheres.
+  std::size_t bytes() const {
+    return centers.numbers().bytes() + radii.bytes() + materials.size() * sizeof(materials[0]) +
+           colors.size() * sizeof(colors[0]);
+  }
   /// Frees the memory of the spheres; keeps the keys.
   void release_spheres() {
     centers.clear();

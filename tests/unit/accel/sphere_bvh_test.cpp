@@ -80,6 +80,22 @@ TEST(AccelSphereBvh, EverySphereIsInOneLeafAndBelowItsStartNode) {
   }
 }
 
+/// Memory of ids and of sorted spheres is released after each million.
+TEST(AccelSphereBvh, PiecesOfABuildAreReleasedWhenTheyAreFinished) {
+  Random random;
+  const Tree tree(test::scattered(random, (1 << 20) + 1000, 1, 0.01, 0));
+  std::vector<std::uint8_t> seen(tree.spheres.size(), 0);
+  for (std::uint32_t l = 0; l < tree.bvh.leaves.size(); ++l)
+    for (unsigned i = 0; i < tree.bvh.count_in(l); ++i) {
+      const SphereBvh::Leaf& leaf = tree.bvh.leaves[l];
+      ASSERT_LT(leaf.ids[i], seen.size());
+      ++seen[leaf.ids[i]];
+      ASSERT_NEAR(static_cast<double>(leaf.origin[0] + static_cast<float>(leaf.center[0][i]) * leaf.step),
+                  tree.center(leaf.ids[i], 0), static_cast<double>(leaf.step));
+    }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<long>(seen.size()));
+}
+
 /// Codes are decoded as the traversal does, in single precision.
 TEST(AccelSphereBvh, LeavesHoldCentresAndRadii) {
   for (const Tree& tree : trees())

@@ -2,11 +2,16 @@
 #include "base/available_memory.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "support/temp_dir.h"
 
@@ -54,6 +59,27 @@ TEST_F(BaseAvailableMemory, TheRootControlGroupLimitsToo) {
   write("sys/fs/cgroup/memory.max", "10485760\n");
   write("sys/fs/cgroup/memory.current", "0\n");
   EXPECT_EQ(available(), 10 * kMega);
+}
+
+/// Small arrays below one that is still in use stay in the heap.
+TEST(BaseReleaseFreedMemory, ReturnsSmallArrays) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers have their own heaps";
+#endif
+  const auto resident = [] {
+    std::ifstream file("/proc/self/statm");
+    std::int64_t pages = 0;
+    file >> pages >> pages;
+    return pages * sysconf(_SC_PAGESIZE);
+  };
+  constexpr std::size_t kBytes = 1 << 16;
+  std::vector<std::unique_ptr<char[]>> arrays;
+  for (int i = 0; i < 1024; ++i) arrays.push_back(std::make_unique<char[]>(kBytes));
+  for (const auto& array : arrays) std::fill_n(array.get(), kBytes, '.');
+  arrays.erase(arrays.begin(), arrays.end() - 1);
+  const std::int64_t before = resident();
+  release_freed_memory();
+  EXPECT_LT(resident(), before - std::int64_t{32} * (1 << 20));
 }
 
 }  // namespace

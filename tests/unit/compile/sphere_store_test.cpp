@@ -22,7 +22,9 @@ SphereStore stored(const std::vector<Sphere>& plain, const std::vector<Sphere>& 
     set.centers.push_back({s.x, s.y, s.z});
     set.radii.push_back(s.radius);
   }
+  const std::size_t before = store.bytes();
   store.append({&set, 1});
+  EXPECT_EQ(store.bytes() - before, SphereStore::bytes_of({&set, 1}));
   return store;
 }
 

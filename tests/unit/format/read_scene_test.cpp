@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
 
 #include "format/diagnostics.h"
 #include "format/read_result.h"
@@ -357,6 +360,36 @@ TEST(FormatReadScene, PointsFilesAreRelativeToTheScene) {
   EXPECT_EQ(read.scene.points[0].radii, (std::vector<double>{0.5, 0.25}));
   EXPECT_EQ(read.scene.points[0].materials, (std::vector<std::uint32_t>{1, 0}));
   EXPECT_EQ(read.scene.materials[1].name, "a");
+}
+
+/// Spheres of earlier tables are still in memory when the next one is read.
+TEST(FormatReadScene, TablesOfPointsShareTheMemoryLimit) {
+  SceneFiles files;
+  std::string rows = "x,y,z,radius\n";
+  for (int i = 0; i < 1000; ++i) rows += "0." + std::to_string(1000 + i) + ",0.1,0.2,0.3\n";
+  files.add("a.csv", rows);
+  const std::string table = "[[points]]\nfile = \"a.csv\"\nmaterial = \"a\"\n";
+  ReadOptions options;
+  const auto fits = [&](int tables, std::uint64_t limit) {
+    std::string text = "[material.a]\ntype = \"dielectric\"\n";
+    for (int i = 0; i < tables; ++i) text += table;
+    options.text = std::make_shared<const std::string>(std::move(text));
+    options.memory_limit = limit;
+    try {
+      const auto count = read_scene(files.folder() / "scene.toml", {}, options).scene.points.size();
+      return count == static_cast<std::size_t>(tables);
+    } catch (const base::Error& error) {
+      EXPECT_EQ(error.kind(), base::ErrorKind::kNoMemory) << error.what();
+      return false;
+    }
+  };
+  // 1,000 rows need 64,000 bytes while they are read, and 24,000 for the coordinates afterwards.
+  EXPECT_FALSE(fits(1, 60'000));
+  EXPECT_TRUE(fits(1, 80'000));
+  EXPECT_FALSE(fits(2, 80'000));
+  EXPECT_TRUE(fits(2, 90'000));
+  EXPECT_FALSE(fits(3, 90'000));
+  EXPECT_TRUE(fits(3, 0)) << "no limit";
 }
 
 TEST(FormatReadScene, ErrorsOfAPointsFileAreReportedWithItsKey) {

@@ -272,6 +272,27 @@ TEST_F(JobRun, RejectsACheckpointWithOtherSumsThanItsHeaderSays) {
   EXPECT_EQ(statistics()["resumed"], true);
 }
 
+/// While a scene is compiled, its spheres are in memory twice. With the list, the render needs less than that.
+TEST_F(JobRun, SpheresThatDoNotFitTwiceAreNotCompiled) {
+  std::string rows = "x,y,z\n";
+  for (int i = 0; i < 1000; ++i) rows += "0." + std::to_string(1000 + i) + ",0.1,0.2\n";
+  support::write_bytes(folder_ / "a.csv", rows);
+  support::write_bytes(folder_ / "scene.toml",
+                       std::string(kScene) + "[[points]]\nfile = \"a.csv\"\nradius = 0.01\nmaterial = \"grey\"\n");
+  for (const char* text : {"image.width=1", "image.height=1", "render.accelerator=\"list\""})
+    job_.scene.overrides.push_back(text);
+  job_.outputs.images = {folder_ / "a.exr"};
+  // 1,000 rows need 48,000 bytes while they are read; loaded and compiled spheres need 24 and 32 each.
+  job_.resources.memory_limit = 57'000;
+  EXPECT_NO_THROW(run_job(job_));
+  job_.resources.memory_limit = 55'000;
+  const base::Error refused = error();
+  EXPECT_EQ(refused.kind(), base::ErrorKind::kNoMemory);
+  EXPECT_NE(std::string(refused.what()).find("the spheres need about 54.7 KiB while they are compiled"),
+            std::string::npos)
+      << refused.what();
+}
+
 TEST_F(JobRun, WritesCheckpointsAtTheInterval) {
   job_.outputs.images = {folder_ / "a.exr"};
   job_.scene.overrides = {"image.width=64", "image.height=64", "render.samples=64"};

@@ -114,6 +114,36 @@ TEST(JobMemoryEstimate, CountsTheBackgroundOnce) {
   EXPECT_THROW(require_memory(estimate_memory(needs), kMega, needs.background), base::Error);
 }
 
+/// Compiled spheres and textures no longer need free memory.
+TEST(JobMemoryEstimate, WhatTheCompiledSceneHoldsNeedsNoFreeMemory) {
+  MemoryNeeds needs;
+  needs.spheres = 3;
+  needs.sphere_bytes = 1 * kMega;
+  needs.textures = 2 * kMega;
+  needs.background = 4 * kMega;
+  needs.lights = 8 * kMega;  // most of it is temporary
+  EXPECT_EQ(held_memory(needs), 7 * kMega);
+  needs.sphere_bytes = base::available_memory().value_or(0) + (1 << 30);
+  EXPECT_THROW(require_memory(estimate_memory(needs), 0), base::Error);
+  EXPECT_NO_THROW(require_memory(estimate_memory(needs), 0, held_memory(needs)));
+}
+
+TEST(JobMemoryEstimate, LoadedSpheresAreNotCompiledWithoutMemoryForBoth) {
+  scene::Scene scene;
+  scene.points.resize(2);
+  for (int i = 0; i < 1000; ++i) {
+    scene.points[0].centers.push_back({1.0 * i, 2, 3});
+    scene.points[0].radii.push_back(1);
+    scene.points[1].centers.push_back({5.0 * i, 2, 3});
+    scene.points[1].radii.push_back(2);
+    scene.points[1].colors.push_back(0);
+  }
+  const std::uint64_t needed = 2 * 12'000 + 2000 + 2 * 13'000;
+  EXPECT_NO_THROW(require_memory_to_compile(scene, needed));
+  EXPECT_THROW(require_memory_to_compile(scene, needed - 1), base::Error);
+  EXPECT_NO_THROW(require_memory_to_compile(scene, 0));
+}
+
 TEST(JobMemoryEstimate, RejectsWhatDoesNotFitWithTheEstimate) {
   const MemoryEstimate million = estimate(1, 1'000'000, true);
   EXPECT_NO_THROW(require_memory(million, million.total()));

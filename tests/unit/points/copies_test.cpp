@@ -92,6 +92,79 @@ TEST(PointsCopies, AssembliesAreInSinglePrecision) {
   }
 }
 
+/// Rounding after each of the two transforms would move some atoms farther.
+TEST(PointsCopies, PlacedAssembliesAreRoundedOnce) {
+  scene::Points points;
+  points.assembly = "1";
+  points.transform.scale = 0.37;
+  points.transform.translate = {50, 0, 0};
+  for (int i = 0; i < 100; ++i) {
+    points.centers.push_back({0.001 * i, 0.3, 0.7});
+    points.radii.push_back(1.7);
+  }
+  const scene::PointArray atoms = points.centers;
+  make_copies({{moved({0.1, 0, 0}), nullptr}, {moved({100, 0, 0}), nullptr}}, {}, points);
+  ASSERT_EQ(points.centers.size(), 200u);
+  EXPECT_EQ(points.centers.numbers().bytes(), 600 * sizeof(float));
+  const auto single = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  int twice = 0;
+  for (std::size_t i = 0; i < 100; ++i) {
+    const double x = atoms[i].x + 100;
+    EXPECT_EQ(points.centers[100 + i].x, single(x * 0.37 + 50)) << i;
+    twice += single(single(x) * 0.37 + 50) != single(x * 0.37 + 50) ? 1 : 0;
+  }
+  EXPECT_GT(twice, 0) << "the test could not fail";
+}
+
+/// Far from the origin, single precision would move atoms visibly.
+TEST(PointsCopies, RoundingMovesNoAtomByMoreThanAThousandthOfTheSmallestRadius) {
+  const auto are_single = [](Vec3d translate, double scale, double radius, Vec3d copy = {}) {
+    scene::Points points;
+    points.assembly = "1";
+    points.transform.translate = translate;
+    points.transform.scale = scale;
+    for (int i = 0; i < 100; ++i) {
+      points.centers.push_back({0.001 * i, 0.3, 0.7});
+      points.radii.push_back(i == 50 ? radius : 100 * radius);
+    }
+    make_copies({{moved({}), nullptr}, {moved(copy), nullptr}}, {}, points);
+    const double exact = 0.001 * 99 * scale + translate.x;
+    const bool out = points.centers.numbers().bytes() <= 600 * sizeof(float);  // less if few are distinct
+    EXPECT_EQ(points.centers[99].x, out ? static_cast<double>(static_cast<float>(exact)) : exact);
+    EXPECT_NEAR(points.centers[99].x, exact, 1e-3 * radius * scale);
+    return out;
+  };
+  // The limit for a radius of 1 is 1e-3 / 2^-24 = 16,777.
+  EXPECT_TRUE(are_single({16'000, 0, 0}, 1, 1));
+  EXPECT_FALSE(are_single({17'000, 0, 0}, 1, 1));
+  EXPECT_FALSE(are_single({0, 0, -17'000}, 1, 1));
+  EXPECT_FALSE(are_single({1e6, 0, 0}, 1, 1));
+  EXPECT_TRUE(are_single({1e6, 0, 0}, 1, 100));
+  EXPECT_TRUE(are_single({1e6, 0, 0}, 100, 1)) << "radii are scaled, too";
+  EXPECT_FALSE(are_single({1000, 0, 0}, 0.01, 1));
+  EXPECT_FALSE(are_single({}, 1, 1, {0, 17'000, 0})) << "a copy of the assembly itself is far away";
+}
+
+TEST(PointsCopies, OutermostImagesAreTheCornersOfTheBlock) {
+  scene::Points points = two();
+  points.assembly = "1";
+  points.radii = {1, 1};
+  const std::vector<Copy> copies = {{moved({}), nullptr}, {moved({0.5, 0, 0}), nullptr}};
+  const auto check = [&](Vec3d counts) {
+    const std::vector<Copy> ends = outermost(copies, box(), counts), all = replicated(copies, box(), counts);
+    EXPECT_EQ(ends.size(), 16u);
+    EXPECT_EQ(ends.front().transform.translation, all.front().transform.translation);
+    EXPECT_EQ(ends.back().transform.translation, all.back().transform.translation);
+    const bool rounded = are_rounded(ends, points, points.centers, points.radii);
+    EXPECT_EQ(rounded, are_rounded(all, points, points.centers, points.radii));
+    return rounded;
+  };
+  EXPECT_TRUE(check({3, 1, 2}));
+  EXPECT_TRUE(check({1600, 1, 1}));
+  EXPECT_FALSE(check({1700, 1, 1}));
+  EXPECT_FALSE(check({1, 2, 600}));
+}
+
 TEST(PointsCopies, AnAssemblyIsFoundByName) {
   data::FrameInfo info;
   info.assemblies = {{"1", {{{}, {moved({1, 0, 0})}}}},

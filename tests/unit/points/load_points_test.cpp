@@ -559,20 +559,48 @@ TEST_F(PointsLoadPointsMemory, ChainsReduceTheNeed) {
   EXPECT_EQ(points.centers.size(), 3u);
 }
 
-/// As make_copies stores them: a single copy and placed ones may keep double precision.
+/// Rounded copies are counted with half the bytes; whether they are is known once their coordinates are.
+TEST_F(PointsLoadPointsMemory, CopiesFarFromTheOriginNeedMore) {
+  points.radius.value = 1;
+  points.assembly = "1";
+  request.open = [](const std::filesystem::path& file, const data::OpenOptions&) { return particles::open(file); };
+  const auto needed = [&] {
+    std::uint64_t too_little = 1, enough = 1 << 14;
+    while (enough - too_little > 1) {
+      request.memory_limit = (too_little + enough) / 2;
+      points.centers.clear();
+      points.radii.clear();
+      (shortage().empty() ? enough : too_little) = request.memory_limit;
+    }
+    return enough;
+  };
+  const auto cell = [](double length) {
+    char line[80];
+    std::snprintf(line, sizeof line, "CRYST1%9.3f   10.000   10.000  90.00  90.00  90.00 P 1           1\n", length);
+    return std::string(line);
+  };
+  write("a.pdb", protein());
+  const std::uint64_t near = needed();
+  points.transform.translate = {1000, 0, 0};
+  EXPECT_EQ(needed(), near);
+  points.transform.translate = {1e6, 0, 0};
+  EXPECT_EQ(needed(), near + 3 * 12);
+  points.transform.translate = {};
+  points.replicate = {2, 1, 1};
+  write("near.pdb", cell(9000) + protein());
+  const std::uint64_t near_images = needed();
+  write("far.pdb", cell(20'000) + protein());
+  EXPECT_EQ(needed(), near_images + 6 * 12);
+}
+
 TEST(PointsReadMemory, CopiesOfAssembliesAreInSinglePrecision) {
   data::FrameInfo info;
   info.roles.position = {"x", "y", "z"};
   scene::Points assembly;
   assembly.assembly = "1";
-  const auto bytes = [&](const scene::Points& p, std::size_t copies) {
-    return bytes_per_sphere(info, p, RadiusSource(), copies);
-  };
-  EXPECT_EQ(bytes({}, 1), 3 * sizeof(double));
-  EXPECT_EQ(bytes(assembly, 2), 3 * sizeof(float));
-  EXPECT_EQ(bytes(assembly, 1), 3 * sizeof(double));
-  assembly.transform.scale = 2;
-  EXPECT_EQ(bytes(assembly, 2), 3 * sizeof(double));
+  EXPECT_EQ(bytes_per_sphere(info, {}, RadiusSource(), false), 3 * sizeof(double));
+  EXPECT_EQ(bytes_per_sphere(info, assembly, RadiusSource(), true), 3 * sizeof(float));
+  EXPECT_EQ(bytes_per_sphere(info, assembly, RadiusSource(), false), 3 * sizeof(double));
 }
 
 TEST_F(PointsLoadPoints, RowsOfTheSpheres) {
