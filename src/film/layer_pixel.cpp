@@ -21,9 +21,11 @@ bool is_valid(const double (&light)[3]) { return kernel::is_valid_sample(light[0
 
 kernel::Int128 square(double v) {
   const double units = std::min(v * v, kLargestSquare) * (1 / kSquareUnit);
+  if (units < 0x1p62) return static_cast<std::int64_t>(units);  // the common case stays in 64 bits
   // Converted in two steps, since values of up to 2^96 do not fit into 64 bits.
   const double high = std::floor(units * 0x1p-48);
-  return (static_cast<kernel::Int128>(high) << 48) + static_cast<std::int64_t>(units - high * 0x1p48);
+  return (static_cast<kernel::Int128>(static_cast<std::int64_t>(high)) << 48) +
+         static_cast<std::int64_t>(units - high * 0x1p48);
 }
 
 template <class Sum, class T>
