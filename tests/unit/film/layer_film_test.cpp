@@ -369,6 +369,16 @@ TEST_F(FilmLayerFilm, VarianceTreatsPositiveAndNegativeWeightsSeparately) {
   EXPECT_FLOAT_EQ(value(picture(), "variance.R"), 4.0F / 4);
 }
 
+/// Squares below 2^14 are converted in 64 bits, others in two steps.
+TEST_F(FilmLayerFilm, SquaresAreExact) {
+  request_.variance = true;
+  for (const std::int64_t light : {1LL, 127LL, 128LL, 129LL, 1LL << 20, (1LL << 24) - 1}) {
+    clear();
+    add(path_to(0, static_cast<double>(light)));
+    EXPECT_TRUE(pixel_.squares[0] == static_cast<kernel::Int128>(light * light) << 48) << light;
+  }
+}
+
 TEST_F(FilmLayerFilm, ConstantRadianceHasNoVariance) {
   request_.variance = true;
   for (const double light : {0.3, 1.0 / 3, 7.7, 1e-3, 123456.7}) {
