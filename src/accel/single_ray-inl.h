@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "accel/sort_keys-inl.h"
 #include "accel/sphere_bvh_rays-inl.h"
@@ -27,26 +28,30 @@ struct alignas(64) SingleRay {
   std::uint32_t near[3];  ///< per axis: offset in Node::bound of the bounds at which the ray enters boxes
   std::uint32_t subtree;  ///< the node below which everything has been visited once the stack is empty
   unsigned subtree_level;
-  std::size_t waiting;  ///< number of entries in `enter` and `what`: the end marker, then nodes, nearest last
-  int candidates;       ///< number of entries in `at` and `candidate`: spheres that the ray may hit
-  int ordered;          ///< number of entries in `order`
+  std::size_t waiting;        ///< number of entries in `enter` and `what`: the end marker, then nodes, nearest last
+  int candidates;             ///< number of entries in `at` and `candidate`: spheres that the ray may hit
+  int key_count;              ///< number of entries in `keys`
+  std::uint32_t first_child;  ///< of the node tested last: the reference that key index 0 stands for
+  /// The spheres of the leaf tested last: distance along the ray, and squared distance from it, infinite if the ray
+  /// certainly misses.
+  alignas(64) float along[SphereBvh::kArity], offset_square[SphereBvh::kArity];
   // Padded, because whole vectors are stored at the end of each array.
-  alignas(64) std::int32_t order[kMaxCandidates + SphereBvh::kArity];  ///< keys of candidates, nearest last
-  float at[kMaxCandidates + SphereBvh::kArity];                        ///< a lower bound of a candidate's distance
-  std::uint32_t candidate[kMaxCandidates + SphereBvh::kArity];         ///< ids
-  float enter[SphereBvh::kStackSize + SphereBvh::kArity];              ///< a lower bound of the distance there
+  /// Sort keys of the children that test_children() found, or of the candidates at the end, nearest last.
+  alignas(64) std::int32_t keys[kMaxCandidates + SphereBvh::kArity];
+  float at[kMaxCandidates + SphereBvh::kArity];                   ///< a lower bound of a candidate's distance
+  std::uint32_t candidate[kMaxCandidates + SphereBvh::kArity];    ///< ids
+  float enter[SphereBvh::kStackSize + SphereBvh::kArity];         ///< a lower bound of the distance there
   std::uint32_t what[SphereBvh::kStackSize + SphereBvh::kArity];  ///< node references, encoded like SphereBvh::root()
 };
 
 /// Offset from lower to upper bounds in Node::bound.
 constexpr std::uint32_t kOtherSide = 3 * SphereBvh::kArity;
 
-/// Stores the keys of the children that a ray enters before its limit, followed by zeros up to a vector's length.
+/// Determines the children of a node that a ray enters before its limit.
 ///
 /// `except`   with kExcept: index of a child to skip
-/// Result     number of keys
-template <bool kExcept>
-HWY_INLINE int entered(const SphereBvh::Node& node, const SingleRay& ray, int except, std::int32_t* keys) {
+template <bool kExcept = false>
+HWY_INLINE void test_children(const SphereBvh::Node& node, SingleRay& ray, int except = 0) {
   const ChildTag d;
   const hn::RebindToSigned<ChildTag> di;
   const hn::FixedTag<float, 4> four;
@@ -70,31 +75,30 @@ HWY_INLINE int entered(const SphereBvh::Node& node, const SingleRay& ray, int ex
     const auto index = hn::Iota(di, static_cast<int>(v));
     auto hits = hn::RebindMask(di, begin <= end);
     if constexpr (kExcept) hits = hn::And(hits, index != hn::Set(di, except));
-    count += store_chosen(di, keys_of<SphereBvh::kArity>(d, begin, index), hits, keys + count);
+    count += store_chosen(di, keys_of<SphereBvh::kArity>(d, begin, index), hits, ray.keys + count);
   }
-  return count;
+  ray.key_count = count;
+  ray.first_child = node.first;
 }
 
-/// Visits a node: pushes the children that the ray enters onto its stack. With kExcept, skips child `except`.
-template <bool kExcept = false>
-HWY_INLINE void visit_node(const SphereBvh::Node& node, SingleRay& ray, int except = 0) {
+/// Pushes the children that test_children() has found onto the ray's stack, nearest last.
+HWY_INLINE void push_children(SingleRay& ray) {
   const hn::FixedTag<std::int32_t, 4> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   const hn::RebindToFloat<decltype(d)> df;
-  alignas(64) std::int32_t keys[2 * SphereBvh::kArity];
-  const int count = entered<kExcept>(node, ray, except, keys);
   const auto index_bits = hn::Set(d, static_cast<int>(SphereBvh::kArity - 1));
-  const auto first = hn::Set(du, node.first);
+  const auto first = hn::Set(du, ray.first_child);
+  const int count = ray.key_count;
   const auto push = [&](hn::Vec<decltype(d)> four, int at) {
     const std::size_t end = ray.waiting + static_cast<std::size_t>(at);
     hn::StoreU(hn::BitCast(df, hn::AndNot(index_bits, four)), df, ray.enter + end);
     hn::StoreU(hn::BitCast(du, hn::And(four, index_bits)) + first, du, ray.what + end);
   };
   if (count <= 4) {
-    push(sorted4(hn::Load(d, keys)), 0);
+    push(sorted4(hn::Load(d, ray.keys)), 0);
   } else {
-    sort_keys(keys, count);
-    for (int i = 0; i < count; i += 4) push(hn::Load(d, keys + i), i);
+    sort_keys(ray.keys, count);
+    for (int i = 0; i < count; i += 4) push(hn::Load(d, ray.keys + i), i);
   }
   ray.waiting += static_cast<std::size_t>(count);
 }
@@ -109,42 +113,39 @@ HWY_INLINE bool stays_in(const SphereBvh::Cell& cell, const SingleRay& ray) {
   return hn::AllTrue(d, hn::And(hn::And(begin >= lower, end >= lower), hn::And(begin <= upper, end <= upper)));
 }
 
-/// Continues the traversal above a ray's subtree, unless nothing there can be closer.
-///
-/// Result     false if the ray is done
-HWY_INLINE bool climb(const SphereBvh& bvh, SingleRay& ray) {
-  if (ray.subtree == bvh.root() || ray.limit < 0 || stays_in(bvh.cells[ray.subtree], ray)) return false;
-  const std::uint32_t in_level = ray.subtree - bvh.level_begin[ray.subtree_level];
-  ray.subtree = bvh.level_begin[++ray.subtree_level] + in_level / SphereBvh::kArity;
-  visit_node<true>(bvh.nodes[ray.subtree], ray, static_cast<int>(in_level % SphereBvh::kArity));
-  return true;
+/// Returns whether nothing outside a ray's subtree can be closer than what it has found.
+HWY_INLINE bool is_done(const SphereBvh& bvh, const SingleRay& ray) {
+  // Without branches, which would be hard to predict.
+  return (ray.subtree == bvh.root()) | (ray.limit < 0) | stays_in(bvh.cells[ray.subtree], ray);
 }
 
-/// Adds the spheres of a leaf that a ray may hit before its limit to its candidates. Shortens the ray to spheres that
-/// it certainly hits.
+/// Tests the other children of the parent of a ray's subtree, which becomes its subtree.
+HWY_INLINE void climb(const SphereBvh& bvh, SingleRay& ray) {
+  const std::uint32_t in_level = ray.subtree - bvh.level_begin[ray.subtree_level];
+  ray.subtree = bvh.level_begin[++ray.subtree_level] + in_level / SphereBvh::kArity;
+  test_children<true>(bvh.nodes[ray.subtree], ray, static_cast<int>(in_level % SphereBvh::kArity));
+}
+
+/// Determines the spheres of a leaf that a ray may hit before its limit.
 ///
-/// `shortest`  hits nearer than this are not certain, box space
 /// `target`    a sphere that is never hit
+/// Result      whether there are any
 template <bool kShadows>
-HWY_INLINE void visit_leaf(const SphereBvh& bvh, std::uint32_t index, float shortest, std::uint32_t target,
-                           SingleRay& ray) {
+HWY_INLINE bool test_spheres(const SphereBvh& bvh, std::uint32_t index, std::uint32_t target, SingleRay& ray) {
   const ChildTag d;
   const SphereBvh::Leaf& leaf = bvh.leaves[index];
   const auto set = [&](float x) { return hn::Set(d, x); };
   const auto step = set(leaf.step);
   const auto margin = set(margin_of(bvh, leaf));
   const auto limit = set(ray.limit), zero = hn::Zero(d), growth = set(kGrowth);
+  const auto infinite = set(std::numeric_limits<float>::infinity());
   const auto dx = set(ray.direction[0]), dy = set(ray.direction[1]), dz = set(ray.direction[2]);
   const auto ox = set(leaf.origin[0] - ray.origin[0]), oy = set(leaf.origin[1] - ray.origin[1]),
              oz = set(leaf.origin[2] - ray.origin[2]);
-  const std::uint32_t* const ids = leaf.ids;
   const hn::RebindToUnsigned<ChildTag> du;
-  const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, ids + v) == hn::Set(du, target)); };
+  const auto is_target = [&](int v) { return hn::RebindMask(d, hn::LoadU(du, leaf.ids + v) == hn::Set(du, target)); };
   const bool is_last = index == bvh.last_leaf;
-  const SphereBvh::LeafRadii* const own = bvh.radii.empty() ? nullptr : &bvh.radii[index];
-  const auto uniform = set(bvh.radius), radius_step = set(own != nullptr ? own->step : 0);
-  int count = ray.candidates;
-  auto nearest = limit;
+  bool any = false;
   for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
     const auto x = hn::MulAdd(from_bytes(leaf.center[0] + v), step, ox);
     const auto y = hn::MulAdd(from_bytes(leaf.center[1] + v), step, oy);
@@ -152,32 +153,53 @@ HWY_INLINE void visit_leaf(const SphereBvh& bvh, std::uint32_t index, float shor
     const auto along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, z * dz));
     const auto px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y), pz = hn::NegMulAdd(along, dz, z);
     const auto offset_square = hn::MulAdd(px, px, hn::MulAdd(py, py, pz * pz)) * growth;
-    auto most = uniform, least = uniform;
-    if (own != nullptr) {
-      most = from_bytes(own->radius + v) * radius_step;
-      least = most - radius_step;
-    }
-    const auto outer = most + margin, begin = along - outer;
-    auto may_hit = hn::And(hn::And(offset_square <= outer * outer * growth, along + outer >= zero), begin <= limit);
+    const auto outer = radii_of(bvh, index, v).most + margin;
+    auto may_hit =
+        hn::And(hn::And(offset_square <= outer * outer * growth, along + outer >= zero), along - outer <= limit);
     if (is_last)
       may_hit = hn::And(may_hit, hn::Iota(d, static_cast<float>(v)) < set(static_cast<float>(bvh.count_in(index))));
     if (kShadows) may_hit = hn::AndNot(is_target(v), may_hit);
+    hn::Store(along, d, ray.along + v);
+    hn::Store(hn::IfThenElse(may_hit, offset_square, infinite), d, ray.offset_square + v);
+    any |= !hn::AllFalse(d, may_hit);
+  }
+  return any;
+}
+
+/// Adds the spheres that test_spheres() has found to a ray's candidates. Shortens the ray to spheres that it certainly
+/// hits.
+///
+/// `shortest`  hits nearer than this are not certain, box space
+HWY_INLINE void add_candidates(const SphereBvh& bvh, std::uint32_t index, float shortest, SingleRay& ray) {
+  const ChildTag d;
+  const hn::RebindToUnsigned<ChildTag> du;
+  const SphereBvh::Leaf& leaf = bvh.leaves[index];
+  const auto set = [&](float x) { return hn::Set(d, x); };
+  const auto margin = set(margin_of(bvh, leaf)), zero = hn::Zero(d), growth = set(kGrowth);
+  const auto infinite = set(std::numeric_limits<float>::infinity());
+  int count = ray.candidates;
+  auto nearest = set(ray.limit);
+  for (int v = 0; v < static_cast<int>(SphereBvh::kArity); v += kChildLanes) {
+    const auto along = hn::Load(d, ray.along + v), offset_square = hn::Load(d, ray.offset_square + v);
+    const RadiusBounds radii = radii_of(bvh, index, v);
+    const auto begin = along - (radii.most + margin);
+    const auto may_hit = offset_square < infinite;
     const auto distance = hn::Max(begin, zero);
     if constexpr (kHasCompress) {
       hn::StoreU(hn::Compress(distance, may_hit), d, ray.at + count);
-      hn::StoreU(hn::Compress(hn::LoadU(du, ids + v), hn::RebindMask(du, may_hit)), du, ray.candidate + count);
+      hn::StoreU(hn::Compress(hn::LoadU(du, leaf.ids + v), hn::RebindMask(du, may_hit)), du, ray.candidate + count);
       count += static_cast<int>(hn::CountTrue(d, may_hit));
     } else {
       alignas(64) float distances[SphereBvh::kArity];
       hn::Store(distance, d, distances);
       each_bit(bits_of(d, may_hit), [&](int i) {
         ray.at[count] = distances[i];
-        ray.candidate[count++] = ids[v + i];
+        ray.candidate[count++] = leaf.ids[v + i];
       });
     }
-    const auto inner = least - margin;
-    const auto deep = hn::NegMulAdd(offset_square, growth, inner * inner);
-    const auto pierced = hn::And(hn::And(may_hit, inner > zero), hn::And(deep > zero, begin > set(shortest)));
+    const auto inner = radii.least - margin;
+    const auto deep = hn::NegMulAdd(offset_square, growth, inner * inner);  // negative where there is no candidate
+    const auto pierced = hn::And(inner > zero, hn::And(deep > zero, begin > set(shortest)));
     // Slightly below the root, so that the distance is overestimated. The error of the approximate reciprocal square
     // root is below 2^-11; it differs between processors, but does not affect the image.
     const auto root = deep * hn::ApproximateReciprocalSqrt(hn::Max(deep, set(0x1p-100F)));

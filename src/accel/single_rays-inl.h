@@ -30,7 +30,7 @@ HWY_INLINE bool order_candidates(SingleRay& ray) {
     const auto at = hn::LoadU(d, ray.at + from);
     const auto index = hn::Iota(di, from);
     const auto within = hn::And(hn::RebindMask(di, at <= hn::Set(d, ray.limit)), index < hn::Set(di, ray.candidates));
-    return store_chosen(di, keys_of<kMaxCandidates>(d, at, index), within, ray.order + to);
+    return store_chosen(di, keys_of<kMaxCandidates>(d, at, index), within, ray.keys + to);
   };
   int count = 0;
   if (ray.candidates <= 4) {
@@ -38,8 +38,8 @@ HWY_INLINE bool order_candidates(SingleRay& ray) {
   } else {
     for (int v = 0; v < ray.candidates; v += kChildLanes) count += order(ChildTag(), v, count);
   }
-  if (count > 1) sort_keys(ray.order, count);
-  ray.ordered = count;
+  if (count > 1) sort_keys(ray.keys, count);
+  ray.key_count = count;
   ray.candidates = 0;
   return count > 0;
 }
@@ -72,12 +72,12 @@ HWY_INLINE unsigned intersect_candidates(const EmbreeQuery<Packet>& query, unsig
       unsigned now = 0;
       each_bit(rest, [&](int i) {
         SingleRay& one = rays[i];
-        const auto next = static_cast<unsigned>(one.order[--one.ordered]) & (kMaxCandidates - 1);
+        const auto next = static_cast<unsigned>(one.keys[--one.key_count]) & (kMaxCandidates - 1);
         // If this one is beyond the limit, so are the others.
         const bool within = one.at[next] <= one.limit;
         if (within) ids[i - v] = one.candidate[next];
         now |= within ? 1u << i : 0u;
-        rest &= within && one.ordered > 0 ? ~0u : ~(1u << i);
+        rest &= within && one.key_count > 0 ? ~0u : ~(1u << i);
       });
       if (now == 0) break;
       const auto spheres = hn::Load(du, ids);
@@ -138,6 +138,10 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
     queue |= std::uint64_t{1} << ((next >> kIndexWidth) * 16 + static_cast<unsigned>(i));
     prefetcher.prefetch(next);
   };
+  const auto push = [&](unsigned visiting) {
+    each_bit(visiting, [&](int i) { push_children(rays[i]); });
+    each_bit(visiting, enqueue);
+  };
   const auto take = [&](Kind kind) {
     const auto bits = static_cast<unsigned>(queue >> (kind * 16) & kOneKind);
     queue &= ~(kOneKind << (kind * 16));
@@ -145,30 +149,35 @@ HWY_INLINE unsigned trace_rays(const SphereBvh& bvh, const EmbreeQuery<Packet>& 
   };
   each_bit(lanes, enqueue);
   unsigned changed = 0;
-  // The arithmetic of all rays comes before any branch: a mispredicted branch would discard the next ray's arithmetic,
-  // which is already in flight.
+  // Each kind of step is divided into passes over the rays, arithmetic without branches first: a mispredicted branch
+  // would discard the arithmetic of the next rays, which is already in flight.
   while (queue != 0) {
     const unsigned at_nodes = take(kNode);
-    each_bit(at_nodes, [&](int i) { visit_node(bvh.nodes[rays[i].what[--rays[i].waiting]], rays[i]); });
-    each_bit(at_nodes, enqueue);
+    each_bit(at_nodes, [&](int i) { test_children(bvh.nodes[rays[i].what[--rays[i].waiting]], rays[i]); });
+    push(at_nodes);
 
     const unsigned at_leaves = take(kLeaf);
     bool full = false;
+    unsigned found = 0;
     each_bit(at_leaves, [&](int i) {
       SingleRay& ray = rays[i];
       std::uint32_t target = kernel::kNoSphere;
       if constexpr (kShadows) target = static_cast<std::uint32_t>(query.packet->target[query.first + i]);
-      visit_leaf<kShadows>(bvh, ray.what[--ray.waiting] & kIndexMask, shortest, target, ray);
+      const bool any = test_spheres<kShadows>(bvh, ray.what[--ray.waiting] & kIndexMask, target, ray);
+      found |= static_cast<unsigned>(any) << i;
+    });
+    each_bit(found, [&](int i) {
+      SingleRay& ray = rays[i];
+      add_candidates(bvh, ray.what[ray.waiting] & kIndexMask, shortest, ray);
       full = full || ray.candidates > kMaxCandidates - static_cast<int>(SphereBvh::kArity);
+      prefetcher.prefetch_sphere(ray.candidate[ray.candidates - 1]);
     });
-    each_bit(at_leaves, [&](int i) {
-      prefetcher.prefetch_sphere(rays[i].candidate[std::max(rays[i].candidates - 1, 0)]);
-      enqueue(i);
-    });
+    each_bit(at_leaves, enqueue);
 
-    each_bit(take(kEnd), [&](int i) {
-      if (climb(bvh, rays[i])) enqueue(i);
-    });
+    unsigned climbing = take(kEnd);
+    each_bit(climbing, [&](int i) { climbing &= ~(static_cast<unsigned>(is_done(bvh, rays[i])) << i); });
+    each_bit(climbing, [&](int i) { climb(bvh, rays[i]); });
+    push(climbing);
     if (full) changed |= intersect_candidates<Packet, kPrecision>(query, lanes, rays);
   }
   return changed | intersect_candidates<Packet, kPrecision>(query, lanes, rays);
