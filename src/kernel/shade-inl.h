@@ -66,14 +66,16 @@ HWY_INLINE void deposit(D d, hn::Mask<D> lanes, const Vec3<hn::Vec<D>>& light, h
   hn::Store(pixels, IdTag<D>(), pixel);
   // Other instruction sets convert lanes one by one.
   if constexpr (HWY_TARGET <= HWY_AVX3 && hn::MaxLanes(D()) > 1) {
-    const auto most = hn::Max(hn::Max(hn::Abs(light.x), hn::Abs(light.y)), hn::Abs(light.z));
-    const auto converts = most < hn::Set(d, T(4));  // false for NaN
-    if (scene.filter.negative_share == 0 && hn::AllFalse(d, hn::AndNot(converts, lanes))) {
+    // Compared one by one, since the maximum of a NaN and a number may be the number.
+    const auto converts = [&](hn::Vec<D> v) { return hn::Abs(v) < hn::Set(d, T(4)); };
+    const auto all_convert = hn::And(hn::And(converts(light.x), converts(light.y)), converts(light.z));
+    if (scene.filter.negative_share == 0 && hn::AllFalse(d, hn::AndNot(all_convert, lanes))) {
       HWY_ALIGN std::int64_t rgb[3][hn::MaxLanes(D())];
       store_fixed_point(d, light.x, rgb[0]);
       store_fixed_point(d, light.y, rgb[1]);
       store_fixed_point(d, light.z, rgb[2]);
-      each_lane(d, hn::And(lanes, most > hn::Zero(d)), [&](int i) {
+      const auto is_black = hn::Max(hn::Max(hn::Abs(light.x), hn::Abs(light.y)), hn::Abs(light.z)) == hn::Zero(d);
+      each_lane(d, hn::AndNot(is_black, lanes), [&](int i) {
         PixelSum& sum = sum_of(pixel[i], scene, tile);
         for (int k = 0; k < 3; ++k) sum.rgb[k] += rgb[k][i];
       });

@@ -285,6 +285,20 @@ TEST(RenderLitLoop, LobesAddUpToTheBeauty) {
   }
 }
 
+TEST(RenderLitLoop, ABadChannelMakesThePathBad) {
+  for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast})
+    for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), 1e30})
+      for (int channel = 0; channel < 3; ++channel) {
+        Furnace furnace(precision, 1, 1);
+        for (kernel::Emission& e : furnace.emission) e.radiance[channel] = bad;
+        Rendered out;
+        render_tile(furnace.compiled, furnace.view, Kind::kLit, false, out);
+        EXPECT_EQ(out.counts.bad_samples, out.sums.size() * 16) << bad << ", channel " << channel;
+        for (const kernel::PixelSum& sum : out.sums)
+          ASSERT_TRUE(sum.weight == 0 && sum.rgb[0] == 0 && sum.rgb[1] == 0 && sum.rgb[2] == 0);
+      }
+}
+
 TEST(RenderLitLoop, ABadValueCostsAPathItsWeightOnce) {
   for (const auto precision : {scene::Precision::kExact, scene::Precision::kFast}) {
     for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
