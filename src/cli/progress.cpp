@@ -28,9 +28,8 @@ ProgressStyle resolved(ProgressStyle style, std::FILE* to) {
 
 }  // namespace
 
-ProgressPrinter::ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat,
-                                 BarDisplay* display)
-    : style_(resolved(style, to)), to_(to), display_(display), heartbeat_(heartbeat), state_{0, 1, 0} {
+ProgressPrinter::ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat)
+    : style_(resolved(style, to)), to_(to), heartbeat_(heartbeat), state_{0, 1, 0} {
   if (style_ != ProgressStyle::kBar && style_ != ProgressStyle::kNone)
     printing_thread_ = std::thread([this] { print_periodically(); });
 }
@@ -77,20 +76,17 @@ void ProgressPrinter::finish() {
 
 void ProgressPrinter::print_bar(const std::string& bar) {
   bar_shown_ = true;
-  if (display_ != nullptr) return display_->bar(bar);
   std::fprintf(to_, "\r%s\033[K", bar.c_str());
   std::fflush(to_);
 }
 
 void ProgressPrinter::clear_bar() {
   if (!std::exchange(bar_shown_, false)) return;
-  if (display_ != nullptr) return display_->bar("");
   std::fputs("\r\033[K", to_);
   std::fflush(to_);
 }
 
 void ProgressPrinter::print(const std::string& lines) {
-  if (display_ != nullptr) return display_->note(lines);
   std::fputs(lines.c_str(), to_);
   std::fflush(to_);
 }

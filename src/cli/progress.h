@@ -15,24 +15,14 @@ namespace orrery::cli {
 /// Maximum time between two lines of progress, so that a supervisor does not consider a render hung.
 inline constexpr std::chrono::milliseconds kHeartbeat{60'000};
 
-/// Shows the progress bar and messages on a terminal that a preview also draws on.
-class BarDisplay {
- public:
-  virtual ~BarDisplay() = default;
-  virtual void bar(const std::string& text) = 0;   ///< one line, without newline
-  virtual void note(const std::string& text) = 0;  ///< whole lines
-};
-
 /// Prints the progress of a render: a bar, or a line whenever the whole percent changes and at least once per
 /// heartbeat, including while the scene is read and during a long tile.
 class ProgressPrinter {
  public:
   /// Starts the heartbeat.
   ///
-  /// `display`  prints instead of `to`, if not null
-  /// Domain     `to` and `display` outlive this
-  ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat = kHeartbeat,
-                  BarDisplay* display = nullptr);
+  /// Domain     `to` outlives this
+  ProgressPrinter(ProgressStyle style, std::FILE* to, std::chrono::milliseconds heartbeat = kHeartbeat);
   ~ProgressPrinter();
   ProgressPrinter(const ProgressPrinter&) = delete;
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
@@ -58,7 +48,6 @@ class ProgressPrinter {
 
   ProgressStyle style_;
   std::FILE* to_;
-  BarDisplay* display_;
   std::chrono::milliseconds heartbeat_;
   std::mutex mutex_;  // guards all members below
   std::condition_variable wake_;

@@ -15,18 +15,21 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "cli/commands.h"
-#include "cli/live_preview.h"
 #include "cli/messages.h"
 #include "cli/option_checks.h"
 #include "cli/output.h"
-#include "cli/preview_screen.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/render_report.h"
 #include "cli/signals.h"
+#include "display/picture_info.h"
+#include "film/partial.h"
+#include "film/picture.h"
+#include "film/rendered_pixels.h"
 #include "job/job_report.h"
 #include "job/provenance.h"
 #include "preview/preview.h"
+#include "preview/target.h"
 #include "render/progress.h"
 
 namespace orrery::cli {
@@ -94,6 +97,25 @@ class BatchProgress {
   Clock::time_point start_ = Clock::now();
 };
 
+/// Starts a preview and connects the hooks of jobs with it; null and no hooks without one.
+///
+/// `note`     prints whole lines from any thread
+/// Domain     the result outlives the jobs; what `note` refers to outlives the result
+std::unique_ptr<preview::Preview> start_preview(const preview::Target& target, preview::OnNote note,
+                                                job::Hooks& hooks) {
+  std::unique_ptr<preview::Sink> sink = preview::make_sink(target, note);
+  if (!sink) return nullptr;
+  auto out = std::make_unique<preview::Preview>(std::move(sink), std::move(note));
+  preview::Preview* const started = out.get();
+  hooks.on_start = [started](const display::PictureInfo& picture) { started->begin(picture); };
+  hooks.on_pixels = [started](const film::Partial& state, const film::RenderedPixels& rendered) {
+    started->write(state, rendered);
+  };
+  hooks.on_denoised = [started](const film::Picture& picture) { started->write(picture); };
+  hooks.develops_pixels = !target.file.empty();
+  return out;
+}
+
 /// Prints the summary of a batch. Returns the exit status of the first failure, or 0.
 int print_summary(const farm::BatchReport& report, bool quiet) {
   std::string text = fmt::format("{} of {} rendered, {} skipped, {} failed\n", report.rendered, report.jobs,
@@ -138,8 +160,7 @@ int run_render(RenderOptions& options) {
   const preview::Target target = options.preview.empty() ? preview::Target() : preview::parse_target(options.preview);
   batch.preview = target.file;
   if (!target.file.empty()) base::check_creatable(target.file);
-  const std::unique_ptr<PreviewScreen> screen = open_screen(target);
-  ProgressPrinter printer(style_of(options), stderr, kHeartbeat, screen.get());
+  ProgressPrinter printer(style_of(options), stderr);
   BatchProgress progress(printer);
   int status = 0;
   job.hooks.on_progress = [&](const render::Progress& p) { progress.update(p); };
@@ -152,7 +173,7 @@ int run_render(RenderOptions& options) {
       !unused.empty())
     note(unused);
   job.hooks.on_note = [&](const std::string& text) { note(text + "\n"); };
-  const auto preview = start_preview(target, screen.get(), note, job.hooks);
+  const auto preview = start_preview(target, note, job.hooks);
   batch.on_begin = [&](const job::Job& one, std::size_t index, std::size_t count) {
     progress.begin(index, count);
     log_message(fmt::format("rendering {}\n", farm::job_name(batch, one)));
@@ -230,7 +251,7 @@ void add_render_options(Command& command, RenderOptions& options, bool allows_ra
       ->type_name("STYLE");
   command
       .add_option("--preview", options.preview,
-                  "Show the image while it is rendered: tev, tev:HOST:PORT, terminal, or a .png file to rewrite")
+                  "Show the image while it is rendered: tev, tev:HOST:PORT, or a .png file to rewrite")
       ->check([](std::string& text) { return std::string(text.empty() ? "must not be empty" : ""); })
       ->type_name("WHERE");
   command.add_option("--stats", options.batch.job.outputs.statistics, "Write statistics of the render as JSON")
@@ -261,7 +282,7 @@ void add_render(Command& program, Action& action) {
       "  orrery render scenes/book/final.toml -o final.exr -o final.png\n"
       "  orrery render scene.toml -o test.png --samples 20 --set camera.vfov=30\n"
       "  orrery render scene.toml -o final.exr --noise 0.01 --time 10m\n"
-      "  orrery render scene.toml -o final.exr --preview terminal\n"
+      "  orrery render scene.toml -o final.exr --preview preview.png\n"
       "  orrery render shot.toml -o shot.####.exr --frames 1-240 --resume --skip-existing\n"
       "  orrery render shot.toml -o shard.2.exr --samples 100:200\n"
       "  orrery render scene.toml -o book.png --display \"Gamma 2.0 Rec.709\"");

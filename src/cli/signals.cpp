@@ -5,7 +5,6 @@
 #include <csignal>
 
 #include "base/atomic_file.h"
-#include "preview/tty.h"
 
 namespace orrery::cli {
 namespace {
@@ -16,7 +15,6 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not
 void on_signal(int signal) {
   if (!stop.exchange(true)) return;
   base::remove_unfinished_files();
-  preview::restore_terminal();
   _exit(128 + signal);  // as a shell reports a process ended by a signal
 }
 

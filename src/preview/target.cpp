@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "preview/file_sink.h"
-#include "preview/terminal_sink.h"
 #include "preview/tev_sink.h"
 
 namespace orrery::preview {
@@ -17,7 +16,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& text) {
   throw base::Error(base::ErrorKind::kUsage,
-                    fmt::format("--preview: {}; write tev, tev:HOST:PORT, terminal, or the name of a .png file", text));
+                    fmt::format("--preview: {}; write tev, tev:HOST:PORT, or the name of a .png file", text));
 }
 
 bool is_port(const std::string& text) {
@@ -58,7 +57,6 @@ bool is_png(const std::filesystem::path& file) {
 
 Target parse_target(const std::string& text) {
   if (text == "tev") return {TargetKind::kTev, kTevHost, kTevPort, {}};
-  if (text == "terminal") return {TargetKind::kTerminal, {}, {}, {}};
   if (base::has_frame_pattern(text))
     throw base::Error(
         base::ErrorKind::kUsage,
@@ -68,11 +66,10 @@ Target parse_target(const std::string& text) {
   refuse(fmt::format("`{}` is not a preview", text));
 }
 
-std::unique_ptr<Sink> make_sink(const Target& target, Screen* screen, const OnNote& note) {
+std::unique_ptr<Sink> make_sink(const Target& target, const OnNote& note) {
   switch (target.kind) {
     case TargetKind::kNone: break;
     case TargetKind::kTev: return std::make_unique<TevSink>(target.host, target.port, note);
-    case TargetKind::kTerminal: return std::make_unique<TerminalSink>(*screen);
     case TargetKind::kFile: return std::make_unique<FileSink>(target.file);
   }
   return nullptr;

@@ -8,10 +8,7 @@
 #include "film/picture.h"
 #include "film/rendered_pixels.h"
 #include "preview/file_sink.h"
-#include "preview/terminal_sink.h"
-#include "support/pseudo_terminal.h"
 #include "support/temp_dir.h"
-#include "unit/preview/drawings.h"
 #include "unit/preview/pictures.h"
 #include "unit/preview/png_bytes.h"
 
@@ -65,27 +62,6 @@ TEST(PreviewPreview, AFileThatCannotBeWrittenIsOneWarning) {
   }
   EXPECT_EQ(notes.find("warning: the preview ended: cannot create "), 0u) << notes;
   EXPECT_EQ(std::count(notes.begin(), notes.end(), '\n'), 1);
-}
-
-TEST(PreviewPreview, TheTerminalShowsTheDevelopedImageInTheEnd) {
-  ORRERY_NEEDS_PSEUDO_TERMINAL();
-  test::PseudoTerminal terminal;
-  const film::Partial state = partial(20, 10);
-  std::string notes;
-  {
-    const test::TerminalReader reader(terminal);
-    Screen screen(terminal.slave(), [](const char* name) {
-      return std::string(std::string(name) == "TERM" ? "linux" : std::string(name) == "COLORTERM" ? "truecolor" : "");
-    });
-    {
-      Preview preview(std::make_unique<TerminalSink>(screen), into(notes));
-      preview.begin(info(20, 10));
-      write_all(state, preview);
-    }
-    screen.finish();
-  }
-  EXPECT_TRUE(decoded_half_blocks(terminal.last_drawing()).codes == developed(state)) << terminal.output();
-  EXPECT_EQ(notes, "");
 }
 
 TEST(PreviewPreview, EndsWithoutAnImage) {

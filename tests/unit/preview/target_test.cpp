@@ -26,15 +26,14 @@ TEST(PreviewTarget, TevListensOnLoopbackUnlessAHostIsGiven) {
   EXPECT_EQ(address("tev:[::1]"), "::1 14158");
 }
 
-TEST(PreviewTarget, KnowsTheTerminalAndPngFiles) {
-  EXPECT_EQ(parse_target("terminal").kind, TargetKind::kTerminal);
+TEST(PreviewTarget, KnowsPngFiles) {
   EXPECT_EQ(parse_target("out/p.PNG").file, "out/p.PNG");
   EXPECT_EQ(parse_target("tev.png").kind, TargetKind::kFile);
   EXPECT_EQ(parse_target("tev:9000.png").kind, TargetKind::kFile);
 }
 
 TEST(PreviewTarget, MakesTheSinkOfItsKind) {
-  const auto sink_of = [](const Target& target) { return make_sink(target, nullptr, {}); };
+  const auto sink_of = [](const Target& target) { return make_sink(target, {}); };
   EXPECT_EQ(sink_of({}), nullptr);
   const std::unique_ptr<Sink> file = sink_of(parse_target("p.png"));
   EXPECT_NE(dynamic_cast<const FileSink*>(file.get()), nullptr);
@@ -53,14 +52,14 @@ TEST(PreviewTarget, AFramePatternIsNotAPreview) {
 }
 
 TEST(PreviewTarget, RejectsEverythingElse) {
-  for (const char* text : {"", "Terminal", "p.exr", "tev:", "tev::9000", "tev:desk:", "tev:desk:0", "tev:desk:65536",
+  for (const char* text : {"", "terminal", "p.exr", "tev:", "tev::9000", "tev:desk:", "tev:desk:0", "tev:desk:65536",
                            "tev:desk:9x", "tev:::1", "tev:[::1", "tev:[::1]9", "tev2"}) {
     try {
       parse_target(text);
       ADD_FAILURE() << text;
     } catch (const base::Error& error) {
       EXPECT_EQ(error.kind(), base::ErrorKind::kUsage) << text;
-      EXPECT_NE(std::string(error.what()).find("write tev, tev:HOST:PORT, terminal"), std::string::npos) << text;
+      EXPECT_NE(std::string(error.what()).find("write tev, tev:HOST:PORT, or the name"), std::string::npos) << text;
     }
   }
 }
