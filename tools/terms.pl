@@ -13,15 +13,14 @@ my %ignored = map { $_ => 1 } $list, 'LICENSE';
 
 # A phrase may continue on the next line of a comment, after its indentation and comment mark.
 my $gap = qr{(?:[ \t]+|[ \t]*\n[ \t]*(?:///?|\#|\*|--)?[ \t]*)};
-my (@text_terms, @code_terms);
+my @terms;
 open my $in, '<', $list or die "terms.pl: cannot open $list: $!\n";
 while (<$in>) {
   next if /^\s*(?:#|$)/;
-  /^(text|code)  (.+?)  =>  (.+)$/ or die "$list:$.: expected: text|code  REGEX  =>  REPLACEMENT\n";
-  my ($scope, $pattern, $replacement) = ($1, $2, $3);
-  if ($scope eq 'code') { push @code_terms, [qr/\b(?:$pattern)\b/, $replacement]; next }
+  /^(.+?)  =>  (.+)$/ or die "$list:$.: expected: REGEX  =>  REPLACEMENT\n";
+  my ($pattern, $replacement) = ($1, $2);
   $pattern =~ s/(?<!\[) /$gap/g;
-  push @text_terms, [qr/\b(?:$pattern)\b/i, $replacement];
+  push @terms, [qr/\b(?:$pattern)\b/i, $replacement];
 }
 close $in;
 
@@ -33,16 +32,6 @@ for my $file (@files) {
   my $text = do { local $/; <$in> };
   close $in;
   next unless defined $text;
-  report($file, $text, @text_terms);
-  next unless $file =~ /\.(?:cpp|h)$/;
-  # Blanks out comments and strings; newlines stay, for the line numbers.
-  $text =~ s{(R"([^(\s]*)\(.*?\)\2"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'|//[^\n]*|/\*.*?\*/)}{my $s = $1; $s =~ tr/\n/ /c; $s}gse;
-  report($file, $text, @code_terms);
-}
-exit($found > 0);
-
-sub report {
-  my ($file, $text, @terms) = @_;
   for my $term (@terms) {
     my ($regex, $replacement) = @$term;
     while ($text =~ /$regex/g) {
@@ -53,3 +42,4 @@ sub report {
     }
   }
 }
+exit($found > 0);

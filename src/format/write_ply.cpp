@@ -2,20 +2,16 @@
 #include "format/write_ply.h"
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
 
-#include "base/error.h"
 #include "base/output_file.h"
-#include "scene/value_text.h"
 
 namespace orrery::format {
 namespace {
@@ -29,42 +25,27 @@ void append_bytes(std::string& out, T value) {
   out.append(bytes, sizeof(T));
 }
 
-void append_float(std::string& out, double value, std::size_t index) {
-  if (std::abs(value) > std::numeric_limits<float>::max())
-    throw base::Error(base::ErrorKind::kBadData,
-                      fmt::format("sphere {} has the value {}, which overflows a float; write doubles", index,
-                                  scene::number_text(value)));
-  append_bytes(out, static_cast<float>(value));
-}
-
 /// The header up to the comment that names the writer, as in particles::write_table.
 std::string header_begin(std::string_view writer) {
   return fmt::format("ply\nformat binary_little_endian 1.0\ncomment made by {}\n", writer);
 }
 
-std::string header(const scene::Points& points, PlyReal real) {
-  const std::string property = real == PlyReal::kDouble ? "property double " : "property float ";
+std::string header(const scene::Points& points) {
   std::string out = fmt::format("{}element vertex {}\n", header_begin(kPlyWriter), points.centers.size());
-  for (const char* name : {"x", "y", "z", "radius"}) out += property + name + '\n';
+  for (const char* name : {"x", "y", "z", "radius"}) out += fmt::format("property double {}\n", name);
   if (!points.materials.empty()) out += "property uint material\n";
   return out + "end_header\n";
 }
 
 }  // namespace
 
-void write_ply(const scene::Points& points, const std::filesystem::path& file, PlyReal real) {
+void write_ply(const scene::Points& points, const std::filesystem::path& file) {
   base::OutputFile output(file);
   std::string& out = output.buffer();
-  out = header(points, real);
+  out = header(points);
   for (std::size_t i = 0; i < points.centers.size(); ++i) {
     const math::Vec3d c = points.centers[i];
-    for (const double x : {c.x, c.y, c.z, points.radii[i]}) {
-      if (real == PlyReal::kDouble) {
-        append_bytes(out, x);
-      } else {
-        append_float(out, x, i);
-      }
-    }
+    for (const double x : {c.x, c.y, c.z, points.radii[i]}) append_bytes(out, x);
     if (!points.materials.empty()) append_bytes(out, points.materials[i]);
     output.flush();
   }

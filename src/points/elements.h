@@ -19,8 +19,6 @@ enum class ElementRadius {
   kBall,  ///< kBallScale times the van der Waals radius
 };
 
-enum class ElementColors { kJmol, kCpk };
-
 /// A chemical element.
 struct Element {
   std::string_view symbol;  ///< "He"
@@ -37,13 +35,13 @@ struct Element {
   /// Units      angstrom
   /// Reference  cordero2008, pyykko2009
   double covalent;
-  /// Reference jmol-colors; from Ds on that of Mt. Hydrogen is PyMOL's light grey instead of white, because white atoms
-  /// are invisible against the white background of a plot.
-  Srgb8 jmol;
-  Srgb8 cpk;  ///< Reference rasmol-colors; deep pink for the elements without a colour
+  /// The colour that viewers give it by default.
+  ///
+  /// Reference  jmol-colors; from Ds on that of Mt. Hydrogen is PyMOL's light grey instead of white, because white
+  /// atoms are invisible against the white background of a plot.
+  Srgb8 color;
 
   double radius(ElementRadius kind) const;
-  const Srgb8& color(ElementColors scheme) const { return scheme == ElementColors::kJmol ? jmol : cpk; }
 };
 
 /// Returns the element with an atomic number; null unless 1 <= number <= 118.

@@ -140,7 +140,7 @@ PointColors colors_by_element(const data::Table& table, const Rows& rows, const 
   constexpr std::array<std::uint8_t, 3> kUnknown = {255, 20, 147};
   for (const std::string& name : labels->names) {
     const Element* const element = find_element(name);
-    out.palette.push_back(linear_from_bytes(element != nullptr ? element->color(ElementColors::kJmol) : kUnknown));
+    out.palette.push_back(linear_from_bytes(element != nullptr ? element->color : kUnknown));
   }
   out.rec709 = out.palette.size();
   out.indices = indices_of(*labels);

@@ -47,31 +47,6 @@ TEST(FormatWritePly, DoublesReadBackToTheSameBits) {
   }
 }
 
-TEST(FormatWritePly, FloatsAreRoundedAndTakeHalfTheSpace) {
-  const support::TempDir folder;
-  const auto points = some_points(100, false);
-  write_ply(points, folder / "d.ply", PlyReal::kDouble);
-  write_ply(points, folder / "f.ply", PlyReal::kFloat);
-  const auto read = read_back(folder / "f.ply");
-  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(read.centers[i].y, static_cast<float>(points.centers[i].y));
-  EXPECT_LT(std::filesystem::file_size(folder / "f.ply") + 1500, std::filesystem::file_size(folder / "d.ply"));
-}
-
-TEST(FormatWritePly, FloatOverflowIsRefused) {
-  const support::TempDir folder;
-  auto points = some_points(3, false);
-  points.centers.set(1, 2, 1e39);
-  EXPECT_NO_THROW(write_ply(points, folder / "a.ply", PlyReal::kDouble));
-  try {
-    write_ply(points, folder / "b.ply", PlyReal::kFloat);
-    FAIL() << "no error";
-  } catch (const base::Error& error) {
-    EXPECT_EQ(error.kind(), base::ErrorKind::kBadData);
-    EXPECT_STREQ(error.what(), "sphere 1 has the value 1e+39, which overflows a float; write doubles");
-  }
-  EXPECT_FALSE(std::filesystem::exists(folder / "b.ply"));
-}
-
 TEST(FormatWritePly, WritesAFileWithoutPoints) {
   const support::TempDir folder;
   write_ply({}, folder / "a.ply");

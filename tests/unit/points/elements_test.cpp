@@ -88,14 +88,11 @@ TEST(PointsElements, RadiusKinds) {
 }
 
 TEST(PointsElements, Colors) {
-  EXPECT_EQ(find_element("C")->color(ElementColors::kJmol), (Srgb8{144, 144, 144}));
-  EXPECT_EQ(find_element("N")->color(ElementColors::kJmol), (Srgb8{48, 80, 248}));
-  EXPECT_EQ(find_element("O")->color(ElementColors::kJmol), (Srgb8{255, 13, 13}));
-  EXPECT_EQ(find_element("Mt")->color(ElementColors::kJmol), (Srgb8{235, 0, 38}));
-  EXPECT_EQ(find_element("Og")->color(ElementColors::kJmol), (Srgb8{235, 0, 38}));
-  EXPECT_EQ(find_element("C")->color(ElementColors::kCpk), (Srgb8{200, 200, 200}));
-  EXPECT_EQ(find_element("N")->color(ElementColors::kCpk), (Srgb8{143, 143, 255}));
-  EXPECT_EQ(find_element("Zr")->color(ElementColors::kCpk), (Srgb8{255, 20, 147}));
+  EXPECT_EQ(find_element("C")->color, (Srgb8{144, 144, 144}));
+  EXPECT_EQ(find_element("N")->color, (Srgb8{48, 80, 248}));
+  EXPECT_EQ(find_element("O")->color, (Srgb8{255, 13, 13}));
+  EXPECT_EQ(find_element("Mt")->color, (Srgb8{235, 0, 38}));
+  EXPECT_EQ(find_element("Og")->color, (Srgb8{235, 0, 38}));
 }
 
 }  // namespace
