@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file_set.h"
 #include "base/frames.h"
+#include "base/image_limits.h"
 #include "base/output_file.h"
 #include "cli/commands.h"
 #include "cli/data_options.h"
@@ -45,29 +46,27 @@ struct PlotArguments {
   std::filesystem::path save_scene, legend;
 };
 
-bool is_set(const std::vector<format::Override>& overrides, std::string_view key) {
-  return std::any_of(overrides.begin(), overrides.end(), [&](const auto& o) { return o.sets(key); });
-}
-
-/// The value of an override, such as --width, which the camera must know.
-void take_override(const std::vector<format::Override>& overrides, const std::string& key, int& value) {
-  for (const format::Override& override : overrides)
-    if (override.text.starts_with(key + "=")) value = std::max(1, integer_of(override.text.substr(key.size() + 1)));
+/// A side of the image, which the camera must know. An invalid one is reported when the scene is read.
+int side_of(const format::Overrides& overrides, const char* key, int otherwise) {
+  return static_cast<int>(std::clamp<std::int64_t>(overrides.integer(key).value_or(otherwise), 1, base::kLargestSide));
 }
 
 /// A provisional scene with only the overrides of tables that every scene has, validated.
 ///
 /// `develops` see load::SceneRequest
-load::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments,
-                              const std::vector<format::Override>& overrides, bool develops) {
+load::LoadedScene settings_of(const job::Job& job, const PlotArguments& arguments, const format::Overrides& overrides,
+                              bool develops) {
   load::SceneRequest request{job.scene, job.outputs.display, develops};
   request.source.file = arguments.save_scene.empty() ? arguments.plot.file : arguments.save_scene;
   request.source.text = std::make_shared<const std::string>();
   request.source.is_generated = true;
-  request.source.overrides.clear();
-  for (const format::Override& override : overrides)
-    for (const char* table : {"color.", "image.", "output.", "render."})
-      if (override.text.starts_with(table)) request.source.overrides.push_back(override);
+  request.source.overrides = {};
+  for (const format::Override& override : overrides) {
+    const std::string table = override.values.empty() ? "" : override.values.front().key;  // all keys are of one table
+    const std::string name = table.substr(0, table.find('.'));
+    if (override.fault || name == "color" || name == "image" || name == "output" || name == "render")
+      request.source.overrides.add(override);
+  }
   return load::load_scene(request);
 }
 
@@ -81,8 +80,7 @@ std::vector<job::OutputFile> own_outputs(const PlotArguments& arguments) {
 
 /// Checks early what would otherwise fail after all frames have been read: names and formats of outputs, layers, colour
 /// names.
-void check_request(const PlotArguments& arguments, const std::vector<format::Override>& overrides,
-                   const std::vector<int>& frames) {
+void check_request(const PlotArguments& arguments, const format::Overrides& overrides, const std::vector<int>& frames) {
   farm::Batch batch = arguments.render.batch;
   batch.scenes = {arguments.plot.file};
   batch.frames = frames;
@@ -97,10 +95,10 @@ void check_request(const PlotArguments& arguments, const std::vector<format::Ove
 }
 
 /// The choices that are not made by plot::make_plot().
-void add_choices(const job::Job& job, const plot::PlotOptions& plot, const std::vector<format::Override>& overrides,
+void add_choices(const job::Job& job, const plot::PlotOptions& plot, const format::Overrides& overrides,
                  plot::PlotScene& made) {
   if (plot.style == plot::Style::kFlat && !job.sampling.noise && !job.sampling.seconds &&
-      !is_set(overrides, "render.samples"))
+      !overrides.sets("render.samples"))
     made.choices.emplace_back("samples 100: without shading there is hardly any noise");
   if (job.outputs.has_display_format() && plot.display.view.empty() && made.view == plot::kPlainView)
     made.choices.emplace_back(fmt::format("view transform {}: colours match the colour map", made.view));
@@ -115,45 +113,36 @@ void print_choices(const plot::PlotScene& made, const PlotArguments& arguments) 
 }
 
 /// The scene with the settings of the command line applied, so that rendering it does not need them again.
-std::string saved_text(const std::string& text, std::vector<format::Override> settings,
-                       const display::Settings& display) {
-  // make_plot() handles these two.
-  std::erase_if(settings, [](const format::Override& setting) {
-    return setting.text.starts_with("image.width=") || setting.text.starts_with("image.height=");
-  });
+std::string saved_text(const std::string& text, const format::Overrides& overrides, const display::Settings& display) {
+  format::Overrides settings;
+  for (const format::Override& override : overrides) {
+    const auto is_of_plot = [](const format::KeyValue& set) {  // make_plot() handles these two
+      return set.key == "image.width" || set.key == "image.height";
+    };
+    if (!std::all_of(override.values.begin(), override.values.end(), is_of_plot)) settings.add(override);
+  }
   const auto set = [&](const char* key, const std::string& value) {
-    if (!value.empty()) settings.push_back({fmt::format("color.{}={}", key, scene::string_text(value))});
+    if (!value.empty()) settings.add(fmt::format("color.{}={}", key, scene::string_text(value)));
   };
   if (!display.config.empty()) set("config", std::filesystem::absolute(display.config).string());
   set("display", display.display);
   set("view", display.view);
   set("look", display.look);
-  if (display.exposure) settings.push_back({"color.exposure=" + scene::number_text(*display.exposure)});
+  if (display.exposure) settings.add("color.exposure=" + scene::number_text(*display.exposure));
   if (settings.empty()) return text;
   const auto same = [](const std::string& file) { return file; };
   return fmt::format("{}\n\n{}", text.substr(0, text.find('\n')), format::merged_text("plot", text, settings, same));
 }
 
-/// The value of an override of a string; empty if none sets the key.
-std::string string_of(const std::vector<format::Override>& overrides, const std::string& key) {
-  std::string value;
-  for (const format::Override& override : overrides) {
-    if (!override.sets(key)) continue;
-    const std::string text = override.text.substr(override.text.find('=') + 1);
-    value = scene::unquoted(text.substr(std::min(text.find_first_not_of(" \t"), text.size())));
-  }
-  return value;
-}
-
 /// The display transform that the command line selects. Options have precedence over --set.
-display::Settings display_of(const display::Settings& options, const std::vector<format::Override>& overrides,
+display::Settings display_of(const display::Settings& options, const format::Overrides& overrides,
                              const std::filesystem::path& scene_file) {
   display::Settings out = options;
   const auto otherwise = [&](std::string& option, const char* key) {
-    if (option.empty()) option = string_of(overrides, key);
+    if (option.empty()) option = overrides.string(key).value_or("");
   };
   scene::Color color;
-  color.config = string_of(overrides, "color.config");
+  color.config = overrides.string("color.config").value_or("");
   if (out.config.empty()) out.config = load::config_of(scene_file, color);
   otherwise(out.display, "color.display");
   otherwise(out.view, "color.view");
@@ -185,11 +174,11 @@ int run_plot(PlotArguments& arguments) {
                              arguments.plot.file.string()));
   RenderOptions& render = arguments.render;
   plot::PlotOptions& plot = arguments.plot;
-  const std::vector<format::Override> overrides = render.scene.overrides();
-  take_override(overrides, "image.width", plot.width);
-  take_override(overrides, "image.height", plot.height);
+  const format::Overrides overrides = render.scene.overrides();
+  plot.width = side_of(overrides, "image.width", plot.width);
+  plot.height = side_of(overrides, "image.height", plot.height);
   read_data_options(arguments.data, plot);
-  plot.has_size = is_set(overrides, "image.width") || is_set(overrides, "image.height");
+  plot.has_size = overrides.sets("image.width") || overrides.sets("image.height");
   plot.has_style = !arguments.style.empty();
   plot.style = arguments.style == "flat"    ? plot::Style::kFlat
                : arguments.style == "night" ? plot::Style::kNight
@@ -209,7 +198,7 @@ int run_plot(PlotArguments& arguments) {
   render.batch.frames = made.frames;
   job.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   add_choices(job, plot, overrides, made);
-  if (!job.sampling.noise && !job.sampling.seconds && !is_set(overrides, "render.samples") &&
+  if (!job.sampling.noise && !job.sampling.seconds && !overrides.sets("render.samples") &&
       plot.style != plot::Style::kFlat) {
     job.sampling.noise = kNoise;
     made.choices.push_back(fmt::format("noise {}: --noise, --time or --samples change it", kNoise));

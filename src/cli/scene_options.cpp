@@ -46,18 +46,18 @@ std::optional<std::string> SceneOptions::sample_range() const {
   return {};
 }
 
-std::vector<format::Override> SceneOptions::overrides() const {
-  std::vector<format::Override> out;
+format::Overrides SceneOptions::overrides() const {
+  format::Overrides out, set;
+  for (const std::string& setting : set_) set.add(setting);
   for (const ShortForm& option : short_forms_) {
     if (option.flag->count() == 0 || is_range(option)) continue;
-    for (const std::string& setting : set_)
-      if (format::Override(setting).sets(option.key))
+    for (const format::Override& other : set)
+      if (other.sets(option.key))
         throw base::Error(base::ErrorKind::kUsage,
-                          fmt::format("{} and --set {} set the same key; omit one of them", option.name, setting));
-    const std::string value = option.is_list ? fmt::format("[{}]", option.value) : option.value;
-    out.emplace_back(fmt::format("{}={}", option.key, value), option.name, option.value);
+                          fmt::format("{} and --set {} set the same key; omit one of them", option.name, other.typed));
+    out.add_option(option.name, option.key, option.value, option.is_list);
   }
-  out.insert(out.end(), set_.begin(), set_.end());
+  for (const format::Override& other : set) out.add(other);
   return out;
 }
 

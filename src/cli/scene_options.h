@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/arguments.h"
-#include "format/override.h"
+#include "format/overrides.h"
 
 namespace orrery::cli {
 
@@ -24,7 +24,7 @@ class SceneOptions {
   std::optional<std::string> sample_range() const;
 
   /// All overrides, short forms first, so that --set wins.
-  std::vector<format::Override> overrides() const;
+  format::Overrides overrides() const;
 
   /// Adds --frame, for a command that uses one frame.
   void add_frame_to(Command& command);

@@ -49,7 +49,7 @@ Commands commands_of(const Submission& submission) {
 
   out.render = {submission.program, "render", batch.scenes.front().string()};
   for (const format::Override& setting : job.scene.overrides)
-    out.render.insert(out.render.end(), {"--set", setting.text});
+    out.render.insert(out.render.end(), {setting.option, setting.typed});
   if (is_split) {
     out.render.insert(out.render.end(), {"-o", fmt::format("{}%d.{}.shard.exr", prefix, Commands::kShard), "--shard",
                                          fmt::format("{}/{}", Commands::kShard, submission.shards)});

@@ -7,8 +7,7 @@
 
 namespace orrery::format {
 
-NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<Override>& overrides,
-                       const std::string* text) {
+NamedFiles named_files(const std::filesystem::path& scene_file, const Overrides& overrides, const std::string* text) {
   SourceText source;
   Diagnostics diagnostics;
   const toml::table root =

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "format/override.h"
+#include "format/overrides.h"
 
 namespace orrery::format {
 
@@ -24,7 +24,7 @@ struct NamedFiles {
 /// `text`     text of the scene; null: read the file
 /// Errors     base::Error(kBadData) for invalid TOML; kMissingInput, kIo
 /// Cost       parses the whole file
-NamedFiles named_files(const std::filesystem::path& scene_file, const std::vector<Override>& overrides,
+NamedFiles named_files(const std::filesystem::path& scene_file, const Overrides& overrides,
                        const std::string* text = nullptr);
 
 }  // namespace orrery::format

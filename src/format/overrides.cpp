@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <optional>
-#include <string_view>
+#include <numeric>
 #include <system_error>
 #include <utility>
 
@@ -17,12 +16,7 @@
 namespace orrery::format {
 namespace {
 
-constexpr const char* kExample = "write KEY=VALUE, e.g. camera.vfov=30 or sphere[0].radius=2";
-
-/// An error of an override as a whole, and its remedy.
-struct Fault {
-  std::string text, remedy = kExample;
-};
+using Fault = Override::Fault;
 
 /// The parts of "sphere[2].radius=0.5".
 struct Parts {
@@ -45,35 +39,31 @@ Parts parts_of(std::string_view text) {
     } else if (c == ']') {
       list_end = i + 1;
     } else if (c == '=') {
-      if (i == 0) throw Fault{"no key before the ="};
+      if (i == 0) throw Fault{"no key before the =", kOverrideExample};
       if (list_end == 0) return {{}, 0, i};
       if (text[list_end] != '.')
         throw Fault{"a list element cannot be set as a whole", "set one of its keys, e.g. sphere[0].radius=2"};
       return {text.substr(0, list_end), list_end + 1, i};
     }
   }
-  throw Fault{"not of the form KEY=VALUE"};
+  throw Fault{"not of the form KEY=VALUE", kOverrideExample};
 }
 
-/// Returns the table that "sphere[2]" names.
-toml::table& element_of(toml::table& root, std::string_view list) {
-  const std::size_t open = list.find('[');
-  const std::string name(list.substr(0, open));
-  std::size_t index = 0;
-  const char* const digits = list.data() + std::min(open + 1, list.size());
-  const char* const end = list.data() + list.size() - 1;  // the "]"
-  const auto [stop, fault] = std::from_chars(digits, end, index);
-  if (open == std::string_view::npos || fault != std::errc() || stop != end)
-    throw Fault{fmt::format("`{}` is not a list element", list)};
-  toml::node* node = root.get(name);
-  toml::array* array = node == nullptr ? nullptr : node->as_array();
-  if (array == nullptr) throw Fault{fmt::format("the scene has no list `{}`", name)};
-  if (index >= array->size())
-    throw Fault{
-        fmt::format("{} does not exist; the scene has {} `{}` tables, counted from 0", list, array->size(), name), ""};
-  toml::table* element = array->get(index)->as_table();
-  if (element == nullptr) throw Fault{std::string(list) + " is not a table"};
-  return *element;
+/// Parses "sphere[2]".
+Override::Element element_of(std::string_view text) {
+  const std::size_t open = std::min(text.find('['), text.size() - 1);
+  Override::Element out{{}, 0};
+  const char* const last = text.data() + text.size() - 1;  // the "]"
+  const auto [stop, fault] = std::from_chars(text.data() + open + 1, last, out.index);
+  if (text[open] != '[' || fault != std::errc() || stop != last)
+    throw Fault{fmt::format("`{}` is not a list element", text), kOverrideExample};
+  try {
+    const toml::table name = toml::parse(std::string(text.substr(0, open)) + "=0");
+    if (name.begin()->second.is_integer()) out.list = name.begin()->first.str();
+  } catch (const toml::parse_error&) {  // no list has such a name
+  }
+  if (out.list.empty()) out.list = text.substr(0, open);
+  return out;
 }
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(" \t") == std::string_view::npos; }
@@ -138,93 +128,129 @@ bool quote_list(std::string_view value, Quoted& out) {
   return true;
 }
 
-/// A parsed override, and its text as passed to the TOML library, with added quotes.
-struct Parsed {
-  toml::table tree;
-  Quoted line;
-};
-
-/// Parses key and value into a separate tree. Preceding text is replaced by blanks, so that locations are those of
-/// `text`.
-Parsed parse_override(const std::string& text, const Parts& parts, int line) {
-  const std::string above(static_cast<std::size_t>(line) - 1, '\n');
-  const std::string key =
-      std::string(parts.key_begin, ' ') + text.substr(parts.key_begin, parts.equals + 1 - parts.key_begin);
+/// Parses key and value. Preceding text is replaced by blanks, so that locations are those of `text`.
+///
+/// `inserted`  number of bytes at the beginning of `text` that the user did not type
+toml::table parse_override(const std::string& text, const Parts& parts, std::size_t inserted, Override& out) {
+  Quoted key{std::string(parts.key_begin, ' ') + text.substr(parts.key_begin, parts.equals + 1 - parts.key_begin), {}};
+  key.inserted.resize(inserted);
+  std::iota(key.inserted.begin(), key.inserted.end(), std::size_t{0});
   const std::string value = text.substr(parts.equals + 1);
-  if (is_blank(value)) throw Fault{"no value after the ="};
+  if (is_blank(value)) throw Fault{"no value after the =", kOverrideExample};
   const auto parsed = [&](Quoted quoted) {
-    toml::table tree = toml::parse(std::string_view(above + quoted.text), std::string_view(kOverrideName));
-    return Parsed{std::move(tree), std::move(quoted)};
+    out.toml = std::move(quoted.text);
+    out.inserted = std::move(quoted.inserted);
+    return toml::parse(out.toml);
   };
+  const Quoted as_typed{key.text + value, key.inserted};
   try {
-    return parsed({key + value, {}});
+    return parsed(as_typed);
   } catch (const toml::parse_error&) {
-    Quoted list{key, {}};
-    if (quote_list(value, list)) {
+    if (Quoted list = key; quote_list(value, list)) {
       try {
         return parsed(std::move(list));
       } catch (const toml::parse_error&) {  // refers to text that was not typed; the first error counts
       }
     }
-    if (looks_like_toml(value)) throw;
+    if (looks_like_toml(value)) return parsed(as_typed);
   }
-  Quoted word{key, {}};
-  word.quote(value);
-  return parsed(std::move(word));
+  key.quote(value);
+  return parsed(std::move(key));
 }
 
-/// Moves `from` into `to`. Tables from dotted keys are merged; an inline table replaces the old value.
-void merge(toml::table& to, toml::table& from) {
-  for (auto&& [key, node] : from) {
-    toml::table* const inner = node.as_table();
-    toml::node* const there = to.get(key.str());
-    if (inner != nullptr && !inner->is_inline() && there != nullptr) {
-      if (toml::table* table = there->as_table()) {
-        merge(*table, *inner);
-        continue;
-      }
-      throw Fault{fmt::format("`{}` is not a table", key.str()),
-                  there->is_array() ? "name one of its elements, e.g. sphere[0].radius=2" : ""};
+KeyValue::Value scalar_of(const toml::node& node) {
+  if (const auto* const text = node.as_string()) return text->get();
+  if (const auto* const number = node.as_integer()) return number->get();
+  if (const auto* const number = node.as_floating_point()) return number->get();
+  if (const auto* const truth = node.as_boolean()) return truth->get();
+  return {};
+}
+
+/// Adds the keys of a table. `name` and `text` precede them: "sphere[2]."
+void flatten(const toml::table& table, const std::string& name, const std::string& text, std::vector<KeyValue>& out) {
+  for (const auto& [key, node] : table) {
+    const std::string inner_name = name + std::string(key.str()), inner_text = text + toml_text(key);
+    if (const toml::table* const inner = node.as_table()) {
+      flatten(*inner, inner_name + '.', inner_text + '.', out);
+    } else {
+      out.push_back({inner_name, fmt::format("{}={}", inner_text, toml_text(node)), scalar_of(node)});
     }
-    node.visit([&to, &name = key](auto& value) { to.insert_or_assign(name, std::move(value)); });
   }
 }
 
-/// Applies one override. Its locations are in `line` of kOverrideName; `given` receives the text that was parsed.
-void apply_override(toml::table& root, const std::string& text, int line, Quoted& given) {
-  if (text.find_first_of("\r\n") != std::string::npos) throw Fault{"an override must be one line"};
-  if (too_deep_key(text).line > 0) throw Fault{fmt::format("the key has more than {} parts", kDeepestKey)};
-  const Parts parts = parts_of(text);
-  toml::table& target = parts.list.empty() ? root : element_of(root, parts.list);
-  Parsed parsed = parse_override(text, parts, line);
-  given = std::move(parsed.line);
-  merge(target, parsed.tree);
+/// Parses the text of an override, of which the user did not type the first bytes.
+void read_override(const std::string& text, std::size_t inserted, Override& out) {
+  out.toml = text;
+  out.inserted.resize(inserted);
+  std::iota(out.inserted.begin(), out.inserted.end(), std::size_t{0});
+  try {
+    if (text.find_first_of("\r\n") != std::string::npos) throw Fault{"an override must be one line", kOverrideExample};
+    if (too_deep_key(text).line > 0)
+      throw Fault{fmt::format("the key has more than {} parts", kDeepestKey), kOverrideExample};
+    const Parts parts = parts_of(text);
+    std::string name, prefix;
+    if (!parts.list.empty()) {
+      out.element = element_of(parts.list);
+      name = prefix = fmt::format("{}[{}].", out.element->list, out.element->index);
+    }
+    flatten(parse_override(text, parts, inserted, out), name, prefix, out.values);
+  } catch (const Fault& found) {
+    out.fault = found;
+  } catch (const toml::parse_error& error) {
+    out.fault = fault_of(error);
+  }
 }
 
 }  // namespace
 
-void apply_overrides(toml::table& root, const std::vector<Override>& overrides, SourceText& source,
-                     Diagnostics& diagnostics) {
-  int line = 0;
-  for (const Override& override : overrides) {
-    ++line;
-    Quoted given{override.text, {}};
-    std::optional<Fault> fault;
-    std::optional<toml::parse_error> parse_error;
-    try {
-      apply_override(root, override.text, line, given);
-    } catch (const Fault& found) {
-      fault = found;
-    } catch (const toml::parse_error& error) {
-      parse_error = error;
-    }
-    source.add_override(override, std::move(given.text), std::move(given.inserted));
-    if (parse_error) add_parse_error(*parse_error, source, diagnostics);
-    if (!fault) continue;
-    const Place whole{kOverrideName, line, 1, static_cast<int>(override.text.size())};
-    diagnostics.add(base::Severity::kError, whole, base::ErrorKind::kBadData,
-                    [&] { return source.diagnostic(base::Severity::kError, whole, fault->text, fault->remedy); });
-  }
+bool Override::sets(std::string_view key) const {
+  return std::any_of(values.begin(), values.end(), [&](const KeyValue& set) {
+    return key.starts_with(set.key) &&
+           (key.size() == set.key.size() || key[set.key.size()] == '.' || key[set.key.size()] == '[');
+  });
 }
+
+void Overrides::add(const std::string& key_and_value, bool replaces) {
+  Override& out = list_.emplace_back();
+  out.option = "--set";
+  out.typed = key_and_value;
+  out.replaces = replaces;
+  read_override(key_and_value, 0, out);
+}
+
+void Overrides::add_option(const std::string& option, const std::string& key, const std::string& typed, bool is_list) {
+  Override& out = list_.emplace_back();
+  out.option = option;
+  out.typed = typed;
+  const std::string before = key + (is_list ? "=[" : "=");
+  read_override(before + typed + (is_list ? "]" : ""), before.size(), out);
+}
+
+bool Overrides::sets(std::string_view key) const {
+  return std::any_of(list_.begin(), list_.end(), [&](const Override& one) { return one.sets(key); });
+}
+
+std::vector<KeyValue> Overrides::values() const {
+  std::vector<KeyValue> out;
+  for (const Override& one : list_)
+    for (const KeyValue& set : one.values) {
+      std::erase_if(out, [&](const KeyValue& before) { return before.key == set.key; });
+      out.push_back(set);
+    }
+  return out;
+}
+
+template <class T>
+std::optional<T> Overrides::value(std::string_view key) const {
+  std::optional<T> out;
+  for (const Override& one : list_)
+    for (const KeyValue& set : one.values)
+      if (set.key == key)
+        out = std::holds_alternative<T>(set.value) ? std::optional(std::get<T>(set.value)) : std::nullopt;
+  return out;
+}
+
+std::optional<std::int64_t> Overrides::integer(std::string_view key) const { return value<std::int64_t>(key); }
+std::optional<std::string> Overrides::string(std::string_view key) const { return value<std::string>(key); }
 
 }  // namespace orrery::format

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <memory>
 #include <string>
-#include <tuple>
 
 #include <fmt/core.h>
 
 #include "base/frames.h"
 #include "base/text.h"
-#include "format/overrides.h"
 #include "format/read_keys.h"
 #include "scene/texture.h"
 
@@ -111,7 +109,43 @@ void read_material(ReadState& state, const toml::table& table, int frame, scene:
   read_keys(state, table, full_name, type->keys, also, material.model);
 }
 
+/// Removes the keys of the file that only other types have, if an override has replaced the type.
+template <class Types>
+void drop_keys_of_old_type(toml::table& table, const char* type_key, const Types& types) {
+  const auto is_override = [](const toml::node& node) { return place_of(node).text_name == kOverrideName; };
+  const toml::node* const node = table.get(type_key);
+  if (node == nullptr || !is_override(*node)) return;
+  const auto has = [](const auto& type, const std::string& name) {
+    return std::any_of(type.keys.begin(), type.keys.end(), [&](const auto& key) { return key.name == name; });
+  };
+  const auto type = std::find_if(types.begin(), types.end(),
+                                 [&](const auto& one) { return one.name == node->value_or(std::string()); });
+  if (type == types.end()) return;
+  std::vector<std::string> old;
+  for (const auto& [key, value] : table)
+    if (const std::string name(key.str());
+        !is_override(value) && !has(*type, name) &&
+        std::any_of(types.begin(), types.end(), [&](const auto& other) { return has(other, name); }))
+      old.push_back(name);
+  for (const std::string& name : old) table.erase(name);
+}
+
 }  // namespace
+
+void drop_keys_of_old_types(toml::table& root) {
+  toml::table* const materials = root["material"].as_table();
+  if (materials == nullptr) return;
+  for (auto&& [name, node] : *materials) {
+    toml::table* const material = node.as_table();
+    if (material == nullptr) continue;
+    drop_keys_of_old_type(*material, "type", scene::material_types());
+    for (const scene::MaterialType& type : scene::material_types())
+      if ((*material)["type"].value_or(std::string()) == type.name)
+        for (const scene::TexturedKey& key : type.textured)
+          if (toml::table* const texture = (*material)[key.name].as_table())
+            drop_keys_of_old_type(*texture, "texture", scene::texture_types(key.use));
+  }
+}
 
 void read_materials(ReadState& state, const toml::table& root, int frame, std::vector<scene::Material>& materials) {
   const toml::node* node = root.get("material");
@@ -123,21 +157,7 @@ void read_materials(ReadState& state, const toml::table& root, int frame, std::v
   }
   // The library sorts keys by name, but points files count materials in the order of the file. Materials added by
   // overrides come last, because they would otherwise change the indices.
-  struct Entry {
-    bool is_override;
-    int line, column;
-    const toml::key* key;
-    const toml::node* value;
-  };
-  std::vector<Entry> in_order;
-  for (const auto& [key, value] : *all) {
-    const Place place = place_of(key);
-    in_order.push_back({place.text_name == kOverrideName, place.line, place.column, &key, &value});
-  }
-  std::stable_sort(in_order.begin(), in_order.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.is_override, a.line, a.column) < std::tie(b.is_override, b.line, b.column);
-  });
-  for (const Entry& entry : in_order) {
+  for (const Entry& entry : in_order(*all)) {
     const std::string name(entry.key->str());
     // An invalid material is added, too: spheres may use its name without further errors.
     materials.push_back({name, scene::Lambertian{}});

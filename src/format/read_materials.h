@@ -18,4 +18,7 @@ struct ReadState;
 /// `frame`    replaces frame patterns in names of texture files
 void read_materials(ReadState& state, const toml::table& root, int frame, std::vector<scene::Material>& materials);
 
+/// Removes the keys of a material or texture that only its type in the file has, if an override has replaced the type.
+void drop_keys_of_old_types(toml::table& root);
+
 }  // namespace orrery::format

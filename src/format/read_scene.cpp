@@ -254,14 +254,16 @@ void pose(ReadState& state, const toml::table& root, const std::string& file, in
 /// Whether an override sets what a track animates; the names of a sphere, by index and by name, are the same.
 bool sets_target(const Override& override, const scene::Track& track, const scene::Scene& scene) {
   if (override.sets(track.target)) return true;
-  if (override.text.find("sphere") == std::string::npos) return false;  // names of spheres take time to find
+  const auto is_of_sphere = [](const KeyValue& set) { return set.key.starts_with("sphere"); };
+  if (std::none_of(override.values.begin(), override.values.end(), is_of_sphere))
+    return false;  // names take time to find
   const std::vector<std::size_t> spheres = scene::spheres_of_target(scene, track.target);
   return spheres.size() == 1 &&
          override.sets(fmt::format("sphere[{}]{}", spheres[0], track.target.substr(track.target.rfind('.'))));
 }
 
 /// A track replaces what an override sets.
-void warn_of_animated_overrides(ReadState& state, const std::vector<Override>& overrides, const scene::Scene& scene) {
+void warn_of_animated_overrides(ReadState& state, const Overrides& overrides, const scene::Scene& scene) {
   for (std::size_t i = 0; i < overrides.size(); ++i)
     for (std::size_t t = 0; t < scene.tracks.size(); ++t)
       if (sets_target(overrides[i], scene.tracks[t], scene))
@@ -302,8 +304,7 @@ std::vector<Setting> settings_of(const SourceText& source, const toml::table& ro
 
 }  // namespace
 
-ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides,
-                      const ReadOptions& options) {
+ReadResult read_scene(const std::filesystem::path& file, const Overrides& overrides, const ReadOptions& options) {
   const int frame = options.frame;
   const std::string text = options.text ? *options.text : read_file(file, kLargestSceneFile), name = file.string();
   ReadState state;

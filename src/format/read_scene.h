@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "format/override.h"
+#include "format/overrides.h"
 #include "points/open_data.h"
 #include "scene/forward.h"
 
@@ -33,14 +33,11 @@ struct ReadOptions {
 
 /// Reads and checks a scene file, and the data files that it names.
 ///
-/// `overrides` are "key=value", with the value as in the file; words need no quotes. Keys are dotted, spheres are
-/// counted from 0: "camera.vfov=30", "material.gold.fuzz=0.3", "sphere[2].radius=0.5".
-///
 /// Errors     base::Error: kMissingInput if the scene cannot be opened, or if the only errors are data files that
 ///            cannot be opened; kIo; kBadData with the diagnostics of the file, the overrides and the points files,
 ///            each with its location, the first kMaxErrors of them
 /// Reference  docs/scene-format.md
-ReadResult read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {},
+ReadResult read_scene(const std::filesystem::path& file, const Overrides& overrides = {},
                       const ReadOptions& options = {});
 
 /// Returns the version of toml++.

@@ -40,19 +40,6 @@ void SourceText::add(const std::string& name, std::string_view text, bool is_gen
   texts_[name] = {std::string(text), is_generated, {}};
 }
 
-void SourceText::add_override(const Override& override, std::string parsed, std::vector<std::size_t> inserted) {
-  ShownOverride own;
-  own.option = override.option;
-  own.shown = override.option + ' ' + override.typed;
-  // Shown on one line.
-  std::replace_if(
-      own.shown.begin(), own.shown.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  own.parsed = std::move(parsed);
-  own.inserted = std::move(inserted);
-  own.typed_begin = std::min(override.text.rfind(override.typed), override.text.size());
-  overrides_.push_back(std::move(own));
-}
-
 std::string_view SourceText::line_of(const Text& text, int line) {
   const std::string_view bytes = text.bytes;
   if (text.begins.empty()) {
@@ -74,19 +61,21 @@ std::string_view SourceText::line_of(const Text& text, int line) {
   return out;
 }
 
-/// Maps a location in the parsed text to the typed text.
-void SourceText::point_into(const ShownOverride& override, const Place& place, base::Diagnostic& diagnostic) {
+/// Points into an override as it was typed, on one line.
+void SourceText::point_into(const Override& override, const Place& place, base::Diagnostic& diagnostic) {
+  std::string shown = override.option + ' ' + override.typed;
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   const auto shown_byte = [&](int column) {
-    std::size_t at = byte_of_character(override.parsed, static_cast<std::size_t>(column) - 1);
-    at -= static_cast<std::size_t>(std::lower_bound(override.inserted.begin(), override.inserted.end(), at) -
-                                   override.inserted.begin());
-    const std::size_t begin = override.option.size() + 1;
-    return std::min(at < override.typed_begin ? begin : begin + at - override.typed_begin, override.shown.size());
+    const std::size_t at = byte_of_character(override.toml, static_cast<std::size_t>(column) - 1);
+    const auto inserted = std::lower_bound(override.inserted.begin(), override.inserted.end(), at);
+    const std::size_t typed = at - static_cast<std::size_t>(inserted - override.inserted.begin());
+    return std::min(override.option.size() + 1 + typed, shown.size());
   };
   const std::size_t first = shown_byte(place.column);
   diagnostic.column = static_cast<int>(first) + 1;
   diagnostic.width = std::max(1, static_cast<int>(shown_byte(place.column + place.width) - first));
-  if (override.shown.size() <= kLongestShown) diagnostic.source_line = override.shown;
+  if (shown.size() <= kLongestShown) diagnostic.source_line = shown;
 }
 
 base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& place, std::string text,
@@ -95,9 +84,9 @@ base::Diagnostic SourceText::diagnostic(base::Severity severity, const Place& pl
   out.severity = severity;
   out.text = std::move(text);
   out.remedy = std::move(remedy);
-  if (place.text_name == kOverrideName && place.line >= 1 &&
-      static_cast<std::size_t>(place.line) <= overrides_.size()) {
-    const ShownOverride& override = overrides_[static_cast<std::size_t>(place.line) - 1];
+  if (place.text_name == kOverrideName && overrides_ != nullptr && place.line >= 1 &&
+      static_cast<std::size_t>(place.line) <= overrides_->size()) {
+    const Override& override = (*overrides_)[static_cast<std::size_t>(place.line) - 1];
     out.file = override.option;
     if (place.column >= 1) point_into(override, place, out);
     return out;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "format/override.h"
+#include "format/overrides.h"
 
 namespace orrery::format {
 
@@ -34,14 +34,13 @@ class SourceText {
   /// `is_generated`  a program wrote the text, so that its lines mean nothing to the user: diagnostics omit them
   void add(const std::string& name, std::string_view text, bool is_generated = false);
 
-  /// Adds the next line of kOverrideName.
+  /// Makes the overrides the lines of kOverrideName.
   ///
-  /// `parsed`   the text as passed to the TOML library `inserted` ascending indices of the bytes in `parsed` that the
-  /// user did not type
-  void add_override(const Override& override, std::string parsed, std::vector<std::size_t> inserted);
+  /// Domain     they exist as long as this
+  void set_overrides(const Overrides& overrides) { overrides_ = &overrides; }
 
   /// Returns the option of a line of kOverrideName: "--set", "--samples".
-  const std::string& option_at(int line) const { return overrides_[static_cast<std::size_t>(line) - 1].option; }
+  const std::string& option_at(int line) const { return (*overrides_)[static_cast<std::size_t>(line) - 1].option; }
 
   /// Returns a diagnostic with location and source line; for an override, that is the command line: "--samples 0".
   base::Diagnostic diagnostic(base::Severity severity, const Place& place, std::string text,
@@ -53,16 +52,11 @@ class SourceText {
     bool is_generated;
     mutable std::vector<std::size_t> begins;  ///< offset of every kStride-th line; filled on first use
   };
-  struct ShownOverride {
-    std::string option, shown, parsed;
-    std::vector<std::size_t> inserted;
-    std::size_t typed_begin = 0;  ///< index in the override's text of the option value that the user typed
-  };
   static std::string_view line_of(const Text& text, int line);
-  static void point_into(const ShownOverride& override, const Place& place, base::Diagnostic& diagnostic);
+  static void point_into(const Override& override, const Place& place, base::Diagnostic& diagnostic);
 
   std::map<std::string, Text> texts_;
-  std::vector<ShownOverride> overrides_;
+  const Overrides* overrides_ = nullptr;
 };
 
 /// Maximum size of a scene file, bytes: a million [[sphere]] tables. Larger scenes use points files.

@@ -4,10 +4,10 @@
 #include <toml++/toml.h>
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "format/diagnostics.h"
+#include "format/overrides.h"
 #include "format/source_text.h"
 
 namespace orrery::format {
@@ -16,13 +16,31 @@ namespace orrery::format {
 Place place_of(const toml::node& node);
 Place place_of(const toml::key& key);
 
-/// Adds a parse error of the TOML library as a diagnostic.
-void add_parse_error(const toml::parse_error& error, const SourceText& source, Diagnostics& diagnostics);
+/// A key with its value, and its place in the file or among the overrides.
+struct Entry {
+  const toml::key* key;
+  const toml::node* value;
+  bool is_override;
+  int line, column;
+};
+
+/// The entries of a table in the order of the file, then those of overrides; the library sorts them by name.
+std::vector<Entry> in_order(const toml::table& table);
+
+/// Returns a key, quoted if necessary, and a value on one line, as in a scene file.
+std::string toml_text(const toml::key& key);
+std::string toml_text(const toml::node& node);
+
+/// Returns a parse error of the TOML library in our words.
+Override::Fault fault_of(const toml::parse_error& error);
 
 /// Parses the text of a scene file and applies the overrides; failures are added to `diagnostics`.
 ///
+/// Overrides are merged into the tables of the file; missing tables are created, list elements must exist.
+///
+/// Domain     `overrides` exists as long as `source`
 /// Result     the tree, empty if the text is invalid; nodes have their locations, including those in overrides
-toml::table parse_tree(const std::string& file_name, const std::string& text, const std::vector<Override>& overrides,
+toml::table parse_tree(const std::string& file_name, const std::string& text, const Overrides& overrides,
                        SourceText& source, Diagnostics& diagnostics);
 
 }  // namespace orrery::format

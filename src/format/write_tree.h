@@ -4,9 +4,8 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <vector>
 
-#include "format/override.h"
+#include "format/overrides.h"
 
 namespace orrery::format {
 
@@ -16,8 +15,7 @@ namespace orrery::format {
 /// `name`     name of the scene, for messages
 /// `renamed`  returns the new name of a file that the scene names: data files, colour maps, backgrounds, OCIO configs
 /// Errors     base::Error(kBadData) if the text is not TOML or an override is invalid; values are not checked
-std::string merged_text(const std::filesystem::path& name, const std::string& text,
-                        const std::vector<Override>& overrides,
+std::string merged_text(const std::filesystem::path& name, const std::string& text, const Overrides& overrides,
                         const std::function<std::string(const std::string& file)>& renamed);
 
 }  // namespace orrery::format

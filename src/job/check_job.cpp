@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/check_job.h"
 
-#include <algorithm>
-
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compile/compiled_scene.h"
-#include "format/override.h"
 #include "image/exr_options.h"
 #include "image/format.h"
 #include "job/job.h"
@@ -45,9 +42,8 @@ void check_request(const Job& job) {
 }
 
 void check_layers(const Job& job, const scene::Scene& scene) {
-  const auto is_explicit = [](const format::Override& o) { return o.sets("output.layers"); };
   if (!job.outputs.has_exr() && job.keep == nullptr && job.merge.shards.empty() && !scene.output.layers.empty() &&
-      std::any_of(job.scene.overrides.begin(), job.scene.overrides.end(), is_explicit))
+      job.scene.overrides.sets("output.layers"))
     throw base::Error(base::ErrorKind::kUsage, "no output can hold the requested layers; add -o FILE.exr");
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job.h"
 
-#include <algorithm>
 #include <chrono>
 #include <new>
 #include <optional>
@@ -302,10 +301,7 @@ void write_failure(const Job& job, const JobReport& report, const base::Error& e
 
 }  // namespace
 
-bool is_limited(const Job& job) {
-  const auto is_samples = [](const format::Override& o) { return o.sets("render.samples"); };
-  return std::any_of(job.scene.overrides.begin(), job.scene.overrides.end(), is_samples);
-}
+bool is_limited(const Job& job) { return job.scene.overrides.sets("render.samples"); }
 
 JobReport run_job(const Job& job) {
   base::FileSet own;

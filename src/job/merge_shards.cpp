@@ -154,7 +154,7 @@ void take_scene(const ShardFile& shard, Job& job) {
   };
   if (job.scene.file.empty()) job.scene.file = value("scene");
   std::istringstream lines(value("overrides"));
-  for (std::string line; std::getline(lines, line);) job.scene.overrides.push_back(line);
+  for (std::string line; std::getline(lines, line);) job.scene.overrides.add(line);
   const std::string frame = value("frame");
   std::from_chars(frame.data(), frame.data() + frame.size(), job.scene.frame);
   for (ImageFile& output : job.outputs.images) output.path = base::with_frame(output.path.string(), job.scene.frame);

@@ -12,7 +12,6 @@
 #include "compile/compiled_scene.h"
 #include "display/settings.h"
 #include "film/layer_film.h"
-#include "format/override.h"
 #include "image/partial_file.h"
 #include "job/job.h"
 #include "job/layers.h"
@@ -53,7 +52,7 @@ image::Provenance provenance_of(const Job& job, const compile::CompiledScene& co
   out["layers"] = layers_text(layers);
   out["scene"] = std::filesystem::absolute(job.scene.file).lexically_normal().string();
   std::string& overrides = out["overrides"];
-  for (const format::Override& setting : job.scene.overrides) overrides += setting.text + "\n";
+  for (const format::KeyValue& set : job.scene.overrides.values()) overrides += set.text + "\n";
   out["frame"] = std::to_string(job.scene.frame);
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
@@ -72,8 +71,8 @@ std::string stamp_of(const Job& job, const image::Provenance& provenance, const 
   for (const std::string& word : {job.outputs.exr.compression, display.config, choice.config_id, choice.transform_id,
                                   display.display, display.view, display.look, display.working_space})
     all += word + "\n";
-  for (const format::Override& setting : job.scene.overrides)
-    if (!setting.sets("render.accelerator")) all += setting.text + "\n";  // the accelerator changes no bits
+  for (const format::KeyValue& set : job.scene.overrides.values())
+    if (set.key != "render.accelerator") all += set.text + "\n";  // the accelerator changes no bits
   return text_hash(all);
 }
 

@@ -4,9 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "format/override.h"
+#include "format/overrides.h"
 #include "points/open_data.h"
 
 namespace orrery::load {
@@ -14,7 +13,7 @@ namespace orrery::load {
 /// A scene as specified on the command line: file, overrides, and a frame of its animation.
 struct SceneSource {
   std::filesystem::path file;
-  std::vector<format::Override> overrides;  ///< "camera.vfov=30"
+  format::Overrides overrides;
   int frame = 1;
   std::shared_ptr<const std::string> text = {};  ///< text of the scene; null: read the file
   bool has_file = true;                          ///< false: `file` is only a name

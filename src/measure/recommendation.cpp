@@ -106,9 +106,14 @@ class Recommender {
   /// The scene options of the study as text, without --samples, which would limit --noise.
   std::string scene_flags() const {
     std::string flags;
-    for (const format::Override& override : request_.scene.overrides)
-      if (!override.sets("render.samples"))
+    for (const format::Override& override : request_.scene.overrides) {
+      if (!override.sets("render.samples")) {
         flags += fmt::format("{} {} ", override.option, base::shell_quoted(override.typed));
+        continue;
+      }
+      for (const format::KeyValue& set : override.values)
+        if (set.key != "render.samples") flags += fmt::format("--set {} ", base::shell_quoted(set.text));
+    }
     if (request_.scene.frame != format::kFirstFrame) base::append(flags, "--frames %d ", request_.scene.frame);
     return flags;
   }

@@ -58,7 +58,7 @@ load::SceneSource SceneData::source() const {
   out.file = file;
   out.text = std::make_shared<const std::string>(text);
   out.has_file = is_file;
-  out.overrides.assign(overrides.begin(), overrides.end());
+  for (const std::string& setting : overrides) out.overrides.add(setting, true);
   out.frame = frame;
   if (!tables.empty())
     out.open_data = [own = tables, folder = file.parent_path()](const fs::path& path,

@@ -67,7 +67,7 @@ std::string fault_with_round_trip(const std::filesystem::path& folder, scene::Sc
 }
 
 std::string fault_with(const std::filesystem::path& folder, const std::filesystem::path& file,
-                       const std::vector<format::Override>& overrides) {
+                       const format::Overrides& overrides) {
   format::ReadResult read;
   try {
     read = format::read_scene(file, overrides);
@@ -208,9 +208,9 @@ std::string fault_with_overrides(const std::filesystem::path& folder, const std:
   write(folder / "base.toml",
         "[material.a]\ntype = \"metal\"\nalbedo = [1, 1, 1]\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = "
         "\"a\"\n");
-  std::vector<format::Override> overrides;
+  format::Overrides overrides;
   std::istringstream lines(bytes);
-  for (std::string line; std::getline(lines, line);) overrides.emplace_back(line);
+  for (std::string line; std::getline(lines, line);) overrides.add(line);
   return fault_with(folder, folder / "base.toml", overrides);
 }
 

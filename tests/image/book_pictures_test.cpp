@@ -23,9 +23,9 @@ using math::Vec3d;
 
 constexpr int kWidth = 160, kHeight = 90;
 
-film::Picture picture_of(const std::string& name, std::vector<format::Override> overrides = {}) {
-  overrides.push_back("image.width=" + std::to_string(kWidth));
-  overrides.push_back("image.height=" + std::to_string(kHeight));
+film::Picture picture_of(const std::string& name, format::Overrides overrides = {}) {
+  overrides.add("image.width=" + std::to_string(kWidth));
+  overrides.add("image.height=" + std::to_string(kHeight));
   return test::render_scene(
       format::read_scene(std::filesystem::path(ORRERY_SCENES) / "book" / (name + ".toml"), overrides));
 }

@@ -44,9 +44,9 @@ void set_planet(scene::Scene& scene) {
   scene::modify_textures(scene, [&](scene::Texture& texture, scene::TextureUse) { texture.image = image; });
 }
 
-film::Picture picture_of_scene(const std::string& name, std::vector<format::Override> overrides = {}) {
-  overrides.push_back("image.width=" + std::to_string(kSceneWidth));
-  overrides.push_back("image.height=" + std::to_string(kSceneHeight));
+film::Picture picture_of_scene(const std::string& name, format::Overrides overrides = {}) {
+  overrides.add("image.width=" + std::to_string(kSceneWidth));
+  overrides.add("image.height=" + std::to_string(kSceneHeight));
   auto read = format::read_scene(std::filesystem::path(ORRERY_SCENES) / "next-week" / (name + ".toml"), overrides);
   if (name == "03-planet") set_planet(read.scene);
   return test::render_scene(read);
@@ -77,7 +77,7 @@ Spread spread(const film::Picture& p, double left, double top, double right, dou
   return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0))};
 }
 
-const std::vector<format::Override> kFlat = {"render.shading=flat", "render.samples=1"};
+const format::Overrides kFlat = {"render.shading=flat", "render.samples=1"};
 
 TEST(ImageNextWeekPictures, ACheckerHasTwoColours) {
   const film::Picture p = picture_of_scene("02-checkered-spheres", kFlat);

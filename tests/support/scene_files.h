@@ -19,7 +19,7 @@ class SceneFiles {
   void add(const std::string& name, const std::string& bytes) { write_bytes(folder_ / name, bytes); }
 
   /// Reads `text` as scene.toml; fails the test if the reader rejects it.
-  format::ReadResult read(const std::string& text, const std::vector<format::Override>& overrides = {}) {
+  format::ReadResult read(const std::string& text, const format::Overrides& overrides = {}) {
     add("scene.toml", text);
     try {
       return format::read_scene(folder_ / "scene.toml", overrides);
@@ -30,7 +30,7 @@ class SceneFiles {
   }
 
   /// Returns the errors as the user sees them, without the folder; without errors, the warnings.
-  std::string diagnostics(const std::string& text, const std::vector<format::Override>& overrides = {}) {
+  std::string diagnostics(const std::string& text, const format::Overrides& overrides = {}) {
     add("scene.toml", text);
     try {
       std::string out;

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "format/override.h"
+#include "format/overrides.h"
 #include "load/load_scene.h"
 #include "support/temp_dir.h"
 
@@ -45,7 +45,7 @@ material = "grey"
 
 class AppInfo : public testing::Test {
  protected:
-  SceneInfo info(const std::string& scene, const std::vector<format::Override>& overrides = {}) {
+  SceneInfo info(const std::string& scene, const format::Overrides& overrides = {}) {
     support::write_bytes(folder_ / "scene.toml", scene);
     load::SceneRequest request;
     request.source.file = folder_ / "scene.toml";

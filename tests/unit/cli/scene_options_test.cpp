@@ -9,7 +9,10 @@
 namespace orrery::cli {
 namespace {
 
-std::vector<std::string> overrides_of(const std::vector<const char*>& words) {
+using Texts = std::vector<std::string>;
+
+/// The overrides of a command line, as they would be typed with --set.
+Texts overrides_of(const std::vector<const char*>& words) {
   CLI::App app;
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   Command command(app);
@@ -18,8 +21,8 @@ std::vector<std::string> overrides_of(const std::vector<const char*>& words) {
   std::vector<const char*> argv = {"program"};
   argv.insert(argv.end(), words.begin(), words.end());
   app.parse(static_cast<int>(argv.size()), argv.data());
-  std::vector<std::string> texts;
-  for (const format::Override& override : options.overrides()) texts.push_back(override.text);
+  Texts texts;
+  for (const format::KeyValue& set : options.overrides().values()) texts.push_back(set.text);
   return texts;
 }
 
@@ -28,21 +31,23 @@ TEST(CliSceneOptions, NoOptionsGiveNoOverrides) { EXPECT_TRUE(overrides_of({}).e
 TEST(CliSceneOptions, EveryShortFormSetsItsKey) {
   EXPECT_EQ(overrides_of({"--samples", "1", "--width", "2", "--height", "3", "--seed", "4", "--max-depth", "5",
                           "--precision", "fast", "--accelerator", "list"}),
-            (std::vector<std::string>{"render.samples=1", "image.width=2", "image.height=3", "render.seed=4",
-                                      "render.max_depth=5", "render.precision=fast", "render.accelerator=list"}));
+            (Texts{"render.samples=1", "image.width=2", "image.height=3", "render.seed=4", "render.max_depth=5",
+                   "render.precision=\"fast\"", "render.accelerator=\"list\""}));
 }
 
 TEST(CliSceneOptions, SetComesAfterShortForms) {
   EXPECT_EQ(overrides_of({"--set", "image.width=9", "--set", "camera.vfov=30", "--samples", "1"}),
-            (std::vector<std::string>{"render.samples=1", "image.width=9", "camera.vfov=30"}));
+            (Texts{"render.samples=1", "image.width=9", "camera.vfov=30"}));
 }
 
 TEST(CliSceneOptions, AKeyIsNotSetTwiceByDifferentOptions) {
-  EXPECT_THROW(overrides_of({"--set", "render.samples=9", "--samples", "1"}), base::Error);
+  for (const char* text : {"render.samples=9", "render={samples=9}", " render . samples = 9", "\"render\".samples=9",
+                           "render={\"s\\u0061mples\"=9}"})
+    EXPECT_THROW(overrides_of({"--set", text, "--samples", "1"}), base::Error) << text;
 }
 
 TEST(CliSceneOptions, TheLastShortFormCounts) {
-  EXPECT_EQ(overrides_of({"--samples", "1", "--samples", "2"}), (std::vector<std::string>{"render.samples=2"}));
+  EXPECT_EQ(overrides_of({"--samples", "1", "--samples", "2"}), (Texts{"render.samples=2"}));
 }
 
 TEST(CliSceneOptions, AnEmptyValueIsAnError) {
@@ -51,8 +56,7 @@ TEST(CliSceneOptions, AnEmptyValueIsAnError) {
 }
 
 TEST(CliSceneOptions, LayersAreSeparatedByCommas) {
-  EXPECT_EQ(overrides_of({"--layers", "Z,denoise.albedo"}),
-            (std::vector<std::string>{"output.layers=[Z,denoise.albedo]"}));
+  EXPECT_EQ(overrides_of({"--layers", "Z,denoise.albedo"}), (Texts{"output.layers=[\"Z\", \"denoise.albedo\"]"}));
 }
 
 }  // namespace

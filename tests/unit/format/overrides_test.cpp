@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include <fmt/core.h>
+
 #include "support/scene_files.h"
 
 namespace orrery::format {
@@ -58,10 +62,142 @@ TEST(FormatOverrides, CreateMissingTables) {
   EXPECT_EQ(scene.render.samples, 3);
 }
 
-TEST(FormatOverrides, AnInlineTableReplacesTheWholeTable) {
+TEST(FormatOverrides, TablesAreMerged) {
   SceneFiles files;
-  const auto scene = files.read(kScene, {"material.gold={type=\"dielectric\"}"}).scene;
-  EXPECT_EQ(std::get<scene::Dielectric>(scene.materials[0].model).ior, 1.5);
+  const auto scene = files.read(kScene, {"camera={look_from=[1,2,3]}", "material={gold={fuzz=0.5}}"}).scene;
+  EXPECT_EQ(scene.camera.vfov, 20);
+  EXPECT_EQ(scene.camera.look_from, (scene::Vec3d{1, 2, 3}));
+  EXPECT_EQ(std::get<scene::Metal>(scene.materials[0].model).albedo, (scene::Vec3d{0.8, 0.6, 0.2}));
+  EXPECT_EQ(std::get<scene::Metal>(scene.materials[0].model).fuzz, 0.5);
+}
+
+TEST(FormatOverrides, AListOrNumberBecomesATable) {
+  SceneFiles files;
+  for (const char* text : {"material.gold.albedo={texture=\"noise\"}", "material.gold.albedo.texture=noise"})
+    EXPECT_NE(std::get<scene::Metal>(files.read(kScene, {text}).scene.materials[0].model).albedo_texture, nullptr)
+        << text;
+}
+
+TEST(FormatOverrides, ANewTypeDropsTheKeysOfTheOldOne) {
+  SceneFiles files;
+  for (const char* text : {"material.gold={type=\"dielectric\"}", "material.gold.type=dielectric"}) {
+    const auto scene = files.read(kScene, {text}).scene;
+    EXPECT_EQ(std::get<scene::Dielectric>(scene.materials[0].model).ior, 1.5) << text;
+  }
+  const auto scene = files.read(kScene, {"material.gold.type=lambertian"}).scene;
+  EXPECT_EQ(std::get<scene::Lambertian>(scene.materials[0].model).albedo, (scene::Vec3d{0.8, 0.6, 0.2}))
+      << "common keys";
+  const std::string own = files.diagnostics(kScene, {"material.gold={type=\"dielectric\", albedo=[1,1,1]}"});
+  EXPECT_NE(own.find("unknown key `albedo` in material.gold of type dielectric"), std::string::npos) << own;
+}
+
+TEST(FormatOverrides, ANewTextureDropsTheKeysOfTheOldOne) {
+  SceneFiles files;
+  const std::string scene = std::string(kScene) +
+                            "[material.wall]\ntype = \"lambertian\"\n"
+                            "albedo = { texture = \"checker\", even = [0, 0, 0], scale = 2 }\n";
+  EXPECT_EQ(files.diagnostics(scene, {"material.wall.albedo.texture=noise"}), "");
+}
+
+/// The settings of a scene, which all spellings of the overrides must give.
+std::string settings_with(const Overrides& overrides) {
+  SceneFiles files;
+  std::string out;
+  for (const Setting& setting : files.read(kScene, overrides).settings)
+    out += setting.key + "=" + setting.value + " " + setting.origin.substr(0, 5) + "\n";
+  return out;
+}
+
+/// Chooses among the spellings of a key or a value.
+class Spelling {
+ public:
+  explicit Spelling(unsigned seed) : random_(seed) {}
+
+  std::size_t below(std::size_t count) { return random_() % count; }
+  std::string blanks() { return std::string(below(3), below(2) == 0 ? ' ' : '\t'); }
+
+  std::string key(const std::string& name) {
+    switch (below(4)) {
+      case 0: return '"' + name + '"';
+      case 1: return "'" + name + "'";
+      case 2: return fmt::format("\"\\u{:04x}{}\"", static_cast<unsigned>(name[0]), name.substr(1));
+      default: return name;
+    }
+  }
+
+  /// `table.key=value`, or a table with one key.
+  std::string setting(const std::string& table, const std::string& name, const std::string& value) {
+    const std::string first = blanks() + key(table) + blanks(), second = blanks() + key(name) + blanks();
+    if (below(2) == 0) return first + "." + second + "=" + blanks() + value + blanks();
+    return first + "=" + blanks() + "{" + second + "=" + blanks() + value + blanks() + "}" + blanks();
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// Limits, conflicts, framing, layers, headers and submitted jobs depend only on what this compares.
+TEST(FormatOverrides, EquivalentSpellingsAreEqual) {
+  struct Case {
+    const char *table, *key;
+    std::vector<std::string> values;
+  };
+  const std::vector<Case> cases = {{"render", "samples", {"20", "+20", "0x14", "2_0"}},
+                                   {"image", "width", {"64", "0b1000000"}},
+                                   {"camera", "vfov", {"30.5", "3.05e1", "30.50"}},
+                                   {"camera", "look_from", {"[1, 2, 3]", "[1,2,3,]", " [ 1.0 , 2e0, 3 ] "}},
+                                   {"render", "precision", {"\"fast\"", "'fast'", "\"f\\u0061st\""}},
+                                   {"output", "layers", {"[\"Z\",'N']", "[ \"\\u005A\", \"N\", ]"}},
+                                   {"output", "layers", {"[]", "[ ]"}},
+                                   {"color", "space", {"\"a \\\"b\\\" \\\\ c\"", "'a \"b\" \\ c'"}}};
+  Spelling spelling(1);
+  for (int round = 0; round < 300; ++round) {
+    Overrides plain, spelled;
+    std::string shown;
+    for (std::size_t count = 1 + spelling.below(4); count > 0; --count) {
+      const Case& one = cases[spelling.below(cases.size())];
+      plain.add(fmt::format("{}.{}={}", one.table, one.key, one.values.front()));
+      spelled.add(spelling.setting(one.table, one.key, one.values[spelling.below(one.values.size())]));
+      shown += spelled[spelled.size() - 1].typed + "\n";
+    }
+    std::string a, b;
+    Overrides again;
+    for (const KeyValue& set : plain.values()) a += set.text + "\n";
+    for (const KeyValue& set : spelled.values()) again.add(set.text);
+    for (const KeyValue& set : again.values()) b += set.text + "\n";
+    for (const Case& one : cases) {
+      const std::string key = fmt::format("{}.{}", one.table, one.key);
+      EXPECT_EQ(plain.sets(key), spelled.sets(key)) << key << " in\n" << shown;
+      EXPECT_EQ(plain.integer(key), spelled.integer(key)) << key << " in\n" << shown;
+      EXPECT_EQ(plain.string(key), spelled.string(key)) << key << " in\n" << shown;
+    }
+    EXPECT_EQ(a, b) << shown;
+    if (round % 10 != 0) continue;  // these read files
+    EXPECT_EQ(settings_with(plain), settings_with(spelled)) << shown;
+    EXPECT_EQ(settings_with(plain), settings_with(again)) << shown;
+  }
+}
+
+TEST(FormatOverrides, ValuesAreReadByKey) {
+  const Overrides overrides = {"image={width=64,height=\"x\"}",    "image.width=65",         "color.view=\"a\\\"b\"",
+                               "material.\"dark gold\".fuzz=1e-1", "\"sphere\"[1].radius=2", "render={}"};
+  EXPECT_EQ(overrides.integer("image.width"), 65);
+  EXPECT_EQ(overrides.integer("image.height"), std::nullopt);
+  EXPECT_EQ(overrides.string("color.view"), "a\"b");
+  EXPECT_TRUE(overrides.sets("material.dark gold.fuzz"));
+  EXPECT_TRUE(overrides.sets("sphere[1].radius"));
+  EXPECT_FALSE(overrides.sets("sphere[1].center"));
+  EXPECT_FALSE(overrides.sets("render.samples"));
+  std::string all;
+  for (const KeyValue& set : overrides.values()) all += set.text + "\n";
+  EXPECT_EQ(all,
+            "image.height=\"x\"\nimage.width=65\ncolor.view=\"a\\\"b\"\nmaterial.\"dark gold\".fuzz=0.1\n"
+            "sphere[1].radius=2\n");
+}
+
+TEST(FormatOverrides, AListContainsItsElements) {
+  EXPECT_TRUE(Overrides({"sphere=[]"}).sets("sphere[2].radius"));
+  EXPECT_FALSE(Overrides({"sphere=[]"}).sets("spheres"));
 }
 
 TEST(FormatOverrides, TheLastOneWins) {
@@ -102,9 +238,11 @@ TEST(FormatOverrides, ErrorsAreLocatedInTheOverride) {
 
 TEST(FormatOverrides, MessagesNameTheShortOption) {
   SceneFiles files;
-  EXPECT_EQ(files.diagnostics(kScene, {{"render.samples=0", "--samples", "0"},
-                                       "camera.vfov=0",
-                                       {"output.layers=[Z,Q,N]", "--layers", "Z,Q,N"}}),
+  Overrides overrides;
+  overrides.add_option("--samples", "render.samples", "0");
+  overrides.add("camera.vfov=0");
+  overrides.add_option("--layers", "output.layers", "Z,Q,N", true);
+  EXPECT_EQ(files.diagnostics(kScene, overrides),
             "--samples: error: render.samples is 0; must be in 1..2147483647\n"
             "    --samples 0\n"
             "              ^\n"
@@ -178,7 +316,7 @@ TEST(FormatOverrides, ListElementsMustExist) {
   EXPECT_EQ(told("].radius=1").rfind("--set: error: `]` is not a list element", 0), 0u);
   EXPECT_EQ(told("sphere.radius=1"),
             "--set: error: `sphere` is not a table; name one of its elements, e.g. sphere[0].radius=2");
-  EXPECT_EQ(told("camera.vfov.x=1"), "--set: error: `vfov` is not a table");
+  EXPECT_EQ(told("camera.vfov.x=1"), "--set: error: camera.vfov must be a number, not a table");
 }
 
 }  // namespace

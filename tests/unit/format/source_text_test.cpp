@@ -28,10 +28,12 @@ TEST(FormatSourceText, FindsEveryLine) {
 }
 
 TEST(FormatSourceText, OverridesAreQuotedAsTyped) {
+  Overrides overrides;
+  overrides.add_option("--samples", "render.samples", "0");
+  overrides.add("camera.vfov=wide");
+  overrides.add_option("--layers", "output.layers", "Z,Q", true);
   SourceText source;
-  source.add_override({"render.samples=0", "--samples", "0"}, "render.samples=0", {});
-  source.add_override("camera.vfov=wide", "camera.vfov=\"wide\"", {12, 17});
-  source.add_override({"output.layers=[Z,Q]", "--layers", "Z,Q"}, "output.layers=[\"Z\",\"Q\"]", {15, 17, 19, 21});
+  source.set_overrides(overrides);
   const auto shown = [&](int line, int column, int width) {
     return base::formatted(source.diagnostic(base::Severity::kError, {kOverrideName, line, column, width}, "x"));
   };

@@ -41,8 +41,8 @@ values = [30, 40.5]
 
 TEST(FormatWriteTree, ReadsBackToTheSameScene) {
   SceneFiles files;
-  const std::vector<Override> overrides = {"image.width=33", "material.copper={type=\"metal\",albedo=[1,0,0]}",
-                                           "sphere[1].radius=0.25", "camera.vfov=30"};
+  const Overrides overrides = {"image.width=33", "material.copper={type=\"metal\",albedo=[1,0,0]}",
+                               "sphere[1].radius=0.25", "camera.vfov=30"};
   const std::string text = merged_text("scene.toml", kCommentedScene, overrides, same);
   const scene::Scene a = files.read(kCommentedScene, overrides).scene, b = files.read(text).scene;
   for (const scene::Table& table : scene::tables())
@@ -59,6 +59,15 @@ TEST(FormatWriteTree, ReadsBackToTheSameScene) {
   EXPECT_EQ(b.spheres[0].material, a.spheres[0].material);
   ASSERT_EQ(b.tracks.size(), 1u);
   EXPECT_EQ(merged_text("scene.toml", text, {}, same), text) << "writing again changes nothing";
+}
+
+/// Otherwise the text would have keys that the new type does not have.
+TEST(FormatWriteTree, LeavesOutTheKeysOfAReplacedType) {
+  SceneFiles files;
+  const std::string text = merged_text("scene.toml", kCommentedScene, {"material.zinc.type=dielectric"}, same);
+  EXPECT_EQ(text.find("[0.1, 0.30000000000000004, 1]"), std::string::npos) << text;
+  EXPECT_EQ(files.read(text).scene.materials[0].model.index(),
+            files.read(kCommentedScene, {"material.zinc.type=dielectric"}).scene.materials[0].model.index());
 }
 
 TEST(FormatWriteTree, RenamesEveryFileThatTheSceneNames) {

@@ -53,7 +53,7 @@ TEST_F(JobDiskSpace, TheEstimateIsNearTheFiles) {
 }
 
 TEST_F(JobDiskSpace, LayersIncreaseTheEstimate) {
-  job_.scene.overrides.push_back("output.layers=[\"Z\", \"N\", \"variance\"]");
+  job_.scene.overrides.add("output.layers=[\"Z\", \"N\", \"variance\"]");
   film::LayerRequest layers;
   layers.z = layers.normal = layers.variance = true;
   EXPECT_GT(ratio("a.exr", layers), 0.8);
@@ -62,7 +62,7 @@ TEST_F(JobDiskSpace, LayersIncreaseTheEstimate) {
 
 /// The light of one group, which is the whole image.
 TEST_F(JobDiskSpace, LightGroupsIncreaseTheEstimate) {
-  job_.scene.overrides.push_back("output.layers=[\"light_groups\"]");
+  job_.scene.overrides.add("output.layers=[\"light_groups\"]");
   film::LayerRequest layers;
   layers.light_groups = true;
   layers.groups = {{"default", false, true}};

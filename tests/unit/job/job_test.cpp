@@ -228,13 +228,13 @@ TEST_F(JobRun, RejectsACheckpointOfAnotherRender) {
     EXPECT_EQ(support::file_bytes(folder_ / "a.checkpoint.exr"), checkpoint);
     job_ = right;
   };
-  job_.scene.overrides.push_back("render.seed=2");
+  job_.scene.overrides.add("render.seed=2");
   expect_refused("scene hash");
   job_.sampling.noise = 0.0008;  // the nearest double is 0.00080000000000000004
   expect_refused("--noise 0, not 0.0008;");
   job_.sampling.shard = {0, 2};
   expect_refused("--shard 1/1, not 1/2");
-  job_.scene.overrides.push_back("output.layers=[\"N\"]");
+  job_.scene.overrides.add("output.layers=[\"N\"]");
   expect_refused("layers none, not N");
   job_.denoise = true;
   expect_refused("layers none, not half_a.R");
@@ -280,7 +280,7 @@ TEST_F(JobRun, SpheresThatDoNotFitTwiceAreNotCompiled) {
   support::write_bytes(folder_ / "scene.toml",
                        std::string(kScene) + "[[points]]\nfile = \"a.csv\"\nradius = 0.01\nmaterial = \"grey\"\n");
   for (const char* text : {"image.width=1", "image.height=1", "render.accelerator=\"list\""})
-    job_.scene.overrides.push_back(text);
+    job_.scene.overrides.add(text);
   job_.outputs.images = {folder_ / "a.exr"};
   // 1,000 rows need 48,000 bytes while they are read; loaded and compiled spheres need 24 and 32 each.
   job_.resources.memory_limit = 57'000;

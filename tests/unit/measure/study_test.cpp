@@ -215,7 +215,7 @@ TEST_F(MeasureRun, JsonAndPageHoldAllPoints) {
             std::string::npos);
 }
 
-Study small_study(const std::filesystem::path& scene, double budget_s, std::vector<format::Override> overrides = {}) {
+Study small_study(const std::filesystem::path& scene, double budget_s, format::Overrides overrides = {}) {
   Request request;
   request.scene.file = scene;
   request.scene.overrides = std::move(overrides);
