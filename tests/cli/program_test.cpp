@@ -115,7 +115,7 @@ TEST_F(CliProgram, NumbersAreDecimal) {
 
 TEST_F(CliProgram, MemoryLimitIsEnforced) {
   const Outcome r = run("render good.toml -o a.png --memory-limit 1K");
-  EXPECT_EQ(r.status, 1);
+  EXPECT_EQ(r.status, 71);
   EXPECT_TRUE(contains(r.err, "orrery: the render needs about ")) << r.err;
   EXPECT_TRUE(contains(r.err, "--memory-limit allows 1.0 KiB; raise the limit\n")) << r.err;
   EXPECT_EQ(file_count(), 0);
