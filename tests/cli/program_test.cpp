@@ -82,7 +82,7 @@ TEST_F(CliProgram, UsageErrorExits2WithASuggestion) {
   EXPECT_EQ(r.status, 2);
   EXPECT_TRUE(contains(r.err, "exr, hdr, png")) << r.err;
   EXPECT_EQ(run("render good.toml -o a.png --threads 0").status, 2);
-  EXPECT_EQ(run("render good.toml -o a.png --isa mmx").status, 2);
+  EXPECT_EQ(run("render good.toml -o a.png", "ORRERY_ISA=mmx").status, 2);
   EXPECT_EQ(run("render good.toml -o a.jpg --bits 16").status, 2);
   r = run("render good.toml -o a.png --view Filmik --display sRGB");
   EXPECT_EQ(r.status, 2);
@@ -203,7 +203,7 @@ TEST_F(CliProgram, ReproducibleFilesAreByteIdentical) {
   ASSERT_EQ(run("render good.toml -o a.exr -q --reproducible").status, 0);
   ASSERT_EQ(run("render good.toml -o b.exr -q --reproducible -t 1").status, 0);
   EXPECT_TRUE(text_of(folder_ / "a.exr") == text_of(folder_ / "b.exr"));
-  ASSERT_EQ(run("render good.toml -o c.exr -q --reproducible --accelerator list").status, 0);
+  ASSERT_EQ(run("render good.toml -o c.exr -q --reproducible --set render.accelerator=list").status, 0);
   EXPECT_TRUE(text_of(folder_ / "a.exr") == text_of(folder_ / "c.exr"));
 }
 
